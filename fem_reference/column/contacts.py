@@ -20,7 +20,7 @@ for the forces of given states is one banded elimination.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
@@ -38,14 +38,20 @@ from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result
 from fem_reference.problem.stages import Stage
 from fem_reference.scheme.newmark import (
-    State,
+    Operator,
     Work,
-    discount,
     end_velocity,
-    predictor,
-    stage_load,
+    operator,
     start_velocity,
-    velocity_predictor,
+)
+from fem_reference.scheme.stage import (
+    Body,
+    Motion,
+    force_weight,
+    free_response,
+    mean_load,
+    predicted_change,
+    stage_end,
 )
 
 AT_LOWER = -1
@@ -142,11 +148,6 @@ class ColumnState:
     solves: int = 0  # of the open-close iteration
     undiscounted: bool = False  # whether gg does not act on V: the first half step of a staggered scheme
 
-    @property
-    def motion(self) -> State:
-        """The motion without the contacts."""
-        return State(self.D, self.V, self.A, self.undiscounted)
-
 
 class UnsolvedStepError(ArithmeticError):
     """The open-close iteration has found no consistent states, or has reached its limit."""
@@ -223,7 +224,7 @@ class ContactProblem:
 class StageMatrices(NamedTuple):
     """What a stage needs of its matrix S."""
 
-    solve: Callable[[Array], Array]  # S^-1 times a vector
+    body: Body
     mobility: csr_array  # S^-1 B'
     problem: ContactProblem
 
@@ -270,7 +271,9 @@ class ContactStepper:
         S = csr_array(self.M + stage.damping_weight * dt * self.C + b * self.K)
         solve = self.work.factor(S)
         mobility = csr_array(hstack([csr_array(solve(row)[:, None]) for row in self.B.toarray()]))
-        return StageMatrices(solve, mobility, self._problem(b, mobility, self.compliance))
+        C = None if self.model.impedance is None else operator(self.C)
+        body = Body(operator(self.M), C, operator(self.K), Operator(solve), is_free=True)
+        return StageMatrices(body, mobility, self._problem(b, mobility, self.compliance))
 
     def _problem(self, b: float, mobility: csr_array, compliance: Array) -> ContactProblem:
         """The contacts' problem with G = b B S^-1 B', of which a contact and its neighbours have entries."""
@@ -418,32 +421,24 @@ class ContactStepper:
         s = self.scheme
         numbers = s.stages[stage]
         matrices = self.stages[stage]
-        start = state.motion
-        middle = None if before is None else before.motion
         latest = state if before is None else before
-        b = numbers.compliance * s.step**2
-        predicted = predictor(start, s, stage, middle)
-        slowed = velocity_predictor(start, s, stage, middle)
-        force = stage_load(loads, s, stage)
-        if numbers.am:
-            predicted = predicted - b * numbers.am * state.A
-            slowed = slowed - numbers.gamma * numbers.am / (1 - numbers.am) * s.step * state.A
-        strained = predicted
-        rate = slowed
+        gg = 1.0 if state.undiscounted else s.gg
+        start = Motion(state.D, state.V, state.A)
+        middle = Motion(latest.D, latest.V, latest.A)
+        force = mean_load(numbers, loads[0], loads[stage + 1])
         if numbers.af:
-            strained = (1 - numbers.af) * predicted + numbers.af * state.D
-            rate = (1 - numbers.af) * slowed + numbers.af * discount(start, s) * state.V
             force = force + numbers.af * (self.B.T @ state.force)
-        drag = self.C @ rate if self.model.impedance is not None else 0.0
-        free = matrices.solve(force - drag - self.K @ strained)
+        response = free_response(numbers, s.step, gg, matrices.body, start, middle, force)
+        change = response
+        if numbers.beta == 0:
+            change = predicted_change(numbers, s.step, gg, start, middle)
         slip = latest.opening if self.column.law == "frictional" else -self.gaps
-        q = self.B @ (predicted + b * free) - self.base_opening(base) - slip
+        q = self.B @ (state.D + change) - self.base_opening(base) - slip
         N, z, states, solves = matrices.problem.solve(q, latest.states, self.column.solve_limit)
-        balanced = free + (1 - numbers.af) * (matrices.mobility @ N)
-        A = (balanced - numbers.am * state.A) / (1 - numbers.am)
+        response = response + force_weight(numbers, s.step) * (matrices.mobility @ N)
+        end = stage_end(numbers, s.step, gg, start, middle, response)
         opening = slip + z if self.column.law == "frictional" else np.where(states == INSIDE, -N * self.compliance, z)
-        V = slowed + numbers.gamma * s.step / (1 - numbers.am) * balanced
-        return ColumnState(predicted + b * balanced, V, A, N, np.asarray(opening), states, solves)
+        return ColumnState(state.D + end.D, end.V, end.A, N, np.asarray(opening), states, solves)
 
     def march(self, excitation: Excitation) -> Iterator[ColumnState]:
         """Yield the state at t = 0 and after each step.
@@ -617,6 +612,6 @@ class _Observed:
         """Values after a step, but for what the base adds."""
         opening = np.maximum(state.opening, 0.0) if self.opens else state.opening
         D, V, A = self.full
-        velocity = end_velocity(state.motion, self.scheme)
+        velocity = end_velocity(state.V, state.A, self.scheme)
         values: Array = D @ state.D + V @ velocity + A @ state.A + self.force @ state.force + self.opening @ opening
         return values

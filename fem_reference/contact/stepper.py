@@ -27,7 +27,7 @@ from fem_reference.contact.kernel import (
 from fem_reference.contact.points import ContactModel
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration, start_velocity
+from fem_reference.scheme.newmark import Operator, Work, effective_matrix, start_velocity
 
 AVERAGE = (0.25, 0.5)
 """Alpha and delta of average acceleration."""
@@ -58,18 +58,6 @@ class Friction:
     def tangent(self) -> float:
         """Tangent of the angle [-]."""
         return math.tan(math.radians(self.angle))
-
-
-@dataclass(frozen=True)
-class Operator:
-    """A matrix that is known by its product with a vector, written as that of a diagonal or of a matrix."""
-
-    product: Callable[[Array], Array]
-
-    def __mul__(self, vector: Array) -> Array:
-        return self.product(vector)
-
-    __matmul__ = __mul__
 
 
 class Marched(NamedTuple):
@@ -131,11 +119,10 @@ class ContactStepper:
         points = len(self.model.share)
         consistent = self.scheme.start == "consistent"
         mass = self._factor(self._M) if consistent else None
-        solve = None if mass is None else (lambda right: mass * right)
         totals = np.zeros(TOTALS)
         totals[STARTED] = consistent
         totals[UNDISCOUNTED] = self.scheme.staggered
-        A = initial_acceleration(self._F, solve)
+        A = np.zeros_like(self._F) if mass is None else mass * self._F
         return ContactState(
             D=np.zeros_like(self._F),
             V=start_velocity(speed * self._upwards, A, self.scheme),
