@@ -47,10 +47,10 @@ from fem_reference.scheme.newmark import (
 from fem_reference.scheme.stage import (
     Body,
     Motion,
-    force_weight,
     free_response,
     mean_load,
     predicted_change,
+    response_weight,
     stage_end,
 )
 
@@ -428,15 +428,14 @@ class ContactStepper:
         force = mean_load(numbers, loads[0], loads[stage + 1])
         if numbers.af:
             force = force + numbers.af * (self.B.T @ state.force)
-        response = free_response(numbers, s.step, gg, matrices.body, start, middle, force)
-        change = response
-        if numbers.beta == 0:
-            change = predicted_change(numbers, s.step, gg, start, middle)
+        predicted = predicted_change(numbers, s.step, gg, start, middle)
+        response = free_response(numbers, s.step, gg, matrices.body, start, middle, predicted, force)
+        change = response if numbers.beta else predicted
         slip = latest.opening if self.column.law == "frictional" else -self.gaps
         q = self.B @ (state.D + change) - self.base_opening(base) - slip
         N, z, states, solves = matrices.problem.solve(q, latest.states, self.column.solve_limit)
-        response = response + force_weight(numbers, s.step) * (matrices.mobility @ N)
-        end = stage_end(numbers, s.step, gg, start, middle, response)
+        response = response + (1 - numbers.af) * response_weight(numbers, s.step) * (matrices.mobility @ N)
+        end = stage_end(numbers, s.step, gg, start, middle, predicted, response)
         opening = slip + z if self.column.law == "frictional" else np.where(states == INSIDE, -N * self.compliance, z)
         return ColumnState(state.D + end.D, end.V, end.A, N, np.asarray(opening), states, solves)
 

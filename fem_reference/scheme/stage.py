@@ -68,30 +68,30 @@ def damped_inertia(stage: Stage, h: float, M: Any, C: Any, change: Any) -> Any:
     return M * change + (stage.gamma / (1 - stage.am) * (1 - stage.af) * h) * (C * change)
 
 
-def free_response(stage: Stage, h: float, gg: float, body: Body, start: Motion, before: Motion, F: Any) -> Any:
-    """Return dD under the load F* of a stage, or (1 - am) A1 where the stage is explicit."""
-    change = predicted_change(stage, h, gg, start, before)
+def free_response(
+    stage: Stage, h: float, gg: float, body: Body, start: Motion, before: Motion, predicted: Any, F: Any
+) -> Any:
+    """Return dD under the load F* of a stage, or (1 - am) A1 where the stage is explicit, from the predicted dD*."""
     force = F - damping_force(stage, h, gg, start, before, body.C) - body.K * start.D
     if stage.am != 0:
         force = force - stage.am * (body.M * start.A)
-    b = stage.beta / (1 - stage.am) * h**2
+    b = response_weight(stage, h)
     if stage.beta != 0 and not body.is_free:
-        return body.inverse * (damped_inertia(stage, h, body.M, body.C, change) + b * force)
+        return body.inverse * (damped_inertia(stage, h, body.M, body.C, predicted) + b * force)
     # Forces of the predicted place: none of a rigid motion of a free body, to the last bit.
-    e = body.inverse * (force - (1 - stage.af) * (body.K * change))
-    return change + b * e if stage.beta != 0 else e
+    e = body.inverse * (force - (1 - stage.af) * (body.K * predicted))
+    return predicted + b * e if stage.beta != 0 else e
 
 
-def force_weight(stage: Stage, h: float) -> float:
-    """Return what S^-1 times a force at the end of a stage counts in its response: beta' h^2, or 1 - af."""
-    if stage.beta == 0:
-        return 1 - stage.af
-    return stage.beta / (1 - stage.am) * (1 - stage.af) * h**2
+def response_weight(stage: Stage, h: float) -> float:
+    """Return what S^-1 times a force of the equation of motion counts in the response: b h^2, or one."""
+    return stage.beta / (1 - stage.am) * h**2 if stage.beta != 0 else 1.0
 
 
-def stage_end(stage: Stage, h: float, gg: float, start: Motion, before: Motion, response: Any) -> Motion:
+def stage_end(
+    stage: Stage, h: float, gg: float, start: Motion, before: Motion, predicted: Any, response: Any
+) -> Motion:
     """Return the end of a stage, as a change dD of the displacement since the start of the step."""
-    predicted = predicted_change(stage, h, gg, start, before)
     if stage.beta == 0:
         D = predicted
         A = response / (1 - stage.am)
@@ -119,6 +119,7 @@ def step_change(scheme: Any, gg: float, h: float, bodies: Any, start: Motion, lo
     before = start
     for stage, body, load in zip(scheme.stages, bodies, loads[1:], strict=True):
         F = mean_load(stage, loads[0], load)
-        response = free_response(stage, h, gg, body, start, before, F)
-        before = stage_end(stage, h, gg, start, before, response)
+        predicted = predicted_change(stage, h, gg, start, before)
+        response = free_response(stage, h, gg, body, start, before, predicted, F)
+        before = stage_end(stage, h, gg, start, before, predicted, response)
     return before
