@@ -26,11 +26,24 @@ LONG = 50_000
 """Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
 PLAIN = ("fall_back", "singly", "only_contact", "step_change", "part_of")
 """Functions that no history compiles."""
-APART = ("march", "equations_of", "solution", "add_losses", "newmark_loss", "balance_loss", "thrown")
+APART = (
+    "march",
+    "equations_of",
+    "solution",
+    "agreed",
+    "moved_rows",
+    "add_losses",
+    "newmark_loss",
+    "balance_loss",
+    "thrown",
+    "keep",
+)
 """Functions that are called, and not part of what calls them: an argument costs as much as a small product."""
 MESSAGE_DELAY = 2.0
 """Seconds of compiling before it is said; code that was kept is read in less."""
 logger = logging.getLogger("fem_reference")
+MODES = 2500
+"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 MODULES = (stage, law, iteration, steps_of_march)
 FUNCTIONS = {
     (module.__name__, name): value

@@ -203,7 +203,8 @@ def agreed(law: Law, trial: Trial, gap: Array, states: States, guess: States) ->
 def agreed_state(law: Law, trial: Trial, gap: Array, states: States, guess: States, following: States, row: int) -> int:
     """State that a row asks for, those of the rows before it being known.
 
-    What slips on against its friction keeps its direction; what would turn round is held first, as it may rest.
+    What slips on against its friction keeps its direction; what would turn round is held first, as it may rest. At a
+    strength it does what it would do if its row were alone.
     """
     force = trial.force[row]
     place = trial.place[row]
@@ -228,7 +229,11 @@ def agreed_state(law: Law, trial: Trial, gap: Array, states: States, guess: Stat
             holding = -phi * place / compliance
     if guess[row] != INSIDE:
         beyond = phi * place + compliance * force
-        return guess[row] if guess[row] * beyond <= ROUNDED * compliance * abs(force) else INSIDE
+        if guess[row] * beyond <= ROUNDED * compliance * abs(force):
+            return int(guess[row])
+        if partner != row:
+            return INSIDE
+        holding = force - beyond / (compliance + law.W[row, row])
     if holding > law.upper[row] + friction:
         return AT_UPPER
     return AT_LOWER if holding < law.lower[row] - friction else INSIDE

@@ -21,8 +21,6 @@ from fem_reference.problem.problem import Array, Problem, Scheme
 
 VISIBLE_ROTATION = 1e-4
 """Rotation by which rounding moves a corner by a ten-thousandth of a side [rad]: less is seen in no figure."""
-MODES = 2500
-"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +111,7 @@ def solve_unilateral(
     model = build(problem, full)
     system = model.system(contact.shear, contact.friction)
     unknowns = len(model.F)
-    modal = not full and unknowns <= MODES and steps >= compilation.LONG
+    modal = not full and unknowns <= compilation.MODES and steps >= compilation.LONG
     compiled, compiled_note = compilation.march(modal, steps)
     names = _kept_columns(columns)
     stepper = ContactStepper(

@@ -100,9 +100,7 @@ def test_a_short_history_runs_as_it_stands():
 
 
 def test_more_unknowns_than_can_be_turned_to_modes_run_as_they_stand(long):
-    from fem_reference.history import unilateral
-
-    long.setattr(unilateral, "MODES", 10)
+    long.setattr(compilation, "MODES", 10)
     assert solve_unilateral(make(elements=4), SPEEDS, 3, full=True).notes[-1].endswith("not in natural modes")
 
 
