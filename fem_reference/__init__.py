@@ -14,8 +14,8 @@ from fem_reference.problem.result import COLUMNS, Mode, Result
 from fem_reference.problem.schemes.catalogue import SCHEMES, named_scheme
 
 if TYPE_CHECKING:
-    from fem_reference.contact.kernel import UNILATERAL_COLUMNS
-    from fem_reference.contact.stepper import Friction
+    from fem_reference.contact.columns import UNILATERAL_COLUMNS
+    from fem_reference.contact.points import Friction
     from fem_reference.exact.bar import Bar, applicable
     from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, solve_adaptive
     from fem_reference.history.solver import solve, static
@@ -26,14 +26,14 @@ if TYPE_CHECKING:
 _HOMES = {
     "ADAPTIVE_COLUMNS": "history.adaptive",
     "Bar": "exact.bar",
-    "Friction": "contact.stepper",
+    "Friction": "contact.points",
     "applicable": "exact.bar",
     "assemble": "mesh.model",
     "highest_frequency": "scheme.eigen",
     "modes": "scheme.eigen",
     "solve": "history.solver",
     "static": "history.solver",
-    "UNILATERAL_COLUMNS": "contact.kernel",
+    "UNILATERAL_COLUMNS": "contact.columns",
     "Unilateral": "history.unilateral",
     "UnilateralResult": "history.unilateral",
     "solve_adaptive": "history.adaptive",

@@ -97,6 +97,11 @@ class Excitation:
     acceleration: Array  # [m/s2]
     pressure: Array  # on the surface, towards the base where positive [Pa]
 
+    @property
+    def parts(self) -> Array:
+        """All of it, one row an instant, shape (instants, 4)."""
+        return np.column_stack([self.displacement, self.velocity, self.acceleration, self.pressure])
+
 
 def asked_columns(heights: Sequence[float]) -> tuple[str, ...]:
     """Names that a history may have: surface, base, then displacement [m] and stress [Pa] of every height."""

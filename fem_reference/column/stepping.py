@@ -89,13 +89,20 @@ class Model:
     impedance: float | None
 
     @classmethod
-    def of(cls, mesh: LineMesh, impedance: float | None) -> Model:
-        """Return the model of a mesh on its base."""
+    def of(cls, mesh: LineMesh, impedance: float | None, base_is_free: bool = False) -> Model:
+        """Return the model of a mesh on its base, whose motion is prescribed but for a half-space or a free base."""
         n = mesh.size
         b = mesh.base_node
         C = csr_array(coo_array(([impedance or 0.0], ([b], [b])), shape=(n, n)))
-        free = np.flatnonzero(np.arange(n) != (b if impedance is None else n))
+        free = np.arange(n)
+        if impedance is None and not base_is_free:
+            free = np.delete(free, b)
         return cls(mesh.M, C, mesh.K, free, b, mesh.top, impedance)
+
+    @property
+    def holds_base(self) -> bool:
+        """Whether the motion of the base is prescribed."""
+        return bool(len(self.free) < self.M.shape[0])
 
     def check_scheme(self, scheme: Scheme) -> None:
         """Raise for a scheme that has no velocity for the dashpot of a half-space.
@@ -113,10 +120,10 @@ class Model:
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
         loads: Array = np.zeros((self.M.shape[0], 4))
-        if self.impedance is None:
+        if self.holds_base:
             loads[:, 0] = -self.K[:, [self.base]].toarray()[:, 0]
             loads[:, 2] = -self.M[:, [self.base]].toarray()[:, 0]
-        else:
+        elif self.impedance is not None:
             loads[self.base, 1] = 2 * self.impedance
         loads[self.top, 3] = -1.0
         return np.asarray(loads[self.free])
@@ -147,24 +154,27 @@ def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) ->
     if name == DISPLACEMENT:
         return Observation(np.eye(1, mesh.size, mesh.top)[0], none, none, parts)
     kind, _, number = name.rpartition("_")
-    return Observation(mesh.row(heights[int(number) - 1], stress=kind != DISPLACEMENT), none, none, parts)
+    row = mesh.row(heights[int(number) - 1], stress=kind == "stress")
+    return Observation(none, row, none, parts) if kind == "velocity" else Observation(row, none, none, parts)
+
+
+def observed_by(model: Model, rows: Sequence[Observation]) -> Observation:
+    """Return rows on the free unknowns, one below the other, and on the excitation, which has the base's motion."""
+    D, V, A, excitation = (np.array([getattr(row, part) for row in rows]) for part in ("D", "V", "A", "excitation"))
+    if model.holds_base:
+        excitation[:, :3] += np.column_stack([part[:, model.base] for part in (D, V, A)])
+    return Observation(D[:, model.free], V[:, model.free], A[:, model.free], excitation)
 
 
 def histories(model: Model, stepper: Stepper, excitation: Excitation, rows: Sequence[Observation]) -> Array:
     """Return the observed columns at every step, shape (columns, steps)."""
-    e = excitation
-    free = model.free
-    parts = np.column_stack([e.displacement, e.velocity, e.acceleration, e.pressure])
+    parts = excitation.parts
     loads = parts @ model.loads().T
-    by_D, by_V, by_A = (np.array([getattr(row, part) for row in rows]) for part in "DVA")
-    excitation_weights = np.array([row.excitation for row in rows])
-    if model.impedance is None:
-        excitation_weights[:, 0] += by_D[:, model.base]
-        excitation_weights[:, 2] += by_A[:, model.base]
+    by = observed_by(model, rows)
     state = stepper.start(loads[0])
     stages = len(stepper.solves)
-    columns = excitation_weights @ parts[stages::stages].T
+    columns = by.excitation @ parts[stages::stages].T
     for n in range(columns.shape[1]):
         state = stepper.advance(state, list(loads[n * stages : (n + 1) * stages + 1]))
-        columns[:, n] += by_D[:, free] @ state.D + by_V[:, free] @ state.V + by_A[:, free] @ state.A
+        columns[:, n] += by.D @ state.D + by.V @ state.V + by.A @ state.A
     return columns

@@ -1,33 +1,61 @@
-"""The kernel compiled by numba, where it is installed and a history is long enough to pay for that."""
+"""The march compiled by numba, where it is installed and a history is long enough to pay for that."""
 
 from __future__ import annotations
 
 import functools
+import hashlib
 import logging
+import sys
 import threading
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
 import numpy as np
 
-from fem_reference.contact import kernel
+from fem_reference.contact import iteration, law
+from fem_reference.contact import march as steps_of_march
+from fem_reference.contact.stepper import ContactStepper
+from fem_reference.contact.system import ContactSystem, opening_rows
+from fem_reference.problem.problem import Scheme
+from fem_reference.scheme import stage
+from fem_reference.scheme.stage import Motion
 
 LONG = 50_000
 """Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
+PLAIN = ("fall_back", "singly", "only_contact", "step_change", "part_of")
+"""Functions that no history compiles."""
+APART = (
+    "march",
+    "equations_of",
+    "solution",
+    "agreed",
+    "moved_rows",
+    "add_losses",
+    "newmark_loss",
+    "balance_loss",
+    "thrown",
+    "keep",
+)
+"""Functions that are called, and not part of what calls them: an argument costs as much as a small product."""
 MESSAGE_DELAY = 2.0
 """Seconds of compiling before it is said; code that was kept is read in less."""
 logger = logging.getLogger("fem_reference")
+MODES = 2500
+"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
+MODULES = (stage, law, iteration, steps_of_march)
 FUNCTIONS = {
-    name: value
-    for name, value in vars(kernel).items()
-    if isinstance(value, FunctionType) and value.__module__ == kernel.__name__
+    (module.__name__, name): value
+    for module in MODULES
+    for name, value in vars(module).items()
+    if isinstance(value, FunctionType) and value.__module__ == module.__name__ and name not in PLAIN
 }
-"""Functions of the kernel."""
+"""Functions that are compiled, by the module and the name."""
 
 
 def march(modal: bool, steps: int) -> tuple[Callable[..., Any] | None, str]:
-    """What is compiled of the kernel's march for a history, None where it runs as it stands; a note that says which.
+    """What is compiled of the march for a history, None where it runs as it stands; a note that says which.
 
     Parameters
     ----------
@@ -41,8 +69,8 @@ def march(modal: bool, steps: int) -> tuple[Callable[..., Any] | None, str]:
     if not modal:
         return None, "contact in plain Python: not in natural modes"
     # What stands in the place of one of the functions is no part of what is compiled.
-    if any(getattr(kernel, name) is not function for name, function in FUNCTIONS.items()):
-        return None, "contact in plain Python: a function of the kernel was replaced"
+    if any(getattr(sys.modules[module], name) is not function for (module, name), function in FUNCTIONS.items()):
+        return None, "contact in plain Python: a function of the step was replaced"
     return compiled()
 
 
@@ -59,13 +87,19 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
     timer = threading.Timer(MESSAGE_DELAY, logger.warning, ["compiling the contact of the elements, once an install"])
     timer.daemon = True
     timer.start()
+    # What was kept is found by the name and the stamp of one file: the name tells all files apart.
+    sources = b"".join(Path(str(module.__file__)).read_bytes() for module in MODULES)
+    digest = hashlib.sha256(sources).hexdigest()[:12]
     for cache in (True, False):
-        namespace = dict(vars(kernel))
+        # The modules see each other's functions under one name each.
+        namespace = {name: value for module in MODULES for name, value in vars(module).items()}
         try:
-            for name, function in FUNCTIONS.items():
+            for (module, name), function in FUNCTIONS.items():
                 copy = FunctionType(function.__code__, namespace, name, function.__defaults__)
-                copy.__module__ = kernel.__name__
-                namespace[name] = numba.njit(copy, cache=cache, error_model="numpy")
+                copy.__module__ = module
+                copy.__qualname__ = f"{name}_{digest}"
+                inline = name not in APART
+                namespace[name] = numba.njit(copy, cache=cache, error_model="numpy", forceinline=inline)
             _warm(namespace["march"])
         except Exception as error:  # of any kind: a Python that numba does not know, a directory that is read-only
             reason = f"contact in plain Python: numba {numba.__version__} fails with {type(error).__name__}"
@@ -77,16 +111,23 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
 
 
 def _warm(march: Callable[..., Any]) -> None:
-    """Compile for the types of a history, by one of no steps."""
+    """Compile for the types of a history, by one of a step."""
     one = np.ones(1)
     square = np.ones((1, 1))
-    arrays = (one, one, one, square, square, square, one, np.ones((3, 1)), one)
-    numbers = [0.5] * (len(kernel.Block._fields) - len(arrays) - 1)
-    block = kernel.Block._make([*arrays, *numbers, True])
-    law = kernel.Law(square, one, one, 1.0, one, one, 1.0, 1, False)
-    state = kernel.ContactState(
-        one, one, one, one, one, one, one, one, np.ones(1, np.int8), one, np.zeros(kernel.TOTALS)
+    system = ContactSystem(
+        M=one,
+        K=one,
+        F=one,
+        B=square,
+        rows=opening_rows(one),
+        watch=Motion(square, square, square),
+        pushes=square,
+        ground=square,
+        prescribed=lambda positions, times: np.zeros((*times.shape, 1)),
+        start_parts=one,
+        bodies=(1,),
+        rigid=(0,),
+        to_modes=square,
     )
-    base = np.zeros((0, 1, 2))
-    columns = np.zeros(1, dtype=np.int64)
-    march((block,), (law,), state, base, columns, True, True, np.zeros((0, 1)), None)
+    stepper = ContactStepper(system, Scheme(0.5, 1.0, 1.0, 1.0), compiled=march)
+    stepper.march(stepper.start(one, one, np.zeros(1, dtype=np.int8)), stepper.record(1))

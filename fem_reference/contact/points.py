@@ -7,18 +7,22 @@ foundation keeps the points of its own quadrature rule.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, vstack
 from skfem import Basis, Mesh
 
+from fem_reference.contact.system import ContactSystem, opening_rows, slipping_rows, with_friction
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
-from fem_reference.problem.motion import Motion
+from fem_reference.problem.checks import require
+from fem_reference.problem.motion import Motion as BaseMotion
 from fem_reference.problem.problem import Array, Problem
+from fem_reference.scheme.stage import Motion
 
 SAME_PLACE = 1e-9
 """Distance below which two points of the base are one, as a share of its length [-]."""
@@ -41,7 +45,72 @@ class ContactModel:
     kind: str  # ``"whole"`` or ``"column"``
     length: float  # length a of the base [m]
     axes: Array  # unit vectors normal to the base, into the block, and along it, shape (2, 2)
-    motion: Motion | None  # motion of the base
+    motion: BaseMotion | None  # motion of the base
+
+    def system(self, shear: str = "frictionless", friction: Friction | None = None) -> ContactSystem:
+        """The block on rows that open, and on shear springs that hold them where ``shear`` is ``"glued"``."""
+        rows = opening_rows(1 / self.stiffness)
+        B = self.normal
+        ground = np.tile([1.0, 0.0], (len(self.share), 1))
+        if shear == "glued" and np.any(self.shear_stiffness > 0):
+            strength = np.full(len(self.share), math.inf)
+            if friction is not None:
+                strength = friction.cohesion * self.length * self.share
+            tangent = 0.0 if friction is None else friction.tangent
+            rows = with_friction(rows, slipping_rows(1 / self.shear_stiffness, strength), tangent)
+            B = vstack([self.normal, self.tangential])
+            ground = np.vstack([ground, ground[:, ::-1]])
+        names = ("displacement", "horizontal_displacement", "rotation")
+        momentum = self.M @ self.upwards
+        size = len(self.F)
+        return ContactSystem(
+            M=self.M,
+            K=self.K,
+            F=self.F,
+            B=csr_array(B),
+            rows=rows,
+            watch=Motion(
+                np.array([*(self.observers[name] for name in names), self.F]),
+                (momentum / float(self.upwards @ momentum))[None],
+                np.zeros((0, size)),
+            ),
+            pushes=np.zeros((size, 0)),
+            ground=ground,
+            prescribed=self._base,
+            start_parts=np.zeros(2),
+            bodies=(size,),
+            # Without the springs of the base the block is free to move, and in the plane to turn.
+            rigid=(1 if self.kind == "column" else 3,),
+        )
+
+    def _base(self, positions: Array, times: Array) -> Array:
+        """Displacement of the base normal to it and along it, shape (steps, stages, 2) [m]."""
+        if self.motion is None:
+            return np.zeros((*times.shape, 2))
+        return np.asarray(self.motion(times.ravel()) @ self.axes.T).reshape(*times.shape, 2)
+
+
+@dataclass(frozen=True)
+class Friction:
+    """Coulomb's friction along the base, |T| <= tan(angle) N + cohesion times a point's length of the base.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
+
+    angle: float  # friction angle [deg], from 0 to below 90
+    cohesion: float = 0.0  # shear stress that a closed base bears without any pressure [Pa]
+
+    def __post_init__(self) -> None:
+        require(0 <= self.angle < 90, "friction", "must be at least 0 and below 90", self.angle)
+        require(0 <= self.cohesion < math.inf, "cohesion", "must be finite and not negative", self.cohesion)
+
+    @property
+    def tangent(self) -> float:
+        """Tangent of the angle [-]."""
+        return math.tan(math.radians(self.angle))
 
 
 def build(problem: Problem, full: bool = False) -> ContactModel:

@@ -1,75 +1,31 @@
-"""The block on its contact points with its scheme: what each length of step needs is made once."""
+"""The scheme on a system of contacts: what each length of step needs is made once."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh
-from scipy.sparse import csr_array, vstack
 
-from fem_reference.contact import kernel
-from fem_reference.contact.kernel import (
-    CONVERGED,
-    OPEN,
-    STARTED,
-    STICK,
-    TIME,
-    TOTALS,
-    UNDISCOUNTED,
-    UNILATERAL_COLUMNS,
-    UNSETTLED,
-    ContactState,
-)
-from fem_reference.contact.points import ContactModel
-from fem_reference.problem.checks import require
+from fem_reference.contact.iteration import CONVERGED, UNSETTLED, fall_back
+from fem_reference.contact.law import Law, States
+from fem_reference.contact.march import SUMS, ContactStage, ContactState, Record, Watch, load, march, part_of
+from fem_reference.contact.system import ContactSystem
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.newmark import Work, effective_matrix, initial_acceleration, start_velocity
+from fem_reference.problem.stages import Stage
+from fem_reference.scheme.newmark import Operator, Work, effective_matrix, operator, start_velocity
+from fem_reference.scheme.stage import Body
 
 AVERAGE = (0.25, 0.5)
 """Alpha and delta of average acceleration."""
 KEPT = 8
 """Greatest number of shorter steps whose matrices are kept."""
 DENSE = 256
-"""Greatest number of forces whose responses are kept, eight bytes an unknown each."""
-
-
-@dataclass(frozen=True)
-class Friction:
-    """Coulomb's friction along the base, |T| <= tan(angle) N + cohesion times a point's length of the base.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
-
-    angle: float  # friction angle [deg], from 0 to below 90
-    cohesion: float = 0.0  # shear stress that a closed base bears without any pressure [Pa]
-
-    def __post_init__(self) -> None:
-        require(0 <= self.angle < 90, "friction", "must be at least 0 and below 90", self.angle)
-        require(0 <= self.cohesion < math.inf, "cohesion", "must be finite and not negative", self.cohesion)
-
-    @property
-    def tangent(self) -> float:
-        """Tangent of the angle [-]."""
-        return math.tan(math.radians(self.angle))
-
-
-@dataclass(frozen=True)
-class Operator:
-    """A matrix that is known by its product with a vector, written as that of a diagonal or of a matrix."""
-
-    product: Callable[[Array], Array]
-
-    def __mul__(self, vector: Array) -> Array:
-        return self.product(vector)
-
-    __matmul__ = __mul__
+"""Greatest number of rows whose responses are kept, eight bytes an unknown each."""
+SINGLY = 4
+SINGLY_UNIQUE = 100
+"""Greatest number of changes of one point after the other, over the number of points: with friction, and without."""
 
 
 class Marched(NamedTuple):
@@ -83,216 +39,204 @@ class Marched(NamedTuple):
 
 @dataclass
 class ContactStepper:
-    """The scheme applied to the block on points, with its factorisations made once for each length of step.
+    """The scheme applied to bodies on contacts, with its factorisations made once for each length of step.
 
     Raises
     ------
     ValueError
-        If a column is unknown, or the scheme is not the rule's; `Unilateral` checks the rest.
+        If the scheme is not the rule's.
     """
 
-    model: ContactModel
+    system: ContactSystem
     scheme: Scheme
-    shear: str = "frictionless"  # ``"frictionless"``, or ``"glued"``: shear springs hold the closed points
     limit: int = 6  # greatest number of solutions of the open-close iteration [-]
-    rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the block
-    friction: Friction | None = None  # limit of the forces of glued points; none if absent
-    columns: tuple[str, ...] = ()  # columns that a march keeps, among `UNILATERAL_COLUMNS`
-    modal: bool = False  # step in the natural modes of the block, by products with diagonals
-    compiled: Callable[..., Any] | None = None  # what is compiled of the kernel's march; as it stands if None
+    single_limit: int | None = None  # then of changes of one point after the other [-]; None: as many as may be needed
+    rule: str = "newmark"  # or ``"implicit"``: the force of the step's end, and average acceleration of the bodies
+    energies: bool = False  # whether energies are kept
+    losses: bool = False  # whether energies lost are
+    compiled: Callable[..., Any] | None = None  # what is compiled of the march; as it stands if None
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
-        for name in self.columns:
-            if name not in UNILATERAL_COLUMNS:
-                raise ValueError(f"columns: must be among {UNILATERAL_COLUMNS}, got {name!r}")
-        implicit = self.rule == "implicit"
-        if implicit and (self.scheme.alpha, self.scheme.delta) != AVERAGE:
+        if self.rule == "implicit" and (self.scheme.alpha, self.scheme.delta) != AVERAGE:
             raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
-        model = self.model
-        both = vstack([model.normal, model.tangential])
-        self._B: Any = csr_array(both if self.shear == "glued" else model.normal)
-        self._M: Any = model.M
-        self._K: Any = model.K
-        self._F = model.F
-        self._upwards = model.upwards
-        names = ("displacement", "horizontal_displacement", "rotation")
-        self._rows = np.array([model.observers[name] for name in names])
-        self._momentum = model.M @ model.upwards
-        self._momentum = self._momentum / float(model.upwards @ self._momentum)
-        if self.modal:
-            self._use_modes()
-        self._impulse = self._responses(self._factor(self._M))[0] if implicit else None
-        self._lengths: dict[float, tuple[tuple[kernel.Block, ...], tuple[kernel.Law, ...]]] = {}
-        self._length(self.scheme.step)
+        system = self.system
+        if system.to_modes is not None:
+            self.work.factorisations += 1
+            self.work.nonzeros = system.to_modes.size
+        self._impulse = self._responses(self.factor(system.M))[0] if self.rule == "implicit" else None
+        self._watch = Watch(*system.watch, self.energies, self.losses)
+        self._lengths: dict[float, tuple[ContactStage, ...]] = {}
+        self._stages(1.0)
 
-    def start(self, gap: float = 0.0, speed: float = 0.0) -> ContactState:
-        """State at t = 0: unstrained, a gap above the base [m], with one velocity upwards [m/s]."""
-        points = len(self.model.share)
-        consistent = self.scheme.start == "consistent"
-        mass = self._factor(self._M) if consistent else None
-        solve = None if mass is None else (lambda right: mass * right)
-        totals = np.zeros(TOTALS)
-        totals[STARTED] = consistent
-        totals[UNDISCOUNTED] = self.scheme.staggered
-        A = initial_acceleration(self._F, solve)
+    def start(
+        self,
+        V: Array,
+        place: Array,
+        states: States,
+        D: Array | None = None,
+        force: Array | None = None,
+        pull: Callable[[Any, Array], tuple[Array, Array]] | None = None,
+    ) -> ContactState:
+        """State at t = 0.
+
+        Parameters
+        ----------
+        V, D
+            Velocity and displacement of the unknowns [m/s, m]; unstrained without `D`.
+        place, states, force
+            Of the rows; they bear nothing without `force`.
+        pull
+            What finds forces that come at once, of M^-1 and the acceleration without them; returns both with them.
+        """
+        system = self.system
+        D = np.zeros_like(V) if D is None else D
+        force = np.zeros_like(place) if force is None else force
+        parts = system.start_parts
+        A = np.zeros_like(V)
+        is_consistent = self.scheme.start == "consistent"
+        if is_consistent:
+            mass = self.factor(system.M)
+            F = load(system.F, system.pushes, parts) + system.B.T @ force - self._stages(1.0)[0].body.K * D
+            A = mass * (F if system.C is None else F - system.C @ V)
+            if pull is not None:
+                A, force = pull(mass, A)
         return ContactState(
-            D=np.zeros_like(self._F),
-            V=start_velocity(speed * self._upwards, A, self.scheme),
+            D=D,
+            V=start_velocity(V, A, self.scheme),
             A=A,
-            gap=np.full(points, float(gap)),
-            slip=np.zeros(points),
-            reference=np.zeros(points),
-            normal=np.zeros(points),
-            shear=np.zeros(points),
-            states=np.full(points, STICK if gap == 0 else OPEN, dtype=np.int8),
-            slid=np.zeros(points),
-            totals=totals,
+            place=place,
+            force=force,
+            states=states,
+            slid=np.zeros_like(place),
+            parts=parts,
+            sums=np.zeros(SUMS),
+            position=0.0,
+            is_undiscounted=self.scheme.staggered,
+            is_out_of_balance=not is_consistent,
         )
 
-    def march(self, state: ContactState, table: Array, length: float | None = None) -> Marched:
-        """Make as many steps as the table has rows, of a shorter `length` [s] where that is given.
+    def record(self, steps: int) -> Record:
+        """Room for so many steps."""
+        rows = len(self.system.rows.compliance)
+        watch = self.system.watch
+        return Record(
+            displacements=np.zeros((steps, len(watch.D))),
+            velocities=np.zeros((steps, len(watch.V))),
+            accelerations=np.zeros((steps, len(watch.A))),
+            place=np.zeros((steps, rows)),
+            force=np.zeros((steps, rows)),
+            slid=np.zeros((steps, rows)),
+            states=np.zeros((steps, rows), dtype=np.int8),
+            stored=np.zeros((steps, 2)),
+            sums=np.zeros((steps, SUMS)),
+            solves=np.zeros(steps),
+            cuts=np.zeros(steps),
+        )
+
+    def march(self, state: ContactState, record: Record, ratio: float = 1.0) -> Marched:
+        """Make as many steps as the record has rows, of a `ratio` of the scheme's own length.
 
         The rows of the completed steps are filled.
         """
-        blocks, laws = self._length(self.scheme.step if length is None else length)
-        ends = np.array([stage.end for stage in self.scheme.stages])
-        base = np.zeros((len(table), len(ends), 2))
-        if self.model.motion is not None:
-            times = state.totals[TIME] + blocks[0].step * (np.arange(float(len(table)))[:, None] + ends)
-            base = (self.model.motion(times.ravel()) @ self.model.axes.T).reshape(base.shape)
-        numbers = np.array([UNILATERAL_COLUMNS.index(name) for name in self.columns], dtype=np.int64)
-        energies = any(name in kernel.ENERGY_COLUMNS for name in self.columns)
-        losses = any(name in kernel.LOSS_COLUMNS for name in self.columns)
-        march = self.compiled or kernel.march
-        fallback = None if self.compiled else kernel.fall_back
-        arguments = (numbers, energies, losses)
+        stages = self._stages(ratio)
+        steps = len(record.solves)
+        positions = state.position + ratio * np.arange(float(steps))
+        ends = ratio * np.array([now.stage.end for now in stages])
+        prescribed = self.system.prescribed(positions, self.scheme.step * (positions[:, None] + ends))
+        run = self.compiled or march
+        fallback = None if self.compiled else fall_back
         completed = 0
         solves = 0
         outcome = CONVERGED
-        while completed < len(table) and outcome == CONVERGED:
-            rest = slice(completed, None)
-            state, steps, solves, outcome = march(blocks, laws, state, base[rest], *arguments, table[rest], fallback)
-            completed += steps
+        while completed < steps and outcome == CONVERGED:
+            rest = part_of(record, slice(completed, None))
+            state, made, solves, outcome = run(stages, self._watch, state, prescribed[completed:], rest, fallback)
+            completed += made
             if outcome == UNSETTLED:
                 # A fallback is rare, and not compiled.
-                one = slice(completed, completed + 1)
-                state, steps, solves, outcome = kernel.march(
-                    blocks, laws, state, base[one], *arguments, table[one], kernel.fall_back
-                )
-                completed += steps
+                one = part_of(record, slice(completed, completed + 1))
+                state, made, solves, outcome = march(stages, self._watch, state, prescribed[completed:], one, fall_back)
+                completed += made
         return Marched(state, completed, solves, outcome)
 
-    def advance(self, state: ContactState, length: float | None = None) -> tuple[ContactState | None, Marched]:
-        """One step; the state at its end, or None where it has no contact."""
-        marched = self.march(state, np.empty((1, len(self.columns))), length)
-        return marched.state if marched.steps else None, marched
-
-    def _use_modes(self) -> None:
-        """Turn to the natural modes of the block, in which M is one and K a diagonal."""
-        squares, shapes = eigh(self._K.toarray(), self._M.toarray())
-        # Without the springs of the base the block is free to move, and in the plane to turn.
-        squares[: 1 if self.model.kind == "column" else 3] = 0.0
-        self._upwards = shapes.T @ (self._M @ self._upwards)
-        self._momentum = self._momentum @ shapes
-        self._M = np.ones(len(squares))
-        self._K = squares
-        self._F = shapes.T @ self._F
-        self._B = np.ascontiguousarray(self._B @ shapes)
-        self._rows = np.ascontiguousarray(self._rows @ shapes)
-        self.work.factorisations += 1
-        self.work.nonzeros = shapes.size
-
-    def _factor(self, matrix: Any) -> Any:
+    def factor(self, matrix: Any) -> Any:
         """Inverse of M or S: of a diagonal, or as an operator."""
-        return 1 / matrix if self.modal else Operator(self.work.factor(matrix))
+        return 1 / matrix if self.system.to_modes is not None else Operator(self.work.factor(matrix))
 
-    def _length(self, length: float) -> tuple[tuple[kernel.Block, ...], tuple[kernel.Law, ...]]:
-        if length in self._lengths:
-            return self._lengths[length]
+    def _stages(self, ratio: float) -> tuple[ContactStage, ...]:
+        """The stages of a step of a ratio of the scheme's own length."""
+        if ratio in self._lengths:
+            return self._lengths[ratio]
         if len(self._lengths) > KEPT:
-            self._lengths = {self.scheme.step: self._lengths[self.scheme.step]}
-        scheme = replace(self.scheme, step=length, gg=self.scheme.gg ** (length / self.scheme.step))
-        blocks: list[kernel.Block] = []
-        laws: list[kernel.Law] = []
-        weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
+            self._lengths = {1.0: self._lengths[1.0]}
+        system = self.system
+        scheme = replace(self.scheme, step=self.scheme.step * ratio, gg=self.scheme.gg**ratio)
         matrices: dict[int, tuple[Any, Any, Array]] = {}
+        stages: list[ContactStage] = []
         begin = 0.0
         for number, first in enumerate(scheme.stage_matrices):
             if first == number:
-                inverse = self._factor(effective_matrix(self._M, self._K, scheme, number))
+                inverse = self.factor(effective_matrix(system.M, system.K, scheme, number, system.C))
+                weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
                 matrices[number] = (inverse, *self._responses(inverse, weight))
-            inverse, response, C = matrices[first]
-            end = scheme.stages[number].end
-            blocks.append(self._block(scheme, number, end - begin, inverse, response))
-            laws.append(self._law(scheme, number, C))
-            begin = end
-        self._lengths[length] = tuple(blocks), tuple(laws)
-        return self._lengths[length]
+            stages.append(self._stage(scheme, number, begin, *matrices[first], ratio))
+            begin = scheme.stages[number].end
+        self._lengths[ratio] = tuple(stages)
+        return self._lengths[ratio]
 
-    def _block(self, scheme: Scheme, number: int, duration: float, inverse: Any, response: Any) -> kernel.Block:
-        """The block in one stage."""
+    def _stage(
+        self, scheme: Scheme, number: int, begin: float, inverse: Any, response: Any, W: Array, ratio: float
+    ) -> ContactStage:
+        system = self.system
+        stage = Stage(*(float(value) for value in scheme.stages[number]))
         implicit = self.rule == "implicit"
-        stage = scheme.stages[number]
-        closed_loss = scheme.table is None
-        end_weight = stage.gamma if closed_loss else 0.5
-        return kernel.Block(
-            K=self._K if self.modal else Operator(lambda vector: self._K @ vector),
-            M=self._M if self.modal else Operator(lambda vector: self._M @ vector),
-            inverse=inverse,
-            B=self._B,
+        is_modal = system.to_modes is not None
+        M, K = (part if is_modal else operator(part) for part in (system.M, system.K))
+        C = None if system.C is None else operator(system.C)
+        rows = system.rows
+        is_alone = rows.partner == np.arange(len(rows.partner))
+        singly = SINGLY_UNIQUE if is_alone.all() else SINGLY
+        points = int(is_alone.sum())
+        is_newmark = scheme.table is None
+        end_weight = stage.gamma if is_newmark else 0.5
+        return ContactStage(
+            stage=stage,
+            body=Body(M, C, K, inverse, is_free=True),
+            law=Law(
+                stage.stiffness_weight * scheme.step**2 * (W + W.T) / 2,
+                *rows,
+                limit=self.limit,
+                single_limit=singly * points if self.single_limit is None else self.single_limit,
+            ),
+            B=system.B,
             response=response,
             impulse=self._impulse if implicit else response,
-            F=self._F,
-            rows=self._rows,
-            momentum=self._momentum,
+            F=system.F,
+            pushes=system.pushes,
+            ground=system.ground,
+            h=float(scheme.step),
             gg=float(scheme.gg),
-            step=float(scheme.step),
+            ratio=float(ratio),
+            duration=float(stage.end - begin),
             stagger=scheme.step / 2 if scheme.staggered else 0.0,
-            duration=float(duration),
-            beta=float(stage.beta),
-            gamma=float(stage.gamma),
-            d_u=float(stage.d_u),
-            d_g=float(stage.d_g),
-            e_0=float(stage.e_0),
-            e_g=float(stage.e_g),
-            g_0=float(stage.g_0),
-            g_g=float(stage.g_g),
-            am=float(stage.am),
-            af=float(stage.af),
             end_weight=1.0 if implicit else float(end_weight),
-            has_closed_loss=closed_loss,
-        )
-
-    def _law(self, scheme: Scheme, number: int, C: Array) -> kernel.Law:
-        """The contact in one stage, C the gaps and slips of unit accelerations of the forces."""
-        model = self.model
-        friction = self.friction or Friction(0.0)
-        glued = self.shear == "glued"
-        return kernel.Law(
-            C=scheme.stages[number].stiffness_weight * scheme.step**2 * (C + C.T) / 2,
-            compliance=1 / model.stiffness,
-            shear_stiffness=model.shear_stiffness if glued else np.zeros_like(model.share),
-            tangent=math.inf if self.friction is None else friction.tangent,
-            cohesion=friction.cohesion * model.length * model.share,
-            share=model.share,
-            length=float(model.length),
-            limit=self.limit,
-            implicit=self.rule == "implicit",
+            is_implicit=implicit,
+            is_newmark=is_newmark,
         )
 
     def _responses(self, inverse: Any, weight: float = 1.0) -> tuple[Any, Array]:
         """Weighted S^-1 B', an operator where it is not kept, and B times it; of M^-1 likewise."""
-        count, unknowns = self._B.shape
-        transposed = self._B.T
-        if self.modal:
-            response = np.ascontiguousarray(weight * inverse[:, None] * transposed)
-            return response, self._B @ response
+        B = self.system.B
+        count, unknowns = B.shape
+        if self.system.to_modes is not None:
+            response = np.ascontiguousarray(weight * inverse[:, None] * B.T)
+            return response, B @ response
         if count > DENSE:
-            columns = (self._B @ (inverse * self._B[[i]].toarray()[0]) for i in range(count))
-            return Operator(lambda forces: inverse * (weight * (transposed @ forces))), weight * np.array([*columns]).T
+            columns = (B @ (inverse * B[[i]].toarray()[0]) for i in range(count))
+            return Operator(lambda force: inverse * (weight * (B.T @ force))), weight * np.array([*columns]).T
         response = np.empty((unknowns, count))
         for i in range(count):
-            response[:, i] = inverse * self._B[[i]].toarray()[0]
+            response[:, i] = inverse * B[[i]].toarray()[0]
         response *= weight
-        return response, np.asarray(self._B @ response)
+        return response, np.asarray(B @ response)

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import replace
 
 import numpy as np
 
@@ -21,7 +20,7 @@ from fem_reference.mesh.model import Model, build
 from fem_reference.problem.digits import bounded, front
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Result, check_request
-from fem_reference.scheme.newmark import Stepper, advance
+from fem_reference.scheme.newmark import Stepper
 
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")
 """Further columns: gg that a step starts with [-], kinetic energy that it has taken up to the step's end [J]."""
@@ -104,8 +103,6 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
     discount = np.ones(steps)
     loss = np.zeros(steps)
     M = stepper.M
-    K = stepper.K
-    loads = (stepper.F, stepper.F)
     before = energy = 0.0
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
@@ -114,8 +111,7 @@ def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[
             if energy < before:
                 discount[n] = max(floor, math.sqrt(energy / before))
                 loss[n] = (1 - discount[n] ** 2) * energy
-            scheme = replace(stepper.scheme, gg=float(discount[n]))
-            state = advance(state, loads, scheme, lambda x: M @ x, lambda x: K @ x, stepper.solves)
+            state = stepper.advance(state, gg=float(discount[n]))
             history[:, n] = rows @ state.D
             before = energy
             energy = float(state.V @ (M @ state.V)) / 2

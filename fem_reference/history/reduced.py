@@ -10,7 +10,7 @@ The space is enlarged until the history no longer changes; the last change is th
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,8 +18,9 @@ from scipy.linalg import eigh_tridiagonal
 
 from fem_reference.history.krylov import KrylovSpace
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.modal import Extended, applicable, power_histories, roots
-from fem_reference.scheme.newmark import State, Stepper, advance, initial_acceleration
+from fem_reference.scheme.modal import affine_step, applicable, power_histories, roots
+from fem_reference.scheme.newmark import Stepper
+from fem_reference.scheme.stage import Body
 
 TOLERANCE = 3e-11
 """Change of the history, over its maximum, at which a space is large enough."""
@@ -159,28 +160,7 @@ def _stiffness(stepper: Stepper, shapes: Array) -> Array:
 
 def history(modes: Modes, scheme: Scheme, steps: int) -> Array:
     """Columns of every step from rest, shape (columns, steps)."""
-    step, start = _one_step(modes, replace(scheme, step=1.0))
-    return power_histories(step, start, modes.observed * modes.load, steps)
-
-
-def _one_step(modes: Modes, scheme: Scheme) -> tuple[Extended, Array]:
-    """Map of one step of (D, V, A, 1) for unit loads, (modes, 4, 4), and the state at t = 0, (modes, 4)."""
     tau: Any = modes.inertia.astype(np.longdouble)  # any: the step is typed for doubles
-    kappa: Any = modes.stiffness.astype(np.longdouble)
-    zero: Any = np.zeros_like(tau)
-    one: Any = np.ones_like(tau)
-    K = kappa / scheme.stages[0].stiffness_weight
-    loads = [one] * (len(scheme.stages) + 1)
-    solves = [lambda x: x] * len(scheme.stages)
-    images = []
-    for unit in np.eye(4)[:, :3]:
-        state = State(*(x * one for x in unit))
-        new = advance(state, loads, scheme, lambda x: tau * x, lambda x: K * x, solves)
-        images.append(np.array([new.D, new.V, new.A]))
-    step: Extended = np.zeros((len(tau), 4, 4), np.longdouble)
-    step[:, 3, 3] = 1
-    step[:, :3, 3] = images[3].T
-    for i in range(3):
-        step[:, :3, i] = (images[i] - images[3]).T
-    A0 = initial_acceleration(one, (lambda F: F / tau) if scheme.start == "consistent" else None)
-    return step, np.array([zero, zero, A0, one], float).T
+    K: Any = modes.stiffness.astype(np.longdouble) / scheme.stages[0].stiffness_weight
+    bodies = [Body(tau, None, K, 1.0)] * len(scheme.stages)
+    return power_histories(*affine_step(scheme, bodies, np.ones_like(tau)), modes.observed * modes.load, steps)

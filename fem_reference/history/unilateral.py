@@ -8,26 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.contact import compilation
-from fem_reference.contact.kernel import (
-    CONVERGED,
-    COUNTS,
-    LOSS_COLUMNS,
-    OVERFLOW,
-    UNILATERAL_COLUMNS,
-    ContactState,
-)
-from fem_reference.contact.points import build
-from fem_reference.contact.stepper import ContactStepper, Friction, Marched
+from fem_reference.contact.columns import COUNTS, ENERGY_COLUMNS, LOSS_COLUMNS, UNILATERAL_COLUMNS, columns_of
+from fem_reference.contact.driver import OUTCOMES, Cut, make_steps
+from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.law import AT_LOWER, INSIDE
+from fem_reference.contact.march import ContactState
+from fem_reference.contact.points import ContactModel, Friction, build
+from fem_reference.contact.stepper import ContactStepper
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
-OUTCOMES = ("completed", "no consistent contact state", "several consistent contact states", "overflow")
-"""How a history ends, by the numbers of the kernel."""
 VISIBLE_ROTATION = 1e-4
 """Rotation by which rounding moves a corner by a ten-thousandth of a side [rad]: less is seen in no figure."""
-MODES = 2500
-"""Greatest number of unknowns that a long history steps in natural modes: their shapes are a full matrix."""
 
 
 @dataclass(frozen=True)
@@ -110,36 +103,48 @@ def solve_unilateral(
         raise ValueError(f"steps: must be at least 1, got {steps!r}")
     if problem.ramp:
         raise ValueError(f"ramp: does not go with contact that opens, got {problem.ramp!r}")
+    for name in columns:
+        if name not in UNILATERAL_COLUMNS:
+            raise ValueError(f"columns: must be among {UNILATERAL_COLUMNS}, got {name!r}")
     contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)
+    system = model.system(contact.shear, contact.friction)
     unknowns = len(model.F)
-    modal = not full and unknowns <= MODES and steps >= compilation.LONG
+    modal = not full and unknowns <= compilation.MODES and steps >= compilation.LONG
     compiled, compiled_note = compilation.march(modal, steps)
+    names = _kept_columns(columns)
     stepper = ContactStepper(
-        model,
+        system.in_modes() if modal else system,
         scheme,
-        contact.shear,
         contact.limit,
-        contact.rule,
-        contact.friction,
-        columns=_kept_columns(columns),
-        modal=modal,
+        rule=contact.rule,
+        # the ground's work, which the loads' energy takes off, comes with the losses
+        energies=any(name in ENERGY_COLUMNS for name in names),
+        losses=any(name in (*LOSS_COLUMNS, "load_energy") for name in names),
         compiled=compiled,
     )
-    state = stepper.start(contact.gap, contact.velocity)
-    table = np.zeros((steps, len(stepper.columns)))
+    state = block_at_start(stepper, model, contact)
     ready = time.perf_counter()
-    rows, outcome = _march(stepper, state, contact, table)
+    cut = None if scheme.staggered else Cut(contact.cut, contact.shortest)
+    parts = {name: [np.zeros(0)] for name in names}
+    outcome = CONVERGED
+    rows = 0
+    for record, marched in make_steps(stepper, state, steps, cut):
+        of_piece = columns_of(record, model, system.rows)
+        for name in names:
+            parts[name].append(of_piece[name])
+        rows += len(record.solves)
+        outcome = marched.outcome
+    kept = {name: np.concatenate(values) for name, values in parts.items()}
     ended = time.perf_counter()
-    kept = dict(zip(stepper.columns, table[:rows].T.copy(), strict=True))
     flight_note = () if model.kind == "column" else _flight(problem, kept, scheme.step * rows)
     saving = ("one column of elements",) if model.kind == "column" else ()
     modes_note = (f"stepped in its {unknowns} natural modes",) if modal else ()
     return UnilateralResult(
         time=np.asarray(scheme.step * np.arange(1, rows + 1), dtype=np.float64),
         columns=kept,
-        outcome=outcome,
+        outcome=OUTCOMES[outcome],
         unknowns=unknowns,
         points=len(model.share),
         **vars(stepper.work),
@@ -183,59 +188,14 @@ def _flight(problem: Problem, columns: dict[str, Array], duration: float) -> tup
     return (f"rounding may turn a block in free flight by about {turned:.1g} rad in this time: it has moved far",)
 
 
-def _march(stepper: ContactStepper, state: ContactState, contact: Unilateral, table: Array) -> tuple[int, str]:
-    """Fill the rows of the steps; return how many are complete, and the outcome."""
-    completed = 0
-    # A scheme beyond its limit grows until it overflows; the outcome says so.
-    with np.errstate(over="ignore", invalid="ignore"):
-        while completed < len(table):
-            marched = stepper.march(state, table[completed:])
-            completed += marched.steps
-            if marched.outcome != CONVERGED and not stepper.scheme.staggered:
-                marched = cut_step(stepper, marched, contact, table[completed : completed + 1])
-                completed += marched.outcome == CONVERGED
-            if marched.outcome != CONVERGED:
-                return completed, OUTCOMES[marched.outcome]
-            state = marched.state
-    return completed, OUTCOMES[CONVERGED]
-
-
-def cut_step(stepper: ContactStepper, marched: Marched, contact: Unilateral, row: Array) -> Marched:
-    """Make a step without a contact in shorter pieces; a piece without one is repeated shorter, as are those after it.
-
-    Parameters
-    ----------
-    stepper
-        The block and the scheme.
-    marched
-        How the step in one piece has failed, with the state before it.
-    contact
-        Factor and limit of the cuts.
-    row
-        What is kept of the step (filled), one row.
-
-    Returns
-    -------
-    Marched
-        State at the end of the step, or before the piece that failed. The next step is tried in one piece again.
-    """
-    solves = marched.solves
-    cuts = 0
-    remainder = 1.0
-    trial = 1.0
-    while remainder > 0 and marched.outcome != OVERFLOW:
-        if marched.outcome != CONVERGED:
-            cuts += 1
-            if trial <= contact.shortest:
-                return marched
-            trial = max(contact.cut * trial, contact.shortest)
-        marched = stepper.march(marched.state, row, stepper.scheme.step * trial)
-        solves += marched.solves
-        if marched.outcome == CONVERGED:
-            # What rounding leaves over is no piece.
-            remainder = remainder - trial if remainder - trial > 1e-9 else 0.0
-            trial = min(trial, remainder)
-    for name, value in (("solves", solves), ("cuts", cuts)):
-        if name in stepper.columns:
-            row[0, stepper.columns.index(name)] = value
-    return marched
+def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilateral) -> ContactState:
+    """The block unstrained with one velocity upwards, all of its points a gap above the base."""
+    count = len(stepper.system.rows.compliance)
+    points = len(model.share)
+    place = np.zeros(count)
+    place[:points] = contact.gap
+    states = np.full(count, INSIDE, dtype=np.int8)
+    if contact.gap > 0:
+        states[:points] = AT_LOWER
+    V = contact.velocity * model.upwards
+    return stepper.start(V if stepper.system.to_modes is None else stepper.system.to_modes @ V, place, states)

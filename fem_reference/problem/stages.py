@@ -13,10 +13,10 @@ The last stage ends the step. The discount gg is taken once a step, before its f
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 
-@dataclass(frozen=True)
-class Stage:
+class Stage(NamedTuple):
     """One solution of a step; the numbers are those of the formulas above."""
 
     beta: float  # weight of the new acceleration in the displacement [-]; 0: the stage is explicit
@@ -61,4 +61,4 @@ def newmark_stage(alpha: float, delta: float) -> Stage:
 
     x1 = x + dt u + dt^2 ((1/2 - alpha) a + alpha a1) and v1 = u + dt ((1 - delta) a + delta a1).
     """
-    return Stage(beta=alpha, gamma=delta, e_0=0.5 - alpha, g_0=1 - delta)
+    return Stage(beta=float(alpha), gamma=float(delta), e_0=0.5 - alpha, g_0=1.0 - delta)

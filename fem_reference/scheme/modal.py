@@ -1,12 +1,7 @@
 r"""A scheme on single modes: what one step makes of them, whether they stay bounded, and all their steps at once.
 
-With W = w dt, lengths in dt, e = c dt of a viscous rate c and the numbers of a stage
-(`fem_reference.problem.stages`), one stage of the mode A + c V + w^2 D = f goes from (x, v, a) by the increment
-
-    dx* = d_u u + d_g vg + e_0 a + e_g ag,      v* = u + g_0 a + g_g ag
-    dx  = [(1 + gamma' e) dx* + b (W^2 (f* - x) - am a - e ((1 - af) v* + af u))] / (1 + gamma' e + beta' W^2)
-
-to x1 = x + dx, a1 = (dx - dx*) / beta and v1 = v* + gamma a1, with f* = (1 - af) f1 + af f0 and b = beta / (1 - am).
+With W = w dt and lengths in dt a stage (`fem_reference.scheme.stage`) of the mode A + c V + w^2 D = w^2 f has M = 1,
+C = c dt, K = W^2 and h = 1.
 
 A step is an affine map of (x, v, a). The maps of 1, 2, 4, ... steps are squared in extended precision; step jB + i is
 the product of a row of i steps and a column of jB steps, so that a history is a few matrix products.
@@ -15,13 +10,14 @@ the product of a row of i steps and a column of jB steps, so that a history is a
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.stages import Stage
+from fem_reference.scheme.stage import Body, Motion, step_change
 
 Extended = NDArray[np.longdouble]
 ROUNDING = 16 * np.finfo(float).eps
@@ -38,47 +34,17 @@ CHUNK = 1024
 """Modes that are summed at a time."""
 
 
-class Increment(NamedTuple):
-    """What a stage makes of modes; lengths in dt."""
-
-    x: Array  # change of the displacement since the start of the step
-    v: Array  # velocity at its end
-    a: Array  # acceleration at its end
-
-
-def viscosity(square: Array, scheme: Scheme) -> Array:
-    """E = c dt of modes of W^2 = `square`, c = a0 + a1 w^2."""
-    return scheme.mass_damping * scheme.step + scheme.stiffness_damping / scheme.step * square
+def modes_body(scheme: Scheme, stage: Stage, square: Array) -> Body:
+    """Modes of W^2 = `square` in a stage, lengths in dt: M = 1, C = c dt of the rate c = a0 + a1 w^2, K = W^2."""
+    damping = scheme.mass_damping * scheme.step + scheme.stiffness_damping / scheme.step * square
+    S = 1 + stage.damping_weight * damping + stage.stiffness_weight * square
+    return Body(1.0, damping if scheme.damped else None, square, 1 / S)
 
 
-def stage_increment(
-    stage: Stage, before: Increment | None, x: Array, u: Array, a: Array, load: Array, square: Array, e: Array
-) -> Increment:
-    """One stage of modes of W^2 = `square` under the `load` f* W^2, from x, u and a at the start of the step."""
-    predicted = stage.d_u * u + stage.e_0 * a
-    velocity = u + stage.g_0 * a
-    if before is not None:
-        predicted = predicted + stage.d_g * before.v + stage.e_g * before.a
-        velocity = velocity + stage.g_g * before.a
-    drive = load - square * x - stage.am * a - e * ((1 - stage.af) * velocity + stage.af * u)
-    inertia = 1 + stage.damping_weight * e
-    if stage.beta > 0:
-        change = (inertia * predicted + stage.compliance * drive) / (inertia + stage.stiffness_weight * square)
-        acceleration = (change - predicted) / stage.beta
-    else:
-        change = predicted
-        acceleration = (drive - (1 - stage.af) * square * change) / (inertia * (1 - stage.am))
-    return Increment(change, velocity + stage.gamma * acceleration, acceleration)
-
-
-def step_increment(scheme: Scheme, x: Array, u: Array, a: Array, loads: Sequence[float], square: Array) -> Increment:
-    """All stages of a step under the loads f at its start and at the end of each stage."""
-    e = viscosity(square, scheme)
-    ends: list[Increment] = []
-    for stage, f in zip(scheme.stages, loads[1:], strict=True):
-        load = ((1 - stage.af) * f + stage.af * loads[0]) * square
-        ends.append(stage_increment(stage, ends[-1] if ends else None, x, u, a, load, square, e))
-    return ends[-1]
+def step_increment(scheme: Scheme, x: Array, u: Array, a: Array, loads: Sequence[float], square: Array) -> Motion:
+    """All stages of a step of modes from (x, u, a), under the loads f W^2 at its start and at the end of each stage."""
+    bodies = [modes_body(scheme, stage, square) for stage in scheme.stages]
+    return step_change(scheme, 1.0, 1.0, bodies, Motion(x, u, a), [f * square for f in loads])
 
 
 def step_matrices(omega: Array, scheme: Scheme) -> Array:
@@ -89,7 +55,7 @@ def step_matrices(omega: Array, scheme: Scheme) -> Array:
     columns = []
     for x, v, a in np.eye(3):
         end = step_increment(scheme, x * unit, scheme.gg * v * omega, a * square, loads, square)
-        columns.append(np.array([end.x, end.v / omega - v, end.a / square - a]))
+        columns.append(np.array([end.D, end.V / omega - v, end.A / square - a]))
     return np.asarray(np.array(columns).transpose(2, 1, 0))
 
 
@@ -175,22 +141,37 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     total = np.zeros((len(weights), steps))
     for begin in range(0, len(omega), CHUNK):
         part = slice(begin, begin + CHUNK)
-        total += power_histories(*_affine_step(omega[part], scheme), weights[:, part], steps)
+        square: Any = np.square(omega[part].astype(np.longdouble))  # any: the step is typed for doubles
+        bodies = [modes_body(scheme, stage, square) for stage in scheme.stages]
+        total += power_histories(*affine_step(scheme, bodies, square), weights[:, part], steps)
     return total
 
 
-def _affine_step(omega: Array, scheme: Scheme) -> tuple[Extended, Array]:
-    """Map of one step of (x, v, a, 1) under a unit load, (modes, 4, 4), and the state at t = 0, (modes, 4)."""
-    square: Any = np.square(omega.astype(np.longdouble))  # any: the step is typed for doubles
-    step: Extended = np.zeros((len(omega), 4, 4), np.longdouble)
+def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Extended, Array]:
+    """Map of one step of modes in lengths of dt, and where they begin.
+
+    Parameters
+    ----------
+    bodies
+        The modes in each stage, in extended precision.
+    load
+        Load of each mode, shape (modes,).
+
+    Returns
+    -------
+    tuple
+        Map of (x, v, a, 1), shape (modes, 4, 4), and that state at t = 0, shape (modes, 4).
+    """
+    one: Any = np.ones_like(load)
+    step: Extended = np.zeros((len(load), 4, 4), np.longdouble)
     step[:, 3, 3] = 1
-    for column, (x, v, a, load) in enumerate(np.eye(4)):
-        one = np.ones_like(square)
-        loads = [float(load)] * (len(scheme.stages) + 1)
-        end = step_increment(scheme, x * one, scheme.gg * v * one, a * one, loads, square)
-        step[:, :3, column] = np.array([x + end.x, end.v, end.a]).T
-    start = np.zeros((len(omega), 4))
-    start[:, 2] = omega**2 if scheme.start == "consistent" else 0.0
+    for column, (x, v, a, acting) in enumerate(np.eye(4)):
+        loads = [acting * load] * (len(scheme.stages) + 1)
+        end = step_change(scheme, scheme.gg, 1.0, bodies, Motion(x * one, v * one, a * one), loads)
+        step[:, :3, column] = np.array([x + end.D, end.V, end.A]).T
+    start = np.zeros((len(load), 4))
+    if scheme.start == "consistent":
+        start[:, 2] = load / bodies[0].M
     start[:, 3] = 1.0
     return step, start
 
@@ -206,9 +187,9 @@ def ramped_response(omega: Array, weights: Array, scheme: Scheme, steps: int, sh
     for n in range(steps):
         loads = shares[n * stages : (n + 1) * stages + 1].tolist()
         end = step_increment(scheme, y, scheme.gg * v, a, loads, square)
-        y = y + end.x
-        v = end.v
-        a = end.a
+        y = y + end.D
+        v = end.V
+        a = end.A
         total = weights @ y
         rounding = ROUNDING * (np.abs(weights) @ np.abs(y))
         responses[:, n] = np.where(np.abs(total) <= rounding, 0.0, total)  # before a wave has come there is nothing

@@ -11,6 +11,7 @@ import numpy as np
 from faults.seams import Seam
 
 from dda.scheme.stage import Stage
+from fem_reference.problem.stages import Stage as ElementStage
 
 
 @dataclass(frozen=True)
@@ -30,9 +31,11 @@ def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[
         def faulty(*arguments: object, **named: object) -> object:
             scheme = arguments[position]
             values = {name: of_one_kind(change, getattr(scheme, name)) for name, change in changes.items()}
-            if isinstance(scheme, Stage) and "delta" in values:
-                values["g_0"] = scheme.g_0 + scheme.delta - values["delta"]  # type: ignore[operator]
-            changed = scheme._replace(**values) if isinstance(scheme, Stage) else replace(scheme, **values)
+            for weight in {"delta", "gamma"} & set(values):
+                if isinstance(scheme, Stage | ElementStage):
+                    values["g_0"] = scheme.g_0 + getattr(scheme, weight) - values[weight]  # type: ignore[operator]
+            is_stage = isinstance(scheme, Stage | ElementStage)
+            changed = scheme._replace(**values) if is_stage else replace(scheme, **values)
             return sound(*arguments[:position], changed, *arguments[position + 1 :], **named)
 
         return faulty
@@ -121,6 +124,18 @@ def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
 
 def no_discount(position: int) -> Callable[..., Callable[..., object]]:
     return with_scheme(position, gg=lambda gg: 1.0)
+
+
+def undiscounted(position: int) -> Callable[..., Callable[..., object]]:
+    """Hand a function the discount one."""
+
+    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
+        def faulty(*arguments: object) -> object:
+            return sound(*arguments[:position], 1.0, *arguments[position + 1 :])
+
+        return faulty
+
+    return wrap
 
 
 def thousandth(delta: float) -> float:

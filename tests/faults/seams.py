@@ -44,6 +44,7 @@ from fem_reference.plane import model as plane_model
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import newmark as fem_newmark
+from fem_reference.scheme import stage as fem_stage
 from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
@@ -138,8 +139,8 @@ ROLLING_TURN = Seam(rolling_step, rolling_step.turn)
 ROLLING_LATE = Seam(rolling_step, rolling_step.late_share)
 
 # Finite elements
-FEM_PREDICTOR = Seam(fem_newmark, fem_newmark.predictor)
-FEM_VELOCITY = Seam(fem_newmark, fem_newmark.velocity)
+FEM_PREDICTOR = Seam(fem_stage, fem_stage.predicted_change)
+FEM_VELOCITY = Seam(fem_stage, fem_stage.velocity_at_end)
 FEM_STEPPER = Seam(fem_history, fem_history.Stepper)
 FEM_BOUNDED = Seam(fem_history, fem_history.bounded)
 FEM_RUN = Seam(fem_history, fem_history.run)

@@ -10,21 +10,16 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from fem_reference.column import contacts
-from fem_reference.column.contacts import (
-    AT_LOWER,
-    AT_UPPER,
-    INSIDE,
-    ColumnContact,
-    ColumnState,
-    ContactColumn,
-    ContactProblem,
-    ContactStepper,
-    UnsolvedStepError,
-    solve_contacts,
-)
+from fem_reference.column.contact_model import ColumnContact, ContactColumn
+from fem_reference.column.contact_system import column_at_start, mesh_of, stepper_of, system_of
+from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import solve_line
+from fem_reference.column.stepping import Observation, observed_by, solve_line
+from fem_reference.contact.iteration import CONVERGED, NONE, fall_back, find_contact, singly
+from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, equations_of, solution
+from fem_reference.contact.march import ContactState
+from fem_reference.contact.stepper import ContactStepper
+from fem_reference.contact.system import opening_rows, slipping_rows
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -82,32 +77,47 @@ def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
 RANDOM = range(24)
 
 
+def stepper_and_start(
+    column: ContactColumn, elements: int, degree: int, how: Scheme, drive: Excitation
+) -> tuple[ContactStepper, ContactState]:
+    mesh, model = mesh_of(column, [elements] * len(column.ground.strata), degree)
+    none = np.zeros(mesh.size)
+    nothing = observed_by(model, [Observation(none, none, none, np.zeros(4))])
+    stepper = stepper_of(column, system_of(column, mesh, model, how, drive, nothing), how)
+    return stepper, column_at_start(stepper, column, mesh, model)
+
+
 @pytest.mark.parametrize("seed", thinned(RANDOM, 5))
 def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
     column, drive, dt = random_column(seed)
-    stepper = ContactStepper(column, [2] * 4, 1 + seed % 2, scheme(AVERAGE if seed % 4 < 2 else CONSTANT, dt, 0.99))
-    ones = np.ones(stepper.M.shape[0])
-    before = None
-    for step, state in enumerate(stepper.march(drive)):
-        if before is not None:
-            # of the sum over all runs the contacts between them drop out
-            force = stepper.load(drive, step) + stepper.B.T @ state.force - stepper.C @ state.V - stepper.K @ state.D
-            size = (
-                np.abs(state.force).max() + np.abs(stepper.load(drive, step)).max() + np.abs(stepper.C @ state.V).max()
-            )
-            assert ones @ (stepper.M @ state.A) == pytest.approx(ones @ force, abs=1e-9 * size)
-            size = np.abs(state.force).max() + 1.0
-            assert np.all(state.force >= stepper.lower - 1e-9 * size)
-            assert np.all(state.force <= stepper.upper + 1e-9 * size)
-            slip = state.opening - before.opening if column.law == "frictional" else state.opening
-            assert np.all(slip[(state.states == AT_LOWER)] >= 0) and np.all(slip[state.states == AT_UPPER] <= 0)
-            if column.law == "frictional":
-                assert np.all(slip[state.states == INSIDE] == 0)
-            # the springs carry what their length says, and what is rigid has none
-            apart = stepper.B @ state.D - stepper.base_opening(float(drive.displacement[step]))
-            length = apart - state.opening if column.law == "frictional" else apart + stepper.gaps
-            closed = np.minimum(length, 0.0) if column.law == "unilateral" else length
-            assert closed == pytest.approx(-state.force * stepper.compliance, abs=1e-9 * np.abs(length).max())
+    how = scheme(AVERAGE if seed % 4 < 2 else CONSTANT, dt, 0.99)
+    stepper, before = stepper_and_start(column, 2, 1 + seed % 2, how, drive)
+    system, rows = stepper.system, stepper.system.rows
+    ones = np.ones(len(system.F))
+    frictional = column.law == "frictional"
+    gaps = np.zeros(len(column.contacts)) if frictional else np.array([one.gap for one in column.contacts])
+    for step in range(1, 101):
+        marched = stepper.march(before, stepper.record(1))
+        assert marched.outcome == CONVERGED
+        state = marched.state
+        # of the sum over all runs the contacts between them drop out
+        load = system.F + system.pushes @ drive.parts[step]
+        drag = np.zeros_like(load) if system.C is None else system.C @ state.V
+        force = load + system.B.T @ state.force - drag - system.K @ state.D
+        size = np.abs(state.force).max() + np.abs(load).max() + np.abs(drag).max()
+        assert ones @ (system.M @ state.A) == pytest.approx(ones @ force, abs=1e-9 * size)
+        size = np.abs(state.force).max() + 1.0
+        assert np.all(state.force >= rows.lower - 1e-9 * size)
+        assert np.all(state.force <= rows.upper + 1e-9 * size)
+        slip = state.slid - before.slid if frictional else state.place
+        assert np.all(slip[(state.states == AT_LOWER)] >= 0) and np.all(slip[state.states == AT_UPPER] <= 0)
+        if frictional:
+            assert np.all(slip[state.states == INSIDE] == 0)
+        # the springs carry what their length says, and what is rigid has none
+        apart = system.B @ state.D - system.ground @ drive.parts[step] + gaps
+        length = apart - state.slid
+        closed = length if frictional else np.minimum(length, 0.0)
+        assert closed == pytest.approx(-state.force * rows.compliance, abs=1e-9 * np.abs(length).max())
         before = state
 
 
@@ -117,26 +127,27 @@ def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: f
     """DE = sum [U1 - U0 - (y1 - y0)((1 - delta) U0' + delta U1')] - (delta - 1/2) (change of D)' K (change of D)."""
     column, _, dt = random_column(seed)
     soft = tuple(replace(one, stiffness=min(one.stiffness, 1e10)) for one in column.contacts)
-    stepper = ContactStepper(replace(column, contacts=soft), [2] * 4, 1, scheme((delta / 2, delta), dt))
+    column = replace(column, contacts=soft)
+    stepper, before = stepper_and_start(column, 2, 1, scheme((delta / 2, delta), dt), still(100))
+    system = stepper.system
     stiffness = np.array([one.stiffness for one in soft])
 
-    def energy(state: ColumnState) -> float:
-        parts = state.V @ (stepper.M @ state.V), state.D @ (stepper.K @ state.D)
-        springs = stiffness * np.minimum(state.opening, 0) ** 2
-        return float(sum(parts) + springs.sum()) / 2 - float(stepper.weight[stepper.model.free] @ state.D)
+    def energy(state: ContactState) -> float:
+        parts = state.V @ (system.M @ state.V), state.D @ (system.K @ state.D)
+        springs = stiffness * np.minimum(state.place, 0) ** 2
+        return float(sum(parts) + springs.sum()) / 2 - float(system.F @ state.D)
 
-    before = None
-    largest = 0.0
-    for state in stepper.march(still(100)):
+    largest = energy(before)
+    for _ in range(100):
+        state = stepper.march(before, stepper.record(1)).state
         largest = max(largest, energy(state))
-        if before is not None:
-            stored = stiffness * (np.minimum(state.opening, 0) ** 2 - np.minimum(before.opening, 0) ** 2) / 2
-            work = -(1 - delta) * before.force - delta * state.force
-            switching = float((stored - (state.opening - before.opening) * work).sum())
-            change = state.D - before.D
-            scheme_loss = (delta - 0.5) * float(change @ (stepper.K @ change))
-            expected = switching - scheme_loss
-            assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
+        stored = stiffness * (np.minimum(state.place, 0) ** 2 - np.minimum(before.place, 0) ** 2) / 2
+        work = -(1 - delta) * before.force - delta * state.force
+        switching = float((stored - (state.place - before.place) * work).sum())
+        change = state.D - before.D
+        scheme_loss = (delta - 0.5) * float(change @ (system.K @ change))
+        expected = switching - scheme_loss
+        assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
         before = state
 
 
@@ -199,51 +210,62 @@ def test_touching_blocks_thrown_on_their_base_close_one_in_a_solve(courant: floa
     assert limited.notes == (f"step 1: the open-close iteration has not ended after {solves - 1} solves",)
 
 
-def random_problem(random: np.random.Generator, boxed: bool) -> tuple[ContactProblem, np.ndarray]:
+def random_problem(random: np.random.Generator, boxed: bool) -> tuple[Law, np.ndarray]:
     n = 5
     beside = random.normal(size=n - 1)
     diagonal = np.abs(np.append(beside, 0)) + np.abs(np.append(0, beside)) + random.uniform(0.01, 1.0, n)
-    upper = random.uniform(0.1, 1.0, n) if boxed else np.full(n, np.inf)
-    lower = -upper if boxed else np.zeros(n)
-    problem = ContactProblem(np.array([diagonal, [*beside, 0.0]]), np.zeros(n), lower, upper)
-    return problem, random.normal(size=n)
+    upper = random.uniform(0.1, 1.0, n)
+    rows = slipping_rows(np.zeros(n), upper) if boxed else opening_rows(np.zeros(n))
+    W = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
+    return Law(W, *rows, limit=2 * n + 3, single_limit=100), random.normal(size=n)
 
 
-def solutions(problem: ContactProblem, q: np.ndarray, boxed: bool) -> list[np.ndarray]:
+def forces(law: Law, q: np.ndarray, states: np.ndarray) -> np.ndarray:
+    none = np.zeros(len(q))
+    return solution(law, equations_of(law, states, np.ones(len(q))), q, none, states, states).force
+
+
+def solutions(law: Law, q: np.ndarray, boxed: bool) -> list[np.ndarray]:
     """All forces that some choice of states agrees with, of all choices."""
     found = []
     for states in itertools.product((AT_LOWER, INSIDE, AT_UPPER) if boxed else (AT_LOWER, INSIDE), repeat=len(q)):
         chosen = np.array(states, np.int8)
-        N = problem.forces(q, chosen)
-        z = q + problem.times(N)
-        bounds = np.all((problem.lower - 1e-12 <= N) & (problem.upper + 1e-12 >= N))
+        N = forces(law, q, chosen)
+        z = q + law.W @ N
+        bounds = np.all((law.lower - 1e-12 <= N) & (law.upper + 1e-12 >= N))
         if bounds and np.all(z[chosen == AT_LOWER] >= 0) and np.all(z[chosen == AT_UPPER] <= 0):
             found.append(N)
     return found
 
 
-@pytest.mark.parametrize(
-    "together", thinned([2, -100], 4)
-)  # all states at once, and from the start the first wrong one alone
+@pytest.mark.parametrize("alone", thinned([False, True], 4))  # all states at once, or the first wrong one alone
 @pytest.mark.parametrize("boxed", [False, True], ids=["opens", "slips"])
-def test_the_contact_problem_has_one_solution_and_it_is_the_one(
-    boxed: bool, together: int, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr(contacts, "TOGETHER", together)
+def test_the_contact_problem_has_one_solution_and_it_is_the_one(boxed: bool, alone: bool) -> None:
     random = np.random.default_rng(3)
     for _ in range(20):
-        problem, q = random_problem(random, boxed)
-        (exact,) = solutions(problem, q, boxed)
+        law, q = random_problem(random, boxed)
+        (exact,) = solutions(law, q, boxed)
         start = random.integers(-1, 2 if boxed else 1, 5).astype(np.int8)
-        N, z, states, _ = problem.solve(q, start, None)
-        assert exact == pytest.approx(N, abs=1e-12)
-        assert z[states != INSIDE] == pytest.approx((q + problem.times(N))[states != INSIDE], abs=1e-12)
+        equations = equations_of(law, start, np.ones(5))
+        none = np.zeros(5)
+        if alone:
+            trial, states, _, outcome = singly(
+                law, solution(law, equations, q, none, start, start), q, none, start, start
+            )
+        else:
+            trial, states, _, outcome = find_contact(law, equations, q, none, start, fall_back)
+        assert outcome == CONVERGED
+        assert exact == pytest.approx(trial.force, abs=1e-12)
+        assert trial.place == pytest.approx(q + law.W @ exact, abs=1e-12)
+        assert np.all((trial.force == law.lower)[states == AT_LOWER])
 
 
-def test_no_numbers_are_no_forces() -> None:
-    problem, q = random_problem(np.random.default_rng(1), boxed=False)
-    with pytest.raises(UnsolvedStepError):
-        problem.solve(q * math.nan, np.zeros(5, np.int8), None)
+def test_no_numbers_are_no_contact() -> None:
+    law, q = random_problem(np.random.default_rng(1), boxed=True)
+    states = np.zeros(5, np.int8)
+    equations = equations_of(law, states, np.ones(5))
+    trial, _, _, outcome = find_contact(law, equations, q * math.nan, np.zeros(5), states, fall_back)
+    assert outcome == NONE or not np.isfinite(trial.force + trial.place).all()
 
 
 @pytest.mark.parametrize(
@@ -274,4 +296,4 @@ def test_a_contact_with_numbers_out_of_range_is_refused() -> None:
         ColumnContact(0.0, -1.0)
     rigid = replace(DROPPED, contacts=(ColumnContact(0.0, math.inf),))
     with pytest.raises(ValueError, match=r"^alpha: "):
-        ContactStepper(rigid, [1, 1], 1, Scheme(0.0, 0.5, 1.0, 1e-5, "consistent"))
+        solve_contacts(rigid, [1, 1], 1, Scheme(0.0, 0.5, 1.0, 1e-5, "consistent"), still(1))

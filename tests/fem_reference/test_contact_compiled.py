@@ -10,9 +10,9 @@ from oracles import random_contact
 from oracles.elements import make
 
 from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
-from fem_reference.contact import compilation, kernel
+from fem_reference.contact import columns, compilation, law
 
-ENERGIES = (*kernel.ENERGY_COLUMNS, *kernel.LOSS_COLUMNS)
+ENERGIES = (*columns.ENERGY_COLUMNS, *columns.LOSS_COLUMNS)
 LENGTHS = ("displacement", "horizontal_displacement", "rotation", "largest_gap", "largest_penetration", "largest_slide")
 SPEEDS = Scheme(0.5, 1.0, 1.0, 2e-4)
 
@@ -100,9 +100,7 @@ def test_a_short_history_runs_as_it_stands():
 
 
 def test_more_unknowns_than_can_be_turned_to_modes_run_as_they_stand(long):
-    from fem_reference.history import unilateral
-
-    long.setattr(unilateral, "MODES", 10)
+    long.setattr(compilation, "MODES", 10)
     assert solve_unilateral(make(elements=4), SPEEDS, 3, full=True).notes[-1].endswith("not in natural modes")
 
 
@@ -111,9 +109,9 @@ def test_what_stands_in_the_place_of_a_function_bites_a_long_history_too(long):
     with long.context() as patch:  # the sound history need not be compiled, which takes half a minute in a fresh clone
         patch.setattr(compilation, "compiled", lambda: (None, "plain"))
         sound = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
-    long.setattr(kernel, "corrected", lambda law, trial, gap, states, guess: (guess, -1))
+    long.setattr(law, "agreed_state", lambda law, trial, gap, states, guess, following, row: guess[row])
     welded = solve_unilateral(problem, SPEEDS, 60, Unilateral(velocity=0.1))
-    assert welded.notes[-1].endswith("a function of the kernel was replaced")
+    assert welded.notes[-1].endswith("a function of the step was replaced")
     assert sound.columns["open_share"].max() == 1 and welded.columns["open_share"].max() == 1
     assert welded.columns["contact_pressure"].min() < 0 <= sound.columns["contact_pressure"].min()
 
@@ -122,7 +120,7 @@ def refusing(*failures):
     """A numba whose compilations fail in turn, and the calls that it gets."""
     calls = []
 
-    def njit(function, cache, error_model):
+    def njit(function, cache, error_model, forceinline):
         calls.append(cache)
         failure = failures[len(set(calls)) - 1]
         if failure is not None:

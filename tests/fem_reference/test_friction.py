@@ -9,10 +9,12 @@ from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
-from fem_reference.contact.kernel import BASE, NONE, TIME
+from fem_reference.contact.driver import Cut, cut_step
+from fem_reference.contact.iteration import NONE
+from fem_reference.contact.law import INSIDE
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper, Marched
-from fem_reference.history.unilateral import cut_step
+from fem_reference.history.unilateral import block_at_start
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 2e-4, "consistent")
 AVERAGE = Scheme(0.25, 0.5, 1.0, 2e-4, "consistent")
@@ -73,19 +75,20 @@ def test_while_all_points_slide_one_sum_of_the_mean_motion_is_free(rule, foundat
         if rule == "implicit":
             scheme = replace(scheme, alpha=0.25, delta=0.5)
         model = build(problem)
-        stepper = ContactStepper(model, scheme, "glued", rule=rule, friction=Friction(15.0))
+        stepper = ContactStepper(model.system("glued", Friction(15.0)), scheme, rule=rule)
         tan, pull = np.tan(np.radians(15.0)), np.array(problem.pull)
         weights = (1 - model.upwards + tan * model.upwards) @ model.M / 10800.0
-        state, g = stepper.start(), float(pull @ [1.0, tan])
+        state, g = block_at_start(stepper, model, GLUED), float(pull @ [1.0, tan])
         x, v, a = 0.0, 0.0, g if scheme.start == "consistent" else 0.0
         seen, dt, most = set(), scheme.step, 0.0
         for _ in range(100):
-            state, _ = stepper.advance(state)
-            seen |= set(state.states.tolist())
+            state = stepper.march(state, stepper.record(1)).state
+            closed, held = np.split(state.states == INSIDE, 2)
+            seen |= set(held[closed].tolist())
             x += scheme.gg * dt * v + dt**2 * ((0.5 - scheme.alpha) * a + scheme.alpha * g)
             v, a = scheme.gg * v + dt * ((1 - scheme.delta) * a + scheme.delta * g), g
             most = max(most, abs(weights @ state.D - x))
-        assert seen <= {0, 2} and 2 in seen
+        assert seen == {False}
         # the sum is of forces that cancel, each with the rounding of a solution with a matrix of condition 1e4
         assert most <= 1e-11 * x
 
@@ -148,11 +151,11 @@ def test_no_limit_glues_and_none_at_all_lets_go(foundation):
 class Refusing(ContactStepper):
     """A stepper that finds no contact in steps longer than 0.3 of its own."""
 
-    def march(self, state, table, length=None):
-        if (length or self.scheme.step) > 0.3 * self.scheme.step * (1 + 1e-9):
+    def march(self, state, record, ratio=1.0):
+        if ratio > 0.3 * (1 + 1e-9):
             return Marched(state, 0, 3, NONE)
-        self.lengths.append((length or self.scheme.step) / self.scheme.step)
-        return super().march(state, table, length)
+        self.lengths.append(ratio)
+        return super().march(state, record, ratio)
 
     def __post_init__(self):
         super().__post_init__()
@@ -161,24 +164,25 @@ class Refusing(ContactStepper):
 
 def test_a_cut_step_starts_from_the_state_as_it_was_and_the_base_from_its_place():
     problem = replace(incline(25.0, elements=2), motion=SHAKE)
+    model = build(problem)
     one, fresh = (
-        kind(build(problem), replace(CONSTANT, gg=0.9, step=1e-3), "glued", friction=Friction(10.0, 1e3))
+        kind(model.system("glued", Friction(10.0, 1e3)), replace(CONSTANT, gg=0.9, step=1e-3))
         for kind in (Refusing, ContactStepper)
     )
-    first = state = again = one.advance(one.start(), 0.3e-3)[0]
+    first = state = again = one.march(block_at_start(one, model, RUBBING), one.record(1), 0.3).state
 
-    saved = [part.copy() for part in first]
+    saved = [np.copy(part) for part in first]
     for _ in range(4):
         one.lengths.clear()
-        row = np.empty((1, 0))
-        step = cut_step(one, one.march(state, row), RUBBING, row)
+        row = one.record(1)
+        step = cut_step(one, one.march(state, row), Cut(RUBBING.cut, RUBBING.shortest), row)
         assert one.lengths == pytest.approx([0.3, 0.3, 0.3, 0.1])
         for piece in one.lengths:
-            again = fresh.advance(again, piece * 1e-3)[0]
+            again = fresh.march(again, fresh.record(1), piece).state
         state = step.state
     assert all(np.array_equal(a, b) for a, b in zip(saved, first, strict=True))
-    assert 2 in state.states and state.totals[TIME] == pytest.approx(4.3e-3, rel=1e-12)
+    assert np.any(state.states[len(model.share) :] != INSIDE) and state.position == pytest.approx(4.3, rel=1e-12)
     for name, value in state._asdict().items():
         assert np.array_equal(value, getattr(again, name)), name
     # the base is where its record says, whatever the steps were cut into
-    assert state.totals[BASE + 1] == pytest.approx(np.interp(4.3e-3, SHAKE.time, SHAKE.x), rel=1e-12)
+    assert state.parts[1] == pytest.approx(np.interp(4.3e-3, SHAKE.time, SHAKE.x), rel=1e-12)

@@ -8,7 +8,8 @@ from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Unilateral, named_scheme, solve_unilateral
-from fem_reference.column.contacts import ColumnContact, ContactColumn, solve_contacts
+from fem_reference.column.contact_model import ColumnContact, ContactColumn
+from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response

@@ -9,7 +9,7 @@ from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import points, stepper
-from fem_reference.contact.kernel import NONE
+from fem_reference.contact.iteration import NONE
 from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history import unilateral
 
@@ -120,25 +120,25 @@ class Refusing(ContactStepper):
         super().__post_init__()
         self.lengths = []  # of the accepted pieces over the step
 
-    def march(self, state, table, length=None):
-        if (length or self.scheme.step) > self.longest * self.scheme.step * (1 + 1e-9):
+    def march(self, state, record, ratio=1.0):
+        if ratio > self.longest * (1 + 1e-9):
             return Marched(state, 0, 3, NONE)
-        self.lengths.append((length or self.scheme.step) / self.scheme.step)
-        return super().march(state, table, length)
+        self.lengths.append(ratio)
+        return super().march(state, record, ratio)
 
 
 def refusing(longest, **more):
-    found = Refusing(points.build(make(elements=2)), SCHEME, **more)
+    found = Refusing(points.build(make(elements=2)).system(), SCHEME, **more)
     found.longest = longest
     return found
 
 
 def test_a_base_that_finds_no_contact_ends_with_its_reason(monkeypatch):
-    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.005, columns=more["columns"]))
+    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.005))
     run = solve_unilateral(make(elements=2), SCHEME, 4)
     assert run.outcome == "no consistent contact state"
     assert len(run.time) == 0 and len(run.columns["displacement"]) == 0
-    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.01, columns=more["columns"]))
+    monkeypatch.setattr(unilateral, "ContactStepper", lambda *a, **more: refusing(0.01))
     run = solve_unilateral(make(elements=2), SCHEME, 1)
     # 1, 0.3, 0.09 and 0.027 are refused
     assert run.outcome == "completed" and run.columns["cuts"][0] == 4

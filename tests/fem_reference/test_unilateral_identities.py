@@ -7,8 +7,11 @@ import pytest
 from oracles.elements import make
 
 from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
+from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.law import INSIDE
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper
+from fem_reference.history.unilateral import block_at_start
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
@@ -27,22 +30,29 @@ def energy(model, scheme, state):
 def test_glued_points_bear_their_stretch_from_where_they_closed():
     problem = replace(make(elements=4, eccentricity=0.3, poisson=0.25, p=1e9, shear=4e8), traction=2e5)
     model = build(problem)
-    stepper, k_t = ContactStepper(model, replace(CONSTANT, step=1e-4), "glued"), model.shear_stiffness
-    state, again, wider = stepper.start(), 0, 0.0
+    stepper, k_t = ContactStepper(model.system("glued"), replace(CONSTANT, step=1e-4)), model.shear_stiffness
+    state, again, wider, points = block_at_start(stepper, model, Unilateral()), 0, 0.0, len(k_t)
+    slip = reference = np.zeros(points)
+    closed = np.ones(points, dtype=bool)
     for _ in range(250):
-        new, _ = stepper.advance(state)
-        assert new is not None  # every step has its contact at once
-        closed, size = new.closed, np.abs(new.slip).max()
-        assert np.abs(model.tangential @ new.D - new.slip).max() <= 1e-11 * size
-        assert np.abs(new.shear + k_t * (new.slip - new.reference))[closed].max(initial=0) <= 1e-10 * k_t.max() * size
-        assert not new.shear[~closed].any() and np.array_equal(new.reference[~closed], new.slip[~closed])
-        stuck, closing = closed & state.closed, closed & ~state.closed
-        assert np.array_equal(new.reference[stuck], state.reference[stuck])
-        share = state.gap / (state.gap - new.gap + (state.gap == new.gap))
-        crossing = state.slip + share * (new.slip - state.slip)
-        assert np.abs(new.reference - crossing)[closing].max(initial=0) <= 1e-10 * size
+        marched = stepper.march(state, stepper.record(1))
+        assert marched.outcome == CONVERGED  # every step has its contact at once
+        new = marched.state
+        gap, before = new.place[:points], state.place[:points]
+        was_closed, closed = closed, new.states[:points] == INSIDE
+        was, slip = slip, model.tangential @ new.D
+        size = np.abs(slip).max()
+        shear, stretch = new.force[points:], new.place[points:]
+        assert np.abs(shear + k_t * stretch).max() <= 1e-10 * k_t.max() * size
+        assert not shear[~closed].any() and not stretch[~closed].any()
+        share = before / (before - gap + (before == gap))
+        crossing = was + share * (slip - was)
+        closing = closed & ~was_closed
+        # Where it sticks its reference stays, where it closes that is the crossing, and it follows what is open.
+        reference = np.where(closing, crossing, np.where(closed, reference, slip))
+        assert np.abs(slip - stretch - reference).max() <= 1e-10 * size
         again += np.count_nonzero(closing)
-        wider = max(wider, float(np.abs(new.slip - crossing)[closing].max(initial=0)) / size)
+        wider = max(wider, float(np.abs(slip - crossing)[closing].max(initial=0)) / size)
         state = new
     assert again > 10 and wider > 1e-3
 

@@ -6,11 +6,14 @@ from types import SimpleNamespace
 import numpy as np
 from oracles.elements import INCLINED, SQUARE, make
 
-from fem_reference import UNILATERAL_COLUMNS, Friction, Motion, Scheme, Unilateral
-from fem_reference.contact import kernel
+from fem_reference import Friction, Motion, Scheme, Unilateral
+from fem_reference.contact.columns import columns_of
+from fem_reference.contact.driver import Cut, make_steps
+from fem_reference.contact.law import INSIDE
+from fem_reference.contact.march import Record
 from fem_reference.contact.points import build
 from fem_reference.contact.stepper import ContactStepper
-from fem_reference.history.unilateral import cut_step
+from fem_reference.history.unilateral import block_at_start
 
 SCHEMES = ((0.5, 1.0), (0.5625, 1.0), (0.75, 1.0), (0.25, 0.5), (0.3025, 0.6))
 SHAKE = Motion((0.0, 0.004, 0.011, 0.02, 0.03), (0.0, 1e-3, -2e-3, 1e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0, 0.0))
@@ -56,19 +59,25 @@ def sliding(seed):
 
 def at_every_point(problem, scheme, steps, contact):
     """A history step by step: its columns, and what every point does, shape (steps, points)."""
-    laws = (contact.shear, contact.limit, contact.rule, contact.friction)
-    stepper = ContactStepper(build(problem), scheme, *laws, columns=UNILATERAL_COLUMNS)
-    state, table, states = stepper.start(contact.gap, contact.velocity), np.zeros((steps, len(UNILATERAL_COLUMNS))), []
-    while len(states) < steps:
-        row = table[len(states) : len(states) + 1]
-        marched = stepper.march(state, row)
-        if marched.outcome != kernel.CONVERGED:
-            marched = cut_step(stepper, marched, contact, row)
-        if marched.outcome != kernel.CONVERGED:
-            break
-        state = marched.state
-        states.append(state)
-    names = ("normal", "gap", "shear", "states", "slid")
-    points = {name: np.array([getattr(state, name) for state in states]) for name in names}
-    columns = dict(zip(UNILATERAL_COLUMNS, table[: len(states)].T, strict=True))
-    return SimpleNamespace(columns=columns, time=scheme.step * np.arange(1, len(states) + 1), **points)
+    model = build(problem)
+    system = model.system(contact.shear, contact.friction)
+    stepper = ContactStepper(system, scheme, contact.limit, rule=contact.rule, energies=True, losses=True)
+    state, cut = block_at_start(stepper, model, contact), Cut(contact.cut, contact.shortest)
+    pieces = [kept for kept, _ in make_steps(stepper, state, steps, cut)]
+    record = Record(*(np.concatenate(part) for part in zip(*pieces, strict=True)))
+    points = len(model.share)
+    columns = columns_of(record, model, system.rows)
+    shear = record.force[:, points:] if record.force.shape[1] > points else np.zeros_like(record.force)
+    # open 0, stuck 1, sliding towards +x 2 and towards -x -2
+    held = record.states[:, points:] if record.force.shape[1] > points else np.zeros_like(record.states)
+    named = np.where(record.states[:, :points] == INSIDE, np.where(held == 0, 1, -2 * held), 0)
+    slid = record.slid[:, points:] if record.force.shape[1] > points else np.zeros_like(record.force)
+    return SimpleNamespace(
+        columns=columns,
+        time=scheme.step * np.arange(1, len(record.solves) + 1),
+        normal=record.force[:, :points],
+        gap=record.place[:, :points],
+        shear=shear,
+        slid=slid,
+        states=named,
+    )

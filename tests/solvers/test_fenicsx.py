@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from conftest import SCENE, typed
 from faults import seams
-from faults.fault import Fault, late, no_discount, times, with_scheme
+from faults.fault import Fault, late, times, undiscounted, with_scheme
 from faults.kill_matrix import Overlay, whole
 from oracles.elements import INCLINED
 
@@ -257,9 +257,9 @@ WORKER_FAULTS = {  # a line of the worker, and what a slip makes of it; 2e-10 is
     "fenicsx: one step late": ("history = np.array(", "history = np.roll(axis=0, shift=1, a="),
 }
 OTHER_FAULTS = [
-    Fault("fem: gg missing in the predictor", ("fem:full",), seams.FEM_PREDICTOR, no_discount(1)),
-    Fault("fem: gg missing in the velocity", ("fem:full",), seams.FEM_VELOCITY, no_discount(2)),
-    Fault("fem: delta 1e-6 high", ("fem:full",), seams.FEM_VELOCITY, with_scheme(2, delta=lambda d: d * (1 + 1e-6))),
+    Fault("fem: gg missing in the predictor", ("fem:full",), seams.FEM_PREDICTOR, undiscounted(2)),
+    Fault("fem: gg missing in the velocity", ("fem:full",), seams.FEM_VELOCITY, undiscounted(2)),
+    Fault("fem: delta 1e-6 high", ("fem:full",), seams.FEM_VELOCITY, with_scheme(0, gamma=lambda d: d * (1 + 1e-6))),
     Fault("fem: foundation 1e-6 stiff", ("fem:full",), seams.FEM_FOUNDATION, times(1 + 1e-6)),
     Fault("fem: mass 1e-6 heavy", ("fem:full",), seams.FEM_MASS, times(1 + 1e-6)),
     Fault("fem: load 2e-10 high", ("fem:full",), seams.FEM_LOAD, times(1 + 2e-10)),

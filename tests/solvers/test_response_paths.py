@@ -97,7 +97,7 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
 
     for target in ("dda.system.solution.run_glued", "dda.one_block.solution.modal_histories"):
         monkeypatch.setattr(target, refuse)
-    for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.advance"):
+    for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.step_change"):
         monkeypatch.setattr(target, refuse)
     eliminations, own = [], scipy.linalg.solve_banded
     monkeypatch.setattr(scipy.linalg, "solve_banded", lambda *a, **k: eliminations.append(1) or own(*a, **k))

@@ -198,7 +198,7 @@ class OpeningMesh(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
+        from fem_reference.contact.columns import UNILATERAL_COLUMNS
 
         check_columns(self.scene, UNILATERAL_COLUMNS)
         result = self._solved((*self.scene.run.columns, "contact_pressure"))
@@ -219,7 +219,7 @@ class OpeningMesh(Prepared):
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did, from the same steps with their energies."""
-        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
+        from fem_reference.contact.columns import UNILATERAL_COLUMNS
 
         result = self._solved(UNILATERAL_COLUMNS)
         columns = result.columns
@@ -282,7 +282,7 @@ class FiniteElements(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        from fem_reference.contact.kernel import UNILATERAL_COLUMNS
+        from fem_reference.contact.columns import UNILATERAL_COLUMNS
 
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))

@@ -22,7 +22,8 @@ from validation.solvers.contract import NotReported, Prepared, completed
 from validation.solvers.translation import naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    from fem_reference.column.contacts import ColumnContactResult, ContactColumn
+    from fem_reference.column.contact_model import ContactColumn
+    from fem_reference.column.contacts import ColumnContactResult
 
 
 def ground_of(scene: Scene) -> Ground:
@@ -36,7 +37,7 @@ def ground_of(scene: Scene) -> Ground:
 
 def contact_column_of(scene: Scene) -> ContactColumn:
     """Return the column of a scene whose contacts open or slip."""
-    from fem_reference.column.contacts import ColumnContact, ContactColumn
+    from fem_reference.column.contact_model import ColumnContact, ContactColumn
 
     c = column_of(scene)
     strata = tuple(Stratum(x.thickness, x.density, x.young, x.poisson) for x in c.layer)

@@ -1,0 +1,209 @@
+"""A meshed column on its contacts as a system of rows (`fem_reference.contact.system`), and where it begins.
+
+The runs of elements between the contacts are meshes of their own, the bodies of the system. What is prescribed has four
+parts: displacement, velocity and acceleration of the base, and the pressure on the surface.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+
+from fem_reference.column.contact_model import ContactColumn
+from fem_reference.column.mesh import LineMesh, line_mesh
+from fem_reference.column.problem import Excitation, Ground
+from fem_reference.column.stepping import Model, Observation
+from fem_reference.contact.iteration import CONVERGED, fall_back, find_contact
+from fem_reference.contact.law import AT_LOWER, INSIDE, Law, States, equations_of
+from fem_reference.contact.march import ContactState
+from fem_reference.contact.stepper import SINGLY_UNIQUE, ContactStepper
+from fem_reference.contact.system import ContactSystem, opening_rows, slipping_rows
+from fem_reference.problem.problem import Array, Scheme
+from fem_reference.scheme.stage import Motion
+
+TOGETHER = 2
+"""Solves for each contact, and three more, in which all states change at once."""
+
+
+def mesh_of(column: ContactColumn, elements: Sequence[int], degree: int) -> tuple[LineMesh, Model]:
+    """Mesh a column cut at its contacts, without springs; all unknowns are free but those of a prescribed base."""
+    ground = column.ground
+    cuts = tuple((contact.height, 1.0) for contact in column.contacts if contact.height > 0)
+    mesh = line_mesh(Ground(ground.strata, ground.motion, cuts, ground.impedance), elements, degree, springs=False)
+    return mesh, Model.of(mesh, ground.impedance, column.unsupported or column.foot_contact)
+
+
+def system_of(
+    column: ContactColumn, mesh: LineMesh, model: Model, scheme: Scheme, excitation: Excitation, observed: Observation
+) -> ContactSystem:
+    """The column on rows that open, or slip at their strength."""
+    free = model.free
+    M, C, K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
+    compliance = np.array([1 / contact.stiffness for contact in column.contacts])
+    rows = opening_rows(compliance)
+    if column.law == "frictional":
+        rows = slipping_rows(compliance, np.array([contact.strength for contact in column.contacts]))
+    ground = np.zeros((len(compliance), 4))
+    ground[0, 0] = column.foot_contact
+    stages = len(scheme.stages)
+    parts = excitation.parts
+
+    def prescribed(positions: Array, times: Array) -> Array:
+        ends = np.rint(positions).astype(int)[:, None] * stages + np.arange(1, stages + 1)
+        return np.asarray(parts[ends])
+
+    held = len(free) < mesh.size
+    weight = -column.gravity * (model.M @ np.ones(mesh.size))
+    return ContactSystem(
+        M=M,
+        K=K,
+        C=None if model.impedance is None else C,
+        F=weight[free],
+        B=csr_array(_openings(column, mesh)[:, free]),
+        rows=rows,
+        watch=Motion(observed.D, observed.V, observed.A),
+        pushes=model.loads(),
+        ground=ground,
+        prescribed=prescribed,
+        start_parts=parts[0],
+        bodies=tuple(run.size - (held and run.first == 0) for run in mesh.parts),
+        rigid=tuple(0 if held and run.first == 0 else 1 for run in mesh.parts),
+    )
+
+
+def stepper_of(column: ContactColumn, system: ContactSystem, scheme: Scheme, compiled: Any = None) -> ContactStepper:
+    """The scheme on the column.
+
+    Raises
+    ------
+    ValueError
+        If a contact is rigid and the scheme explicit.
+    """
+    if scheme.explicit and np.any(system.rows.compliance == 0):
+        field, value = ("alpha", 0) if scheme.table is None else ("scheme", scheme.name)
+        raise ValueError(f"{field}: must be positive where contacts are rigid, got {value}")
+    limit = TOGETHER * len(column.contacts) + 3
+    single_limit = None
+    if column.solve_limit is not None:
+        limit = min(limit, column.solve_limit)
+        single_limit = column.solve_limit - limit
+    return ContactStepper(system, scheme, limit, single_limit, compiled=compiled)
+
+
+def _openings(column: ContactColumn, mesh: LineMesh) -> Array:
+    """Rows that give the relative displacement of the faces of each contact, less the base's."""
+    B = np.zeros((len(column.contacts), mesh.size))
+    runs = mesh.parts if column.foot_contact else mesh.parts[1:]
+    for number, run in enumerate(runs):
+        B[number, run.end(top=False)] = 1.0
+    for number, run in enumerate(mesh.parts[:-1]):
+        B[number + column.foot_contact, run.end(top=True)] = -1.0
+    return B
+
+
+def column_at_start(stepper: ContactStepper, column: ContactColumn, mesh: LineMesh, model: Model) -> ContactState:
+    """State at t = 0: unstrained with the gaps of the contacts, or at rest under the weight."""
+    system = stepper.system
+    n = len(column.contacts)
+    opens = column.law == "unilateral"
+    place = np.array([contact.gap for contact in column.contacts]) if opens else np.zeros(n)
+    states = np.full(n, AT_LOWER if opens else INSIDE, dtype=np.int8)
+    V = _velocities(column, mesh)[model.free]
+    D = np.zeros_like(V)
+    force = np.zeros(n)
+    if column.settled:
+        at_rest, force = _static(column, mesh, float(system.start_parts[0]))
+        D = at_rest[model.free]
+        place = -force * system.rows.compliance
+        states = np.zeros(n, dtype=np.int8)
+    if system.to_modes is not None:
+        V = system.to_modes @ V
+        D = system.to_modes @ D
+    touching = np.flatnonzero((system.rows.compliance == 0) & (place == 0))
+
+    def pull(mass: Any, A: Array) -> tuple[Array, Array]:
+        return _at_once(system, states, touching, mass, A, force)
+
+    return stepper.start(V, place, states, D, force, pull if len(touching) and not column.settled else None)
+
+
+def _at_once(
+    system: ContactSystem, states: States, touching: NDArray[np.intp], mass: Any, A: Array, force: Array
+) -> tuple[Array, Array]:
+    """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once."""
+    B = system.B[touching] if system.to_modes is not None else system.B[touching].toarray()
+    mobility = np.array([mass * row for row in B]).T
+    rows = system.rows
+    count = len(touching)
+    law = Law(
+        W=B @ mobility,
+        compliance=rows.compliance[touching],
+        lower=rows.lower[touching],
+        upper=rows.upper[touching],
+        friction=np.zeros(count),
+        partner=np.arange(count),
+        slips=rows.slips[touching],
+        limit=TOGETHER * count + 3,
+        single_limit=SINGLY_UNIQUE * count,
+    )
+    q = B @ A - system.ground[touching, 0] * system.start_parts[2]
+    begun = states[touching]
+    equations = equations_of(law, begun, np.ones(count))
+    trial, _, _, outcome = find_contact(law, equations, q, np.zeros(count), begun, fall_back)
+    together = force.copy()
+    if outcome == CONVERGED:
+        together[touching] += trial.force
+        A = A + mobility @ trial.force
+    return A, together
+
+
+def _velocities(column: ContactColumn, mesh: LineMesh) -> Array:
+    """Velocity of each unknown at t = 0: that of its stratum, between two the mean by their masses."""
+    V = np.zeros(mesh.size)
+    for run in mesh.parts:
+        nodes = run.basis.mesh.p[0]
+        ends = nodes[run.basis.mesh.t]
+        stratum = np.searchsorted(column.ground.tops, ends.mean(axis=0))
+        share = run.densities * abs(ends[1] - ends[0])
+        momentum = np.zeros(run.size)
+        mass = np.zeros(run.size)
+        for local in run.basis.element_dofs:
+            np.add.at(momentum, local, share * np.asarray(column.velocities)[stratum])
+            np.add.at(mass, local, share)
+        V[run.first : run.first + run.size] = momentum / mass
+    return V
+
+
+def _static(column: ContactColumn, mesh: LineMesh, base: float) -> tuple[Array, Array]:
+    """Displacements of all unknowns and forces at rest: each contact carries the weight above it."""
+    ground = column.ground
+    gravity = column.gravity
+    bottoms = ground.tops - [stratum.thickness for stratum in ground.strata]
+    densities = np.array([stratum.density for stratum in ground.strata])
+    moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])
+
+    def carried(height: float) -> float:
+        above = np.clip(ground.tops - height, 0.0, ground.tops - bottoms)
+        return gravity * float(densities @ above)
+
+    def shortening(height: float) -> float:
+        """Of the column between its foot and a height, its contacts apart."""
+        total = 0.0
+        for low, high, density, modulus in zip(bottoms, ground.tops, densities, moduli, strict=True):
+            length = min(max(height - low, 0.0), high - low)
+            total += (carried(low) - density * gravity * length / 2) * length / modulus
+        return total
+
+    force = np.array([carried(contact.height) for contact in column.contacts])
+    closing = np.array([N / one.stiffness + one.gap for N, one in zip(force, column.contacts, strict=True)])
+    D = np.zeros(mesh.size)
+    first = 0 if column.foot_contact else 1
+    for number, run in enumerate(mesh.parts):
+        below = float(closing[: number + 1 - first].sum())
+        heights = run.basis.doflocs[0]
+        D[run.first : run.first + run.size] = [base - below - shortening(float(height)) for height in heights]
+    return D, force

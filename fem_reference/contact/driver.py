@@ -1,0 +1,92 @@
+"""The loop over the steps of a history on contacts: in pieces of many steps, and of a step that has no contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from fem_reference.contact.iteration import CONVERGED, OVERFLOW
+from fem_reference.contact.march import ContactState, Record, part_of
+from fem_reference.contact.stepper import ContactStepper, Marched
+
+OUTCOMES = ("completed", "no consistent contact state", "several consistent contact states", "overflow")
+"""How a history ends, by the numbers of `fem_reference.contact.iteration`."""
+PIECE = 4096
+"""Steps whose rows are kept at a time."""
+
+
+@dataclass(frozen=True)
+class Cut:
+    """How a step that has no contact is cut."""
+
+    factor: float  # on the piece that has none [-], between 0 and 1
+    shortest: float  # piece over the step [-]
+
+
+def make_steps(
+    stepper: ContactStepper, state: ContactState, steps: int, cut: Cut | None
+) -> Iterator[tuple[Record, Marched]]:
+    """Yield what was kept of the steps piece by piece, and how each piece has ended; the last may be cut short.
+
+    Parameters
+    ----------
+    cut
+        How a step without a contact is repeated; it ends the history if None.
+    """
+    completed = 0
+    outcome = CONVERGED
+    # A scheme beyond its limit grows until it overflows; the outcome says so.
+    with np.errstate(all="ignore"):
+        while completed < steps and outcome == CONVERGED:
+            record = stepper.record(min(PIECE, steps - completed))
+            marched = stepper.march(state, record)
+            made = marched.steps
+            if marched.outcome != CONVERGED and cut is not None:
+                marched = cut_step(stepper, marched, cut, part_of(record, slice(made, made + 1)))
+                made += marched.outcome == CONVERGED
+            completed += made
+            state = marched.state
+            outcome = marched.outcome
+            yield part_of(record, slice(made)), marched
+
+
+def cut_step(stepper: ContactStepper, marched: Marched, cut: Cut, row: Record) -> Marched:
+    """Make a step without a contact in shorter pieces; a piece without one is repeated shorter, as are those after it.
+
+    Parameters
+    ----------
+    stepper
+        The bodies and the scheme.
+    marched
+        How the step in one piece has failed, with the state before it.
+    cut
+        Factor and limit of the cuts.
+    row
+        What is kept of the step (filled), one row.
+
+    Returns
+    -------
+    Marched
+        State at the end of the step, or before the piece that failed. The next step is tried in one piece again.
+    """
+    solves = marched.solves
+    cuts = 0
+    remainder = 1.0
+    trial = 1.0
+    while remainder > 0 and marched.outcome != OVERFLOW:
+        if marched.outcome != CONVERGED:
+            cuts += 1
+            if trial <= cut.shortest:
+                return marched
+            trial = max(cut.factor * trial, cut.shortest)
+        marched = stepper.march(marched.state, row, trial)
+        solves += marched.solves
+        if marched.outcome == CONVERGED:
+            # What rounding leaves over is no piece.
+            remainder = remainder - trial if remainder - trial > 1e-9 else 0.0
+            trial = min(trial, remainder)
+    row.solves[0] = solves
+    row.cuts[0] = cuts
+    return marched

@@ -1,0 +1,92 @@
+"""Elastic bodies on their contacts: matrices, rows, what is prescribed and what is observed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import block_diag, eigh
+from scipy.sparse import csr_array
+
+from fem_reference.problem.problem import Array
+from fem_reference.scheme.stage import Motion
+
+
+class ContactRows(NamedTuple):
+    """What rows obey (`fem_reference.contact.law`), each of shape (rows,)."""
+
+    compliance: Array  # 1 / k [m/N]
+    lower: Array  # bounds of the force but for friction [N]
+    upper: Array
+    friction: Array  # tangent of the angle [-]
+    partner: NDArray[np.int64]  # row that presses this one; its own number where there is none
+    slips: NDArray[np.bool_]  # whether it slips at its bounds, and does not open
+
+
+def opening_rows(compliance: Array) -> ContactRows:
+    """Rows that bear pressure only."""
+    count = len(compliance)
+    zero = np.zeros(count)
+    return ContactRows(compliance, zero, np.full(count, np.inf), zero, np.arange(count), np.zeros(count, dtype=bool))
+
+
+def slipping_rows(compliance: Array, strength: Array) -> ContactRows:
+    """Rows that bear up to a strength, infinite of those that are bonded."""
+    count = len(compliance)
+    return ContactRows(compliance, -strength, strength, np.zeros(count), np.arange(count), np.ones(count, dtype=bool))
+
+
+def with_friction(pressed: ContactRows, sliding: ContactRows, tangent: float) -> ContactRows:
+    """Rows that open, and after them those that each of them presses."""
+    count = len(pressed.compliance)
+    held = sliding._replace(partner=np.arange(count), friction=np.full(count, tangent))
+    return ContactRows(*(np.concatenate(pair) for pair in zip(pressed, held, strict=True)))
+
+
+@dataclass(frozen=True)
+class ContactSystem:
+    """M D'' + C D' + K D = F + pushes p(t) + B' N of bodies that no spring of K holds, and their contacts' rows."""
+
+    M: Any  # mass [kg], shape (unknowns, unknowns); its diagonal in natural modes
+    K: Any  # elastic stiffness without the springs of contacts [N/m]; its diagonal in natural modes
+    F: Array  # constant load [N], shape (unknowns,)
+    B: Any  # rows of the relative displacements, shape (rows, unknowns)
+    rows: ContactRows
+    watch: Motion  # rows that observe displacement, velocity, acceleration, each of shape (columns, unknowns)
+    pushes: Array  # load of a unit of each part of what is prescribed, shape (unknowns, parts)
+    ground: Array  # displacement of the ground of each row for a unit of each part, shape (rows, parts)
+    prescribed: Callable[[Array, Array], Array] = field(repr=False)
+    """Parts at the ends of the stages, shape (steps, stages, parts), of the steps' positions [steps] and the times."""
+    start_parts: Array  # at t = 0, shape (parts,)
+    bodies: tuple[int, ...]  # number of unknowns of each body, one after the other
+    rigid: tuple[int, ...]  # number of rigid motions of each body
+    C: csr_array | None = None  # viscous damping [N s/m]
+    to_modes: Array | None = None  # natural modes of a displacement, shape (modes, unknowns), where they are unknowns
+
+    def in_modes(self) -> ContactSystem:
+        """The system in the natural modes of its bodies, in which M is one and K a diagonal, without damping."""
+        squares = []
+        shapes = []
+        begin = 0
+        for size, motions in zip(self.bodies, self.rigid, strict=True):
+            body = slice(begin, begin + size)
+            of_body, turn = eigh(self.K[body, body].toarray(), self.M[body, body].toarray())
+            of_body[:motions] = 0.0
+            squares.append(of_body)
+            shapes.append(turn)
+            begin += size
+        turn = block_diag(*shapes)
+        watch = Motion(*(np.ascontiguousarray(part @ turn) for part in self.watch))
+        return replace(
+            self,
+            M=np.ones(len(turn)),
+            K=np.concatenate(squares),
+            F=turn.T @ self.F,
+            B=np.ascontiguousarray(self.B @ turn),
+            watch=watch,
+            pushes=np.ascontiguousarray(turn.T @ self.pushes),
+            to_modes=turn.T @ self.M,
+        )
