@@ -21,17 +21,22 @@ the instant at which the contact comes to rest enclosed (`block_impacts`).
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb, arb_poly
 from numpy.typing import ArrayLike
 
-from fem_reference.events.block_flow import to_floats
-from fem_reference.events.block_march import March, Node
-from fem_reference.events.block_model import OPEN, RELEASED, RIGHT, BlockModel, BlockProblem, Course
-from fem_reference.events.block_switching import Flows
-from fem_reference.events.enclosure import bits_of, check_request, precision, radius_of
+from fem_reference.events.block_march import BlockMarch
+from fem_reference.events.block_model import BlockModel, BlockProblem
+from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, RELEASED, States, direction
+from fem_reference.events.enclosure import bits_of, check_request, precision
+from fem_reference.events.march import Node
+from fem_reference.events.report import Part, parts_of
+from fem_reference.events.series import column, floats, summed
 from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -46,6 +51,7 @@ _UNKNOWNS = np.zeros((6, 6))
 """From (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)."""
 _UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
 _UNKNOWNS[[3, 4], 2] = -1, 1
+_OUTPUTS = np.linalg.inv(_UNKNOWNS)
 REPORT_DIGITS = 40
 """Decimal digits in which the motion is evaluated where it is reported."""
 ROUNDING = 4 * np.finfo(float).eps
@@ -94,7 +100,7 @@ class BlockMotion(ProvenMotion):
     switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
-    flows: Flows = field(repr=False, compare=False)  # of the states of the corners
+    model: BlockModel = field(repr=False, compare=False)
     impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
 
@@ -107,85 +113,161 @@ class BlockMotion(ProvenMotion):
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        order = np.argsort(t, kind="stable")
-        begun = np.searchsorted([float(node.start) for node in self.nodes], t, side="right") - 1
-        reports = np.empty((41, len(t)))
+        problem = self.problem
+        model = self.model
+        outputs = np.empty((17, len(t)))  # see `_outputs`
+        rates = np.empty((17, len(t)))
+        states = np.empty((2, len(t)))
+        radius = np.empty((6, len(t)))
+        slipped = np.empty((2, len(t)))
+        released, dissipated, work = (np.empty(len(t)) for _ in range(3))
+        mass = np.array([float(m) for m in model.mass])
+        load = floats(model.load)[:, 0]
         with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            last = -1
-            for i in order.tolist():
-                if begun[i] != last:
-                    last = begun[i]
-                    node = self.nodes[last]
-                    time = node.start
-                    z = node.z
-                flow = self.flows[node.states]
-                instant = arb(float(t[i]))
-                time, z = instant, flow.advance(z, instant - time)
-                reports[:, i] = self._report(node, time, z)
-        x, rate, _, N, radius, slipped, losses, states = np.split(reports, [12, 24, 26, 28, 34, 36, 39])
-        released, dissipated, work = losses
-        slips = self.problem.friction is not None
-        p = 0.0 if self.problem.rigid_contact else self.problem.stiffness
-        ps = self.problem.shear_stiffness
+            for part in parts_of(model, self.nodes, [()] * len(self.nodes), t):
+                node = self.nodes[part.node]
+                columns = part.columns
+                length = part.segment.length
+                values, slopes, _ = summed(self._outputs(node, part), part.shares, length)
+                outputs[:, columns] = values
+                rates[:, columns] = slopes
+                passed = part.begun + part.shares * length
+                ledger = self._ledgers[part.node]
+                states[:, columns] = [[OPEN if state == RELEASED else state] for state in node.states]
+                slipped[:, columns] = values[14:16] + np.array(ledger.slipped)[:, None]
+                released[columns] = ledger.released
+                dissipated[columns] = ledger.dissipated + values[16]
+                work[columns] = ledger.work
+                for i, speed in enumerate(self._base_velocity(node)):
+                    gained = mass[0] * (slopes[i] - float(node.start.v[i, 0] + speed)) - load[i] * passed
+                    work[columns] += float(speed) * gained
+                flow = model.flow(node.states)
+                radius[:, columns] = np.abs(_OUTPUTS) @ flow.growth(node.error, flow.rate * passed)
+        x = outputs[:6]
+        rate = rates[:6]
+        stretch = outputs[10:12]
+        N = outputs[12:14]
+        slips = problem.friction is not None
+        p = 0.0 if problem.rigid_contact else problem.stiffness
         closed = np.asarray(states != OPEN, dtype=float)
-        if not self.problem.locked:
+        gap = outputs[6:8]
+        if not problem.locked:
             N = np.maximum(0.0, N)
-        pressed = x[6:8] if self.problem.locked else np.minimum(0.0, x[6:8])
-        T = 0.0 - ps * x[8:10]
-        model = self.flows.model
-        mass, load = (to_floats(arb_mat([part]))[0] for part in (model.mass, model.load))
+        pressed = gap if problem.locked else np.minimum(0.0, gap)
+        T = 0.0 - problem.shear_stiffness * stretch
         strains = x[3:6]
-        elastic = to_floats(arb_mat(model.elastic))[np.ix_([2, 5, 3], [2, 5, 3])]
+        elastic = floats(model.stiffness)[np.ix_([2, 5, 3], [2, 5, 3])]
         return BlockHistory(
             time=t,
-            displacement=x[:6],
-            velocity=rate[:6],
-            gap=x[6:8],
-            gap_velocity=rate[6:8],
+            displacement=x,
+            velocity=rate,
+            gap=gap,
+            gap_velocity=rates[6:8],
             normal_force=N,
             shear_force=T,
-            slide=x[10:12],
+            slide=outputs[8:10],
             slipped=slipped,
             states=states,
             closed=closed,
-            contact_pressure=N.sum(axis=0) / self.problem.width,
-            kinetic=mass @ (_UNKNOWNS @ rate[:6]) ** 2 / 2,
+            contact_pressure=N.sum(axis=0) / problem.width,
+            kinetic=mass @ (_UNKNOWNS @ rate) ** 2 / 2,
             strain=(strains * (elastic @ strains)).sum(axis=0) / 2,
-            springs=(p * pressed**2 - T * x[8:10]).sum(axis=0) / 2,
-            load=-load @ (_UNKNOWNS @ x[:6]) - work,
+            springs=(p * pressed**2 - T * stretch).sum(axis=0) / 2,
+            load=-load @ (_UNKNOWNS @ x) - work,
             released=released,
             friction=dissipated if slips else np.zeros_like(t),
             damped=np.zeros_like(t) if slips else dissipated,
-            displacement_radius=radius,
+            displacement_radius=radius + ROUNDING * np.abs(x),
         )
 
-    def _report(self, node: Node, time: arb, z: arb_mat) -> list[float]:
-        """What is reported at an instant that follows a node.
+    def _outputs(self, node: Node, part: Part) -> list[arb_poly]:
+        """Series of what is reported over the share of a part of a step.
 
-        `Flow.outputs`, radii of the displacements, slips, energies released, lost by friction and gained from the base,
-        and the states.
+        (u, v, r, ex, ey, gxy) of the block, gaps, slides, stretches and normal forces of M and N, the slip of each in
+        the step, and the energy lost in it by friction and in dashpots.
         """
-        flow = self.flows[node.states]
-        base = node.base
-        passed = time - node.start
-        after = time - node.row_time
-        outputs = (flow.outputs * z).entries()
-        for i, (place, rate) in enumerate(((base.x, base.vx), (base.y - self.problem.gap, base.vy))):
-            outputs[i] += place + rate * after
-            outputs[12 + i] += rate
-        radius = flow.growth(node.radius, flow.rate * float(passed))
-        radius += [radius_of(value) + ROUNDING * abs(float(value)) for value in outputs[:6]]
-        slipped = list(node.slipped)
-        for c in (0, 1):
-            if abs(node.states[c]) == RIGHT:
-                slipped[c] += outputs[24 + c] - node.z[12 + c, 0]
-        dissipated = node.dissipated
-        if flow.dissipates:
-            dissipated = dissipated + flow.energy(node.z) - flow.energy(z)
-        states = [OPEN if state == RELEASED else state for state in node.states]
-        work = node.work + flow.model.base_work(base, node.z, z, passed)
-        numbers = [*map(float, outputs)], radius, [*map(float, (*slipped, node.released, dissipated, work))]
-        return [*numbers[0], *numbers[1], *numbers[2], *states]
+        model = self.model
+        segment = part.segment
+        u, v, ux, uy, vx, vy = segment.unknowns()
+        span = arb(segment.length)
+        along, upwards = (arb_poly(piece.series(part.start.time, segment.length, 2)) for piece in node.drives)
+        half = arb(1) / 2
+        rows = [arb_poly(series) for series in segment.rows]
+        nothing = arb_poly([])
+        stretches = [nothing, nothing]
+        forces = [nothing, nothing]
+        slips = [nothing, nothing]
+        lost = nothing
+        if self._dissipates(node.states):
+            lost += model.energy(node.states, node.start) - model.energy(node.states, part.start)
+        for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
+            gap = rows[c]
+            if state == RELEASED:
+                lost += (gap(arb(0)) ** 2 - gap * gap) * (contact.stiffness * half)
+            if state in CARRIES_NOTHING:
+                continue
+            rate = gap.derivative() * (1 / span)
+            stretches[c] = model.stretch(c, state, rows, node.start.references[c])
+            forces[c] = contact.normal_force(gap, rate) if contact.force is None else rows[contact.force] * half
+            lost += (rate * rate).integral() * (contact.damping * span)
+            if direction(state):
+                slips[c] = contact.reference(state, rows) - node.start.references[c]
+                lost += (stretches[c] * slips[c].derivative()).integral() * contact.shear_stiffness
+        upwards -= arb(self.problem.gap)
+        return [u + along, v + upwards, (vx - uy) * half, ux, vy, uy + vx, *rows[:4], *stretches, *forces, *slips, lost]
+
+    @staticmethod
+    def _base_velocity(node: Node) -> list[arb]:
+        """Rates of the base along itself and upwards."""
+        return [piece.series(node.start.time, 1.0, 2)[1] for piece in node.drives]
+
+    @cached_property
+    def _ledgers(self) -> list[Ledger]:
+        """What has slipped and been lost until each node."""
+        model = self.model
+        ledgers = [Ledger((0.0, 0.0), 0.0, 0.0, 0.0)]
+        slipped = [arb(0), arb(0)]
+        released = dissipated = work = arb(0)
+        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
+            for node, following in itertools.pairwise(self.nodes):
+                # its end as seen from the base of this step, whose velocity jumps between two rows of its record
+                base = self._base_velocity(node)
+                jump = [later - speed for later, speed in zip(self._base_velocity(following), base, strict=True)]
+                v = following.start.v + column([*jump, *[arb(0)] * 4])
+                end = following.start._replace(v=v, references=node.start.references)
+                span = end.time - node.start.time
+                gained = [model.mass[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
+                work += base[0] * gained[0] + base[1] * gained[1]
+                if self._dissipates(node.states):
+                    dissipated += model.energy(node.states, node.start) - model.energy(node.states, end)
+                rows = model.values(end.u)
+                for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
+                    if direction(state):
+                        slipped[c] += contact.reference(state, rows) - node.start.references[c]
+                    if state not in CARRIES_NOTHING and following.states[c] in CARRIES_NOTHING:
+                        stretch = model.stretch(c, state, rows, end.references[c])
+                        released += contact.shear_stiffness * stretch * stretch / 2
+                slips = float(slipped[0]), float(slipped[1])
+                ledgers.append(Ledger(slips, float(released), float(dissipated), float(work)))
+        return ledgers
+
+    def _dissipates(self, states: States) -> bool:
+        """Whether energy is lost in a step or at its end."""
+        restitution = self.problem.restitution
+        if restitution is not None:
+            return restitution < 1 and states[0] == OPEN
+        if self.problem.damping:
+            return any(state != OPEN for state in states)
+        return any(direction(state) for state in states)
+
+
+class Ledger(NamedTuple):
+    """What has slipped and been lost until a node."""
+
+    slipped: tuple[float, float]  # movement of the references of M and N by slipping [m]
+    released: float  # energy of the shear springs lost by opening [J]
+    dissipated: float  # energy lost by friction, in dashpots or by impacts [J]
+    work: float  # work of the base [J]
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:
@@ -222,14 +304,20 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
 
     def motion_in(digits: int) -> BlockMotion:
         with precision(bits_of(digits)):
-            march = March(BlockModel(problem), Course(problem.base), problem.gap, float(end), limit)
-            march.run(problem.velocity)
-        start = march.closed_at_start[0], march.closed_at_start[1]
-        switches = tuple(march.switches)
-        touches = tuple(march.touches)
-        nodes = tuple(march.nodes)
-        impacts = tuple(march.impacts)
-        cascades = tuple(march.cascades)
-        return BlockMotion(problem, float(end), digits, start, switches, touches, nodes, march.flows, impacts, cascades)
+            march = BlockMarch(problem, float(end), limit)
+            march.run()
+        first = march.nodes[0].states
+        return BlockMotion(
+            problem,
+            float(end),
+            digits,
+            (first[0] != OPEN, first[1] != OPEN),
+            tuple(march.switches),
+            tuple(march.touches),
+            tuple(march.nodes),
+            march.block,
+            tuple(march.impacts),
+            tuple(march.cascades),
+        )
 
     return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

@@ -37,18 +37,21 @@ time. With w = w' = 0 it is thus the free block's state, projected along d.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import arb, arb_mat, arb_poly, ctx
 
-from fem_reference.events.block_flow import SIZE, Flow
-from fem_reference.events.block_model import RigidContact
+from fem_reference.events.block_model import BlockModel, RigidContact
+from fem_reference.events.contacts import OPEN
 from fem_reference.events.enclosure import NEWTON_STEPS, ball
+from fem_reference.events.series import Segment, Start, column, expand
 
 LONGEST_HOP = 0.03
 """Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short."""
-LEAST_TERMS = 4
-"""Terms of the series of a hop, at least."""
+SHORTEST = 1e-300
+"""Length of a series over no time [s]."""
 ATTEMPTS = 8
 """Times that bounds of w'' are widened before accumulation counts as not proven."""
 WIDENING = 1.2
@@ -72,36 +75,67 @@ class Accumulation:
     reach: arb  # greatest change of z until then, in the units of the flow
 
 
-def norm(flow: Flow, vector: arb_mat) -> arb:
-    """Norm of the first twelve entries of a z in the units of the flow, in which G has at most the norm `rate`."""
-    return sum((abs(x) / unit for x, unit in zip(vector.entries(), flow.unit_balls, strict=False)), arb(0)).upper()
+class State(NamedTuple):
+    """Balls that hold the block, in flight."""
 
-
-def box(flow: Flow, size: arb) -> arb_mat:
-    """Balls that hold each change of z of at most a norm."""
-    return arb_mat(SIZE, 1, [*(ball(size * unit) for unit in flow.unit_balls), *[arb(0)] * 3])
+    u: arb_mat  # unknowns
+    v: arb_mat  # their rates
 
 
 class Hops:
     """Hops of the open contact, and what they come to."""
 
-    def __init__(self, flow: Flow, contact: RigidContact) -> None:
-        self.flow = flow
+    def __init__(self, model: BlockModel, contact: RigidContact) -> None:
+        self.model = model
         self.contact = contact
         self.e = contact.restitution
+        self.motion = model.motion((OPEN, OPEN))
+        flow = model.flow((OPEN, OPEN))
         self.rate = arb(flow.rate)
-        self.second = contact.gap * flow.G * flow.G  # the gap's second derivative over z
-        self.third = self.second * flow.G
-        weights = zip(self.third.entries(), flow.unit_balls, strict=False)
-        self.third_norm = max(abs(x) * unit for x, unit in weights).upper()
-        self.direction_norm = norm(flow, contact.direction)
+        self.units = State(column(flow.units[:6].tolist()), column(flow.units[6:12].tolist()))
+        self.third = contact.row * self.motion.A  # the gap's third derivative over the rates
+        weights = [x * unit for x, unit in zip(self.third.entries(), self.units.v.entries(), strict=True)]
+        self.third_norm = euclidean(weights)
+        self.direction_norm = self.norm(State(arb_mat(6, 1), contact.direction))
 
-    def pushed(self, z: arb_mat, speeds: arb, spread: arb) -> arb_mat:
+    def norm(self, state: State) -> arb:
+        """Norm of unknowns and rates, in which those of the block in flight change by `rate` at most."""
+        parts = zip(state, self.units, strict=True)
+        return euclidean([x / unit for part, of in parts for x, unit in zip(part.entries(), of.entries(), strict=True)])
+
+    def spread(self, state: State, size: arb) -> State:
+        """The state with each change of at most a norm."""
+        unit = ball(size.upper())
+        return State(state.u + self.units.u * unit, state.v + self.units.v * unit)
+
+    def accelerations(self, state: State) -> arb_mat:
+        """Second derivatives of the unknowns."""
+        return self.motion.A * state.u + self.motion.f
+
+    def change_norm(self, state: State) -> arb:
+        """Norm of the derivative of a state."""
+        return self.norm(State(state.v, self.accelerations(state)))
+
+    def series(self, state: State, length: float) -> Segment:
+        """The series of a flight."""
+        zero = arb(0)
+        return expand(self.model, (OPEN, OPEN), Start(zero, *state, [zero, zero]), (), length)
+
+    def after(self, state: State, time: arb) -> State:
+        """The state after a flight of a time [s]."""
+        length = float(abs(time).upper()) * (1 + 1e-9) or SHORTEST
+        return State(*self.series(state, length).state(time / arb(length)))
+
+    def blurred(self, state: State, radius: arb) -> State:
+        """The state at any instant within a radius of the present one [s], to first order."""
+        return State(state.u + state.v * ball(radius), state.v + self.accelerations(state) * ball(radius))
+
+    def pushed(self, state: State, speeds: arb, spread: arb) -> State:
         """The state after impacts.
 
         Parameters
         ----------
-        z
+        state
             The state without them.
         speeds
             Sum of the speeds at which the gap closes [m/s].
@@ -109,35 +143,40 @@ class Hops:
             Time within which all of them are around the present instant [s].
         """
         angle = self.rate * spread
-        late = box(self.flow, (angle * angle.exp() * self.direction_norm).upper())
-        return z + (self.contact.direction + late) * ((1 + self.e) * speeds)
+        direction = State(arb_mat(6, 1), self.contact.direction)
+        late = self.spread(direction, angle * angle.exp() * self.direction_norm)
+        push = (1 + self.e) * speeds
+        return State(state.u + late.u * push, state.v + late.v * push)
 
-    def find_hop(self, z: arb_mat, speed: arb) -> Hop | None:
+    def find_hop(self, state: State, speed: arb) -> Hop | None:
         """The flight that begins with an impact, None if it is not proven to be short and concave.
 
         Parameters
         ----------
-        z
-            Balls for the state right after the impact.
+        state
+            The state right after the impact.
         speed
             Rate at which the gap opens [m/s], positive.
         """
-        start = speed / self.rate
-        bend = (self.flow.derivatives(3, 0) * z)[2, 0]
+        bend = self.contact.closing(self.accelerations(state))
         if not bend < 0:
             return None
-        angle = 2 * (start / -bend).upper()
-        if not angle < LONGEST_HOP:
+        longest = (4 * speed / -bend).upper()
+        if not longest * self.rate < LONGEST_HOP:
             return None
-        middle = z.mid()
-        a = self.flow.coefficients(0, middle, z - middle, float(angle), LEAST_TERMS)
-        height = arb_poly([start, *a[2:]])  # the gap over the angle
+        length = float(longest.upper()) * (1 + 1e-9)
+        span = arb(length)
+        segment = self.series(state, length)
+        start = speed * span
+        a = [*segment.rows[0], ball(segment.row_tail(0).upper())]  # the last one holds the tail
+        height = arb_poly([start, *a[2:]])  # the gap over the share of the length
         rise = height.derivative()
-        # bounds of how far slope and curvature of the gap over the angle move from a_2 and from 2 a_2
+        # bounds of how far slope and curvature of the gap over the share move from a_2 and from 2 a_2
         moved = arb_poly([0, *((k - 1) * abs(a[k]) for k in range(3, len(a)))])
-        slope = a[2] + ball(moved(angle).upper())
-        curvature = 2 * a[2] + ball((2 * moved(angle) + angle * moved.derivative()(angle)).upper())
-        if not (curvature < 0 and height(angle) < 0):
+        one = arb(1)
+        slope = a[2] + ball(moved(one).upper())
+        curvature = 2 * a[2] + ball((2 * moved(one) + moved.derivative()(one)).upper())
+        if not (curvature < 0 and height(one) < 0):
             return None
         x = (start / -a[2]).mid()
         for _ in range(NEWTON_STEPS):
@@ -149,14 +188,14 @@ class Hops:
         # the mean value theorem: a slope in between leads from the root to x
         root = x - height(x) / slope
         lost = root * root * arb_poly([(k - 2) * a[k] for k in range(3, len(a))])(root)
-        return Hop(root / self.rate, speed - self.rate * lost)
+        return Hop(root * span, speed - lost / span)
 
-    def find_accumulation(self, z: arb_mat, speed: arb) -> Accumulation | None:
+    def find_accumulation(self, state: State, speed: arb) -> Accumulation | None:
         """Where the impacts after one accumulate, None if that is not proven; arguments as those of `find_hop`."""
         e = self.e
-        now = -(self.second * z)[0, 0]
-        third_now = abs((self.third * z)[0, 0]).upper()
-        change_norm = norm(self.flow, self.flow.G * z)
+        now = -self.contact.closing(self.accelerations(state))
+        third_now = abs((self.third * state.v)[0, 0]).upper()
+        change_norm = self.change_norm(state)
         fastest = speed.upper()
         slowest = speed.lower()
         margin = arb(0)
@@ -180,3 +219,8 @@ class Hops:
                 return Accumulation(length, least.union(most), reach)
             margin = (implied * WIDENING).upper()
         return None
+
+
+def euclidean(entries: Sequence[arb]) -> arb:
+    """Upper bound of the root of a sum of squares."""
+    return sum((x * x for x in entries), arb(0)).abs_upper().sqrt().upper()

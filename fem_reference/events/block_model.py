@@ -35,14 +35,16 @@ M^-1 becomes the sum of d d' / (d' M d) over its three rigid motions d.
 from __future__ import annotations
 
 import math
-from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat
 
+from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
+from fem_reference.events.flow import Flow
+from fem_reference.events.series import Start, System, column, floats
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 
@@ -52,20 +54,9 @@ POSITIVE = ("width", "height", "density", "young", "stiffness")
 UNSIGNED = ("shear_stiffness", "gap", "cohesion", "damping")
 INFINITE = ("young", "stiffness")
 """Fields that may be infinite: of a rigid block and of a rigid contact."""
-OPEN = 0
-STICKS = 1
-RIGHT = 2
-LEFT = -2
-RELEASED = 3
-"""States of a corner; `RIGHT` and `LEFT` slip towards +x and -x; see above on a released one, which carries nothing."""
-CARRIES_NOTHING = (OPEN, RELEASED)
-States = tuple[int, int]
+ANGLE = 12.0
+"""Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits."""
 Vector = list[arb]
-
-
-def sigma(state: int) -> int:
-    """Sign of the shear force of a corner that slips."""
-    return -1 if state == RIGHT else 1
 
 
 @dataclass(frozen=True)
@@ -153,211 +144,146 @@ class BlockProblem:
         return math.isinf(self.young)
 
 
-@dataclass(frozen=True)
-class Base:
-    """Where the base is at an instant, and how it goes on until the next row of its record."""
-
-    x: arb  # displacement along the base [m]
-    y: arb  # displacement upwards [m]
-    vx: arb  # rate of x [m/s]
-    vy: arb  # rate of y [m/s]
-
-
-class Course:
-    """The path of the base from row to row of its record; it stays where it is beyond the ends."""
-
-    def __init__(self, motion: Motion | None) -> None:
-        self.motion = motion or Motion((0.0,), (0.0,), (0.0,))
-
-    def from_row(self, index: int) -> Base:
-        """The base at a row of its record, and its velocity from then on; before the first row it is there at rest."""
-        motion = self.motion
-        still = arb(0)
-        x = arb(motion.x[max(index, 0)])
-        y = arb(motion.y[max(index, 0)])
-        if index < 0 or index + 1 == len(motion.time):
-            return Base(x, y, still, still)
-        spacing = arb(motion.time[index + 1]) - arb(motion.time[index])
-        return Base(x, y, (arb(motion.x[index + 1]) - x) / spacing, (arb(motion.y[index + 1]) - y) / spacing)
-
-    def at_start(self) -> tuple[int, Base]:
-        """The last row up to t = 0 (-1: there is none), and the base then."""
-        index = bisect_right(self.motion.time, 0.0) - 1
-        row = self.from_row(index)
-        passed = -arb(self.motion.time[max(index, 0)])
-        return index, Base(row.x + row.vx * passed, row.y + row.vy * passed, row.vx, row.vy)
-
-
-def row(x: Sequence[arb | int] = (0,) * 6, one: arb | int = 0) -> arb_mat:
-    """A function of z = (x, x', r, 1), see `BlockModel`, from its weights over the unknowns and its constant part."""
-    return arb_mat([[arb(entry) for entry in (*x, *[0] * 8, one)]])
-
-
-def rate_row(x: Sequence[arb | int]) -> arb_mat:
-    """A function of z from its weights over the rates of the unknowns."""
-    return arb_mat([[arb(entry) for entry in (*[0] * 6, *x, *[0] * 3)]])
-
-
-class BlockModel:
+class BlockModel(System):
     """A block in the unknowns x = (u, v, ux, uy, vx, vy), in the precision of the current context.
 
-    Functions are rows over z = (x, x', r, 1), r being the references of both corners.
+    Its rows are the gaps of M and N, their slides, and with rigid contact the force of both corners that keeps them
+    closed.
     """
 
+    angle = ANGLE
+
     def __init__(self, problem: BlockProblem) -> None:
+        super().__init__()
         a = arb(problem.width)
         b = arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
         self.mass = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
-        # gap and slide of each corner over the unknowns [-, m]
-        self.normal = [[arb(0), arb(1), arb(0), arb(0), x, -b / 2] for x in (-a / 2, a / 2)]
-        self.shear = [[arb(1), arb(0), x, -b / 2, arb(0), arb(0)] for x in (-a / 2, a / 2)]
-        self.gaps = [row(weights) for weights in self.normal]  # w [m]
-        self.gap_rates = [rate_row(weights) for weights in self.normal]  # w' [m/s]
-        self.slides = [row(weights) for weights in self.shear]  # s [m]
-        references = [arb_mat([[arb(int(j == 12 + c)) for j in range(15)]]) for c in (0, 1)]
-        self.stuck = [slide - r for slide, r in zip(self.slides, references, strict=True)]  # s - r [m]
-        # normal stiffness of a corner [N/m]; a rigid contact has no springs, and its force is that of its constraint
-        self.p = arb(0) if problem.rigid_contact else arb(problem.stiffness)
-        self.damping = arb(problem.damping)  # of the dashpot of a corner [N s/m]
-        self.ps = arb(problem.shear_stiffness)  # shear stiffness of a corner [N/m]
-        # tan(phi) of the doubles that DDA computes with too; None: a closed corner never slips
-        self.tan = None if problem.friction is None else arb(math.tan(math.radians(problem.friction)))
-        self.cohesion = a * arb(problem.cohesion) / 2  # of a corner [N]
-        self.elastic = _elastic(problem, a * b)  # stiffness of the strained block [N/m, N m]
-        self.load = _load(problem, a, b, m)  # loads of pressure, traction and weight [N, N m]
-        self.mobility = self._mobility(problem.rigid)  # M^-1, of a rigid block over its rigid motions [1/kg, 1/(kg m2)]
-        self.contact = None if problem.restitution is None else RigidContact(self, arb(problem.restitution))
-        self.readings, self.readings_inverse = self._readings()
-        self.reading_sizes = np.array([[float(abs(entry)) for entry in line] for line in self.readings.tolist()])
-        self.reading_sizes *= 1 + 1e-9
-
-    @property
-    def friction(self) -> arb:
-        """tan(phi) of a corner that can slip, else 0."""
-        return arb(0) if self.tan is None else self.tan
-
-    @cached_property
-    def reserves(self) -> dict[tuple[int, int], arb_mat]:
-        """What a corner that sticks can carry before it slips, tan(phi) N + C - sign T, by corner and sign [N]."""
-        limits = [gap * (-self.friction * self.p) + row(one=self.cohesion) for gap in self.gaps]
-        return {(c, sign): limits[c] + self.stuck[c] * (sign * self.ps) for c in (0, 1) for sign in (1, -1)}
-
-    def base_work(self, base: Base, z: arb_mat, later: arb_mat, time: arb) -> arb:
-        """Work of an evenly moving base from one state to a later one: what the springs add to the momentum [J]."""
-        if base.vx == 0 and base.vy == 0:
-            return arb(0)
-        m = self.mass[0]
-        load = self.load
-        along, upwards = (m * (later[6 + i, 0] - z[6 + i, 0]) - load[i] * time for i in (0, 1))
-        return base.vx * along + base.vy * upwards
-
-    def generator(self, states: States) -> arb_mat:
-        """The G of z' = G z with the springs and dashpots of the closed corners, shape (15, 15).
-
-        x'' = W (f + R r - B x - D x') with W the mobility, where B need not be symmetric; the reference of a corner
-        counts where it sticks.
-        """
+        self.stiffness = arb_mat(_elastic(problem, a * b))  # of the strained block [N/m, N m]
+        self.load = column(_load(problem, a, b, m))  # of pressure, traction and weight [N, N m]
+        self.mobility = self._mobility(problem.rigid)  # [1/kg, 1/(kg m2)]
         zero = arb(0)
-        B = [list(line) for line in self.elastic]
-        D = [[zero] * 6 for _ in range(6)]
-        f = list(self.load)
-        R = [[zero, zero] for _ in range(6)]
-        for c, state in enumerate(states):
-            n = self.normal[c]
-            s = self.shear[c]
-            for i in range(6):
-                if state == STICKS:
-                    B[i] = [B[i][j] + self.p * n[i] * n[j] + self.ps * s[i] * s[j] for j in range(6)]
-                    D[i] = [D[i][j] + self.damping * n[i] * n[j] for j in range(6)]
-                    R[i][c] = self.ps * s[i]
-                elif state not in CARRIES_NOTHING:
-                    direction = n[i] + sigma(state) * self.friction * s[i]
-                    B[i] = [B[i][j] + self.p * direction * n[j] for j in range(6)]
-                    f[i] = f[i] + sigma(state) * self.cohesion * s[i]
-        forces = [[-x for x in B[i]] + [-x for x in D[i]] + [*R[i], f[i]] for i in range(6)]
-        accelerations = self.mobility * arb_mat(forces)
-        if self.contact is not None and states[0] == STICKS:
-            accelerations = accelerations + self.contact.acceleration * self.contact.force
-        G = [[zero] * 15 for _ in range(15)]
-        for i, line in enumerate(accelerations.tolist()):
-            G[i][6 + i] = arb(1)
-            G[6 + i] = line
-        return arb_mat(G)
+        ends = -a / 2, a / 2
+        gaps = [[zero, arb(1), zero, zero, x, -b / 2] for x in ends]
+        slides = [[arb(1), zero, x, -b / 2, zero, zero] for x in ends]
+        self.rows = arb_mat([*gaps, *slides])
+        self.offsets = arb_mat(4, 1)
+        self.contact = None
+        if problem.restitution is not None:
+            self.contact = RigidContact(
+                self, (arb_mat([gaps[0]]) + arb_mat([gaps[1]])) * (arb(1) / 2), arb(problem.restitution)
+            )
+            # the force of both corners that keeps w'' = 0 against strain and loads, -n W (F - K x) / C [N]
+            push = self.contact.mobility.transpose() * (1 / self.contact.compliance)
+            self.rows = arb_mat([*self.rows.tolist(), *(push * self.stiffness).tolist()])
+            self.offsets = column([zero] * 4 + (push * self.load * -1).entries())
+        self.on_base = arb_mat(self.rows.nrows(), 1)
+        self.inputs = arb_mat(6, 4)  # nothing: the block is seen from its base
+        friction = zero
+        cohesion = None
+        if problem.friction is not None and not problem.locked:
+            # tan(phi) of the doubles that DDA computes with too
+            friction = arb(math.tan(math.radians(problem.friction)))
+            cohesion = a * arb(problem.cohesion) / 2
+        ps = arb(problem.shear_stiffness)
+        p = zero if problem.rigid_contact else arb(problem.stiffness)
+        force = 4 if problem.rigid_contact else None
+        self.contacts = [
+            Contact(c, name, c, 2 + c if ps > 0 else None, p, arb(problem.damping), ps, friction, cohesion, force)
+            for c, name in enumerate(CORNERS)
+        ]
+        self.flows: dict[States, Flow] = {}
+        self.sizes = [float(m) ** -0.5 * (1 + 1e-9) for m in self.mass]
+        self.row_sizes = (np.abs(floats(self.rows)) @ self.sizes * (1 + 1e-9)).tolist()
 
     def _mobility(self, rigid: bool) -> arb_mat:
         """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
-        zero = arb(0)
-        W = [[zero] * 6 for _ in range(6)]
+        W = arb_mat(6, 6)
         if not rigid:
             for i, m in enumerate(self.mass):
-                W[i][i] = 1 / m
-            return arb_mat(W)
-        W[0][0] = W[1][1] = 1 / self.mass[0]
+                W[i, i] = 1 / m
+            return W
+        W[0, 0] = W[1, 1] = 1 / self.mass[0]
         # a rotation has uy = -r and vx = r
         turning = 1 / (self.mass[3] + self.mass[4])
-        W[3][3] = W[4][4] = turning
-        W[3][4] = W[4][3] = -turning
-        return arb_mat(W)
+        W[3, 3] = W[4, 4] = turning
+        W[3, 4] = W[4, 3] = -turning
+        return W
 
-    def _readings(self) -> tuple[arb_mat, arb_mat]:
-        """Z as gaps, stretches s - r, uy, vy, the rates of these, r and 1, and back.
+    def flow(self, states: States) -> Flow:
+        """Return the motion in a state of the corners as what may be off of it moves."""
+        if states not in self.flows:
+            self.flows[states] = Flow(self, self.mass, states)
+        return self.flows[states]
 
-        They hold what the forces of stiff corners depend on, which floats of the unknowns would lose.
+    def rate(self, states: States) -> float:
+        """Return a bound of the rates of the motion while the corners keep their states [rad/s]."""
+        return self.flow(states).rate
+
+    def norm(self, x: Sequence[arb]) -> arb:
+        """Return the root of x' M x."""
+        squares = (m * c * c for m, c in zip(self.mass, x, strict=True))
+        return sum(squares, arb(0)).abs_upper().sqrt().upper()
+
+    def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
+        """Yield the functions that are positive as long as the corners keep their states."""
+        if self.contact is None:
+            return () if self.locked else super().watches(states, references)
+        row, becomes, order = (0, STICKS, 0) if states[0] == OPEN else (4, OPEN, 2)
+        return [Watch(0, NORMAL, (Part(row, arb(1)),), becomes, order=order)]
+
+    def changed(self, states: States, watch: Watch) -> States:
+        """Return the states after a fall of a function; both corners of a rigid contact are one."""
+        return super().changed(states, watch) if self.contact is None else (watch.becomes,) * 2
+
+    def energy(self, states: States, start: Start) -> arb:
+        """Kinetic energy, that of the strain and of the springs, and the loads' as seen from the base [J].
+
+        A released spring has what its stretch says: it gives it to its dashpot, and nothing to the block.
         """
-        over = [*self.normal, *self.shear, *([arb(int(i == j)) for j in range(6)] for i in (3, 5))]
-        lines = [row(weights).entries() for weights in over]
-        lines += [[arb(0)] * 6 + line[:9] for line in lines]
-        lines += [[arb(int(i == j)) for j in range(15)] for i in (12, 13, 14)]
-        lines[2], lines[3] = (stuck.entries() for stuck in self.stuck)
-        readings = arb_mat(lines)
-        return readings, readings.inv()
+        u = start.u
+        twice = (u.transpose() * (self.stiffness * u - self.load * 2))[0, 0]
+        twice += sum((m * rate * rate for m, rate in zip(self.mass, start.v.entries(), strict=True)), arb(0))
+        rows = self.values(u)
+        for c, (contact, state) in enumerate(zip(self.contacts, states, strict=True)):
+            if state != OPEN:
+                stretch = self.stretch(c, state, rows, start.references[c])
+                twice += contact.stiffness * rows[c] * rows[c] + contact.shear_stiffness * stretch * stretch
+        return twice / 2
+
+    def stretch(self, c: int, state: int, rows: Sequence[Any], reference: arb) -> Any:
+        """Stretch s - r of the shear spring of a corner [m], or its series."""
+        contact = self.contacts[c]
+        held = reference if state == STICKS or contact.slide is None else contact.reference(state, rows)
+        return rows[2 + c] - held
 
 
 class RigidContact:
-    """The contact of both corners with a rigid base, and its impact law; rows and columns are over z.
+    """The contact of both corners with a rigid base, and its impact law.
 
     With n the row of the gap of both corners and W the mobility: an impulse J on both corners changes x' by W n' J, and
     the gap's rate by C J.
     """
 
-    def __init__(self, model: BlockModel, restitution: arb) -> None:
+    def __init__(self, model: BlockModel, row: arb_mat, restitution: arb) -> None:
         self.restitution = restitution  # e [-]
-        n = [(one + other) / 2 for one, other in zip(*model.normal, strict=True)]
-        self.gap = row(n)  # w [m]
-        self.rate = rate_row(n)  # w' [m/s]
-        self.acceleration = model.mobility * arb_mat([n]).transpose()  # W n', shape (6, 1) [1/kg]
-        self.compliance = (arb_mat([n]) * self.acceleration)[0, 0]  # C [1/kg]
-        # the force of both corners that keeps w'' = 0 over z: -n W (F - K x) / C [N]; springs aside do not move the gap
-        loads = [[-x for x in line] + [arb(0)] * 8 + [f] for line, f in zip(model.elastic, model.load, strict=True)]
-        self.force = self.acceleration.transpose() * arb_mat(loads) * (-1 / self.compliance)
-        # what changes the gap's rate by one [-]
-        direction = [entry / self.compliance for entry in self.acceleration.entries()]
-        self.direction = arb_mat(15, 1, [*[arb(0)] * 6, *direction, *[arb(0)] * 3])
+        self.row = row  # n
+        self.mobility = model.mobility * row.transpose()  # W n' [1/kg]
+        self.compliance = self.closing(self.mobility)  # C [1/kg]
+        # what changes the gap's rate, or the gap, by one [-]
+        self.direction = self.mobility * (1 / self.compliance)
+        # from rates to those after an impact, and from displacements or rates to those without any of the gap
+        self.impact = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row * (1 + restitution)
+        self.rest = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row
 
-        # what changes the gap by one
-        self.lift = arb_mat(15, 1, [*direction, *[arb(0)] * 9])
+    def closing(self, x: arb_mat) -> arb:
+        """The gap n x of both corners, or its rate or acceleration."""
+        return (self.row * x)[0, 0]
 
     def impulse(self, approach: arb) -> arb:
         """Impulse on both corners of an impact at which the gap closes at a speed, (1 + e) |w'| / C [N s]."""
         return (1 + self.restitution) * approach / self.compliance
-
-    def loss(self, approach: arb) -> arb:
-        """Energy that an impact loses, (1 - e^2) w'^2 / (2 C) [J]."""
-        return (1 - self.restitution * self.restitution) * approach * approach / (2 * self.compliance)
-
-    def impact(self) -> arb_mat:
-        """From z before an impact to z after it, shape (15, 15)."""
-        return _identity() - self.direction * self.rate * (1 + self.restitution)
-
-    def rest(self) -> arb_mat:
-        """The projection of z to no gap and no rate of it, along the direction of impulses, shape (15, 15)."""
-        return _identity() - self.direction * self.rate - self.lift * self.gap
-
-
-def _identity() -> arb_mat:
-    return arb_mat(15, 15, [int(i == j) for i in range(15) for j in range(15)])
 
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:

@@ -16,7 +16,7 @@ from functools import cache
 
 from flint import arb, arb_poly, arb_series, ctx
 
-from fem_reference.events.block_flow import term_count
+from fem_reference.events.enclosure import term_count
 
 ANGLE = 6.0
 """Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
@@ -276,5 +276,19 @@ def recorded(times: Sequence[float], values: Sequence[float], integrals: int = 0
                 at_row[level] = arb_poly(polynomial)(span)
             pieces.append(Polynomial(tuple(polynomial), start))
         return Course(tuple(times), tuple(pieces))
+
+    return course
+
+
+def path(times: Sequence[float], values: Sequence[float]) -> Drive:
+    """A record that is linear between its rows, and stays where it is before and after them."""
+
+    def course() -> Course:
+        pieces = [Polynomial((values[0],))]
+        for i in range(1, len(times)):
+            first = arb(values[i - 1])
+            slope = (arb(values[i]) - first) / (arb(times[i]) - arb(times[i - 1]))
+            pieces.append(Polynomial((first, slope), times[i - 1]))
+        return Course(tuple(times), (*pieces, Polynomial((values[-1],))))
 
     return course

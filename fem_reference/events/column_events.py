@@ -14,21 +14,21 @@ is zero in all derivatives, as those of blocks in common flight, carry no force;
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from flint import arb, arb_poly
+from flint import arb, arb_mat, arb_poly
 from numpy.typing import ArrayLike
 
-from fem_reference.events.block_flow import term_count
 from fem_reference.events.column_drive import ANGLE
-from fem_reference.events.column_flow import OPEN, SLIPS, expand, rate_of, step_length
-from fem_reference.events.column_march import JointSwitch, March, Node
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
-from fem_reference.events.enclosure import bits_of, check_request, precision
-from fem_reference.events.switches import ProvenMotion, Work, with_enough_digits
+from fem_reference.events.contacts import OPEN, RIGHT, STICKS, States, direction
+from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
+from fem_reference.events.energy_norm import EnergyNorm
+from fem_reference.events.march import March, Node
+from fem_reference.events.report import parts_of
+from fem_reference.events.series import Start, summed
+from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
@@ -40,10 +40,6 @@ PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 REPORT_DIGITS = 28
 """Decimal digits in which the series are summed where the motion is reported."""
-REPORT_ANGLE = 1.5
-"""Angle over which floats sum a series [rad]."""
-REPORT_TERMS = 32
-"""Terms that they sum: 1.5^32 / 32! is 2e-30."""
 ROUNDING = 4 * np.finfo(float).eps
 """Part of a displacement by which floats round it."""
 
@@ -103,7 +99,7 @@ class ColumnMotion(ProvenMotion):
     end: float  # last instant [s]
     digits: int  # decimal digits of the computation
     states_at_start: tuple[int, ...]  # of the joints with a spring just after t = 0
-    switches: tuple[JointSwitch, ...]  # changes of the joints in the order of time; together: from the base upwards
+    switches: tuple[Switch, ...]  # changes of the joints in the order of time; together: from the base upwards
     touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     resting: tuple[int, ...]  # joints that were at zero gap without force for a while
     nodes: tuple[Node, ...] = field(repr=False)  # beginnings of the steps in the order of time
@@ -118,68 +114,61 @@ class ColumnMotion(ProvenMotion):
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        begun = np.searchsorted([float(node.start.time) for node in self.nodes], t, side="right") - 1
         model = self.model
-        u = np.empty((model.size, len(t)))
-        v = np.empty((model.size, len(t)))
-        a = np.empty((model.size, len(t)))
+        contacts = len(model.contacts)
+        motion = np.empty((3, model.size, len(t)))
         base = np.empty((3, len(t)))
         pressure = np.empty(len(t))
-        contacts = len(model.contacts)
-        stretch = np.empty((contacts, len(t)))
-        reference = np.zeros((contacts, len(t)))
-        travel = np.zeros((contacts, len(t)))
+        stretch, held, reference, travel = (np.zeros((contacts, len(t))) for _ in range(4))
         states = np.zeros((contacts, len(t)), dtype=int)
         radius = np.empty(len(t))
         reach = float(model.bounds.displacement_reach().max(initial=0.0))
+        # slips of the contacts until each node
+        slips = [np.array([float(r) for r in node.start.references]) for node in self.nodes]
+        travels = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
         with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            for index in np.unique(begun).tolist():
-                node = self.nodes[index]
-                rows = np.flatnonzero(begun == index)
-                last = float(arb(float(t[rows].max())) - node.start.time)
-                longest = step_length(model, node.states, node.forces)
-                length = min(longest, max(last, 1e-30) * (1 + 1e-9))
-                segment = expand(model, node.states, node.start, node.forces, length)
-                passed = np.array([float(arb(moment) - node.start.time) for moment in t[rows].tolist()]) / length
-                series = [segment.polynomial(i) for i in range(model.size)]
-                series += [arb_poly(part) for part in (segment.base, segment.pressure, *segment.stretches)]
-                values, rates, bends = _evaluated(series, passed, length, ANGLE * length / longest)
-                u[:, rows] = values[: model.size]
-                v[:, rows] = rates[: model.size]
-                a[:, rows] = bends[: model.size]
-                base[:, rows] = [part[model.size] for part in (values, rates, bends)]
-                pressure[rows] = values[model.size + 1]
-                stretch[:, rows] = values[model.size + 2 :]
+            for part in parts_of(model, self.nodes, [node.drives for node in self.nodes], t):
+                node = self.nodes[part.node]
+                columns = part.columns
+                segment = part.segment
+                rows = [arb_poly(terms) for terms in segment.rows]
+                springs = [row - r for row, r in zip(rows, node.start.references, strict=True)]
+                drives = [arb_poly(terms) for terms in segment.drives]
+                values = summed([*segment.unknowns(), *drives, *rows, *springs], part.shares, segment.length)
+                motion[:, :, columns] = [of_order[: model.size] for of_order in values]
+                base[:, columns] = [of_order[model.size] for of_order in values]
+                pressure[columns] = values[0][model.size + 1]
+                stretch[:, columns], held[:, columns] = np.split(values[0][model.size + 2 :], 2)
+                states[:, columns] = np.array(node.states).reshape(-1, 1)
+                reference[:, columns] = slips[part.node][:, None]
                 for c, contact in enumerate(model.contacts):
-                    state = node.states[c]
-                    states[c, rows] = state
-                    travel[c, rows] = float(node.travels[c])
-                    if abs(state) == SLIPS:
-                        ahead = float(contact.reach) if state > 0 else -float(contact.reach)
-                        reference[c, rows] = stretch[c, rows] - ahead
-                        begin = float(segment.stretches[c][0]) - ahead
-                        travel[c, rows] += np.abs(reference[c, rows] - begin)
-                    else:
-                        reference[c, rows] = float(node.start.references[c])
-                error = float(node.error.upper()) * np.exp(model.bounds.soft * length / 2)
-                radius[rows] = error * reach + ROUNDING * np.abs(u[:, rows]).max(axis=0)
-        motion = u, v, a
-        return self._history(t, motion, base, pressure, (stretch, reference, travel), states, radius)
+                    side = direction(node.states[c])
+                    if side and contact.cohesion is not None:
+                        spring = side * float(contact.cohesion / contact.shear_stiffness)
+                        moved = held[c, columns] - spring
+                        held[c, columns] = spring
+                        reference[c, columns] += moved
+                        travel[c, columns] = np.abs(moved)
+                travel[:, columns] += travels[part.node][:, None]
+                passed = part.begun + part.shares * segment.length
+                error = float(node.error.upper()) * np.exp(model.bounds.soft * passed / 2)
+                radius[columns] = error * reach + ROUNDING * np.abs(motion[0][:, columns]).max(axis=0)
+        return self._history(t, motion, base, pressure, (stretch, held, reference, travel), states, radius)
 
     def _history(
         self,
         t: Array,
-        motion: tuple[Array, Array, Array],
+        motion: Array,
         base: Array,
         pressure: Array,
-        joints: tuple[Array, Array, Array],
+        joints: tuple[Array, ...],
         states: Array,
         radius: Array,
     ) -> ColumnHistory:
         """Put what the unknowns do into faces and joints."""
         model = self.model
         problem = self.problem
-        stretch, reference, travel = joints
+        stretch, held, reference, travel = joints
         shape = len(problem.blocks), len(t)
         # the last row is where `BASE` points to
         u, v, a = (np.vstack([part, of_base]) for part, of_base in zip(motion, base, strict=True))
@@ -192,19 +181,19 @@ class ColumnMotion(ProvenMotion):
         springs = np.zeros(len(t))
         friction = np.zeros(len(t))
         for c, contact in enumerate(model.contacts):
-            k = float(contact.stiffness)
-            j = contact.joint
+            k = float(model.spring(c))
+            j = contact.number
             y[j] = stretch[c]
             slip[j] = reference[c]
             joint_states[j] = states[c]
-            force[j] = np.where(states[c] == OPEN, 0.0, -k * (stretch[c] - reference[c]))
+            force[j] = np.where(states[c] == OPEN, 0.0, -k * held[c])
             if model.unilateral:
                 force[j] = np.maximum(force[j], 0.0)
             springs += force[j] ** 2 / (2 * k)
-            if contact.strength is not None:
-                slips = np.abs(states[c]) == SLIPS
-                force[j] = np.where(slips, -np.sign(states[c]) * float(contact.strength), force[j])
-                friction += float(contact.strength) * travel[c]
+            if contact.cohesion is not None:
+                slips = np.abs(states[c]) == RIGHT
+                force[j] = np.where(slips, -np.sign(states[c]) * float(contact.cohesion), force[j])
+                friction += float(contact.cohesion) * travel[c]
         mass = np.array([block.density * block.height for block in problem.blocks])[:, None]
         moduli = np.array([block.modulus / block.height for block in problem.blocks])[:, None]
         stretched = top - foot
@@ -248,27 +237,34 @@ class ColumnMotion(ProvenMotion):
         return faces
 
 
-def _evaluated(series: Sequence[arb_poly], shares: Array, length: float, angle: float) -> tuple[Array, Array, Array]:
-    """Values, rates and second derivatives in time of series in the share of a step, shape (series, shares).
+class ColumnMarch(March):
+    """The motion of a column from switch to switch."""
 
-    Floats sum a series over a small angle without loss; over more than that its terms cancel. So the step is cut into
-    parts, and balls move the series to the beginning of each.
-    """
-    results = np.empty((3, len(series), len(shares)))
-    parts = max(1, math.ceil(angle / REPORT_ANGLE))
-    numbers = np.clip(np.floor(shares * parts), 0, parts - 1).astype(int)
-    for part in np.unique(numbers).tolist():
-        rows = np.flatnonzero(numbers == part)
-        moved = arb_poly([arb(part) / parts, arb(1) / parts])
-        terms = [[float(c) for c in polynomial(moved).coeffs()[:REPORT_TERMS]] for polynomial in series]
-        coefficients = np.zeros((len(series), max(3, *map(len, terms))))
-        for row, line in zip(coefficients, terms, strict=True):
-            row[: len(line)] = line
-        powers = (shares[rows] * parts - part) ** np.arange(coefficients.shape[1])[:, None]
-        for order in range(3):
-            results[order][:, rows] = coefficients @ powers[: coefficients.shape[1]] * (parts / length) ** order
-            coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
-    return results[0], results[1], results[2]
+    def __init__(self, problem: ColumnProblem, end: float, limit: int, work: Work) -> None:
+        self.column = ColumnModel(problem)
+        super().__init__(self.column, EnergyNorm(self.column), end, limit, work)
+        self.courses = problem.base_motion(), problem.pressure()
+        self.breaks = [time for course in self.courses for time in course.breaks]
+
+    def initial(self) -> tuple[Start, States]:
+        """Where the column begins; its joints count as open as long as they carry nothing."""
+        column = self.column
+        base, rate = self.pieces[0].series(arb(0), 1.0, 2)
+        count = len(column.contacts)
+        start = Start(arb(0), column.displacements(base), column.velocities(rate), [arb(0)] * count)
+        return start, (OPEN if column.unilateral else STICKS,) * count
+
+    def take_drives(self, moment: float) -> None:
+        """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
+        before = self.pieces
+        self.pieces = self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
+        if not before:
+            return
+        time = self.start.time
+        old, new = (pieces[0].series(time, 1.0, 2)[1] for pieces in (before, self.pieces))
+        impulse = arb_mat(self.column.size, 1)
+        impulse[0, 0] = self.column.base_coupling * (old - new)
+        self.place(time, self.start.u, self.start.v + self.column.mobility * impulse)
 
 
 def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
@@ -279,7 +275,7 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
         rate = model.bounds.rate
-        open_rate = max(rate_of(model, [OPEN] * len(model.contacts)), model.bounds.soft)
+        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.bounds.soft)
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 
@@ -321,19 +317,18 @@ def solve(
 
     def motion_in(digits: int) -> ColumnMotion:
         with precision(bits_of(digits)):
-            model = ColumnModel(problem)
-            march = March(model, problem.base_motion(), problem.pressure(), float(end), limit, work)
+            march = ColumnMarch(problem, float(end), limit, work)
             march.run()
         return ColumnMotion(
             problem,
             float(end),
             digits,
-            march.states_at_start,
+            march.nodes[0].states,
             tuple(march.switches),
             tuple(march.touches),
-            tuple(sorted(march.resting)),
+            tuple(sorted(march.column.contacts[c].number for c in march.resting)),
             tuple(march.nodes),
-            model,
+            march.column,
         )
 
     return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)

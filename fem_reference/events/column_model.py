@@ -15,14 +15,17 @@ All unknowns are numbered from the base upwards, so that the mass is tridiagonal
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from flint import arb, ctx
+from flint import arb, arb_mat, ctx
 
-from fem_reference.events.column_drive import Drive, still
+from fem_reference.events.column_drive import ANGLE, Drive, still
+from fem_reference.events.contacts import STICKS, Contact, States
 from fem_reference.events.enclosure import precision
+from fem_reference.events.series import System, column, floats
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 
@@ -111,40 +114,19 @@ class ColumnProblem:
             require(slips, f"{name}.strength", f"must be None in a column that is {self.law}", strength)
 
 
-@dataclass(frozen=True)
-class Strut:
-    """The stiffness and consistent mass of an elastic block between two neighbouring unknowns."""
-
-    below: int  # unknown of the foot, or `BASE`
-    above: int
-    stiffness: arb  # E / h [Pa/m]
-    mass: arb  # rho h [kg/m2]
-
-
-@dataclass(frozen=True)
-class Contact:
-    """A joint with a spring."""
-
-    joint: int
-    above: int  # unknown of the upper face
-    below: int  # unknown of the lower face, or `BASE`
-    stiffness: arb  # k [Pa/m]
-    gap: arb  # [m]
-    strength: arb | None  # s [Pa]; None: it does not slip
-    reach: arb  # s / k [m], 0 without strength
-
-
-class ColumnModel:
+class ColumnModel(System):
     """A column in the precision of the current context."""
 
+    angle = ANGLE
+
     def __init__(self, problem: ColumnProblem) -> None:
+        super().__init__()
         self.problem = problem
+        self.rates: dict[States, float] = {}
         self.unilateral = problem.law == "unilateral"
         self.faces: list[tuple[int, int]] = []  # unknowns of foot and top of each block
-        self.struts: list[Strut] = []
-        self.contacts: list[Contact] = []
-        self.rigid_masses: list[tuple[int, arb]] = []
-        weights: dict[int, arb] = {}
+        joints: list[tuple[int, int, ColumnJoint]] = []  # those with a spring, and their unknowns above and below
+        self.contacts = []
         previous = BASE
         count = 0
         for j, (block, joint) in enumerate(zip(problem.blocks, problem.joints, strict=True)):
@@ -153,31 +135,97 @@ class ColumnModel:
                 foot = count
                 count = count + 1
             top = foot
-            mass = arb(block.density) * arb(block.height)
             if math.isfinite(block.modulus):
                 top = count
                 count = count + 1
-                self.struts.append(Strut(foot, top, arb(block.modulus) / arb(block.height), mass))
-            elif foot != BASE:
-                self.rigid_masses.append((foot, mass))
-            for face in (foot, top):
-                weights[face] = weights.get(face, arb(0)) - mass * arb(problem.gravity) / 2
             if joint is not None:
-                k = arb(joint.stiffness)
-                s = None if joint.strength is None else arb(joint.strength)
-                reach = arb(0) if s is None else s / k
-                self.contacts.append(Contact(j, foot, previous, k, arb(joint.gap), s, reach))
+                self.contacts.append(self._contact(j, len(joints), joint))
+                joints.append((foot, previous, joint))
             self.faces.append((foot, top))
             previous = top
-        self.size = count
         self.top = previous
         if count == 0:
             raise ValueError("blocks: must have a face that moves of itself, got a column welded to its base")
-        self.weights = [weights[i] for i in range(count)]
-        self.impedance = arb(problem.impedance) if problem.base == "transmitting" else None
-        self._factorise()
+        self.sizes = [1.0] * count
+        self.row_sizes = [2.0] * len(joints)
+        self.inputs = self._assemble(count)
+        self.rows = arb_mat(len(joints), count)
+        self.offsets = arb_mat(len(joints), 1)
+        self.on_base = arb_mat(len(joints), 1)
+        for row, (above, below, joint) in enumerate(joints):
+            self.rows[row, above] = 1
+            self.offsets[row, 0] = joint.gap
+            if below == BASE:
+                self.on_base[row, 0] = 1
+            else:
+                self.rows[row, below] = -1
 
-    def velocities(self, base: arb) -> list[arb]:
+    def _assemble(self, count: int) -> arb_mat:
+        """Take masses, stiffnesses and loads of the blocks; return the forces of what drives them."""
+        problem = self.problem
+        mass = arb_mat(count + 1, count + 1)
+        stiffness = arb_mat(count + 1, count + 1)
+        load = arb_mat(count + 1, 1)
+        # the last row and column of a matrix are those of the base
+        faces = [tuple(count if face == BASE else face for face in of_block) for of_block in self.faces]
+        for (foot, top), block in zip(faces, problem.blocks, strict=True):
+            m = arb(block.density) * arb(block.height)
+            k = arb(block.modulus) / arb(block.height) if foot != top else arb(0)
+            for face, other in ((foot, top), (top, foot)):
+                load[face, 0] = load[face, 0] - m * arb(problem.gravity) / 2
+                # 1/3 and 1/6 of an elastic block, which make up the whole mass of a rigid one
+                mass[face, face] = mass[face, face] + m / (3 if foot != top else 2)
+                stiffness[face, face] = stiffness[face, face] + k
+                if foot != top:
+                    mass[face, other] = mass[face, other] + m / 6
+                    stiffness[face, other] = stiffness[face, other] - k
+        own = range(count)
+        self.mass = arb_mat([mass.tolist()[i][:count] for i in own])
+        self.stiffness = arb_mat([stiffness.tolist()[i][:count] for i in own])
+        self.load = arb_mat([[load[i, 0]] for i in own])
+        self.mobility = self.mass.inv()
+        self.base_coupling = mass[0, count] if problem.base == "rigid" else arb(0)  # of the base and the first unknown
+        inputs = arb_mat(count, 4)
+        for i in own:
+            inputs[i, 0] = -stiffness[i, count]
+        inputs[0, 2] = -self.base_coupling
+        if self.top != BASE:
+            inputs[self.top, 3] = -1
+        if problem.base == "transmitting":
+            damping = arb_mat(count, count)
+            damping[0, 0] = arb(problem.impedance)
+            self.damping = damping
+            inputs[0, 1] = 2 * damping[0, 0]
+        return inputs
+
+    def _contact(self, j: int, row: int, joint: ColumnJoint) -> Contact:
+        name = f"joint {j}" if j else "base"
+        k = arb(joint.stiffness)
+        if self.unilateral:
+            return Contact(j, name, gap=row, stiffness=k)
+        strength = None if joint.strength is None else arb(joint.strength)
+        return Contact(j, name, slide=row, shear_stiffness=k, cohesion=strength)
+
+    def spring(self, contact: int) -> arb:
+        """Stiffness k of a contact [Pa/m]."""
+        return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
+
+    def rate(self, states: States) -> float:
+        """Return a bound of the rates of the motion while the contacts keep their states [rad/s]."""
+        if states not in self.rates:
+            acts = np.array([state == STICKS for state in states], dtype=bool)
+            self.rates[states] = math.sqrt(self.bounds.squared_rate(acts)) + self.bounds.damping
+        return self.rates[states]
+
+    def least_rate(self) -> float:
+        """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
+        return self.bounds.soft
+
+    def norm(self, x: Sequence[arb]) -> arb:
+        """Return the greatest displacement."""
+        return max((abs(c).upper() for c in x), default=arb(0))
+
+    def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
         blocks = self.problem.blocks
         by_face: dict[int, list[arb]] = {BASE: [base]}
@@ -185,101 +233,35 @@ class ColumnModel:
             for face in {foot, top}:
                 by_face.setdefault(face, []).append(arb(block.velocity))
         if all(speed == speeds[0] for speeds in by_face.values() for speed in speeds):
-            return [by_face[i][0] for i in range(self.size)]
-        momentum = [arb(0)] * self.size
+            return column([by_face[i][0] for i in range(self.size)])
+        momentum = arb_mat(self.size, 1)
         for (foot, top), block in zip(self.faces, blocks, strict=True):
             share = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
             for face in (foot, top):
                 if face != BASE:
-                    momentum[face] = momentum[face] + share
-        if self.base_coupling is not None:
-            momentum[0] = momentum[0] - self.base_coupling * base
-        return self.accelerations(momentum)
+                    momentum[face, 0] = momentum[face, 0] + share
+        momentum[0, 0] = momentum[0, 0] - self.base_coupling * base
+        return self.mobility * momentum
 
-    def displacements(self, base: arb) -> list[arb]:
+    def displacements(self, base: arb) -> arb_mat:
         """Displacement of each unknown at t = 0, where the base is."""
-        u = [arb(0)] * self.size
+        u = arb_mat(self.size, 1)
         if not self.problem.at_rest:
             return u
-        joints = {contact.joint: contact for contact in self.contacts}
-        struts = {strut.above: strut for strut in self.struts}
-        load = -sum(self.weights, arb(0))
-        if self.struts and self.struts[0].below == BASE:
-            load += self.struts[0].mass * arb(self.problem.gravity) / 2
+        contacts = {contact.number: c for c, contact in enumerate(self.contacts)}
+        gravity = arb(self.problem.gravity)
+        weights = [arb(block.density) * arb(block.height) * gravity for block in self.problem.blocks]
         level = base
-        for i, (foot, top) in enumerate(self.faces):
-            if i in joints:
-                level = level - load / joints[i].stiffness - joints[i].gap
+        for i, ((foot, top), block) in enumerate(zip(self.faces, self.problem.blocks, strict=True)):
+            above = sum(weights[i:], arb(0))
+            if i in contacts:
+                level = level - above / self.spring(contacts[i]) - self.offsets[contacts[i], 0]
             if foot != BASE:
-                u[foot] = level
-            block = self.problem.blocks[i]
-            weight = arb(block.density) * arb(block.height) * arb(self.problem.gravity)
+                u[foot, 0] = level
             if top != foot:
-                level = level - (load - weight / 2) / struts[top].stiffness
-                u[top] = level
-            if foot != BASE or top != foot:
-                load = load - weight
+                level = level - (above - weights[i] / 2) * arb(block.height) / arb(block.modulus)
+                u[top, 0] = level
         return u
-
-    def _factorise(self) -> None:
-        """Mass M = L D L' of the unknowns."""
-        zero = arb(0)
-        self.diagonal = [zero] * self.size
-        self.coupling: list[arb | None] = [None] * self.size  # of an unknown to the next one
-        self.base_coupling: arb | None = None  # mass between the base and the first unknown
-        for i, mass in self.rigid_masses:
-            self.diagonal[i] = self.diagonal[i] + mass
-        for strut in self.struts:
-            self.diagonal[strut.above] += strut.mass / 3
-            if strut.below == BASE:
-                self.base_coupling = strut.mass / 6
-            else:
-                self.diagonal[strut.below] += strut.mass / 3
-                self.coupling[strut.below] = strut.mass / 6
-        self.inverse_pivots: list[arb] = []
-        self.factors: list[arb | None] = []  # entry of L below each unknown
-        carried = zero
-        for i in range(self.size):
-            inverse = 1 / (self.diagonal[i] - carried)
-            self.inverse_pivots.append(inverse)
-            coupling = self.coupling[i]
-            factor = None if coupling is None else coupling * inverse
-            self.factors.append(factor)
-            carried = zero if factor is None or coupling is None else factor * coupling
-
-    def accelerations(self, forces: list[arb]) -> list[arb]:
-        """Solve M a = f; overwrites the forces."""
-        factors = self.factors
-        last = self.size - 1
-        for i in range(last):
-            factor = factors[i]
-            if factor is not None:
-                forces[i + 1] = forces[i + 1] - factor * forces[i]
-        a = [force * inverse for force, inverse in zip(forces, self.inverse_pivots, strict=True)]
-        for i in range(last - 1, -1, -1):
-            factor = factors[i]
-            if factor is not None:
-                a[i] = a[i] - factor * a[i + 1]
-        return a
-
-    @cached_property
-    def inverse_mass(self) -> Array:
-        """Inverse of the mass, rounded to floats [m2/kg]."""
-        columns = []
-        for i in range(self.size):
-            unit = [arb(int(i == j)) for j in range(self.size)]
-            columns.append([float(x) for x in self.accelerations(unit)])
-        return np.array(columns).T
-
-    @cached_property
-    def directions(self) -> Array:
-        """Rows b of the contacts, y = b u + ..., shape (contacts, unknowns)."""
-        rows = np.zeros((len(self.contacts), self.size))
-        for row, contact in zip(rows, self.contacts, strict=True):
-            row[contact.above] = 1.0
-            if contact.below != BASE:
-                row[contact.below] = -1.0
-        return rows
 
     @cached_property
     def bounds(self) -> Bounds:
@@ -294,25 +276,18 @@ class Bounds:
     MARGIN = 1 + 1e-9
 
     def __init__(self, model: ColumnModel) -> None:
-        W = np.abs(model.inverse_mass)
-        elastic = np.zeros((model.size, model.size))
-        for strut in model.struts:
-            c = float(strut.stiffness)
-            elastic[strut.above, strut.above] += c
-            if strut.below != BASE:
-                elastic[strut.below, strut.below] += c
-                elastic[strut.below, strut.above] -= c
-                elastic[strut.above, strut.below] -= c
-        signed = model.inverse_mass
-        k = np.array([float(contact.stiffness) for contact in model.contacts])
-        B = model.directions
+        signed = floats(model.mobility)
+        elastic = floats(model.stiffness)
+        B = floats(model.rows)
+        inputs = np.abs(floats(model.inputs))
+        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))])
         self.stiffness = k
         # |M^-1 K| row by row, of the blocks and of each contact, so that they bound every choice of closed contacts
         self.elastic_rows = np.abs(signed @ elastic).sum(axis=1) * self.MARGIN
         self.contact_rows = (np.abs(signed @ B.T) * k * np.abs(B).sum(axis=1)).T * self.MARGIN
         self.damping = 0.0
-        if model.impedance is not None:
-            self.damping = float((W[:, 0] * float(model.impedance)).max()) * self.MARGIN
+        if model.damping is not None:
+            self.damping = float(np.abs(signed @ floats(model.damping)).max()) * self.MARGIN
         self.compliance = np.einsum("ji,ik,jk->j", B, signed, B) * self.MARGIN  # b M^-1 b'
         self.mobility = np.diag(signed) * self.MARGIN  # diagonal of M^-1
         highest = self.squared_rate(np.ones(len(k), dtype=bool))
@@ -320,14 +295,13 @@ class Bounds:
         # the metric e' M e' + e (K + soft^2 M) e gives each unknown a spring, also where its contacts are open
         self.soft = self.rate * SOFT_PART[model.problem.law] or 1.0
         K = np.abs(elastic) + np.abs(B.T) @ (k[:, None] * np.abs(B))
-        mass = np.zeros(model.size)
-        for i in range(model.size):
-            mass[i] = float(model.diagonal[i]) + sum(
-                float(c) for c in (model.coupling[i], model.coupling[i - 1] if i else None) if c is not None
-            )
+        mass = np.abs(floats(model.mass)).sum(axis=1)
         # of a displacement and of a velocity of one in each unknown, in that metric
         self.displacement_norm = math.sqrt((K.sum(axis=1) + self.soft**2 * mass).sum()) * self.MARGIN
         self.velocity_norm = math.sqrt(mass.sum()) * self.MARGIN
+        # rates of the error by what is left out of the base's displacement, rate and acceleration, and of the pressure
+        inputs[:, 0] += np.abs(B.T) @ (k * floats(model.on_base)[:, 0])
+        self.pushes = (np.sqrt(self.mobility) @ inputs * self.MARGIN).tolist()
 
     def squared_rate(self, active: Array) -> float:
         """Norm of M^-1 K with some of the contacts [1/s2]."""
@@ -338,4 +312,4 @@ class Bounds:
 
     def displacement_reach(self) -> Array:
         """Greatest displacement of each unknown of an error of norm one [m]."""
-        return np.sqrt(self.mobility) / self.soft
+        return np.asarray(np.sqrt(self.mobility) / self.soft)

@@ -9,15 +9,18 @@ exactly one root lies in the ball that is returned.
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from functools import cache
 from typing import NamedTuple
 
 from flint import arb, arb_poly, ctx
 
 BITS_A_DIGIT = 3.3219281
 GUARD_BITS = 24  # beyond the digits that are asked for
+ZERO = arb(0)
 NEWTON_STEPS = 200
 LEAST_DIGITS = 30
 
@@ -67,6 +70,22 @@ def is_blank(value: arb) -> bool:
     return bool(value.contains(0)) or value.rel_accuracy_bits() < ctx.prec // 4
 
 
+@cache
+def _term_count(angle: float, bits: int) -> int:
+    logarithm = 0.0
+    n = 0
+    while logarithm > -bits - 12 or n < 2 * angle + 3:
+        n += 1
+        logarithm += math.log2(angle / n)
+    return n
+
+
+def term_count(angle: float) -> int:
+    """Terms of a series over an angle whose remainder is below the digits of the current context."""
+    rounded = 2.0 ** (math.ceil(2 * math.log2(max(angle, 1e-200))) / 2)  # few angles, whose counts are kept
+    return _term_count(rounded, ctx.prec)
+
+
 class Local(NamedTuple):
     """A function about the middle of an interval."""
 
@@ -86,16 +105,37 @@ class Fall(NamedTuple):
     grazing: bool  # whether it was too flat to prove that the root is the only one
 
 
-def polynomial(coefficients: list[arb], end: arb) -> Smooth:
-    """A polynomial with balls for coefficients, on an interval from zero to `end`."""
+def polynomial(
+    coefficients: list[arb], end: arb, begin: arb = ZERO, tail: arb = ZERO, most: float = math.inf
+) -> Smooth:
+    """A polynomial with balls for coefficients as a function of the distance from `begin`.
+
+    Parameters
+    ----------
+    coefficients
+        Of its powers.
+    end
+        Greatest argument of the polynomial.
+    begin
+        Argument at which the distance is zero.
+    tail
+        What is left out of it, and of its first two derivatives.
+    most
+        Evaluations, after which a `RuntimeError` ends the search.
+    """
     value = arb_poly(coefficients)
     slope = value.derivative()
     bend = slope.derivative()
     third = arb_poly([abs(c) for c in bend.derivative().coeffs()])(end)  # bounds the third derivative
+    rest = ball(tail)
+    looks = itertools.count(1)
 
     def local(middle: arb, half: arb) -> Local:
-        about = bend(middle) + ball((third * half).upper()) if half else third
-        return Local(value(middle), slope(middle), about)
+        if next(looks) > most:
+            raise RuntimeError(f"more than {most} evaluations")
+        x = begin + middle
+        about = bend(x) + rest
+        return Local(value(x) + rest, slope(x) + rest, about + ball((third * half).upper()) if half else about)
 
     return local
 

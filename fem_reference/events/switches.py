@@ -18,10 +18,12 @@ class Switch:
     """A change of one contact, its instant enclosed: it lies within `radius` of `midpoint`."""
 
     time: float  # the midpoint as a float [s]
-    corner: str  # ``"M"`` at (0, 0) or ``"N"`` at (a, 0) of a block, ``"base"`` of a bar
+    corner: str  # ``"M"`` at (0, 0) or ``"N"`` at (a, 0) of a block, ``"base"`` or the joint of bars and columns
     kind: str  # ``"opens"``, ``"closes"``, and with friction ``"sticks"`` or ``"slips"``
     midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
     radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
+    joint: int = 0  # number of the block above a joint of a column, of a corner of a block
+    sign: int = 0  # of the rate of slip where it slips, else 0
 
 
 @dataclass(frozen=True)

@@ -3,30 +3,23 @@
 import math
 from dataclasses import replace
 
-import mpmath
 import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb, arb_mat, arb_poly
 from oracles.friction_oracle import slipping_problem
 
-from fem_reference.events import block_events, block_flow, block_march
+from fem_reference.events import block_events, block_march, series, watching
+from fem_reference.events.axes import Axes
 from fem_reference.events.block_events import solve
-from fem_reference.events.block_flow import (
-    ANGLE,
-    CELLS,
-    CUTS,
-    EXPONENTIAL_ERROR,
-    FLOAT_TERMS,
-    FREQUENT,
-    ROUNDING,
-    SIZE,
-    Flow,
-)
-from fem_reference.events.block_model import LEFT, OPEN, RIGHT, STICKS, BlockModel, BlockProblem, Course
+from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
+from fem_reference.events.contacts import LEFT, OPEN, RIGHT, STICKS, Watch
 from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, is_blank, precision
 from fem_reference.events.enclosure import polynomial as smooth
+from fem_reference.events.flow import EXPONENTIAL_ERROR, SIZE
+from fem_reference.events.series import Segment, Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
+from fem_reference.events.watching import CELLS, CUTS, Reach, Watched
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -41,10 +34,46 @@ def values(function: Smooth, at: arb) -> arb:
     return function(at, arb(0)).value
 
 
-def state(seed: int, size: float = 1.0) -> arb_mat:
-    """A state (x, x', r, 1) of random numbers, with references of a tenth."""
+def state(seed: int, size: float = 1.0) -> Start:
+    """A state of random numbers, with references of a tenth."""
     x = np.random.default_rng(seed).normal(size=12) * size
-    return arb_mat(SIZE, 1, [*x.tolist(), 0.1 * size, -0.3 * size, 1.0])
+    return Start(arb(0), column(x[:6].tolist()), column(x[6:].tolist()), [arb(0.1 * size), arb(-0.3 * size)])
+
+
+def vector(start: Start) -> arb_mat:
+    """The state as (x, x', r, 1)."""
+    return column([*start.u.entries(), *start.v.entries(), *start.references, arb(1)])
+
+
+def matrix(model: BlockModel, states: tuple[int, int]) -> arb_mat:
+    """The G of z' = G z."""
+    motion = model.motion(states)
+    G = arb_mat(SIZE, SIZE)
+    for i in range(6):
+        G[i, 6 + i] = 1
+        parts = [motion.A, motion.D, motion.R, motion.f]
+        line = [x for part in parts for x in ([arb(0)] * 6 if part is None else part.tolist()[i])]
+        for j, x in enumerate(line):
+            G[6 + i, j] = x
+    return G
+
+
+def watched(model: BlockModel, states: tuple[int, int], start: Start) -> list[Watch]:
+    return list(model.watches(states, start.references))
+
+
+def exactly(watch: Watch, model: BlockModel, start: Start) -> arb:
+    """A watched function at a state."""
+    rows = [model.values(start.u), (model.rows * start.v).entries()]
+    value = arb(0) if watch.rates else watch.offset
+    for row, factor, dashpot in watch.parts:
+        value += factor * rows[watch.rates][row]
+        value += 0 if dashpot is None else dashpot * rows[1][row]
+    return value
+
+
+def at(segment: Segment, share: float) -> Start:
+    return Start(arb(0), *segment.state(arb(share)), [])
 
 
 @pytest.mark.parametrize("seed", thinned(range(60), 6))
@@ -108,11 +137,11 @@ def test_a_touch_is_told_by_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     def grazing(_function: Smooth, end: arb, touches: list[arb]) -> None:
         touches.append(end / 2)
 
-    monkeypatch.setattr(block_march, "first_fall", grazing)
+    monkeypatch.setattr(watching, "first_fall", grazing)
     with precision(bits_of(50)):
-        march = block_march.March(BlockModel(PAPER), Course(None), 0.0, 0.0033, 100)
+        march = block_march.BlockMarch(PAPER, 0.0033, 100)
         with pytest.raises(NoContactStateError):  # open corners that have gone through the base
-            march.run(0.0)
+            march.run()
     assert march.touches[0] == pytest.approx(0.0032525750597312, rel=1e-3)
 
 
@@ -124,110 +153,120 @@ def test_a_number_of_which_little_is_known_counts_as_zero() -> None:
 
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
-def test_a_flow_is_the_exponential_of_its_matrix(states: tuple[int, int]) -> None:
-    """By its series, and by that of nearly this length, which is kept once frequent."""
+@pytest.mark.parametrize("short", [False, True])
+def test_a_step_is_the_exponential_of_its_matrix(
+    states: tuple[int, int], short: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Also where so few terms are taken that what the series leaves out is no rounding, and must lie in the balls."""
+    if short:
+        monkeypatch.setattr(series, "term_count", lambda angle: math.ceil(2 * angle))
+        monkeypatch.setattr(series, "LEAST_TERMS", 4)
     with precision(bits_of(50)):
-        flow, z = Flow(BlockModel(ROUGH), states), state(3)
-        length = ANGLE / flow.rate
-        exact = (flow.G * arb(length)).exp() * z
-        by_series = flow.advance(z, arb(length))
-        for _ in range(FREQUENT):
-            flow.advance(z, arb(length * (1 + 1e-10)))
-        by_exponential = flow.advance(z, arb(length))
-        for moved in (flow.series(z, arb(length)), by_series, by_exponential):
-            for i in range(SIZE):
-                assert moved[i, 0].overlaps(exact[i, 0])
-                assert float(moved[i, 0].rad()) < 1e-40 * float(abs(exact[i, 0]) + 1)
-        assert len(flow._exponentials) == 1
+        model = BlockModel(ROUGH)
+        start = state(3)
+        for angle in (0.3, 5.0, ANGLE):
+            length = angle / model.rate(states)
+            segment = expand(model, states, start, (), length)
+            exact = ((matrix(model, states) * arb(length)).exp() * vector(start)).entries()
+            later = Start(arb(0), column(exact[:6]), column(exact[6:12]), exact[12:14])
+            moved = [x for part in segment.state(arb(1)) for x in part.entries()]
+            assert all(one.overlaps(other) for one, other in zip(moved, exact, strict=False))
+            radius = max(float(x.rad()) / float(abs(x) + 1) for x in moved)
+            assert radius > 1e-30 if short else radius < 1e-40
+            for watch in watched(model, states, start):
+                value = sum(segment.function(watch), arb(0)) + ball(segment.function_tail(watch))
+                scale = arb(length) if watch.rates else arb(1)
+                assert value.overlaps(exactly(watch, model, later) * scale)
 
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
-@pytest.mark.parametrize("kept", [False, True])
-def test_floats_of_an_exponential_are_as_good_as_is_counted_on(states: tuple[int, int], kept: bool) -> None:
+def test_floats_of_an_exponential_are_as_good_as_is_counted_on(states: tuple[int, int]) -> None:
     with precision(bits_of(50)):
-        flow, z = Flow(BlockModel(replace(ROUGH, stiffness=1e13)), states), state(3)
+        model = BlockModel(replace(ROUGH, stiffness=1e13))
+        flow = model.flow(states)
         units = flow.units[None, :] / flow.units[:, None]
         for angle in (0.01, 1.0, ANGLE):
-            length = arb(angle / flow.rate)
-            for _ in range(2 * FREQUENT if kept else 0):
-                flow.advance(z, length * (1 + arb("1e-10")))
-            J = flow.sensitivity(length)
-            exact = np.array([float(x) for x in flow._exp(length).entries()]).reshape(SIZE, SIZE)
-            assert np.abs((J - exact) * units).max() < EXPONENTIAL_ERROR / 4 * np.abs(exact * units).max()
-        assert len(flow._exponentials) == (3 if kept else 0)
+            length = angle / flow.rate
+            exact = np.array([float(x) for x in (matrix(model, states) * arb(length)).exp().entries()])
+            exact = exact.reshape(SIZE, SIZE)
+            off = np.abs((flow.exponential(length) - exact) * units).max()
+            assert off < EXPONENTIAL_ERROR / 4 * np.abs(exact * units).max()
 
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
-def test_the_coefficients_of_what_is_watched_hold_it(states: tuple[int, int]) -> None:
+@pytest.mark.parametrize("offset", [0.0, 1e-9])
+def test_the_reach_of_a_function_bounds_what_its_terms_are_off(states: tuple[int, int], offset: float) -> None:
+    """Of any motion in the set, begun at any instant that the switch may be at."""
     with precision(bits_of(50)):
-        flow, z = Flow(BlockModel(ROUGH), states), state(4, 1e-3)
-        for angle in (0.003, 0.2, 6.0):
-            later = (flow.G * (arb(angle) / flow.rate)).exp() * z
-            for i, watched in enumerate(flow.watched):
-                c = flow.coefficients(i, z, arb_mat(SIZE, 1), angle)
-                value = sum((part * arb(angle) ** k for k, part in enumerate(c)), arb(0))
-                assert value.overlaps((watched * later)[0, 0])
-                assert float(value.rad()) < 1e-40 * max(float(abs(part).upper()) for part in c)
+        model = BlockModel(ROUGH)
+        start = state(6, 1e-3)
+        transport = Axes(model)
+        transport.take(start.u * (1 + ball(1e-9)), start.v * (1 + ball(1e-9)))
+        transport.take_reference(0, arb(1e-9))
+        transport.advance(states, arb(1.0 / model.rate(states)))
+        length = 3.0 / model.rate(states)
+        segment = expand(model, states, start, (), length)
+        rng = np.random.default_rng(1)
+        for _ in range(5):
+            z = transport.axes @ (transport.radii * rng.uniform(-1, 1, SIZE)) + transport.box * rng.uniform(-1, 1, SIZE)
+            u, v, references = (column(part.tolist()) for part in (z[:6], z[6:12], z[12:14]))
+            moved = [r + shift for r, shift in zip(start.references, references.entries(), strict=True)]
+            other = expand(model, states, Start(arb(0), start.u + u, start.v + v, moved), (), length)
+            if offset:
+                other = expand(model, states, Start(arb(0), *other.state(arb(offset)), moved), (), length)
+            pairs = zip(watched(model, states, start), watched(model, states, Start(arb(0), u, v, moved)), strict=True)
+            for watch, of_other in pairs:
+                reaches = transport.reach(watch, states, segment, offset * length).terms()
+                for one, two, reach in zip(segment.function(watch), other.function(of_other), reaches, strict=False):
+                    assert abs(one - two) <= reach
 
 
-@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
-def test_what_a_short_series_leaves_out_is_enclosed(states: tuple[int, int], monkeypatch: pytest.MonkeyPatch) -> None:
-    """With as few terms as the bound allows the rest of the series is no rounding, and must lie in the ball."""
-    monkeypatch.setattr(block_flow, "term_count", lambda angle: math.ceil(2 * angle) + 3)
-    with precision(bits_of(50)):
-        flow, z = Flow(BlockModel(ROUGH), states), state(5, 1e-3)
-        for angle in (0.3, 1.0, 5.0):
-            later = (flow.G * (arb(angle) / flow.rate)).exp() * z
-            moved = flow.series(z, arb(angle) / flow.rate)
-            assert all(moved[i, 0].overlaps(later[i, 0]) for i in range(SIZE))
-            assert max(float(moved[i, 0].rad()) for i in range(SIZE)) > 1e-12
-            for i, watched in enumerate(flow.watched):
-                c = flow.coefficients(i, z, arb_mat(SIZE, 1), angle)
-                value = sum((part * arb(angle) ** k for k, part in enumerate(c)), arb(0))
-                assert value.overlaps((watched * later)[0, 0])
+def none(_watch: Watch, _at_switch: bool) -> Reach:
+    return Reach(arb(0), np.zeros(200))
 
 
 @pytest.mark.parametrize(("states", "seed"), thinned([(states, i) for states in STATES for i in range(6)], 6))
 def test_floats_prove_no_more_than_holds(states: tuple[int, int], seed: int) -> None:
     """As far as floats say that all functions are positive they are, and the first that is not falls soon after."""
     with precision(bits_of(50)):
-        flow = Flow(BlockModel(ROUGH), states)
-        length = ANGLE / flow.rate
-        z = state(seed, 1e-3)
-        for watched in flow.watched:
-            if (watched * z)[0, 0] < 0:
-                z = z * -1
-        z[14, 0] = 1
-        positive = all((watched * z)[0, 0] > 0 for watched in flow.watched)
-        share, width, doubtful = flow.clear(z, np.zeros(SIZE), [0] * len(flow.watched), length)
+        model = BlockModel(ROUGH)
+        start = state(seed, 1e-3)
+        for watch in watched(model, states, start):
+            if exactly(watch, model, start) < 0:
+                start = start._replace(u=start.u * -1, v=start.v * -1)
+        segment = expand(model, states, start, (), ANGLE / model.rate(states))
+        functions = watched(model, states, start)
+        positive = all(exactly(watch, model, start) > 0 for watch in functions)
+        share, width, doubtful = Watched(0.0, segment, functions, none).clear()
         assert positive or share == 0.0
         for part in np.linspace(0.0, share, 9)[: 9 if positive else 0]:
-            at = flow.advance(z, arb(part * length))
-            assert all((watched * at)[0, 0] > -arb("1e-30") for watched in flow.watched)
+            assert all(exactly(watch, model, at(segment, part)) > -arb("1e-30") for watch in functions)
         if doubtful and positive:
             assert width == CELLS**-CUTS
-            before = flow.advance(z, arb(share * length))
-            near = flow.advance(z, arb((share + 2 * width) * length))
-            falls = [(flow.watched[i] * near)[0, 0] < (flow.watched[i] * before)[0, 0] for i in doubtful]
-            sizes = [sum(abs(float(x)) for x in flow.leading(z, FLOAT_TERMS)[i]) for i in doubtful]
-            assert any(falls)
-            assert any((flow.watched[i] * near)[0, 0] < 1e-3 * size for i, size in zip(doubtful, sizes, strict=True))
+            before = at(segment, share)
+            near = at(segment, share + 2 * width)
+            sizes = [sum(abs(float(x)) for x in segment.function(watch)) for watch in doubtful]
+            assert any(exactly(watch, model, near) < exactly(watch, model, before) for watch in doubtful)
+            assert any(exactly(w, model, near) < 1e-3 * size for w, size in zip(doubtful, sizes, strict=True))
 
 
 def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> None:
     """A block in flight, a micrometre above the springs and on its way up: clear, but not if it may be lower."""
     with precision(bits_of(50)):
-        flow = Flow(BlockModel(replace(ROUGH, pressure=0.0)), (OPEN, OPEN))
+        model = BlockModel(replace(ROUGH, pressure=0.0))
+        states = (OPEN, OPEN)
         for height, off, clear in ((1e-6, 0.0, True), (1e-6, 1e-7, True), (1e-6, 1.1e-6, False), (1e-22, 0.0, False)):
-            z = arb_mat(SIZE, 1, [0, height, *[0] * 5, 1, *[0] * 6, 1])
-            radius = np.zeros(SIZE)
-            radius[1] = off
-            share, _, doubtful = flow.clear(z, radius, [0] * len(flow.watched), 1e-3)
-            assert (share, doubtful) == ((1.0, []) if clear else (0.0, [0, 1]))
+            start = Start(arb(0), column([0, height, *[0] * 4]), column([0, 1, *[0] * 4]), [arb(0)] * 2)
+            transport = Axes(model)
+            transport.restart(np.array([0, off, *[0] * 13], dtype=float))
+            segment = expand(model, states, start, (), 1e-3)
 
+            def reach(watch: Watch, _at_switch: bool, transport: Axes = transport, segment: Segment = segment) -> Reach:
+                return transport.reach(watch, states, segment, 0.0)
 
-def test_what_floats_leave_out_is_below_their_rounding() -> None:
-    assert ANGLE**FLOAT_TERMS / float(mpmath.factorial(FLOAT_TERMS)) < 1e-3 * ROUNDING
+            functions = watched(model, states, start)
+            share, _, doubtful = Watched(0.0, segment, functions, reach).clear()
+            assert (share, doubtful) == ((1.0, []) if clear else (0.0, functions))
 
 
 @pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 3))
@@ -264,7 +303,7 @@ def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(block_march, "STEPS", 50)
-    monkeypatch.setattr(block_march.March, "step", None)
+    monkeypatch.setattr(block_march.BlockMarch, "step", None)
     with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
         solve(replace(PAPER, locked=True), 1.0)
     assert 0 < caught.value.time < 1.0

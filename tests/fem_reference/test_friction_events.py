@@ -9,7 +9,8 @@ from conftest import thinned
 from oracles.friction_oracle import Slipping, slipping_problem
 
 from fem_reference.events.block_events import solve
-from fem_reference.events.block_model import RIGHT, STICKS, BlockProblem
+from fem_reference.events.block_model import BlockProblem
+from fem_reference.events.contacts import RIGHT, STICKS
 
 HALF = math.degrees(math.atan(0.5))  # tan(phi) = 0.5
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6, shear_stiffness=1e9)

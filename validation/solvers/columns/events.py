@@ -175,7 +175,7 @@ class ColumnEventMotion(Motion):
 
     def starts_closed(self, corner: str) -> bool:
         """Whether a contact is closed just after t = 0."""
-        joints = [contact.joint for contact in self.motion.model.contacts]
+        joints = [contact.number for contact in self.motion.model.contacts]
         names = [f"{self.section.faces[joint]:g} m" for joint in joints]
         return bool(self.motion.states_at_start[names.index(corner)])
 
@@ -186,7 +186,7 @@ class ColumnEventMotion(Motion):
         """
         events = completed(self.switch_events)
         problem = self.problem
-        contacts = [contact.joint for contact in self.motion.model.contacts]
+        contacts = [contact.number for contact in self.motion.model.contacts]
         t = self.sampling_instants(*dict.fromkeys(event.corner for event in events))
         state = self.motion.at(t)
         start = self.motion.at([0.0])

@@ -1,0 +1,167 @@
+"""The laws of contacts that open, close, stick and slip, between two switches, for blocks and columns alike.
+
+A contact has a row w, its gap, or a row s, its slide, or both: displacements over the unknowns (`Rows`). With the
+springs p and p_s, the dashpot c and the reference r it acts with
+
+    N = -p w - c w'        on what is above, away from the other face, while it is closed, else 0
+    T = -p_s (s - r)       while it sticks,        T = -+(tan(phi) N + C)        while it slips towards +-.
+
+One that slips takes its reference along, r = s + T / p_s. A released one has let go of its dashpot before its gap has
+come back to zero, and carries as little as an open one.
+
+As long as a contact keeps its state, some functions stay positive (`watches`); which one falls says what follows. Each
+is made of rows and of their rates alone, so that its power series follows from theirs.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from flint import arb, arb_mat
+
+from fem_reference.events.enclosure import ZERO
+
+OPEN = 0
+STICKS = 1
+RIGHT = 2
+LEFT = -2
+RELEASED = 3
+"""States of a contact: `STICKS` is closed too where nothing slides; `RIGHT` and `LEFT` slip towards + and -."""
+CARRIES_NOTHING = (OPEN, RELEASED)
+NORMAL = 0
+FORCE = 3
+"""Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction."""
+States = tuple[int, ...]
+Series = Sequence[arb]
+
+
+def direction(state: int) -> int:
+    """The direction of slip of a contact, 0 where it does not slip."""
+    return {RIGHT: 1, LEFT: -1}.get(state, 0)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A contact, and its numbers in the unit of the forces of its model."""
+
+    number: int  # of its joint or corner
+    name: str  # the same in words
+    gap: int | None = None  # number of the row w; None: it never opens
+    slide: int | None = None  # number of the row s; None: nothing slides
+    stiffness: arb = ZERO  # p
+    damping: arb = ZERO  # c of the dashpot beside it
+    shear_stiffness: arb = ZERO  # p_s
+    friction: arb = ZERO  # tan(phi)
+    cohesion: arb | None = None  # C; None: it never slips
+    force: int | None = None  # number of the row of N of both corners of a rigid contact, which has no springs
+
+    def normal_force(self, w: Any, rate: Any) -> Any:
+        """N of one that is closed, of numbers or series."""
+        return w * -self.stiffness - rate * self.damping
+
+    def reference(self, state: int, rows: Sequence[Any]) -> Any:
+        """The r = s + T / p_s that one takes along that does not stick, from all rows, numbers or series."""
+        slide = rows[self.slide or 0]
+        if not direction(state) or self.cohesion is None:
+            return slide
+        limit = self.cohesion
+        if self.gap is not None:
+            limit = limit - rows[self.gap] * (self.friction * self.stiffness)
+        return slide - limit * (direction(state) / self.shear_stiffness)
+
+
+class Laws(NamedTuple):
+    """The forces along all rows y while the contacts keep their states, rows y + rates y' + references r + constant."""
+
+    rows: arb_mat  # shape (rows, rows)
+    rates: arb_mat  # the same
+    references: arb_mat  # shape (rows, contacts)
+    constant: arb_mat  # shape (rows, 1)
+
+
+def laws(contacts: Sequence[Contact], states: Sequence[int], count: int) -> Laws:
+    """Return the forces along so many rows."""
+    of = Laws(arb_mat(count, count), arb_mat(count, count), arb_mat(count, len(contacts)), arb_mat(count, 1))
+    for c, (contact, state) in enumerate(zip(contacts, states, strict=True)):
+        if state in CARRIES_NOTHING:
+            continue
+        gap = contact.gap
+        slide = contact.slide
+        side = direction(state)
+        if gap is not None and contact.force is not None:
+            of.rows[gap, contact.force] = arb(1) / 2
+        elif gap is not None:
+            of.rows[gap, gap] = -contact.stiffness
+            of.rates[gap, gap] = -contact.damping
+        if slide is None:
+            continue
+        if not side:
+            of.rows[slide, slide] = -contact.shear_stiffness
+            of.references[slide, c] = contact.shear_stiffness
+        elif contact.cohesion is not None:
+            of.constant[slide, 0] = -side * contact.cohesion
+            if gap is not None:
+                of.rows[slide, gap] = side * contact.friction * contact.stiffness
+    return of
+
+
+class Part(NamedTuple):
+    """What a row adds to a watched function."""
+
+    row: int
+    factor: arb  # of its displacement, or of its rate in a function of rates
+    dashpot: arb | None = None  # of its rate, beside its displacement
+
+
+class Watch(NamedTuple):
+    """A function that is positive, or zero for ever, as long as a contact keeps its state."""
+
+    contact: int
+    side: int  # `NORMAL`, `FORCE`, or the direction of the slip that begins or ends where it falls
+    parts: tuple[Part, ...]
+    becomes: int  # state of the contact after its fall
+    offset: arb = ZERO  # added to the parts
+    pull: arb = ZERO  # of the reference in the offset
+    rates: bool = False  # whether its parts are rates
+    order: int = 0  # derivatives of the displacements at its start
+    lead: int | None = 0  # terms of its power series that are zero at the start; None: all are
+
+
+def watches(contacts: Sequence[Contact], states: Sequence[int], references: Sequence[arb]) -> Iterator[Watch]:
+    """Yield the functions that are positive as long as the contacts keep their states."""
+    for c, (contact, state, reference) in enumerate(zip(contacts, states, references, strict=True)):
+        if contact.gap is not None:
+            yield from _of_gap(c, contact, contact.gap, state)
+        if contact.slide is not None and contact.cohesion is not None and state not in CARRIES_NOTHING:
+            yield from _of_slide(c, contact, contact.slide, state, reference)
+
+
+def _of_gap(c: int, contact: Contact, gap: int, state: int) -> Iterator[Watch]:
+    if state == OPEN:
+        yield Watch(c, NORMAL, (Part(gap, arb(1)),), STICKS)
+        return
+    if contact.damping == 0:
+        yield Watch(c, NORMAL, (Part(gap, arb(-1)),), OPEN)
+        return
+    if state == RELEASED:
+        yield Watch(c, NORMAL, (Part(gap, arb(-1)),), OPEN)
+        yield Watch(c, FORCE, (Part(gap, contact.stiffness, contact.damping),), STICKS, order=1)
+        return
+    yield Watch(c, FORCE, (Part(gap, -contact.stiffness, -contact.damping),), RELEASED, order=1)
+
+
+def _of_slide(c: int, contact: Contact, slide: int, state: int, reference: arb) -> Iterator[Watch]:
+    """The shear force that a contact has left, or the rate at which one that slips moves its reference."""
+    limit = [] if contact.gap is None else [Part(contact.gap, -contact.friction * contact.stiffness)]
+    if state == STICKS:
+        for side, becomes in ((1, RIGHT), (-1, LEFT)):
+            pull = contact.shear_stiffness * side
+            offset = (contact.cohesion or 0) + pull * reference
+            yield Watch(c, side, (*limit, Part(slide, -pull)), becomes, offset, pull)
+        return
+    # r = s + T / p_s moves in the direction of the slip
+    side = direction(state)
+    rates = [Part(row, factor * -side * side) for row, factor, _ in limit]
+    yield Watch(c, side, (*rates, Part(slide, contact.shear_stiffness * side)), STICKS, rates=True, order=1)

@@ -1,0 +1,104 @@
+"""How far the motion of many unknowns may be off: one number in the energy norm.
+
+It bounds the distance e of the centre of the motion from the true one in the metric
+
+    e' M e' + e (K + soft^2 M) e,    K of the blocks and of the contacts that are closed,
+
+of which e' M e' + e K e is conserved or lost while no contact changes: in shear also where contacts slip, since
+friction is monotone (the distance of two motions never grows in it); in pressure it grows only as a contact closes.
+The rest grows at most by exp(soft t / 2). Forces are continuous at a switch, so that what its instant may be off moves
+the motion by a term of second order only.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from flint import arb, arb_mat
+
+from fem_reference.events.column_model import ColumnModel
+from fem_reference.events.contacts import OPEN, States, Watch
+from fem_reference.events.series import Segment
+from fem_reference.events.watching import INFLATION, Change, Reach
+
+
+class EnergyNorm:
+    """The distance of the motion of a column from the true one."""
+
+    def __init__(self, model: ColumnModel) -> None:
+        self.model = model
+        self.bounds = model.bounds
+        self.error = arb(0)
+
+    def record(self) -> arb:
+        """What a node keeps of it."""
+        return self.error
+
+    def take(self, u: arb_mat, v: arb_mat) -> None:
+        """Take the radii of a state, which its centre leaves out."""
+        bounds = self.bounds
+        radii = [max(x.rad().upper() for x in part.entries()) for part in (u, v)]
+        added = radii[0] * arb(bounds.displacement_norm) + radii[1] * arb(bounds.velocity_norm)
+        self.error = (self.error + added).upper()
+
+    def take_reference(self, contact: int, radius: arb) -> None:
+        """Take the radius of the reference of a contact."""
+        self.error = (self.error + self.model.spring(contact).sqrt() * radius).upper()
+
+    def begin(self, segment: Segment) -> None:
+        """Let the error grow over a step, by itself and by what the series of the drives leaves out."""
+        bounds = self.bounds
+        span = arb(segment.length)
+        base, pressure = segment.drive_tails
+        units = [base, base / span, base / (span * span), pressure]
+        pushes = (tail * arb(push) for tail, push in zip(units, bounds.pushes, strict=True))
+        self.error = (self.error * arb(bounds.soft * segment.length / 2).exp() + sum(pushes, arb(0)) * span).upper()
+
+    def reach(self, watch: Watch, states: States, segment: Segment, offset: float) -> Reach:
+        """How far each term of a function may be off, where the instant of its start may be off too."""
+        bounds = self.bounds
+        error = self.error
+        if offset:
+            speed, bend = (max(abs(x).upper() for x in term.entries()) for term in segment.terms[1:3])
+            span = arb(segment.length)
+            rate = speed / span * arb(bounds.displacement_norm) + 2 * bend / (span * span) * arb(bounds.velocity_norm)
+            error = (error + 2 * rate * arb(offset)).upper()
+        speed_reach = bounds.compliance[watch.contact] ** 0.5
+        growth = max((self.model.rate(states) + bounds.soft) * segment.length, 1.0)
+        powers = np.cumprod([1.0, *(growth / np.arange(1, segment.count))])
+        parts = speed_reach * segment.length * powers[: segment.count - watch.rates]
+        if not watch.rates:
+            position = speed_reach / bounds.soft
+            if states[watch.contact] != OPEN:
+                position = min(position, bounds.stiffness[watch.contact] ** -0.5)
+            parts[1:] /= growth
+            parts[0] = position
+        return Reach(error * abs(watch.parts[0].factor), parts * INFLATION)
+
+    def advance(self, states: States, seconds: arb) -> None:
+        """Nothing: `begin` has let the error grow over the whole step."""
+
+    def switch(self, change: Change) -> None:
+        """Take what the centre misses its switch by, the time in which states may differ, and springs that close."""
+        bounds = self.bounds
+        watch = change.watch
+        offset = arb(change.offset)
+        if watch is not None:
+            c = watch.contact
+            k = self.model.spring(c)
+            miss = abs(change.value).upper()
+            if not self.model.unilateral:
+                miss = miss / k * (offset if watch.rates else 1)
+                self.error = (self.error + k.sqrt() * miss).upper()
+            else:
+                compliance = arb(float(bounds.compliance[c]))
+                speed = abs(change.slope).upper()
+                late = k * compliance.sqrt() * (miss + speed * offset) * offset * 2
+                spread = (k * compliance / arb(bounds.soft) * 2 * offset).exp()
+                self.error = ((self.error + late) * spread).upper()
+        gain = 1.0
+        if self.model.unilateral:
+            for c, (was, now) in enumerate(zip(change.was, change.now, strict=True)):
+                if was == OPEN and now != OPEN:
+                    gain += bounds.stiffness[c] * bounds.compliance[c] / bounds.soft**2 * (1 + 1e-9)
+        if gain > 1:
+            self.error = (self.error * arb(gain).sqrt()).upper()

@@ -1,0 +1,325 @@
+"""The motion from switch to switch, of a block or a column: steps, settling and recording.
+
+The centre of the motion is computed in so many digits without radii. How far it may be off is a set that a transport
+carries along: Lohner's axes for the few unknowns of a block (`axes`), one number in the energy norm for the many of a
+column (`energy_norm`).
+
+**Settling.** At an instant some watched functions are zero, and go the way of their first derivative that is not. What
+the state of a contact changes in the motion begins two derivatives above that in which its own function moves. So the
+lowest derivative in which any of them falls says which contact does not keep its state, whatever the others do; it
+takes the state that this function names, and the next derivative is looked at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from flint import arb, arb_mat
+
+from fem_reference.events.axes import Axes
+from fem_reference.events.column_drive import Piece
+from fem_reference.events.contacts import CARRIES_NOTHING, NORMAL, OPEN, RELEASED, STICKS, States, Watch
+from fem_reference.events.enclosure import ZERO, radius_of
+from fem_reference.events.energy_norm import EnergyNorm
+from fem_reference.events.series import Segment, Start, System, expand, step_length
+from fem_reference.events.switches import (
+    NoContactStateError,
+    Switch,
+    TooManySwitchesError,
+    Work,
+)
+from fem_reference.events.watching import CELLS, CUTS, Change, Reach, Watched
+
+FEW = 4
+"""Terms that are looked at first where functions begin at zero: most show at once where they go."""
+
+
+@dataclass(frozen=True)
+class Node:
+    """The beginning of a step."""
+
+    start: Start
+    states: States
+    drives: Any  # what drives the motion until the next break
+    error: Any  # how far it may be off, see `axes` and `energy_norm`
+
+
+class March:
+    """The motion from t = 0 on, node by node."""
+
+    def __init__(self, model: System, transport: Axes | EnergyNorm, end: float, limit: int, work: Work) -> None:
+        self.model = model
+        self.transport = transport
+        self.end = end
+        self.limit = limit
+        self.work = work
+        self.states: States = ()
+        self.breaks: Sequence[float] = ()  # instants at which the drives become others [s]
+        self.drives: Any = None  # as nodes keep them
+        self.pieces: Sequence[Piece] = ()  # as the model knows them: of the base and of the pressure, or none
+        self.offset = 0.0  # what the instant of the last switch may be off, while the motion stands at it [s]
+        self.watches: list[Watch] = []
+        self.nodes: list[Node] = []
+        self.switches: list[Switch] = []
+        self.touches: list[float] = []  # instants at which a crossing is neither proven nor excluded [s]
+        self.resting: set[int] = set()  # contacts found at zero without force in all derivatives
+        self.misses = 0  # times in succession that a fall was looked for in vain
+
+    # -- what a block or a column says of itself
+
+    def initial(self) -> tuple[Start, States]:
+        """Where the motion begins, and the states of contacts whose functions rest there."""
+        raise NotImplementedError
+
+    def take_drives(self, moment: float) -> None:
+        """Take the drives from an instant on, and what velocities jump with them."""
+        raise NotImplementedError
+
+    def check_work(self) -> None:
+        """Stop before a step where the motion takes too many."""
+
+    def strike(self, touches: bool) -> bool:
+        """Let the rates jump by an impact, if there is one now; return whether they do."""
+        return False
+
+    def follow_impact(self) -> None:
+        """Go on from an impact."""
+
+    # -- the march
+
+    @property
+    def now(self) -> float:
+        """The present instant [s]."""
+        return float(self.start.time)
+
+    def run(self) -> None:
+        """Find the motion.
+
+        Raises
+        ------
+        HorizonError, NoContactStateError
+            If it cannot go on.
+        """
+        self.take_drives(0.0)
+        start, self.states = self.initial()
+        self.start = start
+        self.place(start.time, start.u, start.v)
+        impact = self.strike(touches=False)
+        self.settle({}, recording=False)
+        if impact:
+            self.follow_impact()
+        self.switches = [switch for switch in self.switches if switch.time > 0]
+        borders = sorted({border for border in self.breaks if 0 < border < self.end})
+        for border in [*borders, self.end]:
+            limit = arb(border)
+            while self.start.time < limit:
+                self.check_work()
+                self.step(limit)
+            if border < self.end:
+                self.take_drives(border)
+                self.switch()
+
+    def place(self, time: arb, u: arb_mat, v: arb_mat) -> None:
+        """Stand at a state; the radii of its balls go into what it may be off."""
+        self.transport.take(u, v)
+        self.start = Start(time, u.mid(), v.mid(), self.start.references)
+
+    def add_node(self) -> None:
+        """Keep the state as the beginning of a step."""
+        self.nodes.append(Node(self.start, self.states, self.drives, self.transport.record()))
+
+    def step(self, limit: arb) -> None:
+        """One step, up to a switch at most."""
+        self.follow()  # so that a node has the reference of each contact as it is
+        start = self.start
+        remaining = (limit - start.time).upper()
+        length = min(step_length(self.model, self.states, self.pieces), float(remaining) * (1 + 1e-9))
+        segment = expand(self.model, self.states, start, self.pieces, length)
+        self.work.reach(self.now)
+        self.work.add(segment.count * self.model.size)
+        self.add_node()
+        self.transport.begin(segment)
+        offset = self.offset
+        states = self.states
+
+        def reach(watch: Watch, at_switch: bool) -> Reach:
+            return self.transport.reach(watch, states, segment, offset if at_switch else 0.0)
+
+        watched = Watched(self.now, segment, self.watches, reach)
+        self.offset = 0.0
+        share, width, doubtful = watched.clear()
+        whole = ((limit - start.time) / arb(length)).mid()
+        if not doubtful:
+            self.misses = 0
+            self.advance(segment, arb(share), whole, limit)
+            if any(watch.lead is None for watch in self.watches):
+                self.switch()
+            else:
+                self.watches = [watch._replace(lead=0) for watch in self.watches]  # all are proven to be positive
+            return
+        # Balls look at a part that is longer than the one in doubt, and where they have looked in vain at a longer one.
+        high = min(arb(share + width * CELLS ** min(1 + self.misses, CUTS)), arb(1), whole)
+        touches: list[arb] = []
+        falling = None
+        if high > share:
+            self.work.add(segment.count * len(doubtful))
+            falling = watched.first_fall(share, high, doubtful, touches)
+        self.touches += [float(start.time + (arb(share) + touch) * arb(length)) for touch in touches]
+        if falling is None:
+            self.misses += 1
+            self.advance(segment, high, whole, limit)
+            self.switch()
+            return
+        self.misses = 0
+        fall, watch = falling
+        time = start.time + fall.at * arb(length)
+        centre = fall.at.mid()
+        if fall.grazing:
+            self.touches.append(float(time))
+        else:
+            centre = watched.root_near(watch, fall.at)
+        self.offset = radius_of(time) + float(abs(time - (start.time + centre * arb(length))).upper())
+        value, slope = segment.value_and_slope(watch, centre)
+        self.advance(segment, centre, whole, limit)
+        self.switch(watch, value, slope, fall.grazing)
+
+    def advance(self, segment: Segment, share: arb, whole: arb, limit: arb) -> None:
+        """Move to a share of a step, or to its border where the share reaches it."""
+        start = self.start
+        span = arb(segment.length)
+        time = limit if share >= whole else (start.time + share * span).mid()
+        at = (time - start.time) / span
+        if not time > start.time:
+            raise NoContactStateError(f"the states of the contacts contradict the motion at {self.now!r} s")
+        u, v = segment.state(at)
+        self.transport.advance(self.states, time - start.time)
+        self.place(time, u, v)
+
+    def switch(self, watch: Watch | None = None, value: arb = ZERO, slope: arb = ZERO, grazing: bool = False) -> None:
+        """Let the contacts take the states that agree with the motion, after a fall or where there may be one."""
+        before = self.start
+        was = self.states
+        radii = self.follow()
+        impact = self.strike(touches=watch is not None)
+        self.settle({} if watch is None else {(watch.contact, watch.side): 1 + watch.order})
+        if watch is None and was == self.states and not impact:
+            return
+        change = Change(before, self.start, was, self.states, watch, value, slope, grazing, self.offset, radii, impact)
+        self.transport.switch(change)
+        if impact:
+            self.follow_impact()
+
+    def follow(self) -> list[arb]:
+        """Take the references of contacts along that do not stick; return the radii that they leave out."""
+        radii = [ZERO] * len(self.states)
+        moving = [
+            c for c, state in enumerate(self.states) if state != STICKS and self.model.contacts[c].slide is not None
+        ]
+        if not moving:
+            return radii
+        references = list(self.start.references)
+        rows = self.model.values(self.start.u, self.base_now())
+        for c in moving:
+            reference = self.model.contacts[c].reference(self.states[c], rows)
+            radii[c] = reference.rad()
+            self.transport.take_reference(c, radii[c])
+            references[c] = reference.mid()
+        self.start = self.start._replace(references=references)
+        return radii
+
+    def base_now(self) -> arb | None:
+        """Displacement of the base that drives the motion, None without one."""
+        return self.pieces[0].series(self.start.time, 1.0, 1)[0] if self.pieces else None
+
+    # -- settling
+
+    def settle(self, zeros: Mapping[tuple[int, int], int], recording: bool = True) -> None:
+        """Let the contacts take the states that agree with the motion from now on.
+
+        Parameters
+        ----------
+        zeros
+            Of contact and side of a watched function how many derivatives of displacements are zero in it.
+        recording
+            Whether changes are switches; they are not at t = 0.
+
+        Raises
+        ------
+        NoContactStateError
+            If no states agree.
+        """
+        model = self.model
+        was = self.states
+        known = dict(zeros)
+        length = 1.0 / max(model.rate((STICKS,) * len(model.contacts)), model.least_rate())
+        most = 2 * model.size + 8
+        count = 3 if self.offset else 2  # what the instant is off counts with the accelerations
+        changes = 0
+        while True:
+            watches = list(model.watches(self.states, self.start.references))
+            if not watches:
+                found = []
+                break
+            segment = expand(model, self.states, self.start, self.pieces, length, count)
+            if count >= FEW:
+                self.work.add(count * model.size)
+            found = [self._lead(watch, segment, known) for watch in watches]
+            falling = [
+                (lead + watch.order, watch)
+                for watch, (lead, sign) in zip(watches, found, strict=True)
+                if lead is not None and sign < 0
+            ]
+            if falling:
+                lowest = min(order for order, _ in falling)
+                changes += 1
+                if (recording and lowest == 0) or changes > 4 * len(model.contacts) + 4:
+                    raise NoContactStateError(f"no state of the contacts agrees with the motion at {self.now!r} s")
+                for order, watch in falling:
+                    if order == lowest:
+                        known[watch.contact, watch.side] = order
+                        self.states = model.changed(self.states, watch)
+            elif count < most and any(lead is None for lead, _ in found):
+                count = FEW if count < FEW else most
+            else:
+                break
+        self.watches = [watch._replace(lead=lead) for watch, (lead, _) in zip(watches, found, strict=True)]
+        self.resting |= {watch.contact for watch in self.watches if watch.lead is None and watch.side == NORMAL}
+        if recording:
+            self.record(was)
+
+    def _lead(self, watch: Watch, segment: Segment, known: Mapping[tuple[int, int], int]) -> tuple[int | None, int]:
+        """Return the number of the first term of a function that is not zero, and its sign; None: all are."""
+        terms = segment.function(watch)
+        reaches = self.transport.reach(watch, self.states, segment, self.offset).terms()
+        zeros = known.get((watch.contact, watch.side), 0) - watch.order
+        for k, (term, reach) in enumerate(zip(terms, reaches, strict=True)):
+            if k >= zeros and abs(term) > reach:
+                return k, 1 if term > 0 else -1
+        return None, 0
+
+    def record(self, was: Sequence[int]) -> None:
+        """Add the changes of states to the switches."""
+        for c, before in enumerate(was):
+            now = self.states[c]
+            if before == now or {before, now} == {
+                OPEN,
+                RELEASED,
+            }:  # a released contact carries as little as an open one
+                continue
+            kind = "sticks" if now == STICKS else "slips"
+            if before in CARRIES_NOTHING:
+                kind = "closes"
+            elif now in CARRIES_NOTHING:
+                kind = "opens"
+            self.add_switch(c, kind)
+
+    def add_switch(self, contact: int, kind: str) -> None:
+        """Record a change of a contact at this instant."""
+        sign = self.states[contact] // 2 if kind == "slips" else 0
+        midpoint = self.start.time.str(40, radius=False)
+        joint = self.model.contacts[contact]
+        self.switches.append(Switch(self.now, joint.name, kind, midpoint, self.offset, joint.number, sign))
+        if len(self.switches) > self.limit:
+            raise TooManySwitchesError(self.now, f"more than {self.limit} switches")

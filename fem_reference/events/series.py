@@ -1,0 +1,291 @@
+"""Taylor series of M z'' + C z' + K z = drive + B' lambda over a step in which all contacts keep their states.
+
+The rows y = B z + g (less the base, where a face is on it) have forces lambda that are linear in y, y' and references
+(`contacts.laws`), so that with the mobility W = M^-1::
+
+    z'' = A z + D z' + R r + f + E s,    s = (base, base', base'', pressure)
+
+All series are in the share of a step, t = start + share * length, so that their terms are displacements and fall like
+those of an exponential.
+
+**The tail.** The last two terms of a drive belong to its own tail, so that the terms of the motion from the last two on
+follow from these alone. In the norm of the system (`System.norm`), with w^2 the norm of A and d that of D::
+
+    |C_(k+2)| <= (w^2 |C_k| + d (k+1) |C_(k+1)|) length^2 / ((k+1) (k+2))
+
+Where x = rate * length with w^2 + d rate <= rate^2, terms below M x^k / k! stay so. M is that of the last two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from flint import arb, arb_mat, arb_poly
+
+from fem_reference.events.column_drive import Piece, tail_sum
+from fem_reference.events.contacts import Contact, States, Watch, laws, watches
+from fem_reference.events.enclosure import ball, term_count
+from fem_reference.problem.problem import Array
+
+LEAST_TERMS = 28
+"""Terms of a step, at least."""
+FURTHER_TERMS = 6
+"""Terms beyond those that the angle of the step needs: the tail bounds three derivatives too."""
+REPORT_ANGLE = 1.5
+"""Angle over which floats sum a series [rad]."""
+REPORT_TERMS = 32
+"""Terms that they sum: 1.5^32 / 32! is 2e-30."""
+
+
+class Start(NamedTuple):
+    """Where the motion is, exactly."""
+
+    time: arb  # [s]
+    u: arb_mat  # displacements of the unknowns
+    v: arb_mat  # their rates
+    references: list[arb]  # r of each contact, for those that stick
+
+
+class Motion(NamedTuple):
+    """The matrices of the motion while the contacts keep their states."""
+
+    A: arb_mat
+    D: arb_mat | None  # None: zero
+    R: arb_mat
+    f: arb_mat
+    E: arb_mat
+
+    def acceleration(self, u: arb_mat, v: arb_mat, references: Sequence[arb]) -> arb_mat:
+        """Second derivatives of the unknowns without drives."""
+        a = self.A * u + self.R * column(references) + self.f
+        return a if self.D is None else a + self.D * v
+
+
+class System:
+    """What moves: unknowns with a mass, rows of contacts, drives."""
+
+    angle: float  # length of a step times the rate, at most [rad]
+    contacts: list[Contact]
+    mobility: arb_mat  # M^-1
+    stiffness: arb_mat  # K
+    load: arb_mat  # what acts for ever
+    rows: arb_mat  # B
+    offsets: arb_mat  # g
+    damping: arb_mat | None = None  # C
+    on_base: arb_mat  # 1 for each row with a face on the base
+    inputs: arb_mat  # forces of the base's displacement, rate and acceleration, and of the pressure
+    sizes: list[float]  # greatest value of each unknown of norm one
+    row_sizes: list[float]  # greatest value of each row where the unknowns have the norm one
+
+    def __init__(self) -> None:
+        self.motions: dict[States, Motion] = {}
+
+    @property
+    def size(self) -> int:
+        """Number of unknowns."""
+        return self.mobility.nrows()
+
+    def rate(self, states: States) -> float:
+        """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
+        raise NotImplementedError
+
+    def least_rate(self) -> float:
+        """Rate that bounds the steps of a motion that has none [rad/s]."""
+        return 0.0
+
+    def norm(self, x: Sequence[arb]) -> arb:
+        """Norm of the unknowns, in which `rate` bounds the motion."""
+        raise NotImplementedError
+
+    def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
+        """The functions that are positive as long as the contacts keep their states."""
+        return watches(self.contacts, states, references)
+
+    def changed(self, states: States, watch: Watch) -> States:
+        """The states after a fall of a function."""
+        return tuple(watch.becomes if c == watch.contact else state for c, state in enumerate(states))
+
+    def motion(self, states: States) -> Motion:
+        """The matrices of the motion in some states."""
+        if states not in self.motions:
+            law = laws(self.contacts, states, self.rows.nrows())
+            pushes = self.mobility * self.rows.transpose()
+            A = pushes * law.rows * self.rows - self.mobility * self.stiffness
+            D = pushes * law.rates * self.rows
+            f = self.mobility * self.load + pushes * (law.constant + law.rows * self.offsets)
+            if self.damping is not None:
+                D = D - self.mobility * self.damping
+            E = self.mobility * self.inputs - pushes * law.rows * self.on_base * arb_mat([[1, 0, 0, 0]])
+            still = all(d == 0 for d in D.entries())
+            self.motions[states] = Motion(A, None if still else D, pushes * law.references, f, E)
+        return self.motions[states]
+
+    def values(self, u: arb_mat, base: arb | None = None) -> list[arb]:
+        """The rows of some displacements."""
+        y = self.rows * u + self.offsets
+        return list((y if base is None else y - self.on_base * base).entries())
+
+
+@dataclass(frozen=True)
+class Segment:
+    """Series of a step, term by term."""
+
+    system: System
+    length: float  # of the step [s]
+    terms: list[arb_mat]  # of the unknowns
+    drives: list[list[arb]]  # of each drive
+    tail: arb  # norm of all further terms, and of three derivatives of them in the share of the step
+    drive_tails: list[arb]  # the same of each drive
+
+    @property
+    def count(self) -> int:
+        """Number of terms."""
+        return len(self.terms)
+
+    @cached_property
+    def matrix(self) -> arb_mat:
+        """The terms of the unknowns, a column a term."""
+        return arb_mat([term.entries() for term in self.terms]).transpose()
+
+    @cached_property
+    def rows(self) -> list[list[arb]]:
+        """The terms of each row."""
+        y = (self.system.rows * self.matrix).tolist()
+        for series, offset, b in zip(y, self.system.offsets.entries(), self.system.on_base.entries(), strict=True):
+            series[0] = series[0] + offset
+            if b != 0:
+                series[:] = [c - base for c, base in zip(series, self.drives[0], strict=True)]
+        return y
+
+    def row_tail(self, row: int) -> arb:
+        """What the series leaves out of a row, and three derivatives of it."""
+        tail = self.tail * arb(self.system.row_sizes[row])
+        return tail + self.drive_tails[0] if self.system.on_base[row, 0] != 0 else tail
+
+    def unknowns(self) -> list[arb_poly]:
+        """Series of the unknowns."""
+        return [arb_poly(series) for series in self.matrix.tolist()]
+
+    def state(self, share: arb) -> tuple[arb_mat, arb_mat]:
+        """Unknowns and their rates at a share of the step."""
+        powers = [arb(1)]
+        for _ in range(1, self.count):
+            powers.append(powers[-1] * share)
+        slopes = [arb(0), *(k * power for k, power in enumerate(powers[:-1], 1))]
+        rest = column([ball((self.tail * arb(size)).upper()) for size in self.system.sizes])
+        return self.matrix * column(powers) + rest, (self.matrix * column(slopes) + rest) * (1 / arb(self.length))
+
+    def function(self, watch: Watch) -> list[arb]:
+        """Series of a watched function."""
+        terms: list[arb] = []
+        for row, factor, dashpot in watch.parts:
+            series = self.rows[row]
+            slopes = [k * c for k, c in enumerate(series)][1:] if watch.rates or dashpot is not None else []
+            part = [c * factor for c in (slopes if watch.rates else series)]
+            if dashpot is not None:
+                unit = dashpot / arb(self.length)
+                part = [c + slope * unit for c, slope in zip(part, [*slopes, arb(0)], strict=True)]
+            terms = [one + other for one, other in zip(terms, part, strict=True)] if terms else part
+        if not watch.rates:
+            terms[0] = terms[0] + watch.offset
+        return terms
+
+    def function_tail(self, watch: Watch) -> arb:
+        """What the series leaves out of a function, and of its first two derivatives."""
+        tail = arb(0)
+        for row, factor, dashpot in watch.parts:
+            size = abs(factor) if dashpot is None else abs(factor) + abs(dashpot) / arb(self.length)
+            tail += size * self.row_tail(row)
+        return tail.upper()
+
+    def value_and_slope(self, watch: Watch, share: arb) -> tuple[arb, arb]:
+        """A watched function and its rate in time at a share of the step."""
+        series = arb_poly(self.function(watch))
+        span = arb(self.length)
+        unit = span if watch.rates else arb(1)
+        return series(share) / unit, series.derivative()(share) / (unit * span)
+
+
+def column(entries: Sequence[arb]) -> arb_mat:
+    """A matrix of one column."""
+    return arb_mat(len(entries), 1, list(entries))
+
+
+def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
+    """Return the longest step; infinite where nothing bounds it [s]."""
+    rate = max(system.rate(states), system.least_rate())
+    return min([system.angle / rate, *(piece.longest_step() for piece in drives)])
+
+
+def expand(
+    system: System, states: States, start: Start, drives: Sequence[Piece], length: float, count: int | None = None
+) -> Segment:
+    """Return the series of a step.
+
+    Parameters
+    ----------
+    system, states, start, drives
+        What moves, the states of its contacts, where it is and what drives it.
+    length
+        Of the step [s].
+    count
+        Terms, two at least; None: as many as the digits need, with a tail that bounds those that follow.
+    """
+    full = count is None
+    angle = 0.0
+    if count is None:
+        angle = system.rate(states) * length
+        of_motion = term_count(min(max(angle, 1.0), 2 * system.angle)) + FURTHER_TERMS
+        count = max([LEAST_TERMS, of_motion, *(piece.term_count(length) + 2 for piece in drives)])
+    known = count - 2 if full else count
+    of_drives = [[*piece.series(start.time, length, known), *[arb(0)] * (count - known)] for piece in drives]
+    span = arb(length)
+    motion = system.motion(states)
+    terms = [start.u, start.v * span]
+    square = span * span
+    for k in range(count - 2):
+        a = motion.A * terms[k]
+        if k == 0:
+            a = a + motion.R * column(start.references) + motion.f
+        if motion.D is not None:
+            a = a + motion.D * terms[k + 1] * ((k + 1) / span)
+        if of_drives:
+            base, pressure = of_drives
+            rate = base[k + 1] * (k + 1) / span
+            s = [base[k], rate, base[k + 2] * ((k + 1) * (k + 2)) / square, pressure[k]]
+            a = a + motion.E * column(s)
+        terms.append(a * (square / ((k + 1) * (k + 2))))
+    if not full:
+        return Segment(system, length, terms, of_drives, arb("inf"), [arb("inf") for _ in drives])
+    drive_tails = [piece.tail(start.time, length, known).upper() for piece in drives]
+    ratio = arb(angle) / count
+    before, last = (system.norm(term.entries()) for term in terms[-2:])
+    largest = max((last * ratio).upper(), (before * ratio * ratio * 1.1).upper())
+    tail = (tail_sum(ratio) * arb(count) ** 3 * largest).upper()
+    return Segment(system, length, terms, of_drives, tail, drive_tails)
+
+
+def summed(series: Sequence[arb_poly], shares: Array, length: float) -> tuple[Array, Array, Array]:
+    """Values, rates and second derivatives in time of series in the share of a step of at most `REPORT_ANGLE`.
+
+    Each has the shape (series, shares).
+    """
+    coefficients = np.zeros((len(series), REPORT_TERMS + 2))
+    for row, polynomial in zip(coefficients, series, strict=True):
+        terms = [float(c) for c in polynomial.coeffs()[:REPORT_TERMS]]
+        row[: len(terms)] = terms
+    powers = shares ** np.arange(REPORT_TERMS + 2)[:, None]
+    results = []
+    for order in range(3):
+        results.append(coefficients @ powers[: coefficients.shape[1]] / length**order)
+        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
+    return results[0], results[1], results[2]
+
+
+def floats(matrix: arb_mat) -> Array:
+    """Midpoints of a matrix."""
+    return np.array([*map(float, matrix.entries())]).reshape(matrix.nrows(), matrix.ncols())
