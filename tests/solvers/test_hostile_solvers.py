@@ -20,7 +20,6 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.foreign import one_line
 from validation.solvers.processes import worker
 from validation.solvers.user import VARIABLE, UserSolver
 
