@@ -14,7 +14,7 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import find, laws_of
+from dda.contact.rows import laws_of
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
@@ -134,7 +134,7 @@ def solve_opening_system(
         springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
         return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
 
-    how = PLAIN if glue.find is find else COMPILED
+    how = COMPILED if glue.compiled else PLAIN
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
         columns={
