@@ -35,7 +35,7 @@ import fem_reference  # noqa: E402
 from dda.column.column import Column, Layer, Spring  # noqa: E402
 from dda.column.contacts import ColumnContactResult, solve_contact_column  # noqa: E402
 from dda.column.stepping import Drive  # noqa: E402
-from dda.stepping import compiled  # noqa: E402
+from dda.march import compiled  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
 from validation.engine.run import run_study  # noqa: E402
@@ -396,7 +396,7 @@ def least(run: Callable[[], Any], repeats: int) -> tuple[float, Any]:
 @contextlib.contextmanager
 def held_to(how: str) -> Iterator[None]:
     """Let all histories run in plain Python, or all compiled, whatever their length."""
-    names = ("WORTHWHILE_KEPT", "WORTHWHILE")
+    names = ("SHORT", "LONG")
     before = [getattr(compiled, name) for name in names]
     for name in names:
         setattr(compiled, name, math.inf if how == compiled.PLAIN else 0.0)

@@ -222,7 +222,8 @@ def solve_rolling(
     began = perf_counter()
     body = model.body
     law = model.contact
-    start = model.start(scheme)
+    with np.errstate(all="ignore"):  # overflow is an outcome
+        start = model.start(scheme)
     corners = laws_of(law, len(body.xi), len(start.path), options.solve_limit)
     base = base_motion(model)
     weight = body.modes.shapes[:2].T @ (body.M[0, 0] * model.weight)

@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles import unilateral_mp
 
-from dda import Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
 from fem_reference.events.block_events import solve as exact_motion
 from fem_reference.events.block_model import BlockProblem
 
@@ -82,33 +82,39 @@ def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued)
         assert max(abs(float(x - y)) for x, y in zip(mine, theirs, strict=True)) < bound * float(largest)
 
 
-def orders(problem, scheme, counts, end):
-    """Return the fitted order and the errors of v against the exact motion, over the exact one's largest value."""
-    motion, errors = exact_motion(problem, end), []
-    for n in counts:
-        alpha, delta, start = scheme
-        result = solve_unilateral(model_of(problem), Scheme(alpha, delta, 1.0, end / n, start), n)
-        v = motion.at(np.minimum(result.time, end)).displacement[1]
-        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
-    return -np.polyfit(np.log(counts), np.log(errors), 1)[0], errors
+# Schemes, exact motions and their order; a step hits a switch anywhere, which scatters a fitted order by a few tenths.
 
 
 GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
 ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
-COUNTS = [500, 1000, 2000]  # steps
-# Schemes, exact motions and their order; a step hits a switch anywhere, which scatters a fitted order by a few tenths.
+# Problems, schemes, rules and their order; a step hits a switch anywhere, which scatters a fitted order by some tenths.
 ORDERS = [
-    (PAPER, (0.5, 1.0, "zero"), 1.0, 0.1),
-    (ECCENTRIC, (0.5, 1.0, "zero"), 1.0, 0.1),
-    (GLUED, (0.5, 1.0, "zero"), 1.0, 0.1),
-    (PAPER, (0.25, 0.5, "consistent"), 2.0, 0.15),
-    (ECCENTRIC, (0.25, 0.5, "consistent"), 2.0, 0.15),
-    (PAPER, (0.25, 0.5, "zero"), 1.0, 0.1),
+    (PAPER, (0.5, 1.0, "zero"), "newmark", 1),
+    (ECCENTRIC, (0.5, 1.0, "zero"), "newmark", 1),
+    (GLUED, (0.5, 1.0, "zero"), "newmark", 1),
+    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
+    (ECCENTRIC, (0.25, 0.5, "consistent"), "newmark", 2),
+    (PAPER, (0.25, 0.5, "zero"), "newmark", 1),
+    (PAPER, (0.25, 0.5, "consistent"), "energy-conserving", 2),
+    (ECCENTRIC, (0.25, 0.5, "consistent"), "energy-conserving", 2),
+    (PAPER, (0.25, 0.5, "consistent"), "implicit", 1),
+    (ECCENTRIC, (0.25, 0.5, "consistent"), "implicit", 1),
 ]
 
 
-@pytest.mark.parametrize(("problem", "scheme", "order", "scatter"), thinned(ORDERS, 6))
-def test_the_order_in_dt_through_switches(problem, scheme, order, scatter):
-    fitted, errors = orders(problem, scheme, COUNTS, 0.03)
-    assert abs(fitted - order) < scatter, errors
+@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, 6))
+def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
+    """Errors of v against the exact motion, over its largest value."""
+    end = 0.03
+    counts = [500, 1000, 2000]
+    alpha, delta, start = scheme
+    motion = exact_motion(problem, end)
+    errors = []
+    for n in counts:
+        options = UnilateralOptions(rule)
+        result = solve_unilateral(model_of(problem), Scheme(alpha, delta, 1.0, end / n, start), n, options=options)
+        v = motion.at(np.minimum(result.time, end)).displacement[1]
+        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
+    fitted = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
+    assert abs(fitted - order) < (0.15 if order == 2 else 0.1), errors
     assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)

@@ -23,6 +23,7 @@ from dda.march import step as march_step
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
 from dda.one_block import response as dda_vibration
+from dda.rotation import body as rolling_body
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
 from dda.scheme import blocked, harmonic, newmark
@@ -126,7 +127,9 @@ PLANE_MATERIAL = Seam(dda, dda.Material)
 FEM_PLANE_STIFFNESS = Seam(plane_model.PlaneModel, plane_model.PlaneModel.elastic)
 
 # Blocks that turn
-ROLLING_SETTING = Seam(rolling.RollingModel, rolling.RollingModel.setting)
+ROLLING_WEIGHT = Seam(rolling.RollingModel, rolling.RollingModel.weight)
+ROLLING_LAWS = Seam(rolling, rolling.laws_of)
+ROLLING_MODES = Seam(rolling_body, rolling_body.modes_of)
 ROLLING_START = Seam(rolling.RollingModel, rolling.RollingModel.start)
 ROLLING_STEPS = Seam(rolling, rolling.make_steps)
 ROLLING_BASE = Seam(rolling, rolling.base_motion)

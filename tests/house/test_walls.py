@@ -113,7 +113,7 @@ def test_a_solver_package_imports_only_what_it_may(package: str, allowed: set[st
     standard = set(sys.stdlib_module_names)
     for path in (ROOT / package).rglob("*.py"):
         if path.parent.name != "fenicsx":
-            compiles = {"numba"} if path == ROOT / "dda/stepping/compiled.py" else set()
+            compiles = {"numba"} if path == ROOT / "dda/march/compiled.py" else set()
             assert imports(path) <= allowed | standard | compiles, path.name
 
 

@@ -4,9 +4,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from oracles.unilateral_checks import checked, random_model
+from oracles.unilateral_checks import random_model
 
-from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
+from dda import BaseMotion, Block, Material, Unilateral, UnilateralModel, solve_unilateral
 
 YOUNG = 1e9
 
@@ -77,14 +77,6 @@ def coulomb(model, result):
     assert np.min(np.diff(result.energies["friction"]), initial=0.0) >= 0
 
 
-def held(seed, scheme, steps=300):
-    """Run a random block and check every invariant."""
-    model = rubbing_model(seed)
-    result = checked(model, scheme, steps)
-    coulomb(model, result)
-    return result
-
-
 def free_fall(scheme, steps, acceleration):
     """Return the scheme's own displacement under a constant acceleration."""
     D = V = 0.0
@@ -116,14 +108,3 @@ def shaken(rng, size=1e-3):
     """Return a base that moves to and fro in both directions."""
     moved = np.concatenate([[[0.0, 0.0]], np.cumsum(rng.uniform(-size, size, (20, 2)), axis=0)])
     return BaseMotion(np.linspace(0.0, 0.05, 21), moved)
-
-
-def cases(count, every=1):
-    """Return seeds, each with one of four schemes."""
-    schemes = (
-        (0.5, 1.0, 1.0, "zero"),
-        (0.25, 0.5, 1.0, "consistent"),
-        (0.3025, 0.6, 0.97, "zero"),
-        (0.7, 0.8, 0.99, "zero"),
-    )
-    return [(seed, Scheme(*schemes[seed % 4][:3], 3e-4, schemes[seed % 4][3])) for seed in range(0, count, every)]

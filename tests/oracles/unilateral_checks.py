@@ -1,12 +1,8 @@
 """Random blocks on corners that open, and the invariants that their histories obey to rounding."""
 
-from dataclasses import replace
-
 import numpy as np
 
-import dda.one_block.unilateral_step as step
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
-from dda.stepping.driver import driver
 
 DT = 3e-4
 ENERGIES = UnilateralOptions(energies=True)
@@ -31,14 +27,6 @@ def random_model(seed, glued=None):
         gravity=rng.uniform(0, 15),
         velocity=rng.uniform(-1.5, 1.0),
     )
-
-
-def mirrored(model):
-    """Return the mirror image about x = 0; M and N change places."""
-    corners = model.block.corners * [-1, 1]
-    order = [1, 0, 3, 2]  # counter-clockwise again, the base first
-    block = Block(corners[order], model.block.material)
-    return replace(model, block=block, eccentricity=-model.eccentricity, traction=-model.traction, slope=-model.slope)
 
 
 def sums(result):
@@ -98,22 +86,6 @@ def energy(model, result, digits=1e-12):
     assert np.max(np.abs(total + lost - first)) < digits * size(result)
 
 
-def checked(model, scheme, steps=400):
-    """Run and check every invariant that holds for all schemes."""
-    result = solve_unilateral(model, scheme, steps, options=ENERGIES)
-    assert result.outcome == "completed" and len(result.time) == steps
-    complementarity(model, result)
-    if not np.any(result.step_cuts):
-        momentum(model, scheme, result)
-    energy(model, result)
-    return result
-
-
 def run(model, alpha=0.5, delta=1.0, gg=1.0, dt=DT, start="zero", steps=400, **options):
     """Run with the scheme's numbers."""
     return solve_unilateral(model, Scheme(alpha, delta, gg, dt, start), steps, options=UnilateralOptions(**options))
-
-
-def stepping_by(advance):
-    """Return the loop over the steps of one block whose steps are made by another function."""
-    return driver(advance, step.account, step.keep)

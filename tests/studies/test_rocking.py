@@ -11,13 +11,13 @@ from typing import Any
 import numpy as np
 import pytest
 from faults import seams
-from faults.fault import Fault, scaled, told
+from faults.fault import Fault, of_first, scaled
 from faults.kill_matrix import check_kill_matrix
 from scipy.integrate import solve_ivp
 
+from dda.march.step import steps_by
 from dda.rotation import step
 from dda.rotation.body import EXACT, FIRST_ORDER, turned
-from dda.stepping.driver import driver
 from fem_reference.exact.rocking import Pulse, RockingBlock
 from fem_reference.exact.rocking import solve as solve_rigid
 from validation.engine.study import Study
@@ -31,31 +31,30 @@ DDA = ("dda",)
 Wrapper = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-def setting(**changes: Callable[[Any], Any]) -> Wrapper:
-    """Return a wrapper that changes what stays the same from step to step."""
-    return told(lambda made: {name: change(getattr(made, name)) for name, change in changes.items()})
+def read_as(change: Callable[[Any], Any]) -> Callable[[property], property]:
+    """Return a wrapper that changes what a property tells."""
+    return lambda sound: property(lambda model: change(sound.__get__(model)))
 
 
-def inertia(body: Any) -> Any:
-    M = body.M.copy()
-    M[2, 2] *= 1.02
-    return replace(body, M=M)
+def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def faulty(M: Any, block: Any) -> Any:
+        heavier = M.copy()
+        heavier[2, 2] *= 1.02
+        return sound(heavier, block)
 
-
-def rubbing(factor: float) -> Callable[[Any], Any]:
-    return lambda law: law if law.friction is None else replace(law, friction=factor * law.friction)
+    return faulty
 
 
 def quicker(share: float) -> Wrapper:
     """Add a share to the velocities in every step."""
 
     def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def faulty(body: Any, shear_law: Any, state: Any, after: Any, *given: Any) -> tuple[int, int]:
-            outcome, solves = step.advance(body, shear_law, state, after, *given)
-            after.V[:] = [(1 + share) * v for v in after.V]
+        def faulty(march: Any, stage: Any, start: Any, before: Any, after: Any, *given: Any) -> tuple[int, int]:
+            outcome, solves = step.make_stage(march, stage, start, before, after, *given)
+            after.p[:] = [(1 + share) * p for p in after.p]
             return outcome, solves
 
-        return driver(faulty, step.account, step.keep)
+        return steps_by(faulty, step.account, step.keep)
 
     return wrap
 
@@ -88,12 +87,10 @@ def doubled(sound: Callable[..., Any]) -> Callable[..., Any]:
     return faulty
 
 
-LIGHT = Fault("weight 1 % less", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: 0.99 * g))
-STEEP = Fault("slope 0.5 deg more", DDA, seams.ROLLING_SETTING, setting(weight=lambda g: turned(math.radians(0.5)) @ g))
-HEAVY = Fault("moment of inertia 2 % more", DDA, seams.ROLLING_SETTING, setting(body=inertia))
-SOFT = Fault(
-    "springs a tenth", DDA, seams.ROLLING_SETTING, setting(law=lambda law: replace(law, stiffness=law.stiffness / 10))
-)
+LIGHT = Fault("weight 1 % less", DDA, seams.ROLLING_WEIGHT, read_as(lambda g: 0.99 * g))
+STEEP = Fault("slope 0.5 deg more", DDA, seams.ROLLING_WEIGHT, read_as(lambda g: turned(math.radians(0.5)) @ g))
+HEAVY = Fault("moment of inertia 2 % more", DDA, seams.ROLLING_MODES, heavy)
+SOFT = Fault("springs a tenth", DDA, seams.ROLLING_LAWS, scaled(stiffness=0.1))
 QUICK = Fault("velocities 1 % more in every step", DDA, seams.ROLLING_STEPS, quicker(0.01))
 TILTED = Fault("tilt 1 % more", DDA, seams.ROLLING_START, scaled(tilt=1.01))
 FAULTS = {
@@ -115,7 +112,12 @@ FAULTS = {
         HEAVY,
         SOFT,
         TILTED,
-        Fault("friction 1 % less", DDA, seams.ROLLING_SETTING, setting(law=rubbing(0.99))),
+        Fault(
+            "friction 1 % less",
+            DDA,
+            seams.ROLLING_LAWS,
+            of_first(lambda law: {"friction": law.friction and 0.99 * law.friction}),
+        ),
         Fault("first-order rotation", DDA, seams.ROLLING_TURN, turning_by(FIRST_ORDER)),
         Fault("exact rotation where first-order is asked for", DDA, seams.ROLLING_TURN, turning_by(EXACT)),
         Fault("the outline grows twice", DDA, seams.ROLLING_TURN, grown_twice),

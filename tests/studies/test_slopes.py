@@ -138,12 +138,11 @@ def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path,
 def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
     """Let a corner that opens keep the shear reference that it had."""
 
-    def faulty(block: Any, before: Any, after: Any) -> None:
-        sound(block, before, after)
-        contacts = after.contacts
-        for i in range(len(contacts.gap)):
-            if contacts.slipped[i] == 0:
-                contacts.reference[i] = before.reference[i]
+    def faulty(march: Any, length: Any, before: Any, after: Any) -> None:
+        sound(march, length, before, after)
+        for r in range(len(after.path)):
+            if after.rows.slip[r] == 0:
+                after.path[r] = before.path[r]
 
     return faulty
 

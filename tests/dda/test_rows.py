@@ -1,0 +1,262 @@
+"""The contact problem of a step: the one solution of frictionless contact, states of friction, where there is none."""
+
+import math
+
+import numpy as np
+import pytest
+
+from dda.contact import rows
+from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, NONE, SEVERAL, UPPER, Flexibility, Laws, Rows
+
+
+def laws_of(contacts, m, compliance, cohesion=math.inf, **changes):
+    """Return contacts that open, and rows along the base that carry up to the cohesion beside friction."""
+    across = np.arange(m) < contacts
+    lower = np.where(across, 0.0, -cohesion)
+    upper = np.where(across, math.inf, cohesion)
+    slips = math.isfinite(cohesion)
+    numbers = (np.broadcast_to(compliance, m), lower, upper, across.astype(int), 0.0, slips, False, False, False)
+    return Laws(contacts, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
+
+
+def solved(laws, W, q, before=None, paired=None, pair=None):
+    """Return outcome, solves and the rows at the end of a step."""
+    m = len(q)
+    before = before or rows.rows_of(np.zeros(m), np.zeros(m))
+    after = rows.rows_of(np.zeros(m), np.zeros(m))
+    work = rows.work_for(laws.contacts, m, laws.banded)
+    work.q[:] = q
+    if pair is not None:
+        work.pair[:] = pair
+    W = np.array(W, dtype=float)
+    flexible = Flexibility(W, W if paired is None else paired, np.ones(1))
+    return *rows.find(laws, before, flexible, after, work), after
+
+
+def positive(rng, m, least):
+    """Return a random flexibility."""
+    A = rng.standard_normal((m, m))
+    return A @ A.T + least * np.eye(m)
+
+
+@pytest.mark.parametrize("together", [1, 6])
+@pytest.mark.parametrize("n", [1, 2, 7])
+def test_frictionless_contact_always_finds_the_one_solution(n, together):
+    """Random problems, set all at once or one at a time: 0 <= N, w = w_f + W N = -c N where N > 0."""
+    rng = np.random.default_rng(1)
+    more = 0
+    for _ in range(60):
+        W = positive(rng, n, 0.02)
+        gap = rng.standard_normal(n)
+        c = 1 / rng.uniform(0.5, 50.0)
+        outcome, solves, after = solved(laws_of(n, n, c, together=together), W, gap)
+        closed = after.state == INSIDE
+        assert outcome == FOUND and np.all(after.force >= 0) and np.all(after.opening[~closed] >= 0)
+        assert np.all(after.force[~closed] == 0) and np.allclose(gap + W @ after.force, after.opening, atol=1e-10)
+        assert np.array_equal(after.opening[closed], -after.force[closed] * c)
+        more += solves > together
+    assert more > 15 or together == 6
+    assert n > 2 or together == 1 or more == 0
+
+
+CYCLES = [
+    ([[14.0, -14.0, 13.0], [-14.0, 17.0, -12.0], [13.0, -12.0, 13.0]], [-4.0, 5.0, -2.0]),
+    ([[12.0, -10.0, -8.0], [-10.0, 13.0, 13.0], [-8.0, 13.0, 14.0]], [-5.0, 4.0, 1.0]),
+]
+
+
+@pytest.mark.parametrize(("W", "w"), CYCLES)
+def test_contacts_that_cycle_when_set_at_once_are_set_one_at_a_time(W, w):
+    laws = laws_of(3, 3, 0.05)
+    outcome, solves, after = solved(laws, W, w)
+    assert outcome == FOUND and solves > 6 and solved(laws._replace(together=40), W, w)[1] > 40  # for ever
+    assert np.all(after.force >= 0) and np.all(after.opening >= -after.force / 20.0 * (1 + 1e-14))
+    assert np.array(w) + np.array(W) @ after.force == pytest.approx(after.opening, rel=1e-12)
+    for most in (3, 7):  # of them, set at once and one at a time
+        assert solved(laws._replace(most=most), W, w)[:2] == (LIMIT, most)
+
+
+# ---- bounds of other kinds, and bands --------------------------------------------------------------------------------
+
+
+def bounded(rng, m):
+    """Return rows that open beside rows with a strength, and the flexibility of a chain."""
+    opens = rng.integers(0, 2, m)
+    strength = rng.uniform(0.1, 1.0, m)
+    bounds = {
+        "lower": np.where(opens, 0.0, -strength),
+        "upper": np.where(opens, math.inf, strength),
+        "opens": opens,
+    }
+    band = np.array([rng.uniform(2.1, 4.0, m), rng.uniform(-1.0, 1.0, m)])
+    return laws_of(m, m, rng.uniform(0.0, 0.5, m), together=int(rng.integers(1, 7)), **bounds), band
+
+
+def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
+    """All rows within their bounds; z = 0 inside, of the sign that each bound allows beyond."""
+    rng = np.random.default_rng(2)
+    seen = set()
+    for _ in range(60):
+        m = int(rng.integers(2, 12))
+        laws, band = bounded(rng, m)
+        W = np.diag(band[0]) + np.diag(band[1, :-1], 1) + np.diag(band[1, :-1], -1)
+        q = 2 * rng.standard_normal(m)
+        start = np.where(laws.opens == 1, rng.integers(-1, 1, m), rng.integers(-1, 2, m))
+        before = rows.rows_of(np.zeros(m), start)
+        outcome, _, full = solved(laws, W, q, before)
+        in_band, _, after = solved(laws._replace(banded=True), band, q, before)
+        assert outcome == in_band == FOUND and np.array_equal(full.state, after.state)
+        for one, other in zip(full[1:], after[1:], strict=True):
+            assert np.max(np.abs(one - other)) < 1e-13 * np.max(np.abs(q))
+        z = q + W @ full.force + laws.compliance * full.force
+        inside = full.state == INSIDE
+        assert np.max(np.abs(z[inside]), initial=0.0) < 1e-13 * np.max(np.abs(q))
+        assert np.all(z[~inside] * full.state[~inside] <= 0)
+        slips = (laws.opens == 0) & ~inside
+        assert full.slip == pytest.approx(np.where(slips, z, 0.0), rel=1e-13)
+        seen |= {*zip(laws.opens.tolist(), full.state.tolist(), strict=True)}
+    assert seen == {(1, LOWER), (1, INSIDE), (0, LOWER), (0, INSIDE), (0, UPPER)}
+
+
+# ---- friction --------------------------------------------------------------------------------------------------------
+
+
+def three(**changes):
+    """Return three rough contacts that were pressed, and the flexibility of a step."""
+    pressed = np.array([1e5] * 3 + [0.0] * 3)
+    before = Rows(np.full(6, INSIDE), -pressed / 1e9, pressed, np.zeros(6))
+    compliance = np.repeat([1e-9, 2.5e-9], 3)
+    return laws_of(3, 6, compliance, 0.0, friction=0.5)._replace(**changes), before, 1e-9 * (np.eye(6) + 0.1)
+
+
+GAPS = [-1e-4, -2e-4, 5e-4]
+
+
+@pytest.mark.parametrize(("way", "cohesion", "state"), [(1e-3, 0.0, LOWER), (-1e-3, 0.0, UPPER), (1e-3, 1e6, INSIDE)])
+def test_contacts_stick_slip_and_open_at_once(way, cohesion, state):
+    laws, before, W = three()
+    laws.upper[3:] = cohesion
+    outcome, _, after = solved(laws, W, [*GAPS, way, way, way], before)
+    normal, shear = np.split(after.force, 2)
+    assert outcome == FOUND and after.state.tolist() == [INSIDE, INSIDE, LOWER, state, state, INSIDE]
+    limit = (0.5 * normal + cohesion) * (normal > 0)
+    assert np.all(np.abs(shear) <= limit * (1 + 1e-12)) and np.all(normal[:2] > 0)
+    slips = after.slip[3:5]
+    assert np.all(slips * way > 0) if state else np.all(slips == 0)
+    moved = np.array([*GAPS, way, way, way]) + W @ after.force
+    assert after.opening[:3] == pytest.approx(moved[:3], rel=1e-12)
+    assert slips + after.opening[3:5] == pytest.approx(moved[3:5], rel=1e-12)
+
+
+def test_one_by_one_finds_what_all_at_once_finds(monkeypatch):
+    laws, before, W = three()
+    q = [*GAPS, 1e-3, 1e-3, 1e-3]
+    whole = solved(laws, W, q, before)
+    monkeypatch.setattr(rows, "TRIED", 1)
+    singly = solved(laws._replace(together=1), W, q, before)
+    assert singly[0] == FOUND and singly[1] > 1
+    assert singly[2].force == pytest.approx(whole[2].force, rel=1e-12)
+
+
+def never_agrees(laws, flexible, after, work, r, slack):
+    return LOWER if work.tried[r] == INSIDE else INSIDE
+
+
+def test_what_does_not_end_has_no_state_or_several(monkeypatch):
+    laws, before, W = three(together=2)
+    problem = laws, W, [*GAPS, 1e-3, 1e-3, 1e-3], before
+    monkeypatch.setattr(rows, "across", never_agrees)
+    assert solved(*problem)[:2] == (NONE, 2 + 4**3)
+    calls = []
+
+    def agrees_later(laws, flexible, after, work, r, slack):
+        calls.append(r)
+        return work.tried[r] if len(calls) > 20 else never_agrees(laws, flexible, after, work, r, slack)
+
+    monkeypatch.setattr(rows, "across", agrees_later)
+    assert solved(*problem)[:2] == (SEVERAL, 2 + 4**3)
+    monkeypatch.setattr(rows, "TRIED", 1)  # of many contacts not all states are tried: they come back
+    monkeypatch.setattr(rows, "across", never_agrees)
+    assert solved(*problem)[0] == NONE
+
+
+# ---- two contacts along one base -------------------------------------------------------------------------------------
+
+
+MEAN = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, -1, 1]])
+
+
+@pytest.mark.parametrize("p_s", [1e-3, 1.0, 1e9])
+def test_two_contacts_in_mean_and_difference_are_those_in_their_own_ways(p_s):
+    rng = np.random.default_rng(4)
+    laws = laws_of(2, 4, np.array([1e-3, 1e-3, 1 / p_s, 1 / p_s]), paired=True)
+    sticking = 0
+    for _ in range(20):
+        W = positive(rng, 4, 0.1)
+        paired = MEAN @ W @ MEAN.T
+        own = np.zeros((4, 4))
+        rows.unpair(paired, own)
+        assert np.allclose(own, W, rtol=1e-13, atol=1e-13)
+        q = np.concatenate([-1 - rng.random(2), rng.standard_normal(2)])
+        outcome, _, after = solved(laws, W, q, None, paired, (MEAN @ q)[2:])
+        if outcome == FOUND and np.all(after.state == INSIDE):
+            sticking += 1
+            size = 1e-11 * np.max(np.abs(W)) * np.max(after.force)
+            assert q + W @ after.force == pytest.approx(-laws.compliance * after.force, rel=1e-9, abs=size)
+    assert sticking > 5
+
+
+def test_a_long_rigid_motion_hides_no_difference():
+    """A mean of 1e9 m over a flexibility of 1e12 m/N, a difference of a millimetre: both keep all digits."""
+    c = 1e-6
+    mean, difference = 1e9, 1e-3
+    paired = np.diag([1.0, 1.0, 1e12, 1.0])
+    W = np.zeros((4, 4))
+    rows.unpair(paired, W)
+    q = np.array([-1.0, -1.0, mean - difference / 2, mean + difference / 2])
+    _, _, after = solved(laws_of(2, 4, c, paired=True), W, q, None, paired, (mean, difference))
+    assert (after.force[3] - after.force[2]) / 2 == pytest.approx(-difference / (1 + 2 * c), rel=1e-13)
+    assert after.force[2] + after.force[3] == pytest.approx(-mean / (1e12 + c / 2), rel=1e-13)
+
+
+# ---- contacts that close ---------------------------------------------------------------------------------------------
+
+
+def closing(rng, contacts):
+    """Return a problem of open contacts that close and stick, or slip."""
+    m = 2 * contacts
+    c = np.repeat(rng.uniform(0.1, 1.0, 2), contacts)
+    before = rows.rows_of(np.concatenate([rng.uniform(0.1, 1.0, contacts), np.zeros(contacts)]), np.full(m, INSIDE))
+    before.state[:contacts] = LOWER
+    q = np.concatenate([rng.uniform(-4.0, -2.0, contacts), rng.uniform(-1.0, 1.0, contacts)])
+    return c, before, q, positive(rng, m, 0.3)
+
+
+@pytest.mark.parametrize("contacts", [1, 2, 3])
+@pytest.mark.parametrize("cohesion", [math.inf, 0.01])
+def test_a_contact_that_closes_slides_freely_up_to_its_crossing(contacts, cohesion):
+    """Its way in contact is the share w1 / (w1 - w0) of that of the step: stretch, and slip beyond its bound."""
+    rng = np.random.default_rng(contacts)
+    done = 0
+    for _ in range(40):
+        c, before, q, W = closing(rng, contacts)
+        outcome, _, after = solved(laws_of(contacts, 2 * contacts, c, cohesion), W, q, before)
+        ways = np.arange(contacts, 2 * contacts)
+        closed = after.state[:contacts] == INSIDE
+        if outcome != FOUND or not np.all(closed):
+            continue
+        done += 1
+        w0, w1 = before.opening[:contacts], after.opening[:contacts]
+        share = w1 / (w1 - w0)
+        free = (q + W @ after.force)[ways]
+        assert np.all((share > 0) & (share < 1))
+        assert after.opening[ways] + after.slip[ways] == pytest.approx(share * free, rel=1e-9, abs=1e-12)
+        assert np.all(np.abs(after.force[ways]) <= cohesion)
+        assert np.array_equal(after.slip[ways] == 0, after.state[ways] == INSIDE)
+    assert done > 10
+
+
+def test_a_crossing_that_is_not_found_is_no_number(monkeypatch):
+    c, before, q, W = closing(np.random.default_rng(1), 2)
+    monkeypatch.setattr(rows, "CROSSING_STEPS", 1)
+    assert np.isnan(solved(laws_of(2, 4, c), W, q, before)[2].force[:2]).all()

@@ -1,0 +1,262 @@
+"""The bodies of `dda` over contacts that open, for tests of what every one must obey, whatever its law and scheme.
+
+A kind of body tells how a history of it is made and what is known of it without `dda`; `CASES` names bodies with their
+laws, rules of contact and schemes. Another body is a kind and its cases.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from oracles.frictional import rubbing_model, shaken
+from oracles.rolling import random_rolling
+from oracles.unilateral_checks import DT, random_model
+
+import dda.one_block.unilateral as one_block
+import dda.rotation.solution as rotation
+from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme
+from dda.march.compiled import run_loop
+from dda.march.step import steps_by
+from dda.one_block.natural_modes import free_modes
+from dda.rotation.solution import RollingOptions
+
+
+@dataclass(frozen=True)
+class Case:
+    """A body, how it is stepped, and what is known of it."""
+
+    kind: type
+    model: Any
+    scheme: Scheme
+    options: dict[str, Any]
+    steps: int
+
+    @property
+    def rule(self) -> str:
+        """Rule of contact."""
+        return self.options.get("rule", "newmark")
+
+    def run(self, steps=None, model=None):
+        """Return the history of so many steps, of another model."""
+        return self.kind.solve(model or self.model, self.scheme, steps or self.steps, self.options)
+
+
+def pressed_edge(model):
+    """Return the length of the top edge, and of the part of it that is pressed [m]."""
+    start, end = model.block.edge(model.top)
+    length = float(np.hypot(*(end - start)))
+    return length, length - 2 * abs(model.load.eccentricity)
+
+
+def resultant(model):
+    """Return the loads in x and y of the block's own coordinates [N]."""
+    length, pressed = pressed_edge(model)
+    weight = model.block.material.density * model.block.section.area * model.load.gravity
+    right, up = model.load.falling
+    return np.array([model.load.traction * length + weight * right, -model.load.pressure * pressed + weight * up])
+
+
+def mirrored_load(model):
+    """Return block and load of the mirror image about x = 0; the base stays the first edge."""
+    count = len(model.block.corners)
+    order = [1, 0, *range(count - 1, 1, -1)]
+    block = Block((model.block.corners * [-1, 1])[order], model.block.material)
+    load = model.load
+    motion = load.motion and BaseMotion(load.motion.time, load.motion.displacement * np.array([-1, 1]))
+    turned = {name: -getattr(load, name) for name in ("eccentricity", "traction", "slope")}
+    return order, {"block": block, "load": replace(load, motion=motion, **turned), "top": count - model.top}
+
+
+class OneBlock:
+    """A block whose corners M and N open: its base lies along x."""
+
+    owner: ModuleType = one_block
+
+    @staticmethod
+    def solve(model, scheme, steps, options):
+        return one_block.solve_unilateral(model, scheme, steps, options=UnilateralOptions(energies=True, **options))
+
+    @staticmethod
+    def velocities(model, result):
+        """Return the velocity of the centroid from t = 0 on, along and away from the base."""
+        return np.array([[0.0, *result.horizontal_velocity], [model.velocity, *result.velocity]])
+
+    @staticmethod
+    def first_energy(model, result):
+        return model.block.material.density * model.block.section.area * model.velocity**2 / 2
+
+    @staticmethod
+    def loads(model):
+        return resultant(model)
+
+    @staticmethod
+    def base_at(model, time):
+        return model.load.motion.at([time])[0]
+
+    @staticmethod
+    def mirrored(model):
+        """Return the mirror image, and where its contacts are among those of the body."""
+        _, changes = mirrored_load(model)
+        return replace(model, **changes), [1, 0]
+
+    @staticmethod
+    def gap_rates(model, scheme, result):
+        """Return w' from t = 0 on, (contacts, steps + 1)."""
+        form = model.form()
+        c = form.contacts
+        n = len(form.unknowns)
+        _, shapes = free_modes(form.M, form.K)
+        return form.B[:c] @ shapes @ result.history.motion[:, n : 2 * n].T / scheme.step
+
+
+class TurningBlock:
+    """A block that turns by any angle; its contacts are all corners, its axes those of the base."""
+
+    owner: ModuleType = rotation
+
+    @staticmethod
+    def solve(model, scheme, steps, options):
+        return rotation.solve_rolling(model, scheme, steps, options=RollingOptions(**options))
+
+    @staticmethod
+    def velocities(model, result):
+        return result.motion.V[:, :2].T
+
+    @staticmethod
+    def first_energy(model, result):
+        V = np.array([*(model.body.to_base @ model.velocity), model.spin, 0.0, 0.0, 0.0])
+        return V @ model.body.M @ V / 2
+
+    @staticmethod
+    def loads(model):
+        return model.body.to_base @ resultant(model)
+
+    @staticmethod
+    def base_at(model, time):
+        return model.body.to_base @ model.load.motion.at([time])[0]
+
+    @staticmethod
+    def mirrored(model):
+        order, changes = mirrored_load(model)
+        thrown = {"tilt": -model.tilt, "spin": -model.spin, "velocity": (-model.velocity[0], model.velocity[1])}
+        return replace(model, **changes, **thrown), order
+
+
+# ---- cases -----------------------------------------------------------------------------------------------------------
+
+NEWMARK = [
+    Scheme(0.5, 1.0, 1.0, DT),
+    Scheme(0.25, 0.5, 1.0, DT, "consistent"),
+    Scheme(0.3025, 0.6, 0.97, DT),
+    Scheme(0.7, 0.8, 0.99, DT),
+]
+CONSTANT, AVERAGE = NEWMARK[:2]
+
+
+def with_law(model, **changes):
+    return replace(model, contact=replace(model.contact, **changes))
+
+
+def landed(model):
+    """Return the block as it meets its base, for short histories."""
+    return replace(with_law(model, gap=0.0), velocity=-0.5)
+
+
+def dashpots(seed):
+    """Return a block on dashpots of a twentieth of the critical damping, three tenths, or more than it."""
+    model = random_model(seed, glued=False)
+    mass = model.block.material.density * model.block.section.area
+    return with_law(model, damping=(0.05, 0.3, 1.2)[seed % 3] * math.sqrt(model.contact.stiffness * mass))
+
+
+def on_shaken_base(model, seed):
+    return replace(model, motion=shaken(np.random.default_rng(seed)))
+
+
+def block_case(model, scheme, steps=150, **options):
+    return Case(OneBlock, model, scheme, options, steps)
+
+
+def turning_case(seed, scheme=None, steps=120, model=None, **options):
+    """Return a thrown block: frictionless, bonded or rough by its seed."""
+    made, dt = random_rolling(seed)
+    made = with_law(made, gap=made.contact.gap / 100)  # it lands soon
+    scheme = scheme or Scheme(0.5, 1.0, 0.98 if seed % 5 == 0 else 1.0, dt, "consistent" if seed % 2 else "zero")
+    return Case(TurningBlock, model(made) if model else made, replace(scheme, step=max(dt, 4e-3)), options, steps)
+
+
+def of_scheme(name, gg=0.99, **values):
+    """Return a scheme by name, at a step that a stiff contact allows."""
+    return named_scheme(name, step=DT / 10 if name == "leapfrog" else DT, gg=gg, **values)
+
+
+STIFF = [1e14, 1e18, 1e22, math.inf]
+CASES: dict[str, Callable[[int], Case]] = {
+    "frictionless": lambda seed: block_case(random_model(seed, glued=False), NEWMARK[seed % 4]),
+    "bonded": lambda seed: block_case(random_model(seed, glued=True), NEWMARK[seed % 4]),
+    "stiff": lambda seed: block_case(with_law(random_model(seed, glued=True), stiffness=STIFF[seed % 4]), CONSTANT),
+    "long steps": lambda seed: block_case(random_model(seed, glued=True), Scheme(0.5, 1.0, 1.0, 8e-3), 60),
+    "explicit": lambda seed: block_case(landed(random_model(seed)), Scheme(0.0, 0.5 + seed % 2 / 2, 0.97, 2e-6), 300),
+    "rough": lambda seed: block_case(rubbing_model(seed), NEWMARK[seed % 4]),
+    "rough at delta one": lambda seed: block_case(
+        rubbing_model(seed), replace(CONSTANT, step=1e-4 * 4.0 ** (seed % 4))
+    ),
+    "rough and shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), NEWMARK[(seed + 2) % 4]),
+    "rough on a rigid stop": lambda seed: block_case(with_law(rubbing_model(seed), stiffness=math.inf), CONSTANT),
+    "lagged": lambda seed: block_case(with_law(rubbing_model(seed), rules="lagged"), CONSTANT),
+    "dead band": lambda seed: block_case(with_law(random_model(seed), band=(1e-5, 1e-6)), CONSTANT),
+    "ramp": lambda seed: block_case(replace(rubbing_model(seed), ramp=0.02), NEWMARK[seed % 4]),
+    "dashpot": lambda seed: block_case(dashpots(seed), NEWMARK[seed % 4]),
+    "dashpot in a ramp": lambda seed: block_case(replace(dashpots(seed), ramp=0.02), NEWMARK[seed % 4]),
+    "dashpot by two stages": lambda seed: block_case(dashpots(seed), of_scheme("composite")),
+    "dashpot by averages": lambda seed: block_case(dashpots(seed), of_scheme("chung-hulbert", rho_inf=0.5)),
+    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), rule="implicit"),
+    "implicit, rough": lambda seed: block_case(rubbing_model(seed), AVERAGE, rule="implicit"),
+    "implicit, shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), AVERAGE, rule="implicit"),
+    "conserving": lambda seed: block_case(
+        with_law(random_model(seed, glued=False), stiffness=[1e9, 1e11, 1e13, 1e16][seed % 4]),
+        Scheme(0.25, 0.5, 1.0 if seed % 2 else 0.97, 1e-4 * 4.0 ** (seed % 3)),
+        rule="energy-conserving",
+    ),
+    "augmented": lambda seed: block_case(
+        random_model(seed, glued=False), NEWMARK[seed % 2], rule="augmented", steps=40
+    ),
+    "impact": lambda seed: block_case(
+        with_law(random_model(seed, glued=False), stiffness=math.inf),
+        Scheme(0.5625, 1.0, 0.99, DT, "consistent"),
+        rule="impact",
+        restitution=0.3,
+    ),
+    "impact in a ramp": lambda seed: block_case(
+        with_law(replace(random_model(seed, glued=False), ramp=0.02), stiffness=math.inf),
+        AVERAGE,
+        rule="impact",
+        restitution=0.6,
+    ),
+    "rough by averages": lambda seed: block_case(rubbing_model(seed), of_scheme("chung-hulbert", rho_inf=0.6)),
+    "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
+    "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
+    "shaken by two stages": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), of_scheme("composite")),
+    "turning": turning_case,
+    "turning by averages": lambda seed: turning_case(seed, AVERAGE),
+    "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
+    "turning and shaken": lambda seed: turning_case(seed, model=lambda one: on_shaken_base(one, seed)),
+    "turning by first order": lambda seed: turning_case(seed, CONSTANT, rotation="first-order"),
+    "turning by two stages": lambda seed: turning_case(seed, named_scheme("composite", step=DT, gg=0.99)),
+}
+
+
+# ---- other steps -----------------------------------------------------------------------------------------------------
+
+
+def put_stage(patch, owner, change):
+    """Let the histories of a module be made of other stages: `change` of the one that it would take."""
+
+    def run(loop, *given):
+        held = dict(zip(loop.__code__.co_freevars, (cell.cell_contents for cell in loop.__closure__), strict=True))
+        return run_loop(steps_by(**(held | {"make_stage": change(held["make_stage"])})), *given)
+
+    patch.setattr(owner, run_loop.__name__, run)
