@@ -115,7 +115,7 @@ def solve_opening_system(
     observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
     made = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
     glue = made.method
-    nonzeros = glue.solver(made.last.numbers, 1.0).factor.nonzeros
+    nonzeros = glue.solver(made.last.numbers, 1.0).nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
     upwards = opening.velocity * equations.rigid[:, 1]
     course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)

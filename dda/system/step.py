@@ -49,7 +49,7 @@ from dda.march.step import (
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, predictor, velocity_corrector
-from dda.system.system import Equations, Factor, factor
+from dda.system.system import Equations, factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -102,9 +102,7 @@ class GluedState:
 
 def joint_flexibility(weight: float, C: csr_array, B: csr_array, inverse: Array) -> csr_array:
     """Return C + weight B s^-1 B', the matrix of the joint forces' increments."""
-    scaled = B.copy()
-    scaled.data = B.data * inverse[B.indices]
-    return C + weight * (scaled @ B.T)
+    return C + weight * (B.multiply(inverse).tocsr() @ B.T)
 
 
 class StageSolver:
@@ -121,7 +119,8 @@ class StageSolver:
         self.B = glue.equations.B
         self.still = np.zeros(self.B.shape[0])
         matrix = joint_flexibility(self.weight, glue.C, self.B, self.inverse)
-        self.factor = factor(matrix) if len(self.still) else Factor(np.copy, 0)
+        self.nonzeros = int(matrix.nnz)
+        self.solve = factor(matrix) if len(self.still) else np.copy
         self.corrections = sum(float(np.max(self.s)) > limit for limit in _STIFF)
         if len(glue.contact):
             push = self.weight * glue.scheme.step**2 * glue.contact
@@ -149,7 +148,7 @@ class StageSolver:
             if correction:
                 residual = r - self.s * x - self.weight * (self.glue.Bt @ dmu)
                 apart = push - self.B @ x + self.glue.C @ dmu
-            more = self.factor.solve(self.B @ (self.inverse * residual) - apart)
+            more = self.solve(self.B @ (self.inverse * residual) - apart)
             dmu = dmu + more
             x = x + self.inverse * (residual - self.weight * (self.glue.Bt @ more))
         return x, dmu
@@ -360,18 +359,16 @@ def strain_energy(glue: Glue, z: Array, force: Array) -> float:
 def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     """Write what is observed at the end of a step; tell whether it is finite, or without contacts, which never stop."""
     glue = march.method
-    observed = glue.observed[0] @ state.z + glue.observed[1] @ state.glue
-    if not len(glue.contact):
-        rows[number] = observed
-        return True
     lag = march.scheme.lag
-    discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
-    p = discount * state.p + lag * state.a
-    stored = []
-    if glue.energies:
-        stored = [half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)]
-    rows[number] = np.concatenate([observed, p @ glue.equations.rigid[:, :2], stored])
-    return bool(np.isfinite(state.z).all())
+    kept = [glue.observed[0] @ state.z + glue.observed[1] @ state.glue]
+    if len(glue.contact):
+        discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+        p = discount * state.p + lag * state.a
+        kept.append(p @ glue.equations.rigid[:, :2])
+        if glue.energies:
+            kept.append([half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)])
+    rows[number] = np.concatenate(kept)
+    return not len(glue.contact) or bool(np.isfinite(state.z).all())
 
 
 account = account_with(half_square, add_bulk_loss)
