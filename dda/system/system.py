@@ -92,9 +92,7 @@ class BlockSystem:
             kappa=kappa,
             C=C,
             F=shapes.T @ self._load() / (self.load_size or 1.0),
-            observers={}
-            if self.observed is None
-            else dict(zip(D_COLUMNS, self.rows_at(self.observed) @ shapes, strict=True)),
+            observers=observers,
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
         )
 
@@ -217,7 +215,7 @@ class Equations:
 
 
 def factor(matrix: csr_array, definite: bool = True) -> Callable[[Array], Array]:
-    """Return the solver of a sparse symmetric matrix; a definite one keeps its diagonal pivots and symmetric fill-in."""
+    """Return the solver of a sparse symmetric matrix; a definite one keeps diagonal pivots and symmetric fill-in."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
