@@ -24,28 +24,6 @@ def dot(a: Vector, b: Vector, n: int) -> float:
     return total
 
 
-def multiply(A: Matrix, x: Vector, n: int, m: int, y: Vector) -> None:
-    """Write the first n entries of A x, of the first m columns of A."""
-    for i in range(n):
-        y[i] = dot(A[i], x, m)
-
-
-def add_rows(A: Matrix, x: Vector, n: int, m: int, y: Vector) -> None:
-    """Add A' x to y: the first n rows of A, m entries of each."""
-    for k in range(n):
-        for i in range(m):
-            y[i] += A[k][i] * x[k]
-
-
-def quadratic(A: Matrix, x: Vector, n: int) -> float:
-    """Return x' A x."""
-    total = 0.0
-    for i in range(n):
-        for j in range(n):
-            total += x[i] * A[i][j] * x[j]
-    return total
-
-
 def copy(source: Vector, target: Vector) -> None:
     """Write a vector."""
     for i in range(len(source)):
@@ -62,15 +40,6 @@ def scale_of(diagonal: float) -> float:
     """Return a power of two, which rounds nothing, that brings a diagonal entry near one from both sides."""
     _, exponent = math.frexp(diagonal)
     return math.ldexp(1.0, -(exponent // 2))
-
-
-def invert(A: Matrix, n: int, scale: Vector, inverse: Matrix) -> None:
-    """Write the inverse of a positive definite matrix, which is lost."""
-    for i in range(n):
-        scale[i] = scale_of(A[i][i])
-        for j in range(n):
-            inverse[i][j] = 1.0 if i == j else 0.0
-    eliminate(A, inverse, scale, n, n)
 
 
 def eliminate(A: Matrix, right: Matrix, scale: Vector, size: int, columns: int) -> None:

@@ -148,7 +148,7 @@ def work_for(contacts: int, rows: int, banded: bool = False) -> Work:
 def flexibility_for(rows: int, banded: bool = False) -> Flexibility:
     """Return room for a flexibility."""
     shape = (2, rows) if banded else (rows, rows)
-    return Flexibility(np.zeros(shape), np.zeros((1, 1) if banded else shape), np.ones(1))
+    return Flexibility(np.zeros(shape), np.zeros(shape), np.ones(1))
 
 
 def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float = 1.0) -> Laws:
@@ -213,7 +213,7 @@ def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wor
         work.held[i] = laws.upper[n + i]
     for solves in range(1, laws.together + 1):
         solve(laws, before, flexible, after, work)
-        if update(laws, flexible, after, work, m, 0.0) == 0:
+        if update(laws, flexible, after, work, m) == 0:
             return FOUND, solves
         if solves == laws.most:
             return LIMIT, solves
@@ -222,26 +222,27 @@ def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wor
     return one_by_one(laws, before, flexible, after, work)
 
 
-def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int, slack: float) -> int:
-    """Set the states that disagree with forces and openings, `most` at most; return how many contacts disagree.
-
-    Parameters
-    ----------
-    slack
-        Force by which one that disagrees does so at least [N].
-    """
+def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int) -> int:
+    """Set the states that disagree with forces and openings, `most` at most; return how many contacts disagree."""
     n = laws.contacts
     tried = work.tried
-    friction = len(after.force) > n and laws.slips
+    force = after.force
+    lower = laws.lower
+    upper = laws.upper
+    damped = laws.retardation > 0
+    rows = len(force)
+    friction = rows > n and laws.slips
     wrong = 0
     for i in range(n):
         old = tried[i]
-        state = across(laws, flexible, after, work, i, slack)
+        state = old
+        if damped or old != INSIDE or not lower[i] <= force[i] <= upper[i]:
+            state = across(laws, flexible, after, work, i)
         if state != old:
             wrong += 1
             if wrong <= most:
                 tried[i] = state
-                if len(after.force) > n:
+                if rows > n:
                     tried[n + i] = INSIDE  # what opens or closes begins anew
         elif friction and state == INSIDE:
             way = along(laws, after, work, i, work.z[n + i])
@@ -252,29 +253,49 @@ def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int
     return wrong
 
 
-def across(laws: Laws, flexible: Flexibility, after: Rows, work: Work, r: int, slack: float) -> int:
-    """Return the state that its law makes of a tried row: of NaN another one where it opens, else the same."""
+def across(laws: Laws, flexible: Flexibility, after: Rows, work: Work, r: int) -> int:
+    """Return the state that its law makes of a tried row across the base."""
     if laws.retardation > 0:
         return with_dashpot(laws, flexible, after, work, r)
+    own = flexible.W[r][r] + laws.compliance[r]
     state = work.tried[r]
-    force = after.force[r]
+    return next_state(
+        state, after.force[r], work.z[r], own, laws.lower[r], laws.upper[r], laws.opens[r], laws.closing, 0.0
+    )
+
+
+def next_state(
+    state: int,
+    force: float,
+    z: float,
+    own: float,
+    lower: float,
+    upper: float,
+    opens: int,
+    closing: float,
+    slack: float,
+) -> int:
+    """Return the state that its law makes of a row: of NaN another one where it opens, else the same.
+
+    Parameters
+    ----------
+    own
+        W_rr + c of the row [m/N].
+    lower, upper, opens, closing
+        Its `Laws`.
+    slack
+        Force by which one that disagrees does so at least [N].
+    """
     if state == INSIDE:
-        if force >= laws.lower[r] - slack:
-            return UPPER if force > laws.upper[r] + slack else INSIDE
-        return LOWER if laws.opens[r] == 1 or force < laws.lower[r] else INSIDE
-    z = work.z[r]
-    own = diagonal(laws, flexible, r)
-    if laws.opens[r] == 1:
-        return INSIDE if z < laws.closing - slack * own else LOWER
+        if force >= lower - slack:
+            return UPPER if force > upper + slack else INSIDE
+        return LOWER if opens == 1 or force < lower else INSIDE
+    if opens == 1:
+        return INSIDE if z < closing - slack * own else LOWER
     if not state * z > slack * own:
         return int(state)
     alone = force - z / own  # the force that would close it alone
-    return LOWER if alone < laws.lower[r] else UPPER if alone > laws.upper[r] else INSIDE
-
-
-def diagonal(laws: Laws, flexible: Flexibility, r: int) -> float:
-    """Return W_rr + c_r."""
-    return float((flexible.W[0][r] if laws.banded else flexible.W[r][r]) + laws.compliance[r])
+    return LOWER if alone < lower else UPPER if alone > upper else INSIDE
 
 
 def along(laws: Laws, after: Rows, work: Work, i: int, slipped: float) -> int:
@@ -312,11 +333,7 @@ def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, wor
     while True:
         solve(laws, before, flexible, after, work)
         solves += 1
-        slack = 0.0  # blocks which touch in common flight have states that only rounding tells apart
-        if laws.banded:
-            for r in range(m):
-                slack = max(slack, ROUNDING * abs(after.force[r]))
-        if update(laws, flexible, after, work, 1, slack) == 0:
+        if update(laws, flexible, after, work, 1) == 0:
             return FOUND, solves
         if solves == laws.most:
             return LIMIT, solves
@@ -350,7 +367,7 @@ def every_state(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, wo
         set_states(laws, work.tried, number, choices, m)
         solve(laws, before, flexible, after, work)
         solves += 1
-        if update(laws, flexible, after, work, 0, 0.0) > 0:
+        if update(laws, flexible, after, work, 0) > 0:
             continue
         if laws.retardation > 0:
             return FOUND, solves
@@ -440,7 +457,7 @@ def lagged(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: W
         for i in range(n):
             # its own movement within the step decides whether a contact slips on
             moved = after.slip[n + i] + after.opening[n + i] - before.opening[n + i]
-            state = across(laws, flexible, after, work, i, 0.0)
+            state = across(laws, flexible, after, work, i)
             way = INSIDE
             if state == INSIDE and work.tried[i] == INSIDE:
                 way = along(laws, after, work, i, moved)
@@ -476,9 +493,7 @@ def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wo
     n = laws.contacts
     m = len(after.force)
     copy(work.tried, after.state)
-    if laws.banded:
-        solve_band(laws, flexible, after, work)
-    elif m == 1:
+    if m == 1:
         after.force[0] = 0.0
         if work.tried[0] == INSIDE:
             after.force[0] = (0.0 - work.q[0]) / (flexible.W[0][0] + laws.compliance[0])
@@ -492,12 +507,16 @@ def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wo
         solve_dense(laws, flexible, after, work, closing)
         if closing > 0:
             find_crossings(laws, before, flexible, after, work, closing)
+    compliance = laws.compliance
+    damped = laws.retardation > 0
+    tried = work.tried
+    force = after.force
     for r in range(m):
         after.slip[r] = 0.0
-        after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]  # no sum: a closed row keeps its digits
-        if work.tried[r] != INSIDE:
+        after.opening[r] = 0.0 - force[r] * compliance[r]  # no sum: a closed row keeps its digits
+        if tried[r] != INSIDE:
             write_at_bound(laws, before, flexible, after, work, r)
-        if laws.retardation > 0:
+        if damped:
             unretarded(laws, flexible, after, work, r)
 
 
@@ -532,47 +551,10 @@ def flexed(laws: Laws, flexible: Flexibility, r: int, force: Vector) -> float:
     """Return W_r lambda [m]."""
     m = len(force)
     W = flexible.W
-    if laws.banded:
-        total = W[0][r] * force[r]
-        if r > 0:
-            total += W[1][r - 1] * force[r - 1]
-        if r + 1 < m:
-            total += W[1][r] * force[r + 1]
-        return float(total)
     total = 0.0
     for s in range(m):
         total += W[r][s] * force[s]
     return float(total)
-
-
-def solve_band(laws: Laws, flexible: Flexibility, after: Rows, work: Work) -> None:
-    """Write the forces of rows that meet their neighbours only: Gauss over each run of rows inside of their bounds."""
-    m = len(after.force)
-    force = after.force
-    tried = work.tried
-    pivot = work.scale
-    right = work.first
-    own = flexible.W[0]
-    beside = flexible.W[1]
-    for r in range(m):
-        if tried[r] != INSIDE:
-            force[r] = 0.0 if laws.opens[r] == 1 else laws.lower[r] if tried[r] == LOWER else laws.upper[r]
-    for r in range(m):
-        if tried[r] != INSIDE:
-            continue
-        pivot[r] = own[r] + laws.compliance[r]
-        right[r] = 0.0 - work.q[r]
-        if r > 0:
-            if tried[r - 1] == INSIDE:
-                factor = beside[r - 1] / pivot[r - 1]
-                pivot[r] -= factor * beside[r - 1]
-                right[r] -= factor * right[r - 1]
-            else:
-                right[r] -= beside[r - 1] * force[r - 1]
-    for r in range(m - 1, -1, -1):
-        if tried[r] == INSIDE:
-            above = beside[r] * force[r + 1] if r + 1 < m else 0.0
-            force[r] = (right[r] - above) / pivot[r]
 
 
 def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, closing: int) -> None:

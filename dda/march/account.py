@@ -46,16 +46,20 @@ def add_bulk_loss(march: March, state: State, after: State, part: Part, sums: Ve
     alpha = march.last.numbers.alpha
     delta = march.last.numbers.delta
     k = march.body.k
+    z = after.z
+    a = after.a
+    z_before = state.z
+    a_before = state.a
     stiff = 0.0
     change = 0.0
     for i in range(len(k)):
-        moved = after.z[i] - state.z[i]
-        faster = after.a[i] - state.a[i]
+        moved = z[i] - z_before[i]
+        faster = a[i] - a_before[i]
         stiff += k[i] * moved * moved
         change += faster * faster / 2
         if part.begun == 0:  # A0 may be any; later a is that of the forces
-            sums[ALGORITHMIC] += (1 - delta) * moved * (state.R[i] - state.a[i]) / dt2
-    kinetic = half_square(after.a) - half_square(state.a)
+            sums[ALGORITHMIC] += (1 - delta) * moved * (state.R[i] - a_before[i]) / dt2
+    kinetic = half_square(a) - half_square(a_before)
     h2 = dt2 * part.ratio * part.ratio
     sums[ALGORITHMIC] += bulk_loss(alpha, delta, h2, stiff, kinetic / dt2 / dt2, change / dt2 / dt2)
 
@@ -87,12 +91,18 @@ def account_stage(
     prescribe(march, course, stage, part)
     room = march.room
     loads = march.body.loads
+    stored = march.body.stored
     late = stage.numbers.delta if march.scheme.newmark else 0.5
+    z = after.z
+    z_before = before.z
     for j in range(len(loads)):
-        share = (1 - late) * room.start[2 + j] + late * room.end[2 + j] - march.body.stored[j]
+        share = (1 - late) * room.start[2 + j] + late * room.end[2 + j] - stored[j]
+        load = loads[j]
         if share != 0.0:
-            for i in range(len(before.z)):
-                sums[GIVEN] += share * loads[j][i] * (after.z[i] - before.z[i])
+            given = 0.0
+            for i in range(len(z)):
+                given += load[i] * (z[i] - z_before[i])
+            sums[GIVEN] += share * given
     length = march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
     late = late if march.scheme.averages else 1.0
     add_contact_losses(march, march.laws, march.body.ground, before, after, late, length, sums)
@@ -117,36 +127,46 @@ def add_contact_losses(
     late
         Weight of the forces at the end beside those at the beginning.
     """
-    room = march.room
+    compliance = laws.compliance
+    damped = laws.retardation > 0
     n = laws.contacts
     rows = after.rows
+    old = before.rows
+    along = march.room.end[0] - march.room.start[0]
+    away = march.room.end[1] - march.room.start[1]
+    keeping = 0.0
+    switching = 0.0
     for r in range(len(rows.force)):
-        if laws.retardation == 0 and before.rows.force[r] == 0.0 and rows.force[r] == 0.0:
+        spring = old.force[r]
+        end = rows.force[r]
+        if spring == 0.0 and end == 0.0 and not damped:
             continue  # open all the while
-        force = (1 - late) * before.rows.force[r] + late * rows.force[r]
-        moved = rows.opening[r] - before.rows.opening[r] + (after.path[r] - before.path[r])
-        friction = 0.0 - rows.force[r] * rows.slip[r]
-        spring = spring_force(laws, before.rows, r)
-        end = spring_force(laws, rows, r)
-        lost = laws.compliance[r] * (spring * spring - end * end) / 2 - force * moved - friction
-        if laws.retardation > 0:
+        force = (1 - late) * spring + late * end
+        moved = rows.opening[r] - old.opening[r] + (after.path[r] - before.path[r])
+        friction = 0.0 - end * rows.slip[r]
+        if damped:
+            spring = spring_force(laws, old, r)
+            end = spring_force(laws, rows, r)
+        lost = compliance[r] * (spring * spring - end * end) / 2 - force * moved - friction
+        if damped:
             dashpot = ((1 - late) * spring + late * end - force) * moved
             lost -= dashpot
             sums[CONTACT] += dashpot
         contact = r if r < n else r - n
-        keeps_state = before.rows.state[contact] == rows.state[contact]
-        sums[ALGORITHMIC if keeps_state else SWITCHING] += lost
+        if old.state[contact] == rows.state[contact]:
+            keeping += lost
+        else:
+            switching += lost
         sums[FRICTION] += friction
-        for axis in range(2):
-            sums[GIVEN] += force * ground[r][axis] * (room.end[axis] - room.start[axis])
+        sums[GIVEN] += force * (ground[r][0] * along + ground[r][1] * away)
         sums[IMPULSE] += length * force * ground[r][1]
+    sums[ALGORITHMIC] += keeping
+    sums[SWITCHING] += switching
 
 
 def spring_force(laws: Laws, rows: Rows, r: int) -> float:
-    """Return the force of the spring of a row, without that of a dashpot beside it [N]."""
-    if laws.retardation > 0:
-        return float(max(0.0 - rows.opening[r], 0.0) / laws.compliance[r])
-    return float(rows.force[r])
+    """Return the force of the spring of a row that has a dashpot beside it [N]."""
+    return float(max(0.0 - rows.opening[r], 0.0) / laws.compliance[r])
 
 
 account = account_with(half_square, add_bulk_loss)

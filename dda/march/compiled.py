@@ -222,6 +222,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
     except Exception:  # not installed, or not for this Python
         return None
     direct = called_by(functions[0])
+    direct = direct + [part for one in direct if isinstance(one, FunctionType) for part in called_by(one)]
     for function in functions:
         if function is not loop and function not in _jitable:
             # what the loop itself calls takes whole histories, whose arrays are not to be passed on at every step;

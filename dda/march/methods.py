@@ -22,12 +22,12 @@ from dda.march.step import (
     begin_step,
     keep_modes,
     length_of,
-    load_of,
     moved_row,
     prescribe,
     push_modes,
     stage_with,
     steps_by,
+    write_loads,
 )
 
 FAR = 1e300  # m/s, of a contact that no impulse reaches
@@ -139,8 +139,9 @@ def make_impact_stage(
     prescribe(march, course, stage, part)
     begin_step(march, start, length)
     mean_loads(march, theta)
+    write_loads(body.loads, room.end, room.load)
     for i in range(len(body.k)):
-        held = load_of(march, i) - body.k[i] * (before.z[i] + theta * room.p[i])
+        held = room.load[i] - body.k[i] * (before.z[i] + theta * room.p[i])
         room.x[i] = length.inverse[i] * h * h * held
     rows = after.rows
     for r in range(len(rows.force)):

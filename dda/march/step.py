@@ -36,6 +36,7 @@ from dda.contact.dense import Matrix, Vector, copy, copy_matrix
 from dda.contact.rows import (
     FOUND,
     INSIDE,
+    LIMIT,
     NONE,
     OVERFLOW,
     UNREACHED,
@@ -119,6 +120,7 @@ class Room(NamedTuple):
     a: Vector
     R: Vector
     x: Vector  # (n,) increments without contact forces
+    load: Vector  # (n,) loads at the end of the stage
     pushed: Vector  # (n,) B' lambda
     free: Vector  # (m,) what the step without forces adds to the openings
     force: Vector  # (m,) forces in the coordinates of the body
@@ -196,7 +198,7 @@ def march(
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((5, n)), *np.zeros((2, m))
+    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((6, n)), *np.zeros((2, m))
     made = March(
         body=body,
         laws=laws,
@@ -327,9 +329,9 @@ def moved_row(body: Body, r: int, x: Vector) -> float:
 
 def push_modes(march: March, force: Vector) -> None:
     """Write B' lambda."""
-    room = march.room
-    for i in range(len(room.pushed)):
-        room.pushed[i] = 0.0
+    pushed = march.room.pushed
+    for i in range(len(pushed)):
+        pushed[i] = 0.0
     add_push(march, force)
 
 
@@ -345,14 +347,18 @@ def forces_of_ways(march: March, force: Vector) -> None:
 def add_push(march: March, force: Vector) -> None:
     """Add B' lambda."""
     body = march.body
-    room = march.room
+    weight = body.weight
+    mobility = body.mobility
+    pushed = march.room.pushed
+    by = march.room.force
     forces_of_ways(march, force)
     for r in range(len(force)):
-        if room.force[r] != 0.0:
-            weight = body.weight[r]
-            first = body.first[r]
-            for e in range(len(weight)):
-                room.pushed[first + e] += body.mobility[first + e] * weight[e] * room.force[r]
+        push = by[r]
+        if push != 0.0:
+            row = weight[r]
+            mode = body.first[r]
+            for e in range(len(row)):
+                pushed[mode + e] += mobility[mode + e] * row[e] * push
 
 
 def length_of(march: March, stage: StageRoom, ratio: float) -> Length:
@@ -394,67 +400,95 @@ def look_up(course: Course, time: float, out: Vector) -> None:
 
 def begin_step(march: March, start: AnyState, length: Length) -> None:
     """Write what all stages take from the start of a step; its velocity is discounted here."""
-    room = march.room
+    p = march.room.p
+    a = march.room.a
+    R = march.room.R
     ratio = length.numbers[0]
     gg = length.numbers[1]
-    for i in range(len(room.p)):
-        room.p[i] = gg * (ratio * start.p[i])
-        room.a[i] = ratio * ratio * start.a[i]
-        room.R[i] = ratio * ratio * start.R[i]
+    p_0 = start.p
+    a_0 = start.a
+    R_0 = start.R
+    for i in range(len(p)):
+        p[i] = gg * (ratio * p_0[i])
+        a[i] = ratio * ratio * a_0[i]
+        R[i] = ratio * ratio * R_0[i]
 
 
-def load_of(march: March, i: int) -> float:
-    """Return the load of a mode at the end of the stage."""
-    loads = march.body.loads
-    total = 0.0
+def write_loads(loads: Matrix, shares: Vector, out: Vector) -> None:
+    """Write the loads of all modes by the shares of each, which come after the base's displacement."""
+    for i in range(len(out)):
+        out[i] = 0.0
     for j in range(len(loads)):
-        total += march.room.end[2 + j] * loads[j][i]
-    return total
+        share = shares[2 + j]
+        load = loads[j]
+        if share != 0.0:
+            for i in range(len(out)):
+                out[i] += share * load[i]
 
 
 def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState) -> None:
-    """Write the increments of the modes in a stage without contact forces."""
+    """Write the loads at the end of a stage, and the increments of the modes in it without contact forces."""
     room = march.room
     numbers = stage.numbers
+    alpha = numbers.alpha
     k = march.body.k
+    x = room.x
+    p_0 = room.p
+    a_0 = room.a
+    R_0 = room.R
+    z = before.z
+    p = before.p
+    a = before.a
+    load = room.load
+    inverse = length.inverse
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
+    write_loads(march.body.loads, room.end, load)
     for i in range(len(k)):
-        held = inertia_force(numbers, h2 * (load_of(march, i) - k[i] * before.z[i]), room.R[i], room.a[i])
-        moving = predictor(numbers, room.p[i], room.a[i], ratio * before.p[i], ratio * ratio * before.a[i])
-        room.x[i] = length.inverse[i] * (moving + numbers.alpha * held)
+        held = inertia_force(numbers, h2 * (load[i] - k[i] * z[i]), R_0[i], a_0[i])
+        moving = predictor(numbers, p_0[i], a_0[i], ratio * p[i], ratio * ratio * a[i])
+        x[i] = inverse[i] * (moving + alpha * held)
 
 
 def free_rows(march: March, before: AnyState) -> None:
     """Write the openings at the end of a stage without contact forces."""
     body = march.body
     room = march.room
-    work = march.work
+    ground = body.ground
+    free = room.free
+    x = room.x
+    q = march.work.q
     opening = before.rows.opening
-    for r in range(len(room.free)):
-        moved = moved_row(body, r, room.x)
-        if not (march.laws.paired and r == 3):  # a base that moves leaves the difference of two ways alone
-            for axis in range(2):
-                moved -= body.ground[r][axis] * (room.end[axis] - room.start[axis])
-        room.free[r] = moved
-    if march.laws.paired:
-        mean = room.free[2]
-        difference = room.free[3]
-        work.pair[0] = mean + (opening[2] + opening[3]) / 2
-        work.pair[1] = difference + (opening[3] - opening[2])
-        room.free[2] = mean - difference / 2
-        room.free[3] = mean + difference / 2
-    for r in range(len(room.free)):
-        work.q[r] = opening[r] + room.free[r]
+    paired = march.laws.paired
+    along = room.end[0] - room.start[0]
+    away = room.end[1] - room.start[1]
+    for r in range(len(free)):
+        moved = moved_row(body, r, x)
+        if not (paired and r == 3):  # a base that moves leaves the difference of two ways alone
+            moved -= ground[r][0] * along
+            moved -= ground[r][1] * away
+        free[r] = moved
+    if paired:
+        mean = free[2]
+        difference = free[3]
+        march.work.pair[0] = mean + (opening[2] + opening[3]) / 2
+        march.work.pair[1] = difference + (opening[3] - opening[2])
+        free[2] = mean - difference / 2
+        free[3] = mean + difference / 2
+    for r in range(len(free)):
+        q[r] = opening[r] + free[r]
 
 
 def retard(march: March, stage: StageRoom, length: Length, before: State) -> None:
     """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
     body = march.body
     room = march.room
+    ratio = length.numbers[0]
     h = length.numbers[2]
     for i in range(len(body.k)):
-        room.pushed[i] = motion_at_end(march, stage, length, before, before.z[i] + room.x[i], 0.0, i)[2]
+        force = h * h * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
+        a = inertia_force(stage.numbers, force, room.R[i], room.a[i])
+        room.pushed[i] = velocity_corrector(stage.numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
     for r in range(len(room.free)):
         rate = moved_row(body, r, room.pushed) / h
         for axis in range(2):
@@ -464,36 +498,43 @@ def retard(march: March, stage: StageRoom, length: Length, before: State) -> Non
         march.work.q[r] += march.work.late[r]
 
 
-def motion_at_end(
-    march: March, stage: StageRoom, length: Length, before: AnyState, z: float, pushed: float, i: int
-) -> tuple[float, float, float]:
-    """Return h^2 R, h^2 a and h v of a mode at the end of a stage, where it is at z under h^2 B' lambda = `pushed`."""
-    room = march.room
-    numbers = stage.numbers
-    ratio = length.numbers[0]
-    h2 = length.numbers[2] * length.numbers[2]
-    R = h2 * (load_of(march, i) - march.body.k[i] * z) + pushed
-    a = inertia_force(numbers, R, room.R[i], room.a[i])
-    return R, a, velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
-
-
 def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, after: AnyState) -> None:
     """Write the modes at the end of a stage under the forces `room.pushed`."""
     room = march.room
+    numbers = stage.numbers
+    averages = march.scheme.averages
+    k = march.body.k
+    x = room.x
+    p_0 = room.p
+    a_0 = room.a
+    R_0 = room.R
+    load = room.load
+    pushed = room.pushed
+    z_before = before.z
+    a_before = before.a
+    inverse = length.inverse
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     weight = length.numbers[3]
-    for i in range(len(room.x)):
-        z = before.z[i] + room.x[i] + weight * length.inverse[i] * room.pushed[i]
-        pushed = h2 * room.pushed[i]
-        own = pushed if march.scheme.averages else 0.0  # what of it enters a
-        R, a, p = motion_at_end(march, stage, length, before, z, own, i)
-        if not march.scheme.averages:
-            p += pushed
-        after.z[i] = z
-        after.R[i] = R / (ratio * ratio)
-        after.a[i] = a / (ratio * ratio)
-        after.p[i] = p / ratio
+    per_length = 1 / ratio
+    per_square = per_length * per_length
+    z_end = after.z
+    R_end = after.R
+    a_end = after.a
+    p_end = after.p
+    for i in range(len(x)):
+        z = z_before[i] + x[i] + weight * inverse[i] * pushed[i]
+        R = h2 * (load[i] - k[i] * z)
+        if averages:
+            R += h2 * pushed[i]
+        a = inertia_force(numbers, R, R_0[i], a_0[i])
+        p = velocity_corrector(numbers, p_0[i], a_0[i], ratio * ratio * a_before[i], a)
+        if not averages:
+            p += h2 * pushed[i]
+        z_end[i] = z
+        R_end[i] = R * per_square
+        a_end[i] = a * per_square
+        p_end[i] = p * per_length
 
 
 def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyState) -> None:
@@ -542,8 +583,23 @@ def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int,
 # ---- the steps -------------------------------------------------------------------------------------------------------
 
 
+def keep_rows(march: March, state: AnyState, history: History, number: int) -> None:
+    """Write the rows at the end of a step."""
+    rows = state.rows
+    n = len(rows.force) - history.path.shape[1]
+    for r in range(len(rows.force)):
+        history.force[number, r] = rows.force[r]
+        history.opening[number, r] = rows.opening[r]
+        history.state[number, r] = rows.state[r]
+        if r >= n:
+            history.path[number, r - n] = state.path[r]
+
+
 def steps_by(
-    make_stage: Callable[..., tuple[int, int]], account: Callable[..., None], keep: Callable[..., bool]
+    make_stage: Callable[..., tuple[int, int]],
+    account: Callable[..., None],
+    keep: Callable[..., bool],
+    keep_rows: Callable[..., None] = keep_rows,
 ) -> Callable[..., tuple[int, int]]:
     """Return the loop over the steps of a body.
 
@@ -556,6 +612,8 @@ def steps_by(
         Adds what the part of a step that was made last loses to the sums: (march, state, after, course, part, sums).
     keep
         Writes the state at the end of a step into a row, (march, state, rows, number), and tells whether it is finite.
+    keep_rows
+        Writes what is kept of the rows of contact, (march, state, history, number).
     """
 
     def make_steps(
@@ -567,7 +625,7 @@ def steps_by(
         the interval follows, so that every interval ends at its own time.
         """
         keep(march, state, history.motion, 0)
-        keep_rows(state, history, 0)
+        keep_rows(march, state, history, 0)
         scheme = march.scheme
         for number in range(steps):
             row = number + 1
@@ -579,19 +637,19 @@ def steps_by(
             while True:
                 part = Part(number + (1.0 - remainder), ratio)
                 outcome = NONE
-                solves = 0
                 if scheme.lag == 0 or ratio == 1.0:  # a velocity of half a step before goes on in equal steps only
-                    outcome = FOUND
                     before = state
-                    if scheme.stages == 2:
-                        outcome, solves = make_stage(march, march.first, state, before, march.between, course, part)
-                        before = march.between
+                    for place in range(scheme.stages):
+                        is_last = place + 1 == scheme.stages
+                        stage = march.last if is_last else march.first
+                        end = after if is_last else march.between
+                        outcome, solves = make_stage(march, stage, state, before, end, course, part)
                         history.solves[row] += solves
-                    if outcome == FOUND:
-                        outcome, solves = make_stage(march, march.last, state, before, after, course, part)
-                        history.solves[row] += solves
+                        if outcome != FOUND:
+                            break
+                        before = end
                 if outcome != FOUND:
-                    if ratio <= SHORTEST or outcome == UNREACHED:
+                    if ratio <= SHORTEST or outcome in (UNREACHED, LIMIT):
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1
@@ -610,22 +668,10 @@ def steps_by(
                 ratio = remainder
             if not keep(march, state, history.motion, row):
                 return number, OVERFLOW
-            keep_rows(state, history, row)
+            keep_rows(march, state, history, row)
         return steps, FOUND
 
     return make_steps
-
-
-def keep_rows(state: State, history: History, number: int) -> None:
-    """Write the rows at the end of a step."""
-    rows = state.rows
-    n = len(rows.force) - history.path.shape[1]
-    for r in range(len(rows.force)):
-        history.force[number, r] = rows.force[r]
-        history.opening[number, r] = rows.opening[r]
-        history.state[number, r] = rows.state[r]
-        if r >= n:
-            history.path[number, r - n] = state.path[r]
 
 
 def keep_modes(march: March, state: State, rows: Array, number: int) -> bool:

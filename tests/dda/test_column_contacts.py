@@ -13,16 +13,18 @@ from oracles.column_checks import check_history, random_column, random_drive, ra
 
 import dda
 from dda import named_scheme
-from dda.column import contact_step, contacts
+from dda.column import contacts
 from dda.column.column import Column, Layer, Spring
-from dda.column.contact_step import ColumnWork, JointLaws, find_forces, solve_sticking, update_states
-from dda.column.contacts import ColumnOptions, solve_contact_column, step_equations
+from dda.column.contacts import ColumnOptions, observed_columns, solve_contact_column
+from dda.column.open_column import blocks_of, body_of, laws_of
 from dda.column.response import highest_frequency
 from dda.column.stepping import Drive, solve_column
-from dda.contact.kernel import FOUND
-from dda.contact.unilateral import OPEN, SLIP, STICK
+from dda.contact.band import find_in_band
+from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, UPPER, Laws, flexibility_for, rows_of, work_for
+from dda.contact.unilateral import OPEN
+from dda.march import compiled
+from dda.march.step import march
 from dda.scheme.newmark import Scheme, Start
-from dda.stepping import compiled
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
 MANY, FEW = 250, 10  # columns drawn, and those of the short set
@@ -73,8 +75,8 @@ def test_a_start_without_acceleration_leaves_average_acceleration_order_one() ->
 # ---- one solution ----------------------------------------------------------------------------------------------------
 
 
-def problem(rng: np.random.Generator, rigid: bool, adversarial: bool) -> tuple[JointLaws, np.ndarray]:
-    """Return contacts of a column and their openings without forces, often near the border of opening."""
+def problem(rng: np.random.Generator, rigid: bool, adversarial: bool) -> tuple[Laws, np.ndarray, np.ndarray]:
+    """Return the laws of contacts, their flexibility, and openings without forces, often near the border of opening."""
     n = int(rng.integers(2, 21))
     alpha = float(rng.choice([0.25, 0.5]))
     heights = np.exp(rng.uniform(-3, 3, n)) if adversarial else np.exp(rng.uniform(-0.5, 0.5, n))
@@ -84,79 +86,76 @@ def problem(rng: np.random.Generator, rigid: bool, adversarial: bool) -> tuple[J
     young = 2000 * (courant * heights / step) ** 2
     if rigid:
         young[:] = RIGID
-    blocks = layers(list(heights), [2000.0] * n, [float(E) for E in young], [0.0] * n)
+    layered = layers(list(heights), [2000.0] * n, [float(E) for E in young], [0.0] * n)
     stiffness = [RIGID if rng.random() < 0.3 else 2e9 * math.exp(rng.uniform(-3, 3)) for _ in range(n)]
-    column = unilateral(blocks, stiffness, [0.0] * n)
-    _, _, joints = step_equations(column, Scheme(alpha, 0.5, 1.0, step))
+    column = unilateral(layered, stiffness, [0.0] * n)
+    blocks = blocks_of(column, observed_columns(column, [], []))
+    laws = laws_of(column, None, bonded=False)
+    made = march(body_of(column, blocks), laws, Scheme(alpha, 0.5, 1.0, step), np.zeros(n), blocks)
+    W = made.last.whole.flexible.W
     # openings that a chosen set of forces nearly closes: contacts at the border of their states
     force = np.where(rng.random(n) < 0.6, np.exp(rng.uniform(-3, 3, n)), 0.0)
-    openings = np.where(force > 0, 0.0, rng.exponential(1e-3 if adversarial else 1.0, n) * joints.diagonal)
-    q = openings - matrix_of(joints) @ force
-    return joints, q
+    own = W[0] + laws.compliance
+    openings = np.where(force > 0, 0.0, rng.exponential(1e-3 if adversarial else 1.0, n) * own)
+    return laws, W, openings - matrix_of(laws, W) @ force
 
 
-def matrix_of(joints: JointLaws) -> np.ndarray:
-    """Return C + diag(1/k)."""
-    inner = joints.coupling[1:-1]
-    return np.asarray(np.diag(joints.diagonal) + np.diag(inner, 1) + np.diag(inner, -1))
+def matrix_of(laws: Laws, W: np.ndarray) -> np.ndarray:
+    """Return W + diag(c)."""
+    return np.asarray(np.diag(W[0] + laws.compliance) + np.diag(W[1, :-1], 1) + np.diag(W[1, :-1], -1))
 
 
-def room(n: int, tried: np.ndarray) -> ColumnWork:
-    return contacts._room(n)._replace(tried=tried.copy())
-
-
-def solved(joints: JointLaws, q: np.ndarray, tried: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
+def solved(
+    laws: Laws, W: np.ndarray, q: np.ndarray, states: np.ndarray, outcome: int = FOUND
+) -> tuple[np.ndarray, np.ndarray, int]:
     """Return forces, states and the number of solves from given states."""
     n = len(q)
-    work = room(n, tried)
-    force = np.zeros(n + 1)
-    force[:n] = np.where(tried == SLIP, joints.lower, np.where(tried == -SLIP, joints.upper, 0.0))
-    force[:n][np.isinf(force[:n])] = 0.0
-    outcome, solves = find_forces(joints, 0, n, q, force, work, 0)
-    assert outcome == FOUND
-    return force[:n], work.tried, solves
+    work = work_for(n, n, banded=True)
+    work.q[:] = q
+    after = rows_of(q, states)
+    flexible = flexibility_for(n, banded=True)._replace(W=W)
+    ended, solves = find_in_band(laws, rows_of(q, states), flexible, after, work)
+    assert ended == outcome
+    return after.force, work.tried, solves
 
 
-def check_solution(joints: JointLaws, q: np.ndarray, force: np.ndarray) -> None:
+def check_solution(laws: Laws, W: np.ndarray, q: np.ndarray, force: np.ndarray) -> None:
     """Assert the conditions of the least of the convex function within its bounds: there is no other solution."""
-    z = q + matrix_of(joints) @ force
-    slack = 1e-9 * (np.abs(q).max() + joints.diagonal.max() * np.abs(force).max())
-    assert np.all((force >= joints.lower) & (force <= joints.upper))
-    assert np.all((z > -slack) | (force == joints.upper))
-    assert np.all((z < slack) | (force == joints.lower))
+    A = matrix_of(laws, W)
+    z = q + A @ force
+    slack = 1e-9 * (np.abs(q).max() + np.diag(A).max() * np.abs(force).max())
+    assert np.all((force >= laws.lower) & (force <= laws.upper))
+    assert np.all((z > -slack) | (force == laws.upper))
+    assert np.all((z < slack) | (force == laws.lower))
 
 
 @pytest.mark.parametrize("seeds", short_and_long(FEW_PROBLEMS, PROBLEMS))
 def test_no_contact_leaves_from_the_second_solve_on_and_n_plus_one_are_enough(seeds: range) -> None:
     for seed in seeds:
         rng = np.random.default_rng(seed)
-        joints, q = problem(rng, rigid=seed % 3 == 0, adversarial=seed % 2 == 0)
+        laws, W, q = problem(rng, rigid=seed % 3 == 0, adversarial=seed % 2 == 0)
         n = len(q)
-        assert np.all(joints.coupling <= 0)
-        assert np.linalg.eigvalsh(matrix_of(joints)).min() > 0
-        tried = rng.integers(0, 2, n)
-        force, _, solves = solved(joints, q, tried)
+        assert np.all(W[1] <= 0)
+        assert np.linalg.eigvalsh(matrix_of(laws, W)).min() > 0
+        states = rng.choice([LOWER, INSIDE], n)
+        force, _, solves = solved(laws, W, q, states)
         assert solves <= n + 1
-        check_solution(joints, q, force)
-        for other in (np.zeros(n, int), np.ones(n, int)):  # from any start, the same forces
-            again, _, _ = solved(joints, q, other)
+        check_solution(laws, W, q, force)
+        for other in (LOWER, INSIDE):  # from any start, the same forces
+            again, _, _ = solved(laws, W, q, np.full(n, other))
             np.testing.assert_allclose(again, force, rtol=0, atol=1e-9 * max(force.max(), 1e-300))
-        work = room(n, tried)
-        loads = np.zeros(n + 1)
-        for solve in range(solves):
-            closed = work.tried.copy()
-            solve_sticking(joints, 0, n, q, loads, work)
-            update_states(joints, 0, n, q, loads, work, True, 0.0)
-            if solve > 0:
-                assert np.all(work.tried >= closed)
+        closed = np.full(n, LOWER)
+        for limit in range(1, solves):
+            _, tried, _ = solved(laws._replace(most=limit), W, q, states, LIMIT)
+            assert limit == 1 or np.all(tried >= closed)
+            closed = tried
 
 
-def test_changing_one_state_at_a_time_ends_in_the_same_solution(monkeypatch: pytest.MonkeyPatch) -> None:
-    joints, q = problem(np.random.default_rng(3), rigid=True, adversarial=False)
+def test_changing_one_state_at_a_time_ends_in_the_same_solution() -> None:
+    laws, W, q = problem(np.random.default_rng(3), rigid=True, adversarial=False)
     n = len(q)
-    expected, _, together = solved(joints, q, np.zeros(n, int))
-    monkeypatch.setattr(contact_step, "SWEEPS", 0)
-    force, _, solves = solved(joints, q, np.ones(n, int))
+    expected, _, together = solved(laws, W, q, np.full(n, LOWER))
+    force, _, solves = solved(laws._replace(together=0), W, q, np.full(n, INSIDE))
     np.testing.assert_allclose(force, expected, rtol=0, atol=1e-9 * expected.max())
     assert solves > together
 
@@ -164,14 +163,14 @@ def test_changing_one_state_at_a_time_ends_in_the_same_solution(monkeypatch: pyt
 def test_sliders_have_one_solution_from_any_start() -> None:
     for seed in range(40):
         rng = np.random.default_rng(seed)
-        joints, q = problem(rng, rigid=seed % 2 == 0, adversarial=seed % 3 == 0)
+        laws, W, q = problem(rng, rigid=seed % 2 == 0, adversarial=seed % 3 == 0)
         n = len(q)
-        strength = np.exp(rng.uniform(-6, 1, n)) * np.abs(q).max() / joints.diagonal.max()
-        joints = joints._replace(lower=-strength, upper=strength, opens=0 * joints.opens)
+        strength = np.exp(rng.uniform(-6, 1, n)) * np.abs(q).max() / (W[0] + laws.compliance).max()
+        laws = laws._replace(lower=-strength, upper=strength, opens=0 * laws.opens)
         forces = []
         for _ in range(4):
-            force, _, solves = solved(joints, q, rng.choice([STICK, SLIP, -SLIP], n))
-            check_solution(joints, q, force)
+            force, _, solves = solved(laws, W, q, rng.choice([LOWER, INSIDE, UPPER], n))
+            check_solution(laws, W, q, force)
             assert solves <= 2 * n + 1
             forces.append(force)
         np.testing.assert_allclose(forces[1:], [forces[0]] * 3, rtol=0, atol=1e-9 * np.abs(forces[0]).max())
@@ -268,17 +267,17 @@ def test_contacts_that_never_switch_are_the_bonded_column(
 
 
 def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch: pytest.MonkeyPatch) -> None:
-    seconds = []
+    steps = []
 
-    def timed(*arguments: object) -> object:
-        seconds.append(arguments[4])
+    def counted(*arguments: object) -> object:
+        steps.append(arguments[4])
         return compiled.run_loop(*arguments)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(contacts, "run_loop", timed)
+    monkeypatch.setattr(contacts, "run_loop", counted)
     for repeats in (1, 50):
         column = unilateral(layers([1.0], [2500.0], [1e9], [0.0]), [1e9], [0.0])
         solve_contact_column(column, Scheme(0.5, 1.0, 1.0, 1e-3), still(1), options=ColumnOptions(repeats=repeats))
-    assert seconds[1] == 50 * seconds[0]
+    assert steps == [1, 50]
 
 
 def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does() -> None:
@@ -307,8 +306,8 @@ def test_compiled_and_plain_histories_are_the_same_bitwise(monkeypatch: pytest.M
         drive = random_drive(rng, scheme.instants(300), column)
         plain = run_all(column, scheme, drive)
         with monkeypatch.context() as patch:
-            patch.setattr(compiled, "is_worthwhile", lambda *_: True)
-            patch.setattr(compiled, "WORTHWHILE_KEPT", 0.0)
+            patch.setattr(compiled, "SHORT", 0)
+            patch.setattr(compiled, "LONG", 0)
             fast = run_all(column, scheme, drive)
         assert "plain" in plain.notes[0]
         assert "compiled" in fast.notes[0]
@@ -317,6 +316,7 @@ def test_compiled_and_plain_histories_are_the_same_bitwise(monkeypatch: pytest.M
         assert np.array_equal(plain.step_solves, fast.step_solves)
         assert np.array_equal(plain.states, fast.states)  # type: ignore[arg-type]
         assert np.array_equal(plain.record, fast.record)  # type: ignore[arg-type]
+        assert np.array_equal(plain.sums, fast.sums)
 
 
 # ---- at rest ---------------------------------------------------------------------------------------------------------

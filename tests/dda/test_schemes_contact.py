@@ -25,7 +25,7 @@ from dda.column.contacts import ColumnOptions, solve_contact_column
 from dda.column.response import column_response
 from dda.column.stepping import Drive, solve_column
 from dda.one_block.natural_modes import free_modes
-from dda.one_block.opening_block import opening_block, unknowns_of
+from dda.one_block.opening_block import unknowns_of
 from dda.rotation.solution import RollingModel, solve_rolling
 
 ENERGIES = UnilateralOptions(energies=True)
@@ -54,7 +54,7 @@ def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values, g
     start = -0.3 * (form.translation @ form.axes[:, 1])
     x, v, N = march(system, name, step, steps, form.start, start, gg, **truth_of(values))
     result = solve_unilateral(model, scheme_of(name, values, step, gg), steps, options=ENERGIES)
-    D = unknowns_of(opening_block(form), result.history, None, step).T
+    D = unknowns_of(form, result.history, None, step).T
     V = result.history.motion[:, 6:] @ free_modes(form.M, form.K)[1].T / step
     for found, expected in ((D, x), (V, v), (result.history.force, N)):
         assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))

@@ -18,6 +18,7 @@ from oracles.unilateral_checks import DT, random_model
 import dda.one_block.unilateral as one_block
 import dda.rotation.solution as rotation
 from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme
+from dda.march import run as made
 from dda.march.compiled import run_loop
 from dda.march.step import steps_by
 from dda.one_block.natural_modes import free_modes
@@ -105,7 +106,7 @@ class OneBlock:
     @staticmethod
     def gap_rates(model, scheme, result):
         """Return w' from t = 0 on, (contacts, steps + 1)."""
-        form = model.form()
+        form = model.reduced
         c = form.contacts
         n = len(form.unknowns)
         _, shapes = free_modes(form.M, form.K)
@@ -259,4 +260,4 @@ def put_stage(patch, owner, change):
         held = dict(zip(loop.__code__.co_freevars, (cell.cell_contents for cell in loop.__closure__), strict=True))
         return run_loop(steps_by(**(held | {"make_stage": change(held["make_stage"])})), *given)
 
-    patch.setattr(owner, run_loop.__name__, run)
+    patch.setattr(made, run_loop.__name__, run)

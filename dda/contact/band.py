@@ -1,0 +1,127 @@
+r"""The contact problem of a step of rows that meet their neighbours only, as those of a column do.
+
+It is that of `dda.contact.rows`, where W has one diagonal beside the main one and no row has friction: the least of a
+strictly convex function of the forces within bounds, which has exactly one solution. The iteration solves for the
+present states and updates all at once; where it has not ended after `Laws.together` solves, it sets the first row that
+disagrees alone (Murty 1974), which ends for every such matrix.
+"""
+
+from __future__ import annotations
+
+from dda.contact.dense import Vector, copy
+from dda.contact.rows import (
+    FOUND,
+    INSIDE,
+    LIMIT,
+    LOWER,
+    NONE,
+    ROUNDING,
+    UPPER,
+    Flexibility,
+    Laws,
+    Rows,
+    States,
+    Work,
+    next_state,
+)
+
+ONE_BY_ONE = 1000  # solves for each row with one state changed at a time, beyond any known problem
+
+
+def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+    """Find states, forces and openings at the end of a step, as `dda.contact.rows.find` does.
+
+    `flexible.W` holds the main diagonal and that beside it, (2, m).
+    """
+    m = len(before.force)
+    tried = work.tried
+    force = after.force
+    opening = after.opening
+    slip = after.slip
+    compliance = laws.compliance
+    lower = laws.lower
+    upper = laws.upper
+    opens = laws.opens
+    z = work.z
+    own = flexible.W[0]
+    beside = flexible.W[1]
+    copy(before.state, tried)
+    solves = 0
+    slack = 0.0
+    while True:
+        solve_in_band(own, beside, compliance, work.q, tried, force, lower, upper, work.scale, work.first)
+        solves += 1
+        if solves > laws.together:  # blocks which touch in common flight have states that only rounding tells apart
+            slack = 0.0
+            for r in range(m):
+                slack = max(slack, ROUNDING * abs(force[r]))
+        wrong = 0
+        for r in range(m):
+            state = tried[r]
+            if state == INSIDE:
+                if lower[r] <= force[r] <= upper[r]:
+                    continue
+            else:
+                z[r] = work.q[r] + own[r] * force[r]
+                if r > 0:
+                    z[r] += beside[r - 1] * force[r - 1]
+                if r + 1 < m:
+                    z[r] += beside[r] * force[r + 1]
+                if opens[r] == 0:
+                    z[r] += compliance[r] * force[r]
+            new = next_state(state, force[r], z[r], own[r] + compliance[r], lower[r], upper[r], opens[r], 0.0, slack)
+            if new != state and (wrong == 0 or solves <= laws.together):
+                tried[r] = new
+                wrong += 1
+        if wrong == 0:
+            break
+        if solves == laws.most:
+            return LIMIT, solves
+        if solves > laws.together + ONE_BY_ONE * (m + 1):
+            return NONE, solves
+    for r in range(m):
+        after.state[r] = tried[r]
+        opening[r] = 0.0 - force[r] * compliance[r]  # no sum: a closed row keeps its digits
+        slip[r] = 0.0
+        if tried[r] != INSIDE:
+            if opens[r] == 1:
+                opening[r] = z[r]
+            else:
+                slip[r] = z[r]
+    return FOUND, solves
+
+
+def solve_in_band(
+    own: Vector,
+    beside: Vector,
+    compliance: Vector,
+    q: Vector,
+    tried: States,
+    force: Vector,
+    lower: Vector,
+    upper: Vector,
+    pivot: Vector,
+    right: Vector,
+) -> None:
+    """Write the forces of the states `tried`: Gauss over each run of rows inside of their bounds."""
+    m = len(force)
+    for r in range(m):
+        if tried[r] != INSIDE:
+            force[r] = lower[r] if tried[r] == LOWER else upper[r]
+    last = UPPER
+    for r in range(m):
+        state = tried[r]
+        if state == INSIDE:
+            pivot[r] = own[r] + compliance[r]
+            right[r] = 0.0 - q[r]
+            if last == INSIDE and r > 0:
+                factor = beside[r - 1] / pivot[r - 1]
+                pivot[r] -= factor * beside[r - 1]
+                right[r] -= factor * right[r - 1]
+            elif r > 0:
+                right[r] -= beside[r - 1] * force[r - 1]
+        last = state
+    for r in range(m - 1, -1, -1):
+        if tried[r] == INSIDE:
+            above = beside[r] * force[r + 1] if r + 1 < m else 0.0
+            force[r] = (right[r] - above) / pivot[r]
