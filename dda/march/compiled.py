@@ -74,24 +74,25 @@ def run_loop(
         return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
 
 
-def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, Callable[[Any], Any]]:
-    """Return a function that a loop calls at every step which is not compiled itself, and what its records are held by.
+def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, tuple[Any, ...]] | None:
+    """Return the compiled code of a function that a loop in plain Python calls at every step, and records for it.
+
+    None where it is not worthwhile, or cannot be made.
 
     Parameters
     ----------
     function
         The plain function, of named tuples.
     records
-        Such ones, which show their types.
+        Such ones.
     steps
         Steps of one block that take as long.
     """
-    if steps >= SHORT:
-        converted = tuple(as_record(part) for part in records)
-        machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
-        if machine_code is not None:
-            return machine_code, as_record
-    return function, as_lists
+    if steps < SHORT:
+        return None
+    converted = tuple(as_record(part) for part in records)
+    machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
+    return None if machine_code is None else (machine_code, converted)
 
 
 def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:

@@ -187,15 +187,10 @@ class GluedBlocks:
         ValueError
             If nothing lies there.
         """
+        if start == end:
+            return self.system.rows_at(start)[:2]
         blocks = self.system.blocks
         rows = np.zeros((2, len(blocks), 6))
-        if start == end:
-            numbers = self.system.blocks_at(start)
-            if not numbers:
-                raise ValueError(f"point: must lie in a block, got {start!r}")
-            for number in numbers:
-                rows[:, number] += blocks[number].T(*start) / len(numbers)
-            return rows.reshape(2, -1)
         between = [joint for joint in self.system.joints if FIXED not in (joint.first, joint.second)]
         length = float(np.hypot(*np.subtract(end, start)))
         for number, first, last in _on_line([*_outline(blocks, between)], start, end, "edge"):

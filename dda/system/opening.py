@@ -14,7 +14,7 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import find, laws_of
+from dda.contact.rows import laws_of
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
@@ -115,7 +115,7 @@ def solve_opening_system(
     observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
     made = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
     glue = made.method
-    nonzeros = glue.solver(made.last.numbers, 1.0).factor.nonzeros
+    nonzeros = glue.solver(made.last.numbers, 1.0).nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
     upwards = opening.velocity * equations.rigid[:, 1]
     course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)
@@ -134,7 +134,7 @@ def solve_opening_system(
         springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
         return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
 
-    how = PLAIN if glue.find is find else COMPILED
+    how = COMPILED if glue.compiled else PLAIN
     return ContactResult(
         **run_fields(history, ended, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
         columns={

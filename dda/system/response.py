@@ -31,43 +31,42 @@ CLOSED = 1e-15  # share of a new vector outside the space, over the largest, bel
 
 
 class _Space:
-    """The vectors of the recursion, with what is observed of them."""
+    """The vectors of the recursion, each with what is observed of it behind its modes."""
 
     def __init__(self, equations: Equations, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
         """Begin with the static response (modes, joint forces)."""
         self.equations = equations
         self.rows = rows
-        z, force = static
-        self.size = float(np.sqrt(z @ z))
-        scale = 1 / self.size if self.size > 0 else 0.0
-        capacity = min(LARGEST, len(z)) + 1
-        self.vectors = np.empty((capacity, len(z)))
-        self.observed = np.empty((capacity, len(rows[0])))
-        self.vectors[0] = scale * z
-        self.observed[0] = scale * (rows[0] @ z + rows[1] @ force)
+        self.modes = len(equations.k)
+        first = self.observed(*static)
+        self.size = float(np.linalg.norm(static[0]))
+        self.vectors = np.empty((min(LARGEST, self.modes) + 1, len(first)))
+        self.vectors[0] = first / self.size if self.size > 0 else 0.0
         self.diagonal: list[float] = []
         self.beside: list[float] = []
         self.closed = self.size == 0
 
+    def observed(self, z: Array, force: Array) -> Array:
+        """Return modes, and what is observed of them and of the joint forces."""
+        return np.concatenate([z, self.rows[0] @ z + self.rows[1] @ force])
+
     def grow(self) -> None:
         """Add a vector."""
+        n = self.modes
         j = len(self.diagonal)
-        earlier = slice(0, j + 1)
-        z, force = self.equations.at_rest(self.vectors[j], np.zeros(len(self.equations.pressure)))
-        observed = self.rows[0] @ z + self.rows[1] @ force
+        earlier = self.vectors[: j + 1]
+        vector = self.observed(*self.equations.at_rest(earlier[j, :n], np.zeros(len(self.equations.pressure))))
         inside = 0.0
         for _ in range(2):  # twice is enough
-            part = self.vectors[earlier] @ z
-            z = z - part @ self.vectors[earlier]
-            observed = observed - part @ self.observed[earlier]
+            part = earlier[:, :n] @ vector[:n]
+            vector = vector - part @ earlier
             inside += float(part[j])
-        size = float(np.sqrt(z @ z))
+        size = float(np.linalg.norm(vector[:n]))
         self.diagonal.append(inside)
         self.beside.append(size)
-        self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == len(z)
+        self.closed = size <= CLOSED * max(self.diagonal) or j + 1 == n
         if not self.closed:
-            self.vectors[j + 1] = z / size
-            self.observed[j + 1] = observed / size
+            self.vectors[j + 1] = vector / size
 
     def grown(self, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
         """Grow until every frequency is resolved, or the space is closed or as large as allowed; answer."""
@@ -89,7 +88,7 @@ class _Space:
         last = np.abs(turned[-1] @ y)
         residual = 0.0 if self.closed else np.abs(W2) * self.beside[-1] * last
         small = RESOLVED * np.minimum(self.size, np.sqrt(np.sum(np.abs(y) ** 2, axis=0)))
-        rows = self.observed[:m].T @ turned
+        rows = self.vectors[:m, self.modes :].T @ turned
         amplitudes = rows @ y
         terms = np.abs(rows) @ np.abs(y)
         lost = np.any(np.finfo(float).eps * terms > ROUNDING * np.abs(amplitudes), axis=0)

@@ -82,17 +82,19 @@ def stepped(
     made = glued_march(equations, system.load_size, scheme, laws, none, (by_modes, by_force), False, steps)
     solvers = [made.method.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
     ready = perf_counter()
+    total = len(system.equations.k)
+    unknowns = len(equations.k)
     return linear_result(
         scheme,
         (began, ready),
         names,
         observed_steps(made, system.motion, steps),
         system.load_size,
-        unknowns=len(equations.F),
-        nonzeros=solvers[-1].factor.nonzeros,
+        unknowns=unknowns,
+        nonzeros=solvers[-1].nonzeros,
         factorisations=len(solvers),
         solves=steps * sum(1 + solver.corrections for solver in solvers),
-        notes=_savings(system, equations),
+        notes=() if unknowns == total else (f"{unknowns} of {total} unknowns kept",),
     )
 
 
@@ -101,13 +103,6 @@ def observed_steps(march: March, motion: BaseMotion | None, steps: int) -> Array
     moved = np.zeros(2) if motion is None else motion.at([0.0])[0]
     history, _ = run_glued(march, course_of(motion, 0.0), steps, np.zeros(0), 0 * march.method.k, moved)
     return history.motion[1:].T.copy()
-
-
-def _savings(system: BlockSystem, equations: Equations) -> tuple[str, ...]:
-    """Say how many unknowns were kept if not all of them."""
-    total = len(system.equations.F)
-    unknowns = len(equations.F)
-    return () if unknowns == total else (f"{unknowns} of {total} unknowns kept",)
 
 
 def static_system(system: BlockSystem) -> dict[str, float]:

@@ -20,7 +20,6 @@ dashpots together.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache, partial
 from typing import TYPE_CHECKING, Any
@@ -29,7 +28,7 @@ import numpy as np
 
 from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, find, rows_of, unpair
 from dda.march.account import account_with
-from dda.march.compiled import as_lists, called_often
+from dda.march.compiled import as_lists, as_record, called_often
 from dda.march.energy import ALGORITHMIC, bulk_loss
 from dda.march.step import (
     Body,
@@ -50,12 +49,13 @@ from dda.march.step import (
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, predictor, velocity_corrector
-from dda.system.system import Equations, Factor, factor
+from dda.system.system import Equations, factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 LENGTHS = 32  # stages whose factors are kept
+POINTS = 32  # squares of so many points take as long in plain Python as a step of one block does
 _STIFF = (1e4, 1e7)  # stiffness over inertia of a block in s from which each correction is due
 
 
@@ -73,8 +73,7 @@ class Glue:
     paired: bool  # whether two of them are the mean and the difference of two ways
     observed: tuple[Array, Array]  # (c, n) and (c, gaps) rows of what is kept of every step, by z and by dt^2 mu
     energies: bool  # whether kinetic and strain energy are kept too
-    find: Callable[..., tuple[int, int]]  # `dda.contact.rows.find`, compiled or not
-    hold: Callable[[Any], Any]  # returns records of arrays as `find` takes them
+    compiled: Any  # `dda.contact.rows.find` compiled, and records of all that it takes, or None
     lag: float  # a1/dt
     drag: float  # a0 dt
     mass_factor: float  # m
@@ -103,9 +102,7 @@ class GluedState:
 
 def joint_flexibility(weight: float, C: csr_array, B: csr_array, inverse: Array) -> csr_array:
     """Return C + weight B s^-1 B', the matrix of the joint forces' increments."""
-    scaled = B.copy()
-    scaled.data = B.data * inverse[B.indices]
-    return C + weight * (scaled @ B.T)
+    return C + weight * (B.multiply(inverse).tocsr() @ B.T)
 
 
 class StageSolver:
@@ -122,7 +119,8 @@ class StageSolver:
         self.B = glue.equations.B
         self.still = np.zeros(self.B.shape[0])
         matrix = joint_flexibility(self.weight, glue.C, self.B, self.inverse)
-        self.factor = factor(matrix) if len(self.still) else Factor(np.copy, 0)
+        self.nonzeros = int(matrix.nnz)
+        self.solve = factor(matrix) if len(self.still) else np.copy
         self.corrections = sum(float(np.max(self.s)) > limit for limit in _STIFF)
         if len(glue.contact):
             push = self.weight * glue.scheme.step**2 * glue.contact
@@ -133,7 +131,8 @@ class StageSolver:
             flexible = Flexibility(W, W.copy(), np.ones(1))
             if glue.paired:
                 unpair(flexible.paired, flexible.W)
-            self.flexible = glue.hold(flexible)
+            self.flexible = as_lists(flexible)
+            self.record = as_record(flexible) if glue.compiled else None
 
     def increments(self, r: Array, push: Array) -> tuple[Array, Array]:
         """Return x and dmu of s x + b B' dmu = r, B x - C dmu = G dy.
@@ -149,7 +148,7 @@ class StageSolver:
             if correction:
                 residual = r - self.s * x - self.weight * (self.glue.Bt @ dmu)
                 apart = push - self.B @ x + self.glue.C @ dmu
-            more = self.factor.solve(self.B @ (self.inverse * residual) - apart)
+            more = self.solve(self.B @ (self.inverse * residual) - apart)
             dmu = dmu + more
             x = x + self.inverse * (residual - self.weight * (self.glue.Bt @ more))
         return x, dmu
@@ -204,9 +203,7 @@ def glued_march(
     )
     made = march(body, laws, scheme, np.zeros(m))
     closed = made.between.rows
-    search, hold = called_often(
-        find, (laws, closed, made.last.whole.flexible, closed, made.work), steps * (laws.contacts // 2) ** 2
-    )
+    records = laws, closed, made.last.whole.flexible, closed, made.work
     dt = scheme.step
     lag = scheme.stiffness_damping / dt
     drag = scheme.mass_damping * dt
@@ -222,8 +219,7 @@ def glued_march(
         paired=laws.paired,
         observed=(observed[0], observed[1] / dt**2),
         energies=energies,
-        find=search,
-        hold=hold,
+        compiled=called_often(find, records, steps * laws.contacts**2 // POINTS),
         lag=lag,
         drag=drag,
         mass_factor=1 + scheme.delta * drag,
@@ -231,7 +227,7 @@ def glued_march(
     )
     between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
     lists: March = as_lists(made)
-    return lists._replace(laws=hold(laws), between=between, work=hold(made.work), method=glue)
+    return lists._replace(between=between, method=glue)
 
 
 def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> GluedState:
@@ -251,7 +247,7 @@ def start_state(glue: Glue, opening: Array, velocity: Array, moved: Array) -> Gl
     R = glue.load - glue.Bt @ force
     a = R if scheme.start == "consistent" else 0 * R
     p = late_momentum(scheme, scheme.step * velocity, a)
-    rows = glue.hold(rows_of(opening, np.where(opening > 0, LOWER, INSIDE)))
+    rows = as_lists(rows_of(opening, np.where(opening > 0, LOWER, INSIDE)))
     return GluedState(0 * R, p, a, R, [0.0] * len(opening), rows, force, 0 * R, R)
 
 
@@ -300,7 +296,7 @@ def make_stage(
     if len(glue.contact):
         room.x[:] = x.tolist()
         free_rows(march, before)
-        outcome, solves = glue.find(march.laws, before.rows, solver.flexible, after.rows, march.work)
+        outcome, solves = find_rows(march, solver, before.rows, after.rows)
         if outcome != FOUND:
             return outcome, solves
         end_paths(march, solver.flexible, before, after)
@@ -319,6 +315,21 @@ def make_stage(
         after.a = after.a / glue.mass_factor
         after.z = before.z + glue.share * x + (1 - glue.share) * ahead - glue.share * faster
     after.p = velocity_corrector(numbers, start.p, start.a, before.a, after.a)
+    return outcome, solves
+
+
+def find_rows(march: March, solver: StageSolver, before: Rows, after: Rows) -> tuple[int, int]:
+    """Find the contacts of a stage, by compiled code where it is at hand; lists are faster for all else."""
+    if march.method.compiled is None:
+        return find(march.laws, before, solver.flexible, after, march.work)
+    machine_code, (laws, earlier, _, later, work) = march.method.compiled
+    for name in Rows._fields:
+        getattr(earlier, name)[:] = getattr(before, name)
+    work.q[:] = march.work.q
+    work.pair[:] = march.work.pair
+    outcome, solves = machine_code(laws, earlier, solver.record, later, work)
+    for name in Rows._fields:
+        getattr(after, name)[:] = getattr(later, name).tolist()
     return outcome, solves
 
 
@@ -348,18 +359,16 @@ def strain_energy(glue: Glue, z: Array, force: Array) -> float:
 def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     """Write what is observed at the end of a step; tell whether it is finite, or without contacts, which never stop."""
     glue = march.method
-    observed = glue.observed[0] @ state.z + glue.observed[1] @ state.glue
-    if not len(glue.contact):
-        rows[number] = observed
-        return True
     lag = march.scheme.lag
-    discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
-    p = discount * state.p + lag * state.a
-    stored = []
-    if glue.energies:
-        stored = [half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)]
-    rows[number] = np.concatenate([observed, p @ glue.equations.rigid[:, :2], stored])
-    return bool(np.isfinite(state.z).all())
+    kept = [glue.observed[0] @ state.z + glue.observed[1] @ state.glue]
+    if len(glue.contact):
+        discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+        p = discount * state.p + lag * state.a
+        kept.append(p @ glue.equations.rigid[:, :2])
+        if glue.energies:
+            kept.append([half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)])
+    rows[number] = np.concatenate(kept)
+    return not len(glue.contact) or bool(np.isfinite(state.z).all())
 
 
 account = account_with(half_square, add_bulk_loss)

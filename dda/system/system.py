@@ -79,6 +79,9 @@ class BlockSystem:
         k, modes, rigid = zip(*(_free_block(block) for block in self.blocks), strict=True)
         shapes = _block_diagonal(modes)
         B, G, kappa, C = _springs(self.blocks, self.joints)
+        observers = {}
+        if self.observed is not None:
+            observers = dict(zip(D_COLUMNS, self.rows_at(self.observed) @ shapes, strict=True))
         return Equations(
             k=np.concatenate(k),
             shapes=shapes,
@@ -89,7 +92,7 @@ class BlockSystem:
             kappa=kappa,
             C=C,
             F=shapes.T @ self._load() / (self.load_size or 1.0),
-            observers={name: row @ shapes for name, row in self._observers().items()},
+            observers=observers,
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
         )
 
@@ -114,18 +117,23 @@ class BlockSystem:
         """Return the numbers of the blocks that hold a point, their boundaries included."""
         return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(point))]
 
-    def _observers(self) -> dict[str, Array]:
-        """Return the rows of the displacements, rotation and strains at the observed point."""
-        if self.observed is None:
-            return {}
+    def rows_at(self, point: tuple[float, float]) -> Array:
+        """Return the rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
+
+        Raises
+        ------
+        ValueError
+            If no block holds it.
+        """
         rows = np.zeros((6, len(self.blocks), 6))
-        numbers = self.blocks_at(self.observed)
-        share = 1 / len(numbers)
+        numbers = self.blocks_at(point)
+        if not numbers:
+            raise ValueError(f"point: must lie in a block, got {point!r}")
         for i in numbers:
             block = self.blocks[i]
-            rows[:2, i] = share * without_rounding(block.T(*self.observed), _levers(block))
-            rows[2:, i, 2:] = share * np.eye(4)
-        return dict(zip(D_COLUMNS, rows.reshape(6, -1), strict=True))
+            rows[:2, i] = without_rounding(block.T(*point), _levers(block)) / len(numbers)
+            rows[2:, i, 2:] = np.eye(4) / len(numbers)
+        return rows.reshape(6, -1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,16 +163,14 @@ class Equations:
         return block_array([[diags_array(self.k / self.scale), self.B.T], [self.B, -self.scale * self.C]], format="csr")
 
     @cached_property
-    def at_rest(self) -> Callable[[Array, Array], tuple[Array, Array]]:
-        """The solver (F, g) -> (z, lambda) of k z + B' lambda = F, B z - C lambda = g, factorised once."""
-        lu = factor(self.saddle, definite=False)
-        n = len(self.k)
+    def _factor(self) -> Callable[[Array], Array]:
+        """The solver of `saddle`."""
+        return factor(self.saddle, definite=False)
 
-        def solve(F: Array, g: Array) -> tuple[Array, Array]:
-            solution = lu.solve(np.concatenate([F / self.scale, g]))
-            return solution[:n], self.scale * solution[n:]
-
-        return solve
+    def at_rest(self, F: Array, g: Array) -> tuple[Array, Array]:
+        """Return z and lambda of k z + B' lambda = F, B z - C lambda = g; the matrix is factorised once."""
+        solution = self._factor(np.concatenate([F / self.scale, g]))
+        return solution[: len(F)], self.scale * solution[len(F) :]
 
     def reduced(self) -> Equations:
         """Return the equations without the modes and gaps that no load can reach.
@@ -208,16 +214,8 @@ class Equations:
         return by_modes, by_force
 
 
-@dataclass
-class Factor:
-    """A factorised sparse symmetric matrix and its size."""
-
-    solve: Callable[[Array], Array]
-    nonzeros: int
-
-
-def factor(matrix: csr_array, definite: bool = True) -> Factor:
-    """Factorise a matrix; a definite one keeps its diagonal pivots and its symmetric fill-in."""
+def factor(matrix: csr_array, definite: bool = True) -> Callable[[Array], Array]:
+    """Return the solver of a sparse symmetric matrix; a definite one keeps diagonal pivots and symmetric fill-in."""
     from scipy.sparse import csc_array
     from scipy.sparse.linalg import splu
 
@@ -226,8 +224,8 @@ def factor(matrix: csr_array, definite: bool = True) -> Factor:
         "diag_pivot_thresh": 0.0,
         "options": {"SymmetricMode": True},
     }
-    lu = splu(csc_array(matrix), **(options if definite else {}))
-    return Factor(lu.solve, int(matrix.nnz))
+    solve: Callable[[Array], Array] = splu(csc_array(matrix), **(options if definite else {})).solve
+    return solve
 
 
 def _free_block(block: Block) -> tuple[Array, Array, Array]:

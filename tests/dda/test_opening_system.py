@@ -6,6 +6,7 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.frictional import rubbing_model
 from oracles.unilateral_checks import apart, complementarity, energy, momentum, random_model, size, sums
 
 import dda.system.step as step
@@ -25,6 +26,7 @@ from dda import (
     subdivided,
 )
 from dda.contact.rows import FOUND, NONE
+from dda.march import compiled
 from dda.march.step import Part, steps_by
 from dda.system.step import make_stage
 
@@ -146,3 +148,17 @@ def test_rules_of_one_block_alone_are_refused():
         run(PAPER, options=UnilateralOptions(rule="implicit"))
     with pytest.raises(ValueError, match=r"^stiffness: must be finite in an explicit scheme"):
         run(replace(PAPER, contact=Unilateral(np.inf)), scheme=Scheme(0.0, 0.5, 1.0, 1e-6))
+
+
+@pytest.mark.long
+def test_points_are_the_same_compiled_and_plain(monkeypatch):
+    pytest.importorskip("numba")
+    results = []
+    for least in (0, 10**9):
+        for name in ("SHORT", "LONG", "ANEW"):
+            monkeypatch.setattr(compiled, name, least)
+        results.append(run(rubbing_model(1), (2, 1), steps=40, glue=1e13))
+    fast, plain = results
+    assert compiled.COMPILED in fast.notes[-1] and compiled.PLAIN in plain.notes[-1]
+    for values, others in zip(fast.history, plain.history, strict=True):
+        assert np.all(np.abs(values - others) <= 1e-14 * np.max(np.abs(others), axis=0, initial=0.0))

@@ -189,6 +189,12 @@ def j_rest(joint):
     return joint.start, joint.end, joint.normal, joint.shear
 
 
+@pytest.mark.parametrize("pattern", ["squares", "triangles"])
+def test_there_are_as_many_gaps_as_independent_relative_motions(pattern):
+    gaps = dda.subdivided(two_block(), 2, 2, 1e9, pattern).equations.B.toarray()
+    assert np.linalg.matrix_rank(gaps) == len(gaps)
+
+
 def test_central_differences_and_their_limit():
     system = dda.subdivided(two_block(mu=0.2), 2, 3, 4e9)
     fastest = dda.highest_frequency(system)
