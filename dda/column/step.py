@@ -34,7 +34,7 @@ from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import FOUND, LOWER
 from dda.march.account import account, half_square
-from dda.march.energy import GIVEN, IMPULSE, SUMS
+from dda.march.energy import GIVEN, IMPULSE
 from dda.march.step import (
     Course,
     History,
@@ -193,7 +193,7 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
         free_row(march, length, force, 0.0)
         return 0.0
     across = coupling(body, length.inverse, 0, 1)
-    follows = 0.0 - blocks.impedance * late * across / own
+    follows = float(0.0 - blocks.impedance * late * across / own)
     of_top = 0.0
     for e in range(2):
         of_top += body.weight[1][e] * length.inverse[e] * body.weight[1][e]
@@ -204,17 +204,17 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
 
 def of_top(blocks: Blocks, x: Vector) -> float:
     """Return what modal values make at the top of the lowest block."""
-    return x[0] / blocks.root[0] + blocks.half[0] * x[1]
+    return float(x[0] / blocks.root[0] + blocks.half[0] * x[1])
 
 
 def of_foot(blocks: Blocks, x: Vector) -> float:
     """Return what modal values make at the foot of the lowest block."""
-    return x[0] / blocks.root[0] - blocks.half[0] * x[1]
+    return float(x[0] / blocks.root[0] - blocks.half[0] * x[1])
 
 
 def force_on_top(blocks: Blocks, mean: float, stretching: float) -> float:
     """Return the force on the top of a block by the modal forces on its mean and its stretch."""
-    return blocks.root[0] / 2 * (mean + stretching / math.sqrt(3))
+    return float(blocks.root[0] / 2 * (mean + stretching / math.sqrt(3)))
 
 
 def free_top(march: March, stage: StageRoom, length: Length, before: State) -> Top:
@@ -238,7 +238,7 @@ def free_top(march: March, stage: StageRoom, length: Length, before: State) -> T
     flexibility = 0.0
     stretch = 0.0
     if blocks.half[0] > 0:
-        flexibility = 1 / (mass / 3 + numbers.alpha * (1 - numbers.af) / (1 - numbers.am) * h2 * march.body.k[1] * mass / 12)
+        flexibility = 1 / (mass / 3 + length.numbers[3] * march.body.k[1] * mass / 12)
         force = force_at_top(march, h2, before.z[1])
         held = inertia_force(numbers, force, R, mass / 3 * a)
         moving = predictor(numbers, p, a, ratio * of_top(blocks, before.p), a_before)
@@ -252,7 +252,7 @@ def force_at_top(march: March, h2: float, z: float) -> float:
     """Return h^2 times the force on the top at the end of a stage, by loads, stretch and the base's acceleration."""
     blocks = march.method
     force = force_on_top(blocks, march.room.load[0], march.room.load[1] - march.body.k[1] * z)
-    return h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION])
+    return float(h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION]))
 
 
 def end_on_base(march: March, stage: StageRoom, length: Length, before: State, after: State, top: Top) -> None:

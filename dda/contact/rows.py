@@ -683,9 +683,7 @@ def crossing_rate(laws: Laws, before: float, i: int, N: float) -> float:
     return float(laws.compliance[i] * before / reach / reach)
 
 
-def find_crossings(
-    laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work, closing: int
-) -> None:
+def find_crossings(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work, closing: int) -> None:
     """Solve again with the beta of the contacts that close, by Newton's method; NaN where it does not end."""
     for _ in range(CROSSING_STEPS):
         for k in range(closing):

@@ -89,9 +89,7 @@ def account_stage(
     add_contact_losses(march, before, after, late if march.scheme.averages else 1.0, length, sums)
 
 
-def add_contact_losses(
-    march: March, before: State, after: State, late: float, length: float, sums: Vector
-) -> None:
+def add_contact_losses(march: March, before: State, after: State, late: float, length: float, sums: Vector) -> None:
     """Add what the contacts lose in a stage of some length [s], and what the base gives through them [J].
 
     Parameters

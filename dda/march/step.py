@@ -171,7 +171,9 @@ class History(NamedTuple):
 # ---- what is set up --------------------------------------------------------------------------------------------------
 
 
-def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False) -> March:
+def march(
+    body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, averages: bool = True, impulses: bool = False
+) -> March:
     """Return a march, with what belongs to whole steps made.
 
     Parameters
@@ -188,7 +190,7 @@ def march(body: Body, laws: Laws, scheme: Scheme, opening: Array, method: Any, a
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((6, n)), *np.zeros((2, m))
+    vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + list(np.zeros((6, n))) + list(np.zeros((2, m)))
     made = March(
         body=body,
         laws=laws,

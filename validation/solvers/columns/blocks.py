@@ -8,9 +8,9 @@ import numpy as np
 
 import dda
 from dda.column.column import Column, Layer, Spring
-from dda.column.contact_step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
 from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.column.response import column_response, highest_frequency
+from dda.column.step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
 from dda.column.stepping import Drive, solve_column
 from dda.contact.unilateral import OPEN, SLIP
 from validation.runs.contact import ContactRecord
