@@ -50,8 +50,8 @@ from dda.contact.rows import (
     unpair,
     work_for,
 )
-from dda.model.arrays import Array
 from dda.march.energy import SUMS
+from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
@@ -617,7 +617,7 @@ def steps_by(
                             break
                         before = end
                 if outcome != FOUND:
-                    if ratio <= SHORTEST or outcome == UNREACHED or outcome == LIMIT:
+                    if ratio <= SHORTEST or outcome in (UNREACHED, LIMIT):
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1
