@@ -211,9 +211,9 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
     if scheme.explicit and any(math.isinf(spring.stiffness) for spring in springs_of(column)[int(base != ROW) :]):
         raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
     if options.settled and not (column.law == "unilateral" and column.rests_on_base):
-        on = "such a base" if column.rests_on_base else "another base"
+        foot = "such a base" if column.rests_on_base else "another base"
         raise ValueError(
-            f"settled: goes with law = 'unilateral' on a base of prescribed motion only, got {column.law!r} on {on}"
+            f"settled: goes with law = 'unilateral' on a base of prescribed motion only, got {column.law!r} on {foot}"
         )
 
 

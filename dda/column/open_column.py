@@ -24,7 +24,7 @@ def base_of(column: Column) -> int:
 
 
 def springs_of(column: Column) -> list[Spring]:
-    """Return the spring at the foot of every block, rigid and bonded where faces are welded or nothing is below."""
+    """Return the spring at the foot of every block, rigid and inseparable where there is no joint."""
     return [Spring(0.0, math.inf) if spring is None else spring for spring in column.contacts]
 
 

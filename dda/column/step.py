@@ -195,7 +195,7 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
         free_row(march, length, force, 0.0)
         return 0.0
     across = coupling(body, length.inverse, 0, 1)
-    follows = 0.0 - blocks.impedance * late * across / own
+    follows = float(0.0 - blocks.impedance * late * across / own)
     of_top = 0.0
     for e in range(2):
         of_top += body.weight[1][e] * length.inverse[e] * body.weight[1][e]
@@ -240,9 +240,7 @@ def free_top(march: March, stage: StageRoom, length: Length, before: State) -> T
     flexibility = 0.0
     stretch = 0.0
     if blocks.half[0] > 0:
-        flexibility = 1 / (
-            mass / 3 + numbers.alpha * (1 - numbers.af) / (1 - numbers.am) * h2 * march.body.k[1] * mass / 12
-        )
+        flexibility = 1 / (mass / 3 + length.numbers[3] * march.body.k[1] * mass / 12)
         force = force_at_top(march, h2, before.z[1])
         held = inertia_force(numbers, force, R, mass / 3 * a)
         moving = predictor(numbers, p, a, ratio * of_top(blocks, before.p), a_before)

@@ -198,7 +198,7 @@ def march(
     n = len(body.k)
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
-    vectors = np.zeros(2 + len(body.loads)), np.zeros(2 + len(body.loads)), *np.zeros((6, n)), *np.zeros((2, m))
+    vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + list(np.zeros((6, n))) + list(np.zeros((2, m)))
     made = March(
         body=body,
         laws=laws,

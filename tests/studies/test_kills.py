@@ -31,11 +31,13 @@ DDA, EVENTS, BARS = ("dda",), ("column-events",), ("bars-events",)
 
 
 def wrong_sign(sound: Callable[..., Any]) -> Callable[..., Any]:
-    """Let a push at a block's foot move its top the other way."""
+    """Let every contact open where the block below it rises."""
 
-    def faulty(*given: Any, **named: Any) -> Any:
-        numbers, blocks, joints = sound(*given, **named)
-        return numbers, blocks, joints._replace(coupling=-joints.coupling)
+    def faulty(*given: Any) -> Any:
+        body = sound(*given)
+        weight = body.weight.copy()
+        weight[1:, :2] *= -1
+        return body._replace(weight=weight)
 
     return faulty
 
@@ -58,7 +60,7 @@ def stronger(factor: float) -> Callable[..., Callable[..., object]]:
 
 
 COLUMNS = [
-    Fault("blocks: coupling of the wrong sign", DDA, seams.CONTACT_EQUATIONS, wrong_sign),
+    Fault("blocks: coupling of the wrong sign", DDA, seams.CONTACT_BODY, wrong_sign),
     Fault("blocks: every solve counted twenty times", DDA, seams.CONTACT_COLUMN,
           told(lambda result: {"step_solves": 20 * result.step_solves})),
     Fault("blocks: histories 2 % high", DDA, seams.CONTACT_COLUMN, larger(1.02)),
