@@ -216,6 +216,17 @@ def test_the_mirror_image_moves_as_the_mirror_image(name, seed):
     assert apart(moved, V) < 1e-8
 
 
+@of_every_body("bonded", "rough", "dashpot", "dashpot by two stages", "dashpot by averages", "turning")
+def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(name, seed):
+    """Of an undamped block: a discount is one of velocities in the frame that is at rest."""
+    case = CASES[name](seed)
+    case = replace(case, scheme=replace(case.scheme, gg=1.0))
+    at_rest, moved = (case.run(60, model) for model in (case.model, case.kind.carried(case.model)))
+    for field in ("normal", "gap", "shear"):
+        values = getattr(at_rest, field)
+        assert apart(getattr(moved, field), values) < 1e-8 or not values.any(), field
+
+
 # ---- parts of a whole ------------------------------------------------------------------------------------------------
 
 

@@ -9,7 +9,7 @@ from oracles.rolling import RollingBlock
 
 import dda.rotation.step as step
 from dda import Block, Load, Material, Scheme, Unilateral
-from dda.rotation.body import Turn, turn
+from dda.rotation.body import Turn, turn, turned
 from dda.rotation.solution import RollingModel, solve_rolling
 
 OUTLINE = [[0, 0], [1, 0], [1.1, 1.4], [0.1, 1.6]]
@@ -84,6 +84,7 @@ def turned_by(Q, r):
 
 def test_the_first_derivative_of_the_turn_is_its_chord_in_the_limit():
     Q = turned_by(np.eye(2), 0.7).end
+    assert np.max(np.abs(Q - turned(0.7))) < 1e-15
     for r in (1e-3, -0.4, 2.0):
         made = turned_by(Q, r)
         assert np.max(np.abs(made.end - Q - r * made.chord)) < 1e-15

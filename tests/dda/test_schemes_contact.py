@@ -1,4 +1,4 @@
-"""Schemes by name where contact opens or slips: one block, columns, sub-blocks, a block that turns."""
+"""Schemes by name where contact opens or slips: one block, columns, sub-blocks."""
 
 import functools
 from dataclasses import replace
@@ -26,7 +26,6 @@ from dda.column.response import column_response
 from dda.column.stepping import Drive, solve_column
 from dda.one_block.natural_modes import free_modes
 from dda.one_block.opening_block import opening_block, unknowns_of
-from dda.rotation.solution import RollingModel, solve_rolling
 
 ENERGIES = UnilateralOptions(energies=True)
 
@@ -149,7 +148,7 @@ def test_a_bonded_column_steps_to_its_response(name, values, impedance):
         assert np.max(np.abs(rest)) < 1e-6 * abs(amplitude), column
 
 
-# ---- sub-blocks and blocks that turn ---------------------------------------------------------------------------------
+# ---- sub-blocks ------------------------------------------------------------------------------------------------------
 
 
 @few_schemes
@@ -168,18 +167,3 @@ def test_one_sub_block_is_the_block(name, values):
     assert sub.velocity == pytest.approx(one.velocity, rel=1e-9, abs=1e-12)
     for part, energy in one.energies.items():
         assert np.max(np.abs(energy - sub.energies[part])) < 1e-10 * np.max(one.energies["kinetic"]), part
-
-
-@few_schemes
-def test_a_block_that_hardly_turns_is_the_one_of_small_motion(name, values):
-    scheme = scheme_of(name, values, 1e-4, 0.99)
-    law = Unilateral(2e8, 1e8)
-    load = Load(1e2, gravity=0.0)
-    small = solve_unilateral(UnilateralModel(block(0.25), law, load), scheme, 200, COLUMNS, ENERGIES)
-    turning = solve_rolling(RollingModel(block(0.25), law, load), scheme, 200, COLUMNS)
-    for column in ("displacement", "contact_pressure", "strain_y"):
-        difference = np.max(np.abs(small.columns[column] - turning.columns[column]))
-        assert difference < 1e-6 * np.max(np.abs(small.columns[column])), column
-    for part in ("kinetic", "strain", "kinetic damping", "switching"):
-        difference = np.max(np.abs(small.energies[part] - turning.energies[part]))
-        assert difference < 1e-6 * np.max(small.energies["kinetic"]), part

@@ -103,6 +103,12 @@ class OneBlock:
         return replace(model, **changes), [1, 0]
 
     @staticmethod
+    def carried(model):
+        """Return the block on a base that moves evenly, and with it."""
+        motion = BaseMotion([0.0, 100.0], [[0.0, 0.0], [0.0, 30.0]])
+        return replace(model, velocity=model.velocity + 0.3, motion=motion)
+
+    @staticmethod
     def gap_rates(model, scheme, result):
         """Return w' from t = 0 on, (contacts, steps + 1)."""
         form = model.form()
@@ -143,6 +149,12 @@ class TurningBlock:
         order, changes = mirrored_load(model)
         thrown = {"tilt": -model.tilt, "spin": -model.spin, "velocity": (-model.velocity[0], model.velocity[1])}
         return replace(model, **changes, **thrown), order
+
+    @staticmethod
+    def carried(model):
+        motion = BaseMotion([0.0, 100.0], [[0.0, 0.0], [40.0, 30.0]])
+        velocity = (model.velocity[0] + 0.4, model.velocity[1] + 0.3)
+        return replace(model, velocity=velocity, load=replace(model.load, motion=motion))
 
 
 # ---- cases -----------------------------------------------------------------------------------------------------------
