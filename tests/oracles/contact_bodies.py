@@ -256,7 +256,7 @@ CASES: dict[str, Callable[[int], Case]] = {
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
     "turning and shaken": lambda seed: turning_case(seed, model=lambda one: on_shaken_base(one, seed)),
-    "turning by first order": lambda seed: turning_case(seed, CONSTANT, rotation="first-order"),
+    "turning by first order": lambda seed: turning_case(seed, replace(CONSTANT, gg=0.98), rotation="first-order"),
     "turning by two stages": lambda seed: turning_case(seed, named_scheme("composite", step=DT, gg=0.99)),
 }
 
