@@ -52,17 +52,13 @@ def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values, g
     system = System(form.M, np.diag(form.K), lambda t: form.F, B=form.B[:2], p=p)
     start = -0.3 * (form.translation @ form.axes[:, 1])
     x, v, N = march(system, name, step, steps, form.start, start, gg, **truth_of(values))
-    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps, options=ENERGIES)
+    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps)
     D = unknowns_of(opening_block(form), result.history, None, step).T
     V = result.history.motion[:, 6:] @ free_modes(form.M, form.K)[1].T / step
     for found, expected in ((D, x), (V, v), (result.history.force, N)):
         assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
     switches = np.count_nonzero(np.diff(result.closed, axis=1))
     assert switches >= 2 and result.solves >= steps * len(scheme_of(name, values, step).stages)
-    energies = result.energies
-    kinetic = start @ form.M @ start / 2
-    assert np.max(np.abs(total(energies) - kinetic)) < 1e-11 * np.max(energies["kinetic"])
-    assert (np.max(energies["kinetic damping"]) > 0) == (gg < 1)
 
 
 # ---- columns ---------------------------------------------------------------------------------------------------------
