@@ -87,6 +87,7 @@ def test_contacts_keep_their_laws(name, seed):
     closed = rows.state[1:, :n].T == INSIDE
     assert closed.any() or case.kind.loads(case.model)[1] > 0  # pulled away
     assert np.all(-law.pull * result.multiplicity <= N) and np.all(N[~closed] == 0)
+    assert np.all(result.step_solves[closed.any(axis=0)] > 0)
     keeps = keeps_dashpots if law.damping else RULES.get(case.rule, keeps_springs)
     keeps(case, result, N, w, closed)
     if rows.path.shape[1] == 0:  # a base that cannot slide

@@ -95,24 +95,6 @@ def test_frictionless_contacts_take_two_and_three_solves_at_most(scheme, p):
             assert np.max(result.step_solves) <= most and not np.any(result.step_cuts)
 
 
-@pytest.mark.parametrize("p", [2e9, np.inf])
-def test_a_dropped_block_falls_freely_until_the_gap_closes(p):
-    model = replace(PAPER, contact=Unilateral(p, gap=0.05), pressure=0.0, gravity=9.81)
-    result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 150)
-    t = result.time
-    before = t < np.sqrt(2 * 0.05 / 9.81)
-    assert np.allclose(result.columns["displacement"][before], -9.81 * t[before] ** 2 / 2, rtol=1e-12)
-    assert np.flatnonzero(result.closed_m)[0] == np.count_nonzero(before)
-    assert result.gap_m[-1] > -1e-3
-
-
-def test_gg_in_flight_is_a_drag_by_the_closed_formula():
-    gg, dt, g, n = 0.98, 1e-3, 9.81, 200
-    model = replace(PAPER, contact=Unilateral(1e9, gap=10.0), pressure=0.0, gravity=g)
-    result = solve_unilateral(model, Scheme(0.5, 1.0, gg, dt), n)
-    assert result.velocity[-1] == pytest.approx(-dt * g * (1 - gg**n) / (1 - gg), rel=1e-12)
-
-
 def test_glued_states_that_disagree_are_cut_and_the_run_goes_on():
     """Long steps and stiff glued corners: some have no single state."""
     assert sum(np.sum(CASES["long steps"](seed).run().step_cuts) for seed in range(12)) > 0
