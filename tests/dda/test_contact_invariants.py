@@ -13,6 +13,8 @@ from oracles.unilateral_checks import apart, size
 from dda import Load
 from dda.contact.rows import INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
+from dda.march.step import load_of, push_modes
+from dda.rotation.step import SETTLED
 
 SEEDS = range(16)
 SHORT = range(4)  # each kind of random block and each scheme once
@@ -92,17 +94,23 @@ def test_contacts_keep_their_laws(name, seed):
     keeps(case, result, N, w, closed)
     if rows.path.shape[1] == 0:  # a base that cannot slide
         return
-    keeps_ways(result)
+    keeps_ways(case, result, closed)
     if law.friction is not None and law.rules == "consistent":
         keeps_friction(case, result, N, closed)
 
 
-def keeps_ways(result):
-    """Reference and stretch of a contact are its way, which the block's place tells too, at some 1 m."""
+def keeps_ways(case, result, closed):
+    """Reference and stretch of a contact are its way, which the block's place tells too; what slips moves it alone."""
     rows = result.history
     ways = rows.path.shape[1]
     way = (rows.path + rows.opening[:, -ways:]).T
-    assert np.max(np.abs(way[:, 1:] - way[:, :1] - result.slide[-ways:])) < 1e-13 * (1 + np.max(np.abs(way)))
+    rounding = 1e-13 * (1 + np.max(np.abs(way)))  # of places at some 1 m
+    assert np.max(np.abs(way[:, 1:] - way[:, :1] - result.slide[-ways:])) < rounding
+    stays = closed[:, 1:] & closed[:, :-1] & (result.step_cuts[1:] == 0)
+    moved = np.diff(rows.path.T[:, 1:]) - rows.slip.T[:, 2:]
+    left = np.abs(moved)[stays] > rounding
+    opened = 0.5 if len(case.scheme.stages) == 2 else 0.0  # at most: they bounced between its stages
+    assert np.count_nonzero(left) <= opened * np.count_nonzero(rows.slip.T[:, 2:][stays])
 
 
 def keeps_friction(case, result, N, closed):
@@ -150,10 +158,28 @@ def test_momentum_changes_by_the_impulse_of_loads_and_contacts(name, seed):
         before = F[:-1].copy()
         if scheme.start == "zero" and case.rule != "impact":
             before[0] = 0.0
-        impulse = (1 - late) * before + late * F[1:] + (1 - late_contact) * N[:-1] + late_contact * N[1:]
+        pushed = (1 - late_contact) * N[:-1] + late_contact * N[1:]
+        impulse = (1 - late) * before + late * F[1:] + pushed
         residual = mass * (V[1:] - scheme.gg * V[:-1]) - scheme.step * impulse
         scale = mass * np.max(np.abs(velocities)) + scheme.step * (np.max(np.abs(N)) + np.max(np.abs(loads)))
         assert np.max(np.abs(residual)[result.step_cuts == 0]) < 1e-14 * scale * math.sqrt(case.steps)
+    if case.kind is TurningBlock and not np.any(result.step_cuts):
+        assert result.impulse == pytest.approx(scheme.step * np.cumsum(pushed), rel=1e-12)
+
+
+@of_every_body(*(name for name in CASES if CASES[name](0).scheme.table is None))
+def test_a_step_goes_at_the_mean_of_its_velocities(name, seed):
+    """x1 - x0 = dt (gg v0 + v1)/2 in every unknown where alpha = delta/2, and off it by (alpha - delta/2) dt^2 dA."""
+    case, result = history(name, seed)
+    scheme = case.scheme
+    x, moved = case.kind.motion(result, scheme.step)
+    off = np.diff(x, axis=0) - (scheme.gg * moved[:-1] + moved[1:]) / 2
+    scale = np.max(np.abs(x), axis=0) + np.max(np.abs(moved), axis=0)
+    if scheme.alpha == scheme.delta / 2:
+        rounds = SETTLED if case.kind is TurningBlock else 0.0  # to which its turn is found
+        assert np.all(np.abs(off)[result.step_cuts == 0] <= 1e-13 * scale + rounds)
+    else:
+        assert np.max(np.abs(off) / scale) > 1e-9
 
 
 # ---- energy ----------------------------------------------------------------------------------------------------------
@@ -265,6 +291,11 @@ def test_a_step_that_fails_is_made_in_parts_from_where_it_began(name, seed, monk
             if motion is not None:
                 ends = (part.begun + part.ratio * stage.numbers.end) * case.scheme.step
                 assert march.room.end[:2] == pytest.approx(case.kind.base_at(case.model, ends), abs=1e-15)
+            if case.kind is OneBlock and case.rule in ("newmark", "augmented"):
+                push_modes(march, after.rows.force)
+                acting = [load_of(march, i) - k * after.z[i] for i, k in enumerate(march.body.k)]
+                R = np.add(acting, march.room.pushed) * case.scheme.step**2  # however long the part is
+                assert np.max(np.abs(after.R - R)) < 1e-12 * np.max(np.abs([after.R, march.room.pushed]))
             parts.append((part.begun, part.ratio))
             return (NONE, 1) if parts.count((3.0, 1.0)) == 1 and parts[-1] == (3.0, 1.0) else made
 

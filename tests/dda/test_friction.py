@@ -80,13 +80,3 @@ def test_without_limit_friction_is_glue_and_without_angle_it_is_none():
         most = np.max(np.abs(other.columns["displacement"]))
         for name in PLACE:
             assert np.max(np.abs(one.columns[name] - other.columns[name])) < 1e-9 * most
-
-
-def test_cohesion_holds_what_friction_does_not():
-    model = KNOWN["incline"].model
-    driving = 10800 * 9.81 * np.sin(np.radians(20)) / 2
-    ways = []
-    for share in (0.0, 2.5):  # of the driving force: more than twice holds a weight that is switched on
-        law = replace(model.contact, friction=0.1, cohesion=share * driving)
-        ways.append(solve_unilateral(replace(model, contact=law), Scheme(0.5, 1.0, 1.0, 1e-3), 500).slip[-1])
-    assert ways[0] > 0.2 and ways[1] == 0

@@ -85,6 +85,11 @@ class OneBlock:
         return np.array([[0.0, *result.horizontal_velocity], [model.velocity, *result.velocity]])
 
     @staticmethod
+    def motion(result, step):
+        """Return the modes from t = 0 on, and what they move in a step at their velocities."""
+        return np.hsplit(result.history.motion[:, : 2 * result.unknowns], 2)
+
+    @staticmethod
     def first_energy(model, result):
         return model.block.material.density * model.block.section.area * model.velocity**2 / 2
 
@@ -130,6 +135,11 @@ class TurningBlock:
     @staticmethod
     def velocities(model, result):
         return result.motion.V[:, :2].T
+
+    @staticmethod
+    def motion(result, step):
+        q, V = np.hsplit(result.history.motion[:, :12], 2)
+        return q, step * V
 
     @staticmethod
     def first_energy(model, result):
