@@ -1,13 +1,12 @@
 """The friction of common programs: the creep that they show, and where it comes from."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from oracles.frictional import square
 
-from dda import Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
+from dda import Scheme, Unilateral, UnilateralModel, solve_unilateral
 
 BANDS = (1e-3, 1e-6)  # of a model of 10 m: 2e-4 and 2e-7 of half of that
 TURNED = math.radians(20)
@@ -43,16 +42,10 @@ def test_a_history_of_a_program_is_met_step_by_step():
 
 def test_the_lag_takes_one_solve_where_nothing_opens_and_leaves_the_law():
     model = stable(22)
-    result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 2e-3), 100, options=UnilateralOptions(energies=True))
+    result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 2e-3), 100)
     assert np.all(result.step_solves == 1)
     over = np.abs(result.shear) - model.contact.friction * result.normal
     assert np.max(over) > 0.1 * np.max(np.abs(result.shear))  # what shear grows by in the step that sees it
-    total = sum(result.energies.values())
-    assert np.max(np.abs(total)) < 1e-11 * np.max(np.abs([*result.energies.values()]))
-    consistent = replace(model, contact=replace(model.contact, rules="consistent", band=(0.0, 0.0)))
-    held = solve_unilateral(consistent, Scheme(0.5, 1.0, 1.0, 2e-3), 100)
-    over = np.abs(held.shear) - model.contact.friction * held.normal
-    assert np.max(over) < 1e-11 * np.max(held.normal)
 
 
 @pytest.mark.parametrize("rules", [{}, {"friction": 0.5}, {"friction": 0.5, "rules": "lagged"}])

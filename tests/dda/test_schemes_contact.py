@@ -1,4 +1,4 @@
-"""Schemes by name where contact opens or slips: one block, columns, sub-blocks, a block that turns."""
+"""Schemes by name where contact opens or slips: one block, columns, sub-blocks."""
 
 import functools
 from dataclasses import replace
@@ -26,7 +26,6 @@ from dda.column.response import column_response
 from dda.column.stepping import Drive, solve_column
 from dda.one_block.natural_modes import free_modes
 from dda.one_block.opening_block import unknowns_of
-from dda.rotation.solution import RollingModel, solve_rolling
 
 ENERGIES = UnilateralOptions(energies=True)
 
@@ -53,17 +52,13 @@ def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values, g
     system = System(form.M, np.diag(form.K), lambda t: form.F, B=form.B[:2], p=p)
     start = -0.3 * (form.translation @ form.axes[:, 1])
     x, v, N = march(system, name, step, steps, form.start, start, gg, **truth_of(values))
-    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps, options=ENERGIES)
+    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps)
     D = unknowns_of(form, result.history, None, step).T
     V = result.history.motion[:, 6:] @ free_modes(form.M, form.K)[1].T / step
     for found, expected in ((D, x), (V, v), (result.history.force, N)):
         assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
     switches = np.count_nonzero(np.diff(result.closed, axis=1))
     assert switches >= 2 and result.solves >= steps * len(scheme_of(name, values, step).stages)
-    energies = result.energies
-    kinetic = start @ form.M @ start / 2
-    assert np.max(np.abs(total(energies) - kinetic)) < 1e-11 * np.max(energies["kinetic"])
-    assert (np.max(energies["kinetic damping"]) > 0) == (gg < 1)
 
 
 # ---- columns ---------------------------------------------------------------------------------------------------------
@@ -149,7 +144,7 @@ def test_a_bonded_column_steps_to_its_response(name, values, impedance):
         assert np.max(np.abs(rest)) < 1e-6 * abs(amplitude), column
 
 
-# ---- sub-blocks and blocks that turn ---------------------------------------------------------------------------------
+# ---- sub-blocks ------------------------------------------------------------------------------------------------------
 
 
 @few_schemes
@@ -168,18 +163,3 @@ def test_one_sub_block_is_the_block(name, values):
     assert sub.velocity == pytest.approx(one.velocity, rel=1e-9, abs=1e-12)
     for part, energy in one.energies.items():
         assert np.max(np.abs(energy - sub.energies[part])) < 1e-10 * np.max(one.energies["kinetic"]), part
-
-
-@few_schemes
-def test_a_block_that_hardly_turns_is_the_one_of_small_motion(name, values):
-    scheme = scheme_of(name, values, 1e-4, 0.99)
-    law = Unilateral(2e8, 1e8)
-    load = Load(1e2, gravity=0.0)
-    small = solve_unilateral(UnilateralModel(block(0.25), law, load), scheme, 200, COLUMNS, ENERGIES)
-    turning = solve_rolling(RollingModel(block(0.25), law, load), scheme, 200, COLUMNS)
-    for column in ("displacement", "contact_pressure", "strain_y"):
-        difference = np.max(np.abs(small.columns[column] - turning.columns[column]))
-        assert difference < 1e-6 * np.max(np.abs(small.columns[column])), column
-    for part in ("kinetic", "strain", "kinetic damping", "switching"):
-        difference = np.max(np.abs(small.energies[part] - turning.energies[part]))
-        assert difference < 1e-6 * np.max(small.energies["kinetic"]), part

@@ -6,10 +6,9 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.contact_bodies import CASES, put_stage
+from oracles.contact_bodies import CASES
 from oracles.unilateral_checks import DT, apart, random_model, run
 
-import dda.one_block.unilateral as unilateral
 from dda import (
     Block,
     Contact,
@@ -22,7 +21,6 @@ from dda import (
     solve,
     solve_unilateral,
 )
-from dda.contact.rows import NONE
 
 SCHEMES = [
     (0.5, 1.0, 1.0, "zero"),
@@ -97,54 +95,6 @@ def test_frictionless_contacts_take_two_and_three_solves_at_most(scheme, p):
             assert np.max(result.step_solves) <= most and not np.any(result.step_cuts)
 
 
-@pytest.mark.parametrize("p", [2e9, np.inf])
-def test_a_dropped_block_falls_freely_until_the_gap_closes(p):
-    model = replace(PAPER, contact=Unilateral(p, gap=0.05), pressure=0.0, gravity=9.81)
-    result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 150)
-    t = result.time
-    before = t < np.sqrt(2 * 0.05 / 9.81)
-    assert np.allclose(result.columns["displacement"][before], -9.81 * t[before] ** 2 / 2, rtol=1e-12)
-    assert np.flatnonzero(result.closed_m)[0] == np.count_nonzero(before)
-    assert result.gap_m[-1] > -1e-3
-
-
-def test_gg_in_flight_is_a_drag_by_the_closed_formula():
-    gg, dt, g, n = 0.98, 1e-3, 9.81, 200
-    model = replace(PAPER, contact=Unilateral(1e9, gap=10.0), pressure=0.0, gravity=g)
-    result = solve_unilateral(model, Scheme(0.5, 1.0, gg, dt), n)
-    assert result.velocity[-1] == pytest.approx(-dt * g * (1 - gg**n) / (1 - gg), rel=1e-12)
-
-
-@pytest.mark.parametrize("cut", [0.3, 1 / 3, 0.5])
-def test_cut_steps_keep_the_share_gg_of_the_velocity(monkeypatch, cut):
-    tried = []
-
-    def change(make_stage):
-        def stubborn(*given):
-            tried.append(given[-1].ratio)
-            outcome, solves = make_stage(*given)
-            return (NONE if len(tried) <= 3 else outcome), solves
-
-        return stubborn
-
-    put_stage(monkeypatch, unilateral, change)
-    model = replace(PAPER, contact=Unilateral(1e9, gap=1.0), pressure=0.0, velocity=-0.8)
-    result = run(model, steps=4, gg=0.9, cut=cut)
-    assert tried[:5] == pytest.approx([1, cut, cut**2, cut**3, 1 - cut**3])
-    assert result.step_cuts.tolist() == [3, 0, 0, 0] and result.factorisations == 5
-    assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 5), rel=1e-14)
-
-
 def test_glued_states_that_disagree_are_cut_and_the_run_goes_on():
     """Long steps and stiff glued corners: some have no single state."""
     assert sum(np.sum(CASES["long steps"](seed).run().step_cuts) for seed in range(12)) > 0
-
-
-def test_a_dead_band_holds_tension_and_delays_closing():
-    band = (1e-3, 1e-6)
-    model = replace(PAPER, contact=Unilateral(1e11, band=band))
-    result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 1e-4), 600)
-    free = result.gap_m[~result.closed_m]
-    assert np.min(free) < 0 and np.min(free) >= -band[0]
-    assert np.max(result.gap_m[result.closed_m]) <= band[1]
-    assert np.min(result.normal_force_m) >= -1e11 * band[1]

@@ -86,6 +86,11 @@ class OneBlock:
         return np.array([[0.0, *result.horizontal_velocity], [model.velocity, *result.velocity]])
 
     @staticmethod
+    def motion(result, step):
+        """Return the modes from t = 0 on, and what they move in a step at their velocities."""
+        return np.hsplit(result.history.motion[:, : 2 * result.unknowns], 2)
+
+    @staticmethod
     def first_energy(model, result):
         return model.block.material.density * model.block.section.area * model.velocity**2 / 2
 
@@ -102,6 +107,12 @@ class OneBlock:
         """Return the mirror image, and where its contacts are among those of the body."""
         _, changes = mirrored_load(model)
         return replace(model, **changes), [1, 0]
+
+    @staticmethod
+    def carried(model):
+        """Return the block on a base that moves evenly, and with it."""
+        motion = BaseMotion([0.0, 100.0], [[0.0, 0.0], [0.0, 30.0]])
+        return replace(model, velocity=model.velocity + 0.3, motion=motion)
 
     @staticmethod
     def gap_rates(model, scheme, result):
@@ -127,6 +138,11 @@ class TurningBlock:
         return result.motion.V[:, :2].T
 
     @staticmethod
+    def motion(result, step):
+        q, V = np.hsplit(result.history.motion[:, :12], 2)
+        return q, step * V
+
+    @staticmethod
     def first_energy(model, result):
         V = np.array([*(model.body.to_base @ model.velocity), model.spin, 0.0, 0.0, 0.0])
         return V @ model.body.M @ V / 2
@@ -144,6 +160,12 @@ class TurningBlock:
         order, changes = mirrored_load(model)
         thrown = {"tilt": -model.tilt, "spin": -model.spin, "velocity": (-model.velocity[0], model.velocity[1])}
         return replace(model, **changes, **thrown), order
+
+    @staticmethod
+    def carried(model):
+        motion = BaseMotion([0.0, 100.0], [[0.0, 0.0], [40.0, 30.0]])
+        velocity = (model.velocity[0] + 0.4, model.velocity[1] + 0.3)
+        return replace(model, velocity=velocity, load=replace(model.load, motion=motion))
 
 
 # ---- cases -----------------------------------------------------------------------------------------------------------
@@ -245,7 +267,7 @@ CASES: dict[str, Callable[[int], Case]] = {
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
     "turning and shaken": lambda seed: turning_case(seed, model=lambda one: on_shaken_base(one, seed)),
-    "turning by first order": lambda seed: turning_case(seed, CONSTANT, rotation="first-order"),
+    "turning by first order": lambda seed: turning_case(seed, replace(CONSTANT, gg=0.98), rotation="first-order"),
     "turning by two stages": lambda seed: turning_case(seed, named_scheme("composite", step=DT, gg=0.99)),
 }
 
