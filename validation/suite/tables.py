@@ -43,6 +43,7 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -174,7 +175,7 @@ class StudyTable:
         terms = {"scale": 1.0, "start": 0.0, "slack": 0.0, "above": 0.0}
         terms |= {name: entry.pop(name) for name in terms if name in entry}
         if isinstance(numbers, str):
-            numbers = printed_numbers(self.folder / numbers, entry, self.cases_of)
+            numbers = printed_numbers(self.folder / numbers, entry, cache(self.cases_of))  # asked for each number
         for scene, texts in numbers.items():
             scale, start, slack, above = (self._at(scene, term) for term in terms.values())
             for metric, text in texts.items():
