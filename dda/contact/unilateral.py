@@ -54,7 +54,7 @@ class Unilateral:
     friction: float | None = None  # tan(phi) [-]; None is glued
     cohesion: float = 0.0  # c of each closed corner, beside the friction [N]
     rules: str = CONSISTENT  # or "lagged": friction of the iteration before, as common programs have it
-    damping: float = 0.0  # c of a dashpot beside each spring, clipped: N >= 0 (`dda.contact.dashpot`) [N s/m]
+    damping: float = 0.0  # c of a dashpot beside each spring, clipped: N >= 0 (`dda.contact.rows`) [N s/m]
 
     def __post_init__(self) -> None:
         """Check the ranges."""
