@@ -316,6 +316,9 @@ def check_impact(model: UnilateralModel, scheme: Scheme) -> None:
 
 
 def check_scheme(law: Unilateral, scheme: Scheme) -> None:
-    """Raise ValueError where an explicit scheme meets a rigid stop."""
+    """Raise ValueError where an explicit scheme meets a rigid stop, or viscous damping a contact."""
+    if scheme.damped:
+        damping = (scheme.mass_damping, scheme.stiffness_damping)
+        raise ValueError(f"mass_damping, stiffness_damping: must be 0 where contact opens, got {damping}")
     if math.isinf(law.stiffness) and scheme.alpha == 0:
         raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")

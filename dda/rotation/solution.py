@@ -22,7 +22,7 @@ from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.one_block.contact_result import ContactResult, run_fields
 from dda.one_block.gap_form import COLUMNS
-from dda.one_block.solution import check_damping, check_request
+from dda.one_block.solution import check_request
 from dda.one_block.unilateral import check_iteration, check_scheme
 from dda.rotation.body import (
     EXACT,
@@ -216,7 +216,6 @@ def solve_rolling(
         If the number of steps is not positive, a column is unknown, or scheme and contact exclude each other.
     """
     check_request(steps, columns)
-    check_damping(scheme, True)
     check_scheme(model.contact, scheme)
     options = options or RollingOptions()
     began = perf_counter()

@@ -181,3 +181,15 @@ def test_histories_of_no_step_and_of_a_block_that_turns():
         solve_unilateral(PAPER, AVERAGE, 0)
     with pytest.raises(ValueError, match=r"^stiffness: "):
         solve_rolling(replace(TURNING, **RIGID), EXPLICIT, 1)
+
+
+@pytest.mark.parametrize("rates", [(2.0, 0.0), (0.0, 1e-4)])
+def test_viscous_damping_where_contact_opens(rates):
+    damped = replace(AVERAGE, mass_damping=rates[0], stiffness_damping=rates[1])
+    for solve, model in (
+        (solve_unilateral, PAPER),
+        (solve_rolling, TURNING),
+        (solve_opening_system, opening_subdivided(CENTRED, 2, 1, 1e12)),
+    ):
+        with pytest.raises(ValueError, match=r"^mass_damping, stiffness_damping: "):
+            solve(model, damped, 1)
