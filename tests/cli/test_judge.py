@@ -214,10 +214,10 @@ def test_programs_stand_beside_each_other(tmp_path: Path, monkeypatch: pytest.Mo
     done = typed("judge", *asked)
     assert done.returncode == 1, done.stderr
     header, locked, rocking, times = done.stdout.splitlines()[1:5]
-    assert header.split() == ["Problem", "away", "broken", "mine", "dda"] or "mine" in header
-    assert "PASS" in locked and "NOT RUN" in locked and "FAIL 51 % of 5.7 %" in locked
-    assert rocking.count("not applicable") == 3 and times.startswith("time [s]")
-    assert "no disk" in done.stdout and "Away is not installed: apt-get" in done.stdout
+    assert header.split() == ["Problem", "mine", "dda"] and times.startswith("time [s]")
+    assert "PASS" in locked and "FAIL 51 % of 5.7 %" in locked and "not applicable" in rocking
+    assert re.search("No answer by broken: .*no disk", done.stdout)
+    assert re.search("No answer by away: .*Away is not installed: apt-get", done.stdout)
     found = json.loads(typed("judge", *asked, "--json").stdout)["answers"]
     assert {row["program"]: row["verdict"] for row in found if row["problem"] == "locked"} == {
         "mine": "PASS", "broken": "NOT RUN", "away": "NOT RUN", "dda": "FAIL",

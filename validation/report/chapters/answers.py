@@ -139,11 +139,25 @@ def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
 def first_page(sets: Sequence[JudgedSet]) -> Blocks:
     """Return a report of some programs on one page or two: problems against programs, reasons, who they are."""
     title = f"Answers to the problems of pack {PACK}"
-    return [Heading(title), Paragraph(LEAD), answer_table(sets), *reason_blocks(sets), stated_table(sets)]
+    return [Heading(title), Paragraph(LEAD), answer_table(sets), *reason_blocks(sets), stated_table(with_answers(sets))]
 
 
-def answer_table(sets: Sequence[JudgedSet]) -> Table:
-    """Return programs against problems: the verdict, the error that decides and what is allowed, and what runs took."""
+def with_answers(sets: Sequence[JudgedSet]) -> list[JudgedSet]:
+    """Return the programs that answered a problem; all of them where none did."""
+    none = (Status.NOT_APPLICABLE, Status.NOT_RUN)
+    return [one for one in sets if any(cell.status not in none for cell in answered(one))] or [*sets]
+
+
+def answer_table(of_all: Sequence[JudgedSet]) -> Table:
+    """Return programs against problems: the verdict, the error that decides and what is allowed, and what runs took.
+
+    A program that answered nothing is named below the table, with what it said of the first problem.
+    """
+    sets = with_answers(of_all)
+    notes = []
+    for judged in of_all:
+        if judged not in sets:
+            notes.append(f"No answer by {judged.answers.title}: {answered(judged)[0].reason}.")
     by_set = [{cell.problem: cell for cell in answered(judged)} for judged in sets]
     rows = []
     for name in asks_of(sets):
@@ -158,7 +172,7 @@ def answer_table(sets: Sequence[JudgedSet]) -> Table:
                     judged.answers.data.program)
         for judged in sets
     ]  # fmt: skip
-    return table(("Problem", *heads), rows, "Problems, and what programs answered.")
+    return table(("Problem", *heads), rows, "Problems, and what programs answered.", tuple(notes))
 
 
 def _seconds(judged: JudgedSet) -> str:
@@ -170,7 +184,7 @@ def _seconds(judged: JudgedSet) -> str:
 def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
     """Return why answers fail or are not judged, those of one program with one reason in a line."""
     rows = []
-    for judged in sets:
+    for judged in with_answers(sets):
         problems_by_reason: dict[tuple[str, str], list[str]] = {}
         for cell in cells(judged):
             if cell.reason:

@@ -1,1 +1,0 @@
-"""Adapters of other people's programs, one file each; `docs/extending.md` is their contract."""
