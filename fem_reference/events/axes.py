@@ -171,7 +171,7 @@ class Axes:
         P = UNIT.copy()
         rows = self.model.flow(states).rows
         for c, (contact, state) in enumerate(zip(self.model.contacts, states, strict=True)):
-            if state == STICKS:
+            if state == STICKS or contact.slide is None:
                 continue
             P[12 + c] = 0.0
             P[12 + c, :6] = rows[2 + c]
