@@ -9,8 +9,8 @@ that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesi
 releases the energy T^2 / (2 p_s) of its spring.
 
 With dashpots, or with an impact law on rigid contact, the laws of `block_model` hold, and the same proof does: a
-dashpot changes the matrices and what is watched, an impact the rates. Impacts that accumulate are named in `cascades`, with
-the instant at which the contact comes to rest enclosed (`block_impacts`).
+dashpot changes the matrices and what is watched, an impact the rates. Impacts that accumulate are named in `cascades`,
+with the instant at which the contact comes to rest enclosed (`block_impacts`).
 """
 
 from __future__ import annotations
