@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from flint import arb, arb_mat
 
@@ -78,15 +80,18 @@ class Axes:
         flow = self.model.flow(states)
         length = segment.length
         table = flow.terms(watch, segment.count - watch.rates)
-        apart = TABLE_ERROR * float(np.linalg.norm(self.record()[:14] / flow.units[:14]))
+        hull = self.record()[:14] / flow.units[:14]
+        apart = TABLE_ERROR * math.sqrt(hull @ hull)
         if offset:
             v, a = (floats(term)[:, 0] for term in segment.terms[1:3])
             apart += 2 * offset * flow.norm(np.array([*v / length, *2 * a / length**2]))
-        size = float(np.linalg.norm(table[0, :14] * flow.units[:14]))
+        scaled = table[0, :14] * flow.units[:14]
+        size = math.sqrt(scaled @ scaled)
         numbers = np.arange(len(table))
         angle = flow.rate * length
         parts = self.radius(table) * (angle / flow.angle) ** numbers
-        parts += size * apart * np.cumprod([1.0, *(angle / numbers[1:])])
+        parts[1:] += size * apart * np.cumprod(angle / numbers[1:])
+        parts[0] += size * apart
         return Reach(arb(length if watch.rates else 1.0), parts * INFLATION)
 
     def advance(self, states: States, seconds: arb) -> None:
@@ -166,7 +171,7 @@ class Axes:
         P = UNIT.copy()
         rows = self.model.flow(states).rows
         for c, (contact, state) in enumerate(zip(self.model.contacts, states, strict=True)):
-            if state == STICKS:
+            if state == STICKS or contact.slide is None:
                 continue
             P[12 + c] = 0.0
             P[12 + c, :6] = rows[2 + c]

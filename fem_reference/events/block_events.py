@@ -1,13 +1,7 @@
 """The block of one strain with no-tension corners and friction, exact in time: from switch to switch.
 
 A corner is closed while it presses, N = -p w >= 0, and open while its gap w is positive; closed, it sticks, or slips
-at |T| = tan(phi) N + C. Between switches the block obeys M x'' + K x = F with the springs of its closed corners, whose
-power series is summed in ball arithmetic. The next switch is the first instant at which a gap or a normal force falls
-through zero, the shear force of a corner that sticks reaches its limit, or the reference of one that slips comes to
-rest. That it is the first is proven: up to it Bernstein's form of each of these functions, or Taylor's formula with a
-bound on the third derivative, is positive (`block_flow.Step.doubtful`, `enclosure.first_fall`), and the interval Newton
-operator proves that one root lies in the ball of its instant. Where two corners switch in one ball both switch in it;
-where a function comes so near to zero that a crossing is neither proven nor excluded, its instant is in `touches`.
+at |T| = tan(phi) N + C. How it gets from switch to switch, and what is proven of each, is told in `march`.
 
 A corner at zero gap goes the way of the first derivative of its gap that is not zero: a block that touches
 at rest when a pressure is switched on lifts off at once, since its base accelerates upwards. In the same way a corner
@@ -15,8 +9,8 @@ that closes slips at once where p_s |s'| > tan(phi) p |w'|, unless it has cohesi
 releases the energy T^2 / (2 p_s) of its spring.
 
 With dashpots, or with an impact law on rigid contact, the laws of `block_model` hold, and the same proof does: a
-dashpot changes G and what is watched, an impact maps the state. Impacts that accumulate are named in `cascades`, with
-the instant at which the contact comes to rest enclosed (`block_impacts`).
+dashpot changes the matrices and what is watched, an impact the rates. Impacts that accumulate are named in `cascades`,
+with the instant at which the contact comes to rest enclosed (`block_impacts`).
 """
 
 from __future__ import annotations

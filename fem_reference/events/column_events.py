@@ -1,11 +1,6 @@
 """The column of blocks of one strain, or rigid, whose contacts open or slip, exact in time: from switch to switch.
 
-Between switches the column is linear, and its Taylor series is summed in ball arithmetic (`column_flow`). The next
-switch is the first instant at which a gap or a normal force falls through zero, the shear force of a joint that sticks
-reaches its strength, or the rate of one that slips comes to zero. That it is the first is proven: up to it Bernstein's
-form of each of these functions, or Taylor's formula with a bound on the third derivative, is positive; and the interval
-Newton operator proves that one root lies in the ball of its instant. What switches in one ball switches together. Where
-a function comes so near to zero that a crossing is neither proven nor excluded, its instant is in `touches`.
+How it gets from switch to switch, and what is proven of each, is told in `march`.
 
 A joint at zero gap, or a shear force at its strength, goes the way of the first derivative that is not zero: in a
 stack that touches at rest when its weight is switched on, joint j closes in the derivative 2 j + 2. Joints whose gap

@@ -12,6 +12,8 @@ the motion by a term of second order only.
 
 from __future__ import annotations
 
+from functools import lru_cache
+
 import numpy as np
 from flint import arb, arb_mat
 
@@ -19,6 +21,7 @@ from fem_reference.events.column_model import ColumnModel
 from fem_reference.events.contacts import OPEN, States, Watch
 from fem_reference.events.series import Segment
 from fem_reference.events.watching import INFLATION, Change, Reach
+from fem_reference.problem.problem import Array
 
 
 class EnergyNorm:
@@ -64,8 +67,7 @@ class EnergyNorm:
             error = (error + 2 * rate * arb(offset)).upper()
         speed_reach = bounds.compliance[watch.contact] ** 0.5
         growth = max((self.model.rate(states) + bounds.soft) * segment.length, 1.0)
-        powers = np.cumprod([1.0, *(growth / np.arange(1, segment.count))])
-        parts = speed_reach * segment.length * powers[: segment.count - watch.rates]
+        parts = speed_reach * segment.length * exponential_terms(growth, segment.count)[: segment.count - watch.rates]
         if not watch.rates:
             position = speed_reach / bounds.soft
             if states[watch.contact] != OPEN:
@@ -102,3 +104,9 @@ class EnergyNorm:
                     gain += bounds.stiffness[c] * bounds.compliance[c] / bounds.soft**2 * (1 + 1e-9)
         if gain > 1:
             self.error = (self.error * arb(gain).sqrt()).upper()
+
+
+@lru_cache(maxsize=8)
+def exponential_terms(x: float, count: int) -> Array:
+    """The terms x^k / k! of the series of an exponential."""
+    return np.cumprod([1.0, *(x / np.arange(1, count))])

@@ -130,7 +130,8 @@ class Flow:
 
     def norm(self, z: Array) -> float:
         """Norm of the unknowns and their rates."""
-        return float(np.linalg.norm(z[:12] / self.units[:12])) * INFLATION
+        scaled = z[:12] / self.units[:12]
+        return math.sqrt(scaled @ scaled) * INFLATION
 
     def exponential(self, seconds: float) -> Array:
         """exp(G s) in floats, see `EXPONENTIAL_ERROR`."""

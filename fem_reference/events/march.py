@@ -4,6 +4,14 @@ The centre of the motion is computed in so many digits without radii. How far it
 carries along: Lohner's axes for the few unknowns of a block (`axes`), one number in the energy norm for the many of a
 column (`energy_norm`).
 
+**Switches.** Between two of them the motion is linear, and its Taylor series is summed in balls (`series`). The next
+switch is the first instant at which a gap or a normal force falls through zero, the shear force of a contact that
+sticks reaches its limit, or the reference of one that slips comes to rest (`contacts`). That it is the first is proven:
+up to it Bernstein's form of each of these functions, or Taylor's formula with a bound on the third derivative, is
+positive (`watching`), and the interval Newton operator proves that one root lies in the ball of its instant. What
+switches in one ball switches together. Where a function comes so near to zero that a crossing is neither proven nor
+excluded, its instant is in `touches`.
+
 **Settling.** At an instant some watched functions are zero, and go the way of their first derivative that is not. What
 the state of a contact changes in the motion begins two derivatives above that in which its own function moves. So the
 lowest derivative in which any of them falls says which contact does not keep its state, whatever the others do; it

@@ -33,12 +33,15 @@ def parts_of(model: System, nodes: Sequence[Node], drives: Sequence[Sequence[Pie
         start = node.start
         columns = np.flatnonzero(begun == index)
         passed = np.array([float(arb(moment) - start.time) for moment in t[columns].tolist()])
-        length = step_length(model, node.states, drives[index]) * REPORT_ANGLE / model.angle
+        step = step_length(model, node.states, drives[index])
+        length = step * REPORT_ANGLE / model.angle
         numbers = np.maximum(0, np.floor(passed / length)).astype(int)
-        for number in range(int(numbers.max()) + 1):
-            segment = expand(model, node.states, start, drives[index], length)
+        whole = expand(model, node.states, start, drives[index], step) if numbers.any() else None
+        for number in np.unique(numbers).tolist():
+            begun_at = number * length
+            if whole is not None:
+                u, v = whole.state(arb(begun_at) / arb(step))
+                start = Start(node.start.time + arb(begun_at), u.mid(), v.mid(), node.start.references)
             inside = numbers == number
-            if inside.any():
-                yield Part(index, segment, start, number * length, columns[inside], passed[inside] / length - number)
-            u, v = segment.state(arb(1))
-            start = Start(start.time + arb(length), u.mid(), v.mid(), start.references)
+            segment = expand(model, node.states, start, drives[index], length)
+            yield Part(index, segment, start, begun_at, columns[inside], passed[inside] / length - number)

@@ -19,7 +19,7 @@ Where x = rate * length with w^2 + d rate <= rate^2, terms below M x^k / k! stay
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -140,6 +140,7 @@ class Segment:
     drives: list[list[arb]]  # of each drive
     tail: arb  # norm of all further terms, and of three derivatives of them in the share of the step
     drive_tails: list[arb]  # the same of each drive
+    functions: dict[tuple[int, int, int], list[arb]] = field(default_factory=dict)  # that were asked for
 
     @property
     def count(self) -> int:
@@ -147,14 +148,9 @@ class Segment:
         return len(self.terms)
 
     @cached_property
-    def matrix(self) -> arb_mat:
-        """The terms of the unknowns, a column a term."""
-        return arb_mat([term.entries() for term in self.terms]).transpose()
-
-    @cached_property
     def rows(self) -> list[list[arb]]:
         """The terms of each row."""
-        y = (self.system.rows * self.matrix).tolist()
+        y = [list(series) for series in zip(*((self.system.rows * term).entries() for term in self.terms), strict=True)]
         for series, offset, b in zip(y, self.system.offsets.entries(), self.system.on_base.entries(), strict=True):
             series[0] = series[0] + offset
             if b != 0:
@@ -168,19 +164,26 @@ class Segment:
 
     def unknowns(self) -> list[arb_poly]:
         """Series of the unknowns."""
-        return [arb_poly(series) for series in self.matrix.tolist()]
+        return [arb_poly(list(series)) for series in zip(*(term.entries() for term in self.terms), strict=True)]
 
     def state(self, share: arb) -> tuple[arb_mat, arb_mat]:
         """Unknowns and their rates at a share of the step."""
-        powers = [arb(1)]
-        for _ in range(1, self.count):
-            powers.append(powers[-1] * share)
-        slopes = [arb(0), *(k * power for k, power in enumerate(powers[:-1], 1))]
+        u = self.terms[-1]
+        v = u * 0
+        for term in reversed(self.terms[:-1]):  # Horner's scheme and its derivative
+            v = v * share + u
+            u = u * share + term
         rest = column([ball((self.tail * arb(size)).upper()) for size in self.system.sizes])
-        return self.matrix * column(powers) + rest, (self.matrix * column(slopes) + rest) * (1 / arb(self.length))
+        return u + rest, (v + rest) * (1 / arb(self.length))
 
     def function(self, watch: Watch) -> list[arb]:
         """Series of a watched function."""
+        key = watch.contact, watch.side, watch.becomes
+        if key not in self.functions:
+            self.functions[key] = self._function(watch)
+        return self.functions[key]
+
+    def _function(self, watch: Watch) -> list[arb]:
         terms: list[arb] = []
         for row, factor, dashpot in watch.parts:
             series = self.rows[row]

@@ -16,6 +16,7 @@ from fem_reference.events import column_events, contacts
 from fem_reference.events.column_events import ColumnMotion, solve
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import precision
+from fem_reference.events.energy_norm import EnergyNorm
 from fem_reference.events.series import Start, column, expand, step_length
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
@@ -269,3 +270,33 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
                     norms = [model.norm(term.entries()) for term in terms]
                     left_out = sum(norms[k] * k**3 for k in range(count, count + further))
                     assert left_out <= segment.tail
+
+
+@pytest.mark.parametrize("law", ["unilateral", "frictional"])
+@pytest.mark.parametrize("seed", range(4))
+def test_the_energy_norm_bounds_what_the_terms_of_a_function_are_off(law: str, seed: int) -> None:
+    strength = 1e4 if law == "frictional" else None
+    pair = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, RIGID))
+    model = ColumnModel(
+        ColumnProblem(pair, (ColumnJoint(1e9, strength=strength), ColumnJoint(3e8, strength=strength)), law)
+    )
+    states = (contacts.STICKS, contacts.STICKS if law == "frictional" else contacts.OPEN)
+    still = drives.still().pieces
+    rng = np.random.default_rng(seed)
+    with precision(200):
+        u, v = (column(rng.normal(size=model.size).tolist()) for _ in range(2))
+        springs = [model.spring(c) if state == contacts.STICKS else arb(0) for c, state in enumerate(states)]
+        stretches = (model.rows * u).entries()
+        soft = model.stiffness + model.mass * arb(model.bounds.soft) ** 2
+        square = (v.transpose() * model.mass * v + u.transpose() * soft * u)[0, 0]
+        square += sum((k * y * y for k, y in zip(springs, stretches, strict=True)), arb(0))
+        transport = EnergyNorm(model)
+        transport.error = square.sqrt()
+        length = 3.0 / model.rate(states)
+        starts = [Start(arb(0), u * size, v * size, [arb(0)] * 2) for size in (0, 1)]
+        segments = [expand(model, states, start, (*still, *still), length) for start in starts]
+        for watch in model.watches(states, starts[0].references):
+            reaches = transport.reach(watch, states, segments[1], 0.0).terms()
+            terms = [segment.function(watch) for segment in segments]
+            assert all(abs(two - one) <= reach for one, two, reach in zip(*terms, reaches, strict=True))
+            assert reaches[0] < 1e3 * max(abs(two - one) for one, two in zip(*terms, strict=True))

@@ -221,6 +221,39 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(states: tuple[int
                     assert abs(one - two) <= reach
 
 
+def test_the_axes_follow_what_is_off_over_a_switch_at_which_a_force_jumps() -> None:
+    """The deviation of a motion that begins a little faster lies in the set, which is as thin as one axis."""
+    problem = replace(PAPER, damping=3e6, eccentricity=0.3, velocity=-1.0, gap=1e-3)
+    faster = 1e-9
+    with precision(bits_of(50)):
+        marches = []
+        for change in (0.0, faster):
+            march = block_march.BlockMarch(replace(problem, velocity=-1.0 - change), 0.01, 100)
+            march.take_drives(0.0)
+            march.start, march.states = march.initial()
+            march.place(*march.start[:3])
+            march.settle({}, recording=False)
+            if not change:
+                march.transport.restart(np.eye(SIZE)[7] * faster)
+            while not march.switches:
+                march.step(arb(0.01))
+            marches.append(march)
+        centre, other = marches
+        assert centre.states == other.states
+        assert centre.states.count(OPEN) == 1
+        later = centre.start.time - other.start.time
+        segment = expand(other.block, other.states, other.start, (), abs(float(later)) * 1.01)
+        moved = segment.state(later / arb(segment.length))
+        entries = zip((*moved[0].entries(), *moved[1].entries()), vector(centre.start).entries(), strict=False)
+        off = np.array([*(float(x - y) for x, y in entries), 0.0, 0.0, 0.0])
+        units = centre.block.flow(centre.states).units
+        thin = np.linalg.svd((centre.transport.axes[:, 7] / units)[None, :])[2][1:] / units
+        deviation = np.linalg.norm(off / units)
+        reaches = centre.transport.radius(thin)
+        assert np.all(np.abs(thin @ off) <= reaches)
+        assert reaches.max() < 1e-3 * deviation
+
+
 def none(_watch: Watch, _at_switch: bool) -> Reach:
     return Reach(arb(0), np.zeros(200))
 
