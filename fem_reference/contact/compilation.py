@@ -24,7 +24,7 @@ from fem_reference.scheme.stage import Motion
 
 LONG = 50_000
 """Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
-PLAIN = ("fall_back", "singly", "only_contact", "step_change", "part_of")
+PLAIN = ("fall_back", "singly", "only_contact", "step_change", "held_change", "part_of")
 """Functions that no history compiles."""
 APART = (
     "march",
