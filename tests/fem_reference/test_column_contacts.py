@@ -15,6 +15,7 @@ from fem_reference.column.contact_system import column_at_start, mesh_of, steppe
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import Observation, observed_by, solve_line
+from fem_reference.contact import compilation
 from fem_reference.contact.iteration import CONVERGED, NONE, fall_back, find_contact, singly
 from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, equations_of, solution
 from fem_reference.contact.march import ContactState
@@ -149,6 +150,23 @@ def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: f
         expected = switching - scheme_loss
         assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
         before = state
+
+
+@pytest.mark.parametrize("seed", [0, 1, 4])  # opens, slips, opens
+def test_natural_modes_are_the_same_column(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    column, drive, dt = random_column(seed)
+    names = ["displacement", "contact_pressure", "stress_1", "velocity_1", "force_2"]
+    arguments = (column, [2] * 4, 1, scheme(CONSTANT, dt, 0.99), drive, names, [0.7, column.contacts[-1].height])
+    plain = solve_contacts(*arguments)
+    monkeypatch.setattr(compilation, "LONG", 1)
+    monkeypatch.setattr(compilation, "compiled", lambda: (None, "plain"))
+    modal = solve_contacts(*arguments)
+    assert plain.solves > 0 == modal.solves and len(modal.time) == len(plain.time) == 100
+    assert np.count_nonzero(np.diff(plain.states)) > 0
+    for name in names:
+        # force and stress are differences of displacements that have the rounding of the highest mode
+        size = np.abs(plain.columns[name]).max()
+        assert modal.columns[name] == pytest.approx(plain.columns[name], abs=1e-8 * size), name
 
 
 def test_contacts_that_never_slip_are_bonded_springs() -> None:
