@@ -227,11 +227,11 @@ def advance_stage(
     if outcome != CONVERGED:
         return latest, trial.equations, solves, outcome
     e = e + (1 - stage.af) * (now.response @ trial.force)
-    end = end_of_stage(stage, now.h, gg, origin, before, predicted, e)
+    end = end_of_stage(stage, now.h, gg, origin, before, predicted, e, start.D)
     if now.is_implicit:
         end = thrown(now, gg, origin, before, end, trial.force)
     sums = latest.sums.copy() if losses else latest.sums
-    following = moved_rows(now, latest, trial, states, parts, end, start.D + end.D, sums)
+    following = moved_rows(now, latest, trial, states, parts, end, sums)
     if losses:
         add_losses(now, start, latest, following, trial, gg)
     return following, trial.equations, solves, outcome
@@ -265,7 +265,6 @@ def moved_rows(
     states: States,
     parts: Array,
     end: Motion,
-    D: Array,
     sums: Array,
 ) -> ContactState:
     """State at the end of a stage; its sums of energies are those of the stage before."""
@@ -289,7 +288,7 @@ def moved_rows(
             if slip * states[row] < 0:
                 slid[row] += slip
     position = state.position + now.ratio * now.duration
-    return ContactState(D, end.V, end.A, place, force, states, slid, parts, sums, position, False, False)
+    return ContactState(end.D, end.V, end.A, place, force, states, slid, parts, sums, position, False, False)
 
 
 def add_losses(

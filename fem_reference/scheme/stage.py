@@ -80,11 +80,13 @@ def free_acceleration(
     return body.inverse * (load - body.K * (start.D + (1 - stage.af) * predicted))
 
 
-def end_of_stage(stage: Stage, h: float, gg: float, start: Motion, before: Motion, predicted: Any, e: Any) -> Motion:
-    """Return the end of a stage with the acceleration e, as a change dD of the displacement since the step's start."""
+def end_of_stage(
+    stage: Stage, h: float, gg: float, start: Motion, before: Motion, predicted: Any, e: Any, origin: Any
+) -> Motion:
+    """Return the end of a stage with the acceleration e; its displacement is counted from an origin, D or zero."""
     b = stage.beta / (1 - stage.am) * h**2
     A = e if stage.am == 0 else e / (1 - stage.am)
-    return Motion(predicted + b * e, velocity_at_end(stage, h, gg, start, before, A), A)
+    return Motion(origin + (predicted + b * e), velocity_at_end(stage, h, gg, start, before, A), A)
 
 
 def held_change(
@@ -121,7 +123,7 @@ def step_change(scheme: Any, gg: float, h: float, bodies: Any, start: Motion, lo
         predicted = predicted_change(stage, h, gg, start, before)
         if stage.beta == 0:
             e = free_acceleration(stage, h, gg, body, start, before, predicted, F)
-            before = end_of_stage(stage, h, gg, start, before, predicted, e)
+            before = end_of_stage(stage, h, gg, start, before, predicted, e, 0.0)
             continue
         change = held_change(stage, h, gg, body, start, before, predicted, F)
         A = (change - predicted) / (stage.beta * h**2)
