@@ -171,10 +171,8 @@ def histories(model: Model, stepper: Stepper, excitation: Excitation, rows: Sequ
     parts = excitation.parts
     loads = parts @ model.loads().T
     by = observed_by(model, rows)
-    state = stepper.start(loads[0])
     stages = len(stepper.solves)
     columns = by.excitation @ parts[stages::stages].T
-    for n in range(columns.shape[1]):
-        state = stepper.advance(state, list(loads[n * stages : (n + 1) * stages + 1]))
+    for n, state in enumerate(stepper.states(columns.shape[1], loads)):
         columns[:, n] += by.D @ state.D + by.V @ state.V + by.A @ state.A
     return columns

@@ -38,7 +38,7 @@ def columns_of(record: Record, model: ContactModel, rows: ContactRows) -> dict[s
     """All columns of some steps; energies are zero where they are not kept."""
     points = len(model.share)
     gap = record.place[:, :points]
-    displacement, horizontal, rotation, load = record.displacements.T
+    displacement, horizontal, rotation = record.displacements.T
     force = record.force
     return {
         "displacement": displacement,
@@ -54,7 +54,7 @@ def columns_of(record: Record, model: ContactModel, rows: ContactRows) -> dict[s
         "kinetic_energy": record.stored[:, 0],
         "strain_energy": record.stored[:, 1],
         "spring_energy": force**2 @ rows.compliance / 2,
-        "load_energy": -load - record.sums[:, GROUND],
+        "load_energy": -record.stored[:, 2] - record.sums[:, GROUND],
         "algorithmic_loss": record.sums[:, ALGORITHMIC],
         "kinetic_damping_loss": record.sums[:, DISCOUNT],
         "switching_loss": record.sums[:, SWITCHING],

@@ -24,19 +24,17 @@ from fem_reference.scheme.stage import Motion
 
 LONG = 50_000
 """Number of steps from which on a history is stepped in natural modes, compiled: the first time that takes seconds."""
-PLAIN = ("fall_back", "singly", "only_contact", "step_change", "part_of")
+PLAIN = ("fall_back", "singly", "only_contact", "step_change", "held_change", "part_of")
 """Functions that no history compiles."""
 APART = (
     "march",
     "equations_of",
     "solution",
     "agreed",
-    "moved_rows",
     "add_losses",
     "newmark_loss",
     "balance_loss",
     "thrown",
-    "keep",
 )
 """Functions that are called, and not part of what calls them: an argument costs as much as a small product."""
 MESSAGE_DELAY = 2.0
@@ -88,7 +86,8 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
     timer.daemon = True
     timer.start()
     # What was kept is found by the name and the stamp of one file: the name tells all files apart.
-    sources = b"".join(Path(str(module.__file__)).read_bytes() for module in MODULES)
+    files = [__file__, *(str(module.__file__) for module in MODULES)]
+    sources = b"".join(Path(file).read_bytes() for file in files)
     digest = hashlib.sha256(sources).hexdigest()[:12]
     for cache in (True, False):
         # The modules see each other's functions under one name each.

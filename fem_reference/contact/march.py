@@ -45,11 +45,10 @@ from fem_reference.problem.stages import Stage
 from fem_reference.scheme.stage import (
     Body,
     Motion,
-    free_response,
+    end_of_stage,
+    free_acceleration,
     mean_load,
     predicted_change,
-    response_weight,
-    stage_end,
     velocity_at_end,
 )
 
@@ -112,7 +111,7 @@ class Record(NamedTuple):
     force: Array
     slid: Array
     states: NDArray[np.int8]
-    stored: Array  # kinetic and strain energy [J], shape (steps, 2)
+    stored: Array  # kinetic energy, strain energy and work of the constant load [J], shape (steps, 3)
     sums: Array  # shape (steps, SUMS)
     solves: Array  # solutions of the open-close iteration [-], shape (steps,)
     cuts: Array  # of the step, shape (steps,); no march cuts
@@ -211,13 +210,14 @@ def advance_stage(
     origin = Motion(start.D, start.V, start.A)
     before = Motion(latest.D, latest.V, latest.A)
     F = load(now.F, now.pushes, mean_load(stage, start.parts, parts))
-    weight = response_weight(stage, now.h)
     predicted = predicted_change(stage, now.h, gg, origin, before)
-    response = free_response(stage, now.h, gg, now.body, origin, before, predicted, F)
+    e = free_acceleration(stage, now.h, gg, now.body, origin, before, predicted, F)
     if stage.af != 0:
-        response = response + (weight * stage.af) * (now.response @ start.force)
-    change = response if stage.beta != 0 else predicted
-    moved = now.B @ (change - (latest.D - start.D)) - ground_motion(now.ground, parts - latest.parts)
+        e = e + stage.af * (now.response @ start.force)
+    change = predicted + (stage.beta / (1 - stage.am) * now.h**2) * e
+    if latest.position != start.position:
+        change = change - (latest.D - start.D)
+    moved = now.B @ change - ground_motion(now.ground, parts - latest.parts)
     if not np.isfinite(moved.sum()):
         return latest, equations, 0, OVERFLOW
 
@@ -226,12 +226,12 @@ def advance_stage(
     )
     if outcome != CONVERGED:
         return latest, trial.equations, solves, outcome
-    response = response + (weight * (1 - stage.af)) * (now.response @ trial.force)
-    end = stage_end(stage, now.h, gg, origin, before, predicted, response)
+    e = e + (1 - stage.af) * (now.response @ trial.force)
+    end = end_of_stage(stage, now.h, gg, origin, before, predicted, e, start.D)
     if now.is_implicit:
         end = thrown(now, gg, origin, before, end, trial.force)
     sums = latest.sums.copy() if losses else latest.sums
-    following = moved_rows(now, latest, trial, states, parts, end, start.D + end.D, sums)
+    following = moved_rows(now, latest, trial, states, parts, end, sums)
     if losses:
         add_losses(now, start, latest, following, trial, gg)
     return following, trial.equations, solves, outcome
@@ -265,7 +265,6 @@ def moved_rows(
     states: States,
     parts: Array,
     end: Motion,
-    D: Array,
     sums: Array,
 ) -> ContactState:
     """State at the end of a stage; its sums of energies are those of the stage before."""
@@ -289,7 +288,7 @@ def moved_rows(
             if slip * states[row] < 0:
                 slid[row] += slip
     position = state.position + now.ratio * now.duration
-    return ContactState(D, end.V, end.A, place, force, states, slid, parts, sums, position, False, False)
+    return ContactState(end.D, end.V, end.A, place, force, states, slid, parts, sums, position, False, False)
 
 
 def add_losses(
@@ -367,6 +366,7 @@ def keep(now: ContactStage, watch: Watch, state: ContactState, record: Record, n
     if watch.energies:
         record.stored[n, 0] = V @ (now.body.M * V) / 2
         record.stored[n, 1] = state.D @ (now.body.K * state.D) / 2
+        record.stored[n, 2] = now.F @ state.D
         total += record.stored[n].sum()
     if watch.losses:
         record.sums[n] = state.sums

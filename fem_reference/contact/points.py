@@ -70,7 +70,7 @@ class ContactModel:
             B=csr_array(B),
             rows=rows,
             watch=Motion(
-                np.array([*(self.observers[name] for name in names), self.F]),
+                np.array([self.observers[name] for name in names]),
                 (momentum / float(self.upwards @ momentum))[None],
                 np.zeros((0, size)),
             ),

@@ -128,7 +128,7 @@ class ContactStepper:
             force=np.zeros((steps, rows)),
             slid=np.zeros((steps, rows)),
             states=np.zeros((steps, rows), dtype=np.int8),
-            stored=np.zeros((steps, 2)),
+            stored=np.zeros((steps, 3)),
             sums=np.zeros((steps, SUMS)),
             solves=np.zeros(steps),
             cuts=np.zeros(steps),
@@ -202,7 +202,7 @@ class ContactStepper:
         end_weight = stage.gamma if is_newmark else 0.5
         return ContactStage(
             stage=stage,
-            body=Body(M, C, K, inverse, is_free=True),
+            body=Body(M, C, K, inverse),
             law=Law(
                 stage.stiffness_weight * scheme.step**2 * (W + W.T) / 2,
                 *rows,

@@ -129,10 +129,7 @@ def run(
     stages = len(stepper.scheme.stages)
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
-        state = stepper.start(None if forces is None else forces[0])
-        for n in range(steps):
-            loads = None if forces is None else list(forces[n * stages : (n + 1) * stages + 1])
-            state = stepper.advance(state, loads)
+        for n, state in enumerate(stepper.states(steps, forces)):
             history[:, n] = rows @ state.D
             if writer is not None:
                 writer.record(n + 1, state.D)

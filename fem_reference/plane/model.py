@@ -192,9 +192,7 @@ class PlaneModel:
         ready = time.perf_counter()
         observed = np.empty((len(rows), steps))
         with np.errstate(over="ignore", invalid="ignore"):
-            state = stepper.start(None)
-            for n in range(steps):
-                state = stepper.advance(state, None)
+            for n, state in enumerate(stepper.states(steps)):
                 observed[:, n] = rows @ state.D
         return Result(
             time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),

@@ -3,12 +3,13 @@ r"""A scheme on single modes: what one step makes of them, whether they stay bou
 With W = w dt and lengths in dt a stage (`fem_reference.scheme.stage`) of the mode A + c V + w^2 D = w^2 f has M = 1,
 C = c dt, K = W^2 and h = 1.
 
-A step is an affine map of (x, v, a). The maps of 1, 2, 4, ... steps are squared in extended precision; step jB + i is
-the product of a row of i steps and a column of jB steps, so that a history is a few matrix products.
+A step is an affine map of (x, v, a). Its powers are made in extended precision; step i + jB is the product of a row of
+i steps and a column of jB steps, so that a history is a few matrix products.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -28,8 +29,6 @@ NEWMARK_SLACK = 1e-12
 """Of what must not be negative where Newmark's scheme is stable."""
 FASTEST = 1e8
 """w dt of a mode that stands for infinitely fast ones."""
-BLOCK = 256
-"""Greatest number of steps in a row."""
 CHUNK = 1024
 """Modes that are summed at a time."""
 
@@ -199,6 +198,9 @@ def ramped_response(omega: Array, weights: Array, scheme: Scheme, steps: int, sh
 def power_histories(step: Extended, start: Array, weights: Array, steps: int) -> Array:
     """Weighted sums of the first entry of modes at every step, shape (quantities, steps).
 
+    Step 1 + i + j B is the row of 1 + i steps times the state after j B: about the root of the steps of each are made,
+    one after the other in extended precision.
+
     Parameters
     ----------
     step
@@ -210,31 +212,18 @@ def power_histories(step: Extended, start: Array, weights: Array, steps: int) ->
     steps
         Number of steps.
     """
-    levels = (steps - 1).bit_length()
-    split = min(BLOCK.bit_length() - 1, (levels + 1) // 2)
-    maps = _squared(step, levels)
-    inner = _doubled(step[:, :1, :].astype(float), maps[:split])
-    outer = _doubled(start[:, None, :], [power.transpose(0, 2, 1) for power in maps[split:]])
-    columns = outer[:, : -(-steps >> split)].transpose(1, 0, 2).reshape(-1, 4 * len(step))
-    histories = []
-    for weight in weights:
-        row = (weight[:, None, None] * inner).transpose(0, 2, 1).reshape(columns.shape[1], -1)
-        histories.append((columns @ row).ravel()[:steps])
+    block = math.isqrt(steps - 1) + 1
+    rows = np.empty((block, *start.shape))
+    row = step[:, 0]
+    for i in range(block):
+        rows[i] = row
+        row = np.einsum("mk,mkl->ml", row, step)
+    jump = np.linalg.matrix_power(step, block)
+    states = np.empty((-(-steps // block), *start.shape))
+    state = start.astype(np.longdouble)
+    for j in range(len(states)):
+        states[j] = state
+        state = np.einsum("mkl,ml->mk", jump, state)
+    of_states = states.reshape(len(states), -1).T
+    histories = [((weight[:, None] * rows).reshape(block, -1) @ of_states).T.ravel()[:steps] for weight in weights]
     return np.array(histories).reshape(len(weights), steps)
-
-
-def _squared(one: Extended, levels: int) -> list[Array]:
-    """Maps of 1, 2, 4, ... steps, rounded to doubles."""
-    maps = []
-    for _ in range(levels):
-        maps.append(one.astype(float))
-        one = one @ one
-    return maps
-
-
-def _doubled(start: Array, maps: list[Array]) -> Array:
-    """The start and its products with all maps made of those of 1, 2, 4, ... steps, along the second axis."""
-    powers = start
-    for power in maps:
-        powers = np.concatenate([powers, powers @ power], axis=1)
-    return powers

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -153,3 +153,11 @@ class Stepper:
         start = Motion(state.D, state.V, state.A)
         end = step_change(self.scheme, gg, self.scheme.step, self.bodies, start, loads)
         return State(state.D + end.D, end.V, end.A)
+
+    def states(self, steps: int, loads: Array | None = None) -> Iterator[State]:
+        """Yield the state after each step from rest, under loads at the `stage_times`, shape (instants, unknowns)."""
+        stages = len(self.solves)
+        state = self.start(None if loads is None else loads[0])
+        for n in range(steps):
+            state = self.advance(state, None if loads is None else list(loads[n * stages : (n + 1) * stages + 1]))
+            yield state

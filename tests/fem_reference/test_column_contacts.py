@@ -15,6 +15,7 @@ from fem_reference.column.contact_system import column_at_start, mesh_of, steppe
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import Observation, observed_by, solve_line
+from fem_reference.contact import compilation
 from fem_reference.contact.iteration import CONVERGED, NONE, fall_back, find_contact, singly
 from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, equations_of, solution
 from fem_reference.contact.march import ContactState
@@ -149,6 +150,38 @@ def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: f
         expected = switching - scheme_loss
         assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
         before = state
+
+
+@pytest.mark.parametrize(("seed", "welded"), [(0, False), (1, False), (4, True)])  # opens, slips, opens
+def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+    column, drive, dt = random_column(seed)
+    column = replace(column, contacts=column.contacts[1:]) if welded else column
+    names = ["displacement", "contact_pressure", "stress_1", "velocity_1", "force_2"]
+    arguments = (column, [2] * 4, 1, scheme(CONSTANT, dt, 0.99), drive, names, [0.7, column.contacts[-1].height])
+    plain = solve_contacts(*arguments)
+    monkeypatch.setattr(compilation, "LONG", 1)
+    monkeypatch.setattr(compilation, "compiled", lambda: (None, "plain"))
+    modal = solve_contacts(*arguments)
+    assert plain.solves > 0 == modal.solves and len(modal.time) == len(plain.time) == 100
+    assert np.count_nonzero(np.diff(plain.states)) > 0
+    for name in names:
+        # force and stress are differences of displacements that have the rounding of the highest mode
+        size = np.abs(plain.columns[name]).max()
+        assert modal.columns[name] == pytest.approx(plain.columns[name], abs=1e-8 * size), name
+
+
+@pytest.mark.parametrize("pull", [4.0, -4.0, -20.0])
+def test_a_base_that_starts_at_once_takes_a_rigid_contact_along_or_leaves_it(pull: float) -> None:
+    """The foot has the base's acceleration, or that of gravity where the base falls faster."""
+    contact = (ColumnContact(0.0, math.inf),)
+    column = ContactColumn(ground((2.0, 2500.0, 1e9)), "unilateral", contact, (0.0,), 9.81)
+    drive = still(1, acceleration=np.full(2, pull))
+    stepper, start = stepper_and_start(column, 3, 2, scheme(CONSTANT, 1e-4), drive)
+    assert pytest.approx(max(pull, -9.81), rel=1e-9) == stepper.system.B @ start.A
+    assert (start.force[0] > 0) == (pull > -9.81)
+    # All momentum that the mesh gains comes from weight and contact.
+    ones = np.ones(len(start.A))
+    assert ones @ (stepper.system.M @ start.A) == pytest.approx(start.force[0] - 9.81 * 5000, rel=1e-9)
 
 
 def test_contacts_that_never_slip_are_bonded_springs() -> None:

@@ -24,6 +24,9 @@ def followed(problem, scheme, contact, steps):
     # squares of what the steps' solutions have rounded
     assert np.abs(energies.sum(axis=0) + lost.sum(axis=0) - begun).max() <= 1e-10 * size
     assert np.diff(lost[1]).min(initial=0) >= 0 and np.diff(lost[3], prepend=0.0).min() >= 0
+    # What opens or closes loses by switching, and nothing else does.
+    stays = np.all(np.diff(run.states == 0, axis=0) == 0, axis=1) & (run.columns["cuts"][1:] == 0)
+    assert not np.diff(lost[2])[stays].any() and (stays.all() or lost[2].any())
     # A step of delta = 1 takes energy, whatever sticks, slides or switches. For alpha above one half that holds of the
     # energy with what the scheme counts beside it, (alpha - 1/2) dt^2 A' M A / 2.
     if (scheme.alpha, scheme.delta) == (0.5, 1.0) or contact.rule == "implicit":
