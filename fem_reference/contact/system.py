@@ -88,5 +88,5 @@ class ContactSystem:
             B=np.ascontiguousarray(self.B @ turn),
             watch=watch,
             pushes=np.ascontiguousarray(turn.T @ self.pushes),
-            to_modes=turn.T @ self.M,
+            to_modes=(self.M @ turn).T,
         )
