@@ -22,6 +22,8 @@ from dda.scheme.stage import plain_stage
 from dda.system.step import glued_march, run_glued
 from dda.system.system import BlockSystem, Equations
 
+ROUNDING = 1e-12  # of the largest share, below which a mode has none
+
 
 def solve_system(
     system: BlockSystem,
@@ -136,7 +138,8 @@ def system_modes(system: BlockSystem, scheme: Scheme, count: int = 12, full: boo
             break
         count *= 2
     carried = (equations.pressure @ forces) * (shapes.T @ F) / squares
-    return modes_of(scheme, np.sqrt(squares), shares, carried, np.argsort(-shares, kind="stable"))
+    counted = np.where(shares > ROUNDING * np.max(shares), shares, 0.0)  # of no share: by their frequency
+    return modes_of(scheme, np.sqrt(squares), shares, carried, np.lexsort((squares, -counted)))
 
 
 def _pushed(system: BlockSystem, equations: Equations) -> Array:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from dda.contact import rows
+from dda.contact.band import find_in_band
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, NONE, SEVERAL, UPPER, Flexibility, Laws, Rows
 
 
@@ -30,7 +31,8 @@ def solved(laws, W, q, before=None, paired=None, pair=None):
         work.pair[:] = pair
     W = np.array(W, dtype=float)
     flexible = Flexibility(W, W if paired is None else paired, np.ones(1))
-    return *rows.find(laws, before, flexible, after, work), after
+    find = find_in_band if laws.banded else rows.find
+    return *find(laws, before, flexible, after, work), after
 
 
 def positive(rng, m, least):
@@ -146,7 +148,7 @@ def test_contacts_stick_slip_and_open_all_at_once_and_one_by_one(way, cohesion, 
     assert singly[1] > 1 and singly[2].force == pytest.approx(after.force, rel=1e-12)
 
 
-def never_agrees(laws, flexible, after, work, r, slack):
+def never_agrees(laws, flexible, after, work, r):
     return LOWER if work.tried[r] == INSIDE else INSIDE
 
 
@@ -157,9 +159,9 @@ def test_what_does_not_end_has_no_state_or_several(monkeypatch):
     assert solved(*problem)[:2] == (NONE, 2 + 4**3)
     calls = []
 
-    def agrees_later(laws, flexible, after, work, r, slack):
+    def agrees_later(laws, flexible, after, work, r):
         calls.append(r)
-        return work.tried[r] if len(calls) > 20 else never_agrees(laws, flexible, after, work, r, slack)
+        return work.tried[r] if len(calls) > 20 else never_agrees(laws, flexible, after, work, r)
 
     monkeypatch.setattr(rows, "across", agrees_later)
     assert solved(*problem)[:2] == (SEVERAL, 2 + 4**3)
