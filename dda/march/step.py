@@ -381,21 +381,23 @@ def prescribe(march: March, course: Course, stage: StageRoom, part: Part) -> Non
 def look_up(course: Course, time: float, out: Vector) -> None:
     """Write what is prescribed at a time; times follow each other."""
     instants = course.time
+    latest = course.latest
     last = len(instants) - 1
-    low = course.latest[0]
+    low = latest[0]
     while low > 0 and instants[low] > time:
         low -= 1
     while low < last and instants[low + 1] <= time:
         low += 1
-    course.latest[0] = low
+    latest[0] = low
     before = course.value[low]
-    for j in range(len(out)):
-        out[j] = before[j]
     if low < last and instants[low] < time:
         after = course.value[low + 1]
         share = (time - instants[low]) / (instants[low + 1] - instants[low])
         for j in range(len(out)):
-            out[j] += share * (after[j] - before[j])
+            out[j] = before[j] + share * (after[j] - before[j])
+    else:
+        for j in range(len(out)):
+            out[j] = before[j]
 
 
 def begin_step(march: March, start: AnyState, length: Length) -> None:
@@ -408,10 +410,11 @@ def begin_step(march: March, start: AnyState, length: Length) -> None:
     p_0 = start.p
     a_0 = start.a
     R_0 = start.R
+    square = ratio * ratio
     for i in range(len(p)):
         p[i] = gg * (ratio * p_0[i])
-        a[i] = ratio * ratio * a_0[i]
-        R[i] = ratio * ratio * R_0[i]
+        a[i] = square * a_0[i]
+        R[i] = square * R_0[i]
 
 
 def write_loads(loads: Matrix, shares: Vector, out: Vector) -> None:
@@ -443,10 +446,11 @@ def free_modes(march: March, stage: StageRoom, length: Length, before: AnyState)
     inverse = length.inverse
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
+    square = ratio * ratio
     write_loads(march.body.loads, room.end, load)
     for i in range(len(k)):
         held = inertia_force(numbers, h2 * (load[i] - k[i] * z[i]), R_0[i], a_0[i])
-        moving = predictor(numbers, p_0[i], a_0[i], ratio * p[i], ratio * ratio * a[i])
+        moving = predictor(numbers, p_0[i], a_0[i], ratio * p[i], square * a[i])
         x[i] = inverse[i] * (moving + alpha * held)
 
 
@@ -516,6 +520,7 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, 
     ratio = length.numbers[0]
     h2 = length.numbers[2] * length.numbers[2]
     weight = length.numbers[3]
+    square = ratio * ratio
     per_length = 1 / ratio
     per_square = per_length * per_length
     z_end = after.z
@@ -528,7 +533,7 @@ def end_modes(march: March, stage: StageRoom, length: Length, before: AnyState, 
         if averages:
             R += h2 * pushed[i]
         a = inertia_force(numbers, R, R_0[i], a_0[i])
-        p = velocity_corrector(numbers, p_0[i], a_0[i], ratio * ratio * a_before[i], a)
+        p = velocity_corrector(numbers, p_0[i], a_0[i], square * a_before[i], a)
         if not averages:
             p += h2 * pushed[i]
         z_end[i] = z
