@@ -22,7 +22,6 @@ from fem_reference.problem.problem import Array
 SIZE = 15
 """Entries of z: 6 unknowns, their rates, 2 references and a one."""
 UNIT = np.eye(SIZE)
-INVERSE_FACTORIALS = np.cumprod([1.0, *(1 / np.arange(1, 2000))])
 LEAST_RATE = 1.0
 """Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
 EXPONENTIAL_ERROR = 1e-13

@@ -89,11 +89,6 @@ def start_velocity(V: Array, A: Array, scheme: Scheme) -> Array:
     return V - scheme.step / 2 * A if scheme.staggered else V
 
 
-def end_velocity(V: Array, A: Array, scheme: Scheme) -> Array:
-    """Velocity at the end of a step, of a staggered scheme half a step after its own [m/s]."""
-    return V + scheme.step / 2 * A if scheme.staggered else V
-
-
 @dataclass
 class Stepper:
     """The scheme applied to M D'' + C D' + K D = F, with its factorisations made once."""

@@ -43,7 +43,6 @@ from fem_reference.mesh import model as fem_model
 from fem_reference.plane import model as plane_model
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
-from fem_reference.scheme import newmark as fem_newmark
 from fem_reference.scheme import stage as fem_stage
 from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
@@ -151,7 +150,6 @@ FEM_ROTATION = Seam(elasticity, elasticity._rotation)
 FEM_BASIS = Seam(elasticity, elasticity.vector_basis)
 FEM_COLUMN = Seam(fem_model, fem_model.column)
 FEM_DENSE = Seam(fem_eigen, fem_eigen.DENSE)
-FEM_FACTOR = Seam(fem_newmark.Work, fem_newmark.Work.factor)
 FEM_OPENED_COLUMN = Seam(fem_points, fem_points.column)
 FENICSX_WORKER = Seam(fenicsx, fenicsx.WORKER)
 

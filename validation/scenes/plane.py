@@ -14,7 +14,6 @@ from validation.scenes.outline import check_polygon
 from validation.scenes.tables import Count, Positive, Real
 
 MOST_BLOCKS = 20_000  # polygons are lists, made before memory is predicted
-SAME_PLACE = 1e-9  # of the extent
 Point = tuple[Real, Real]
 Segment = tuple[Point, Point]
 PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]

@@ -8,9 +8,7 @@ from functools import cache
 from importlib import resources
 from itertools import groupby
 from operator import itemgetter
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
-from urllib.parse import quote
 
 from validation.report.blocks import Block, as_data
 from validation.report.names import unescaped
@@ -139,8 +137,3 @@ def _cited(text: str) -> Markup:
 def static(name: str) -> str:
     """Return the style sheet or the script of the pages."""
     return resources.files(__package__).joinpath(name).read_text("utf-8")
-
-
-def embedded(directory: Path) -> Callable[[str], str]:
-    """Return what gives a page the figures of a directory as part of itself."""
-    return lambda file: f"data:image/svg+xml,{quote((directory / file).read_text('utf-8'))}"
