@@ -16,7 +16,7 @@ is made of rows and of their rates alone, so that its power series follows from 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
@@ -50,10 +50,10 @@ class Contact:
     name: str  # the same in words
     gap: int | None = None  # number of the row w; None: it never opens
     slide: int | None = None  # number of the row s; None: nothing slides
-    stiffness: arb = ZERO  # p
-    damping: arb = ZERO  # c of the dashpot beside it
-    shear_stiffness: arb = ZERO  # p_s
-    friction: arb = ZERO  # tan(phi)
+    stiffness: arb = field(default_factory=lambda: ZERO)  # p
+    damping: arb = field(default_factory=lambda: ZERO)  # c of the dashpot beside it
+    shear_stiffness: arb = field(default_factory=lambda: ZERO)  # p_s
+    friction: arb = field(default_factory=lambda: ZERO)  # tan(phi)
     cohesion: arb | None = None  # C; None: it never slips
     force: int | None = None  # number of the row of N of both corners of a rigid contact, which has no springs
 
