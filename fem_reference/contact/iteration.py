@@ -131,7 +131,7 @@ def only_contact(
         if outcome == NONE:
             outcome = CONVERGED
             first = trial
-            names = states
+            names = guess
             continue
         size = max(np.abs(trial.force).max(), np.abs(first.force).max())
         if np.abs(trial.force - first.force).max() > ALIKE * size:
