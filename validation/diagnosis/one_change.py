@@ -9,7 +9,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, Generic, TypeVar
+
+import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
@@ -25,6 +28,8 @@ UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for
 IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-factor"})
 NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
 SPAN = 0.05  # of u, that a step of a fit is measured in
+BESIDE_NOTHING = 1e-12  # u that a step of the fit's own length has brought to zero but for rounding
+TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
 FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
 HALVED = 0.5  # of the remainder at the start
 
@@ -200,10 +205,18 @@ def _least_squares(
 ) -> Fitted[Change]:
     from scipy.optimize import least_squares
 
+    known = lru_cache(maxsize=4)(residual)
+
+    def slope(u: Array) -> Array:
+        """Return the derivative by a step relative to u, of rounding beside a span by one that a double can tell."""
+        x = float(u[0])
+        step = nudge * x if abs(x) > BESIDE_NOTHING else TOLD_APART
+        return np.asarray((known(x + step) - known(x)) / step)[:, None]
+
     solution = least_squares(
-        lambda u: residual(float(u[0])),
+        lambda u: known(float(u[0])),
         [candidate.u],
-        diff_step=nudge,
+        jac=slope,
         x_scale=SPAN,
         max_nfev=rounds,
         xtol=settled,
