@@ -29,7 +29,7 @@ def in_names(symbol: str) -> str:
 
 
 def named(column: str, unit: str) -> str:
-    """Return a column with its unit in its name, as tables of answers have it."""
+    """Return a column or a key with its unit in its name, as tables of answers and data of problems have it."""
     return f"{column}_{in_names(unit)}" if unit else column
 
 

@@ -8,9 +8,9 @@ from dataclasses import fields
 from typing import Any
 
 from validation.errors import InputError
-from validation.runs.units import in_names
+from validation.runs.units import named
 from validation.scenes.column import Contact, InputSection, JointSection, LayerSection
-from validation.scenes.keys import Key, Section, keys_of, stated, stated_value
+from validation.scenes.keys import Section, keys_of, stated, stated_value
 from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.scenes.tables import BlockSection, ContactSection, LoadSection
@@ -68,7 +68,7 @@ def words() -> Iterator[tuple[str, str]]:
     for place, table in tables.items():
         for name, _, key in keys_of(table):
             if name not in UNSTATED.get(table, ()):
-                yield f"{place}.{_named(name, key)}", key.text
+                yield f"{place}.{named(name, key.unit)}", key.text
 
 
 def _table(section: Section, *without: str) -> dict[str, Any]:
@@ -77,12 +77,8 @@ def _table(section: Section, *without: str) -> dict[str, Any]:
     data = {}
     for name, _, key in keys_of(type(section)):
         if name not in unstated:
-            data[_named(name, key)] = _plain(stated_value(section, name))
+            data[named(name, key.unit)] = _plain(stated_value(section, name))
     return data
-
-
-def _named(name: str, key: Key) -> str:
-    return f"{name}_{in_names(key.unit)}" if key.unit else name
 
 
 def _plain(value: Any) -> Any:
@@ -105,7 +101,7 @@ def _column_data(scene: Scene) -> dict[str, Any]:
     data = {}
     for name, _, key in keys_of(type(column)):
         if name in OF_COLUMN:
-            data[_named(name, key)] = _plain(stated_value(column, name))
+            data[named(name, key.unit)] = _plain(stated_value(column, name))
     if column.base == "springs":  # the lowest of the joints or contacts
         data["base"] = "rigid"
     data["layers"] = [_table(layer) for layer in column.layer]
@@ -119,8 +115,8 @@ def _column_data(scene: Scene) -> dict[str, Any]:
 
 def _contact_data(contact: Contact) -> dict[str, Any]:
     """Return a contact of a column; friction is the strength that it amounts to."""
-    units = {name: key for name, _, key in keys_of(JointSection)}
-    return {_named(field.name, units[field.name]): _plain(getattr(contact, field.name)) for field in fields(contact)}
+    units = {name: key.unit for name, _, key in keys_of(JointSection)}
+    return {named(field.name, units[field.name]): _plain(getattr(contact, field.name)) for field in fields(contact)}
 
 
 def _rigid_data(rigid: RigidSection) -> dict[str, Any]:
@@ -156,7 +152,7 @@ def lines(scene: Scene) -> Iterator[str]:
     for place, section in sections.items():
         for name, value, key in stated(section):
             if name not in OF_SHAPE and name in UNSTATED.get(type(section), (name,)):
-                yield from _flat(f"also {place}.{_named(name, key)}", _plain(value))
+                yield from _flat(f"also {place}.{named(name, key.unit)}", _plain(value))
 
 
 def _flat(place: str, value: Any) -> Iterator[str]:
