@@ -221,15 +221,14 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
         from numba.extending import register_jitable
     except Exception:  # not installed, or not for this Python
         return None
-    inner = called_by(functions[0])
-    for function in functions:
-        if function in called_by(functions[0]):
-            inner += called_by(function)
+    called = called_by(functions[0])
+    deeper = [part for function in functions if function in called for part in called_by(function)]
+    inner = called + deeper
+    # what the loop itself calls, and what these call, takes whole histories and marches, whose arrays are not to be
+    # passed on at every step; and nobody else calls any of these: they have no entry from Python or C
+    options = {**library_option(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
     for function in functions:
         if function is not loop and function not in _jitable:
-            # what the loop itself calls, and what these call, takes whole histories and marches, whose arrays are not
-            # to be passed on at every step; and nobody else calls any of these: they have no entry from Python or C
-            options = {**library_option(), "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
             register_jitable(forceinline=function in inner, **options)(function)
             _jitable.add(function)
     directory = cache_directory()
