@@ -49,6 +49,7 @@ from dda.march.step import (
     end_paths,
     free_modes,
     free_rows,
+    free_velocity,
     length_of,
     prescribe,
     push_modes,
@@ -180,15 +181,11 @@ def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) 
     body = march.body
     room = march.room
     numbers = stage.numbers
-    ratio = length.numbers[0]
     h = length.numbers[2]
     late = numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h
     speed = 0.0
     for i in range(2):
-        force = h * h * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
-        a = inertia_force(numbers, force, room.R[i], room.a[i])
-        p = velocity_corrector(numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
-        speed += body.weight[0][i] * p / h
+        speed += body.weight[0][i] * free_velocity(march, stage, length, before, i) / h
     own = 1 + blocks.impedance * late * coupling(body, length.inverse, 0, 0)
     force = blocks.impedance * (2 * room.end[VELOCITY] - speed) / own
     if len(room.free) == 1:

@@ -483,16 +483,24 @@ def free_rows(march: March, before: AnyState) -> None:
         q[r] = opening[r] + free[r]
 
 
+def free_velocity(march: March, stage: StageRoom, length: Length, before: State, i: int) -> float:
+    """Return h v of a mode at the end of a stage without contact forces."""
+    room = march.room
+    ratio = length.numbers[0]
+    h = length.numbers[2]
+    force = h * h * (room.load[i] - march.body.k[i] * (before.z[i] + room.x[i]))
+    a = inertia_force(stage.numbers, force, room.R[i], room.a[i])
+    p: float = velocity_corrector(stage.numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
+    return p
+
+
 def retard(march: March, stage: StageRoom, length: Length, before: State) -> None:
     """Add tau y' at the end of a stage without contact forces to the openings; a base moves evenly."""
     body = march.body
     room = march.room
-    ratio = length.numbers[0]
     h = length.numbers[2]
     for i in range(len(body.k)):
-        force = h * h * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
-        a = inertia_force(stage.numbers, force, room.R[i], room.a[i])
-        room.pushed[i] = velocity_corrector(stage.numbers, room.p[i], room.a[i], ratio * ratio * before.a[i], a)
+        room.pushed[i] = free_velocity(march, stage, length, before, i)
     for r in range(len(room.free)):
         rate = moved_row(body, r, room.pushed) / h
         for axis in range(2):
