@@ -50,6 +50,7 @@ from dda.march.step import (
     free_modes,
     free_rows,
     free_velocity,
+    kept_discount,
     length_of,
     prescribe,
     push_modes,
@@ -319,7 +320,7 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
     row = kept[number]
     n = len(rows.state)
     lag = march.scheme.lag
-    discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+    discount = kept_discount(march.scheme, number)
     columns = len(observed.kind)
     for k in range(columns):
         kind = observed.kind[k]

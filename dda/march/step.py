@@ -687,11 +687,16 @@ def steps_by(
     return make_steps
 
 
+def kept_discount(scheme: Numbers, number: int) -> float:
+    """Return the factor of p where a state is kept: at t = 0 that of what `late_momentum` made of it."""
+    return scheme.gg if number == 0 and scheme.lag != 0 else 1.0
+
+
 def keep_modes(march: March, state: State, rows: Array, number: int) -> bool:
     """Write z and p at its time; tell whether z is finite."""
     n = len(state.z)
     lag = march.scheme.lag
-    discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+    discount = kept_discount(march.scheme, number)
     total = 0.0
     for i in range(n):
         rows[number, i] = state.z[i]

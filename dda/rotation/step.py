@@ -38,6 +38,7 @@ from dda.march.step import (
     begin_step,
     end_modes,
     free_modes,
+    kept_discount,
     length_of,
     march,
     prescribe,
@@ -559,7 +560,7 @@ def keep(march: March, state: RollingState, rows: Array, number: int) -> bool:
     """Write q, V and Q at the end of a step; tell whether it is finite."""
     rolling = march.method
     scheme = march.scheme
-    discount = scheme.gg if number == 0 and scheme.lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
+    discount = kept_discount(scheme, number)
     for i in range(len(state.p)):
         march.room.pushed[i] = (discount * state.p[i] + scheme.lag * state.a[i]) / scheme.step
     by_modes(rolling, march.room.pushed, rolling.new)

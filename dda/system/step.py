@@ -41,6 +41,7 @@ from dda.march.step import (
     forces_of_ways,
     free_rows,
     history_of,
+    kept_discount,
     march,
     prescribe,
     reached_history,
@@ -359,11 +360,10 @@ def strain_energy(glue: Glue, z: Array, force: Array) -> float:
 def keep(march: March, state: GluedState, rows: Array, number: int) -> bool:
     """Write what is observed at the end of a step; tell whether it is finite, or without contacts, which never stop."""
     glue = march.method
-    lag = march.scheme.lag
     kept = [glue.observed[0] @ state.z + glue.observed[1] @ state.glue]
     if len(glue.contact):
-        discount = march.scheme.gg if number == 0 and lag != 0 else 1.0  # of what `late_momentum` made of p at t = 0
-        p = discount * state.p + lag * state.a
+        discount = kept_discount(march.scheme, number)
+        p = discount * state.p + march.scheme.lag * state.a
         kept.append(p @ glue.equations.rigid[:, :2])
         if glue.energies:
             kept.append([half_square(p) / march.scheme.step**2, strain_energy(glue, state.z, state.glue)])
