@@ -33,7 +33,7 @@ from typing import Any, NamedTuple
 from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import FOUND, LOWER
-from dda.march.account import account, half_square
+from dda.march.account import account, half_square, over_stages
 from dda.march.energy import GIVEN, IMPULSE
 from dda.march.step import (
     Course,
@@ -296,14 +296,12 @@ def account_column(march: March, state: State, after: State, course: Course, par
     """
     account(march, state, after, course, part, sums)
     if march.method.base == HALF_SPACE:
-        before = state
-        if march.scheme.stages == 2:
-            add_wave(march, march.first, state, march.between, part, sums)
-            before = march.between
-        add_wave(march, march.last, before, after, part, sums)
+        add_waves(march, state, after, course, part, sums)
 
 
-def add_wave(march: March, stage: StageRoom, before: State, after: State, part: Part, sums: Vector) -> None:
+def add_wave(
+    march: March, stage: StageRoom, before: State, after: State, course: Course, part: Part, sums: Vector
+) -> None:
     """Add work and impulse of a half-space in a stage."""
     late = stage.numbers.delta if march.scheme.newmark else 0.5
     force = (1 - late) * before.rows.force[0] + late * after.rows.force[0]
@@ -393,4 +391,5 @@ def keep_states(march: March, state: State, history: History, number: int) -> No
             history.state[number, r] = state.rows.state[r]
 
 
+add_waves = over_stages(add_wave)
 make_column_steps = steps_by(make_column_stage, account_column, keep_observed, keep_states)

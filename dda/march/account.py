@@ -11,6 +11,28 @@ from dda.march.energy import ALGORITHMIC, CONTACT, DAMPING, FRICTION, GIVEN, IMP
 from dda.march.step import AnyState, Course, March, Part, StageRoom, State, prescribe
 
 
+def over_stages(account_stage: Callable[..., None]) -> Callable[..., None]:
+    """Return what adds up the stages of a part of a step: (march, state, after, course, part, sums).
+
+    Parameters
+    ----------
+    account_stage
+        Adds what belongs to one of them: (march, stage, before, after, course, part, sums).
+    """
+
+    def account_stages(
+        march: March, state: AnyState, after: AnyState, course: Course, part: Part, sums: Vector
+    ) -> None:
+        """Add what belongs to the stages of an accepted part of a step."""
+        before = state
+        if march.scheme.stages == 2:
+            account_stage(march, march.first, state, march.between, course, part, sums)
+            before = march.between
+        account_stage(march, march.last, before, after, course, part, sums)
+
+    return account_stages
+
+
 def account_with(
     half_square: Callable[[Any], float], add_bulk_loss: Callable[..., None]
 ) -> Callable[[March, State, State, Course, Part, Vector], None]:
@@ -29,11 +51,7 @@ def account_with(
         scheme = march.scheme
         dt2 = scheme.step * scheme.step
         add_damping(march, part, half_square(state.p) / dt2, sums)
-        before = state
-        if scheme.stages == 2:
-            account_stage(march, march.first, state, march.between, course, part, sums)
-            before = march.between
-        account_stage(march, march.last, before, after, course, part, sums)
+        account_stages(march, state, after, course, part, sums)
         if scheme.newmark:
             add_bulk_loss(march, state, after, part, sums)
 
@@ -169,4 +187,5 @@ def spring_force(laws: Laws, rows: Rows, r: int) -> float:
     return float(max(0.0 - rows.opening[r], 0.0) / laws.compliance[r])
 
 
+account_stages = over_stages(account_stage)
 account = account_with(half_square, add_bulk_loss)

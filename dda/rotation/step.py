@@ -25,7 +25,7 @@ import numpy as np
 
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, States, find, flexed, rows_of, work_for
-from dda.march.account import add_contact_losses, add_damping
+from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
     AnyState,
     Body,
@@ -533,11 +533,7 @@ def account(march: March, state: RollingState, after: RollingState, course: Cour
         mass = growth if rolling.translation[i] == 1 else growth * growth
         kinetic += mass * state.p[i] * state.p[i] / 2
     add_damping(march, part, kinetic / (march.scheme.step * march.scheme.step), sums)
-    before: AnyState = state
-    if march.scheme.stages == 2:
-        account_stage(march, march.first, state, march.between, course, part, sums)
-        before = march.between
-    account_stage(march, march.last, before, after, course, part, sums)
+    account_stages(march, state, after, course, part, sums)
 
 
 def account_stage(
@@ -575,4 +571,5 @@ def keep(march: March, state: RollingState, rows: Array, number: int) -> bool:
     return math.isfinite(total)
 
 
+account_stages = over_stages(account_stage)
 make_steps = steps_by(make_stage, account, keep)
