@@ -35,8 +35,8 @@ from dda.column.stepping import DISPLACEMENT, PRESSURE, Drive, column_names
 from dda.contact.rows import FOUND, INSIDE, OUTCOMES
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
-from dda.march.energy import SUMS, energies_of
-from dda.march.step import History, march, reached_history
+from dda.march.energy import energies_of
+from dda.march.step import history_of, march, reached_history
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.one_block.solution import Result, times_of
@@ -149,17 +149,8 @@ def solve_contact_column(
     made = march(body, laws_of(column, options.solve_limit, options.bonded), scheme, blocks.gap, blocks)
     made.room.end[:] = course.value[0]
     start = start_of(column, scheme, drive, options.settled, made)
-    history = History(
-        motion=np.zeros((steps + 1, len(columns) + (RECORDED if options.energies else 1))),
-        force=np.zeros((0, 0)),
-        opening=np.zeros((0, 0)),
-        path=np.zeros((0, 0)),
-        slip=np.zeros((0, 0)),
-        state=np.zeros((steps + 1 if options.states else 0, n), dtype=np.int8),
-        solves=np.zeros(steps + 1, dtype=np.int64),
-        cuts=np.zeros(steps + 1, dtype=np.int64),
-        sums=np.zeros((steps + 1 if options.energies else 0, SUMS)),
-    )
+    history = history_of(steps, len(columns) + (RECORDED if options.energies else 1), 0, 0, options.energies)
+    history = history._replace(state=np.zeros((steps + 1 if options.states else 0, n), dtype=np.int8))
     ready = perf_counter()
     (reached, ended), _, how = run_loop(
         make_column_steps,
