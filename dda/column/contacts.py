@@ -36,7 +36,7 @@ from dda.contact.rows import FOUND, INSIDE, OUTCOMES
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
 from dda.march.energy import energies_of
-from dda.march.step import history_of, march, reached_history
+from dda.march.step import history_of, march_of, reached_history
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.one_block.solution import Result, times_of
@@ -146,16 +146,16 @@ def solve_contact_column(
     blocks = blocks_of(column, observed_columns(column, columns, heights))
     body = body_of(column, blocks)
     course = course_of(drive, scheme, len(body.loads))
-    made = march(body, laws_of(column, options.solve_limit, options.bonded), scheme, blocks.gap, blocks)
-    made.room.end[:] = course.value[0]
-    start = start_of(column, scheme, drive, options.settled, made)
+    march = march_of(body, laws_of(column, options.solve_limit, options.bonded), scheme, blocks.gap, blocks)
+    march.room.end[:] = course.value[0]
+    start = start_of(column, scheme, drive, options.settled, march)
     history = history_of(steps, len(columns) + (RECORDED if options.energies else 1), 0, 0, options.energies)
     history = history._replace(state=np.zeros((steps + 1 if options.states else 0, n), dtype=np.int8))
     ready = perf_counter()
-    (reached, ended), _, how = run_loop(
+    (reached, outcome), _, how = run_loop(
         make_column_steps,
         (),
-        (made, start, deepcopy(start), course),  # compiled code works on these themselves
+        (march, start, deepcopy(start), course),  # compiled code works on these themselves
         (history, steps, 0.5),
         steps * options.repeats,
     )
@@ -163,7 +163,7 @@ def solve_contact_column(
     history = reached_history(history, reached)
     record = history.motion[:, len(columns) :]
     lowest = int(blocks.base != ROW)
-    early = () if ended == FOUND else (f"{OUTCOMES[ended]} at step {reached + 1}",)
+    early = () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {reached + 1}",)
     return ColumnContactResult(
         **times_of(scheme, reached, began, ready),
         columns=dict(zip(columns, history.motion[1:, : len(columns)].T + 0.0, strict=True)),
@@ -172,10 +172,10 @@ def solve_contact_column(
         factorisations=0,
         solves=solves,
         notes=(f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}", *early),
-        outcome=OUTCOMES[ended],
+        outcome=OUTCOMES[outcome],
         step_solves=history.solves[1:],
         step_switches=record[1:, SWITCHES].astype(int),
-        states=states_of(history.state[1:].T, made.laws.opens) if options.states else None,
+        states=states_of(history.state[1:].T, march.laws.opens) if options.states else None,
         record=record.T if options.energies else None,
         sums=history.sums,
         newmark=scheme.table is None,

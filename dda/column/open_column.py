@@ -97,11 +97,11 @@ def course_of(drive: Drive, scheme: Scheme, loads: int) -> Course:
 # ---- start -----------------------------------------------------------------------------------------------------------
 
 
-def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, made: March) -> State:
+def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march: March) -> State:
     """Return the state at t = 0: unstrained with the gaps of the contacts, or under static forces."""
-    blocks = made.method
-    laws = made.laws
-    body = made.body
+    blocks = march.method
+    laws = march.laws
+    body = march.body
     rests = blocks.base in (ROW, WELDED)
     B = matrix_of(body)
     dt = scheme.step
@@ -112,7 +112,7 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, made: 
     speed[::2] = blocks.root * column.velocities
     base_speed = float(drive.velocity[0]) if rests else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
-    speed += B.T @ rigid_forces(made, speed, base_speed, welds, np.zeros(len(opens)))
+    speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
     opening = blocks.gap.copy()
     if blocks.base == ROW:
         opening[0] -= drive.displacement[0]
@@ -126,11 +126,11 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, made: 
         rigid[:] = False
     elif blocks.base == HALF_SPACE:
         force[0] = blocks.impedance * (2 * drive.velocity[0] - body.weight[0, :2] @ speed[:2])
-    own = made.room.end[2:] @ body.loads - body.k * z
+    own = march.room.end[2:] @ body.loads - body.k * z
     a = np.zeros(len(z))
     if scheme.start == "consistent":
         unknown = rigid & (~opens | (opening == 0))
-        force = rigid_forces(made, own, float(drive.acceleration[0]), unknown, force)
+        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown, force)
         a = own + B.T @ force
     if blocks.base == WELDED:
         force[0] = move_foot(blocks, drive, own, B[1:].T @ force[1:], speed, a)
@@ -154,7 +154,7 @@ def initial_states(laws: Laws, force: Array) -> Array:
     return np.where((force <= laws.lower) & (laws.opens == 1), LOWER, INSIDE)
 
 
-def rigid_forces(made: March, rates: Array, base: float, unknown: Array, force: Array) -> Array:
+def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force: Array) -> Array:
     """Return the forces with those of rigid contacts, by which these keep together.
 
     It is the problem of a step, in the limit of short ones, for velocities or accelerations.
@@ -171,19 +171,19 @@ def rigid_forces(made: March, rates: Array, base: float, unknown: Array, force: 
         The others.
     """
     n = len(force)
-    laws = made.laws._replace(
+    laws = march.laws._replace(
         compliance=np.zeros(n),
-        lower=np.where(unknown, made.laws.lower, force),
-        upper=np.where(unknown, made.laws.upper, force),
-        opens=np.where(unknown, made.laws.opens, 0),
+        lower=np.where(unknown, march.laws.lower, force),
+        upper=np.where(unknown, march.laws.upper, force),
+        opens=np.where(unknown, march.laws.opens, 0),
         most=0,
     )
     length = Length(np.zeros(4), np.ones(len(rates)), flexibility_for(n, True))
-    write_flexibility(made, 1.0, length)
+    write_flexibility(march, 1.0, length)
     for r in range(n):  # no product of a library, whose fused sums tear apart blocks that fall alike
-        made.work.q[r] = moved_row(made.body, r, rates) - made.body.ground[r, 1] * base
+        march.work.q[r] = moved_row(march.body, r, rates) - march.body.ground[r, 1] * base
     after = rows_of(force, unknown)
-    find_in_band(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, made.work)
+    find_in_band(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, march.work)
     return np.asarray(after.force)
 
 

@@ -136,7 +136,7 @@ def make_column_stage(
     place_blocks(march, after)
     for r in range(len(rows.state)):
         if rows.state[r] != before.rows.state[r]:
-            march.made[1] += 1
+            march.tally[0] += 1
     return outcome, solves
 
 
@@ -338,8 +338,8 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
         else:
             value = state.path[i]
         row[k] = value
-    row[columns + SWITCHES] = march.made[1]
-    march.made[1] = 0.0
+    row[columns + SWITCHES] = march.tally[0]
+    march.tally[0] = 0.0
     if len(row) > columns + 1:
         for i in range(2 * n):
             room.p[i] = discount * state.p[i] + lag * state.a[i]

@@ -87,7 +87,7 @@ def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) ->
             work.q[r] = gap[r] - work.mean[r] * springs.compliance[r]
         outcome, spent = find(springs, start, flexible, after, work)
         solves += spent
-        march.made[1] += 1
+        march.tally[0] += 1
         if outcome != FOUND:
             return outcome, solves
         start = after  # its states are those of the next pass, but for contacts that open
@@ -209,8 +209,8 @@ def account_impact(march: March, state: State, after: State, course: Course, par
 
 def keep_passes(march: March, state: State, rows: object, number: int) -> bool:
     """Write what `keep_modes` does, and the passes since a step was kept."""
-    rows[number, 2 * len(state.z)] = march.made[1]  # type: ignore[index]
-    march.made[1] = 0.0
+    rows[number, 2 * len(state.z)] = march.tally[0]  # type: ignore[index]
+    march.tally[0] = 0.0
     return keep_modes(march, state, rows, number)  # type: ignore[arg-type]
 
 

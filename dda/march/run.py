@@ -14,7 +14,7 @@ class Ran(NamedTuple):
 
     history: History
     outcome: int  # how it ended, among `dda.contact.rows.OUTCOMES`
-    made: int  # lengths of a stage that were made
+    lengths: int  # how many lengths of a stage were set up
     how: str  # "compiled" or "plain Python"
 
 
@@ -33,7 +33,7 @@ def run(
     Parameters
     ----------
     march
-        Body, laws and scheme, as `dda.march.step.march` returns them.
+        Body, laws and scheme, as `dda.march.step.march_of` returns them.
     start
         The state at t = 0.
     course
@@ -51,5 +51,5 @@ def run(
     contacts = rows // 2 if march.laws.contacts < len(march.room.free) else rows
     history = history_of(steps, 2 * len(march.body.k) if kept is None else kept, contacts, rows, energies)
     records: tuple[Any, ...] = march, start, start
-    (reached, ended), left, how = run_loop(loop, records, (course,), (history, steps, cut), steps)
-    return Ran(reached_history(history, reached), ended, int(left[0].made[0]), how)
+    (reached, outcome), left, how = run_loop(loop, records, (course,), (history, steps, cut), steps)
+    return Ran(reached_history(history, reached), outcome, int(left[0].lengths[0]), how)

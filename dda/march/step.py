@@ -137,7 +137,8 @@ class March(NamedTuple):
     between: AnyState  # at the end of the first one
     room: Room
     work: Work
-    made: Vector  # (2,) lengths that were made, and passes since a step was kept
+    lengths: Vector  # (1,) how many lengths were set up
+    tally: Vector  # (1,) since a step was kept: passes of the augmented Lagrangian, contacts of a column that switched
     method: Any  # numbers of the rule of contact
 
 
@@ -173,7 +174,7 @@ class History(NamedTuple):
 # ---- what is set up --------------------------------------------------------------------------------------------------
 
 
-def march(
+def march_of(
     body: Body,
     laws: Laws,
     scheme: Scheme,
@@ -199,7 +200,7 @@ def march(
     m = len(laws.compliance)
     rooms = [stage_room(plain_stage(stage), n, m, laws.banded) for stage in scheme.stages]
     vectors = [np.zeros(2 + len(body.loads)) for _ in range(2)] + list(np.zeros((6, n))) + list(np.zeros((2, m)))
-    made = March(
+    march = March(
         body=body,
         laws=laws,
         scheme=Numbers(len(rooms), scheme.table is None, averages, impulses, scheme.gg, scheme.step, float(scheme.lag)),
@@ -208,12 +209,13 @@ def march(
         between=state_of(n, opening, np.zeros(m)),
         room=Room(*vectors),
         work=work_for(laws.contacts, m, laws.banded),
-        made=np.zeros(2),
+        lengths=np.zeros(1),
+        tally=np.zeros(1),
         method=method,
     )
     for stage in rooms:
-        set_length(made, stage, 1.0, stage.whole)
-    return made
+        set_length(march, stage, 1.0, stage.whole)
+    return march
 
 
 def state_of(modes: int, opening: Array, state: Any) -> State:
@@ -280,7 +282,7 @@ def set_length(march: March, stage: StageRoom, ratio: float, length: Length) -> 
         length.flexible.own[0] = weight / retarded if weight > 0 else 0.0
         weight = retarded
     write_flexibility(march, weight, length)
-    march.made[0] += 1
+    march.lengths[0] += 1
 
 
 def write_flexibility(march: March, weight: float, length: Length) -> None:

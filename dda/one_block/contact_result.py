@@ -139,24 +139,24 @@ class ContactResult(Result):
 
 
 def run_fields(
-    history: History, ended: int, scheme: Scheme, notes: Sequence[str], clock: tuple[float, float]
+    history: History, outcome: int, scheme: Scheme, notes: Sequence[str], clock: tuple[float, float]
 ) -> dict[str, Any]:
     """Return the fields of a result that are the same for every body.
 
     Parameters
     ----------
-    ended
+    outcome
         How the history ended, among `dda.contact.rows.OUTCOMES`.
     clock
         When the set-up began, and the steps [s].
     """
     steps = len(history.solves) - 1
-    early = () if ended == FOUND else (f"{OUTCOMES[ended]} at step {steps + 1}",)
+    early = () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {steps + 1}",)
     return {
         **times_of(scheme, steps, *clock),
         "solves": int(history.solves.sum()),
         "notes": (*notes, *early),
-        "outcome": OUTCOMES[ended],
+        "outcome": OUTCOMES[outcome],
         "history": history,
         "step_solves": history.solves[1:],
         "step_cuts": history.cuts[1:],

@@ -21,7 +21,7 @@ from dda.march.energy import CONTACT, DASHPOT, energies_of
 from dda.march.energy import IMPACT as IMPACT_LOSS
 from dda.march.methods import Method, make_augmented_steps, make_conserving_steps, make_impact_steps, make_steps
 from dda.march.run import run
-from dda.march.step import History, course_of, march
+from dda.march.step import History, course_of, march_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
@@ -156,7 +156,7 @@ def solve_unilateral(
     laws = laws_of(replace(law, stiffness=math.inf), *shape) if rigid else springs
     with np.errstate(all="ignore"):  # overflow is an outcome
         start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
-    made = march(
+    march = march_of(
         block.body,
         laws,
         scheme,
@@ -170,7 +170,7 @@ def solve_unilateral(
     n = len(block.unknowns)
     loop = LOOPS.get(options.rule, make_steps)
     ready = perf_counter()
-    ran = run(made, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
+    ran = run(march, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
     history = ran.history
     reached = len(history.solves) - 1
     with np.errstate(all="ignore"):
@@ -194,7 +194,7 @@ def solve_unilateral(
         columns=values,
         unknowns=n,
         nonzeros=int(np.count_nonzero(block.M)),
-        factorisations=ran.made,
+        factorisations=ran.lengths,
         contacts=block.contacts,
         multiplicity=block.multiplicity,
         base_contacts=(0, 1),

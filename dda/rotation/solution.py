@@ -227,7 +227,7 @@ def solve_rolling(
     base = base_motion(model)
     weight = body.modes.shapes[:2].T @ (body.M[0, 0] * model.weight)
     rows = 4 if law.shear else 2
-    made = rolling_march(
+    march = rolling_march(
         ModalBody(
             k=body.modes.k,
             loads=weight[None],
@@ -246,7 +246,7 @@ def solve_rolling(
         options.rotation,
     )
     ready = perf_counter()
-    ran = run(made, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
+    ran = run(march, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
     history = ran.history
     reached = len(history.solves) - 1
     motion = motion_of(history.motion)
@@ -265,7 +265,7 @@ def solve_rolling(
         columns={name: values[name] for name in columns},
         unknowns=6,
         nonzeros=int(np.count_nonzero(body.M)),
-        factorisations=ran.made,
+        factorisations=ran.lengths,
         contacts=len(body.xi),
         multiplicity=1.0,
         base_contacts=body.base,

@@ -40,7 +40,7 @@ from dda.march.step import (
     free_modes,
     kept_discount,
     length_of,
-    march,
+    march_of,
     prescribe,
     push_modes,
     set_length,
@@ -173,10 +173,10 @@ def rolling_march(
         loaded=np.zeros(len(body.k)),
         **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
     )
-    made = march(body, pair, scheme, np.zeros(m), rolling)
+    march = march_of(body, pair, scheme, np.zeros(m), rolling)
     rows = len(ground)
     between = state_of(len(body.k), np.zeros(rows), np.zeros(rows))
-    return made._replace(between=RollingState(*between, np.zeros(6), np.eye(2)), work=work_for(2, m))
+    return march._replace(between=RollingState(*between, np.zeros(6), np.eye(2)), work=work_for(2, m))
 
 
 def late_share(delta: float) -> float:

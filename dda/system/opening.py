@@ -113,14 +113,14 @@ def solve_opening_system(
     load = opening.system.load_size * equations.F
     by_modes = np.concatenate([equations.rows(columns)[0], opening.contact[1] @ equations.shapes, [load]])
     observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
-    made = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
-    glue = made.method
-    nonzeros = glue.solver(made.last.numbers, 1.0).nonzeros
+    march = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
+    glue = march.method
+    nonzeros = glue.solver(march.last.numbers, 1.0).nonzeros
     opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
     upwards = opening.velocity * equations.rigid[:, 1]
     course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)
     ready = perf_counter()
-    history, ended = run_glued(made, course, steps, opened, upwards, np.zeros(2), options.cut)
+    history, outcome = run_glued(march, course, steps, opened, upwards, np.zeros(2), options.cut)
     reached = len(history.solves) - 1
     pressure = history.force[1:, :points].sum(axis=1) / opening.system.base_length
     mass = math.fsum(block.total_mass for block in opening.system.blocks)
@@ -136,7 +136,7 @@ def solve_opening_system(
 
     how = COMPILED if glue.compiled else PLAIN
     return ContactResult(
-        **run_fields(history, ended, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
+        **run_fields(history, outcome, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
         columns={
             name: (pressure if name == "contact_pressure" else history.motion[1:, i]) + 0.0
             for i, name in enumerate(columns)

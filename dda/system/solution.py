@@ -81,8 +81,8 @@ def stepped(
         by_force = 0 * by_force
     none = np.zeros((0, equations.shapes.shape[0]))
     laws = laws_of(Unilateral(1.0), 0, 0, 1)
-    made = glued_march(equations, system.load_size, scheme, laws, none, (by_modes, by_force), False, steps)
-    solvers = [made.method.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
+    march = glued_march(equations, system.load_size, scheme, laws, none, (by_modes, by_force), False, steps)
+    solvers = [march.method.solver(plain_stage(stage), 1.0) for stage in scheme.stages]
     ready = perf_counter()
     total = len(system.equations.k)
     unknowns = len(equations.k)
@@ -90,7 +90,7 @@ def stepped(
         scheme,
         (began, ready),
         names,
-        observed_steps(made, system.motion, steps),
+        observed_steps(march, system.motion, steps),
         system.load_size,
         unknowns=unknowns,
         nonzeros=solvers[-1].nonzeros,

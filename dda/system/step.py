@@ -42,7 +42,7 @@ from dda.march.step import (
     free_rows,
     history_of,
     kept_discount,
-    march,
+    march_of,
     prescribe,
     reached_history,
     steps_by,
@@ -185,7 +185,7 @@ def glued_march(
     energies
         Whether the energies of every step are kept, too.
     steps
-        How many will be made.
+        How many will be march.
     """
     rows = contact @ equations.shapes
     m = len(rows)
@@ -202,9 +202,9 @@ def glued_march(
         ground=np.column_stack([~across, across]).astype(float),
         mobility=np.ones(len(equations.k)),
     )
-    made = march(body, laws, scheme, np.zeros(m))
-    closed = made.between.rows
-    records = laws, closed, made.last.whole.flexible, closed, made.work
+    march = march_of(body, laws, scheme, np.zeros(m))
+    closed = march.between.rows
+    records = laws, closed, march.last.whole.flexible, closed, march.work
     dt = scheme.step
     lag = scheme.stiffness_damping / dt
     drag = scheme.mass_damping * dt
@@ -227,7 +227,7 @@ def glued_march(
         share=scheme.alpha / beta if beta else 1.0,
     )
     between = start_state(glue, np.zeros(m), 0 * equations.k, np.zeros(2))
-    lists: March = as_lists(made)
+    lists: March = as_lists(march)
     return lists._replace(between=between, method=glue)
 
 
@@ -264,8 +264,8 @@ def run_glued(
         kept += 2 + 2 * glue.energies
     history = history_of(steps, kept, march.laws.contacts, m, glue.energies)
     with np.errstate(all="ignore"):
-        reached, ended = make_steps(march, start, after, course, history, steps, cut)
-    return reached_history(history, reached), ended
+        reached, outcome = make_steps(march, start, after, course, history, steps, cut)
+    return reached_history(history, reached), outcome
 
 
 def make_stage(

@@ -23,7 +23,7 @@ from dda.contact.band import find_in_band
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, UPPER, Laws, flexibility_for, rows_of, work_for
 from dda.contact.unilateral import OPEN
 from dda.march import compiled
-from dda.march.step import march
+from dda.march.step import march_of
 from dda.scheme.newmark import Scheme, Start
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -91,8 +91,8 @@ def problem(rng: np.random.Generator, rigid: bool, adversarial: bool) -> tuple[L
     column = unilateral(layered, stiffness, [0.0] * n)
     blocks = blocks_of(column, observed_columns(column, [], []))
     laws = laws_of(column, None, bonded=False)
-    made = march(body_of(column, blocks), laws, Scheme(alpha, 0.5, 1.0, step), np.zeros(n), blocks)
-    W = made.last.whole.flexible.W
+    march = march_of(body_of(column, blocks), laws, Scheme(alpha, 0.5, 1.0, step), np.zeros(n), blocks)
+    W = march.last.whole.flexible.W
     # openings that a chosen set of forces nearly closes: contacts at the border of their states
     force = np.where(rng.random(n) < 0.6, np.exp(rng.uniform(-3, 3, n)), 0.0)
     own = W[0] + laws.compliance
