@@ -149,6 +149,8 @@ def test_a_solver_is_judged_on_any_scene(tmp_path: Path, undrawn: None) -> None:
     fine = typed("judge", "dda", "locked", *sets, "--out", tmp_path / "site")
     assert fine.returncode == 0, fine.stdout + fine.stderr
     assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "site/answers_dda.html").exists()
+    stated = (tmp_path / "site/program_dda.html").read_text("utf-8")
+    assert ">Pack<" in stated and ">Processor<" not in stated  # of a solver that is run nobody states one
 
 
 SAME_OR_NOT = """

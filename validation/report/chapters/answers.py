@@ -197,8 +197,12 @@ def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
 
 
 def stated_table(sets: Sequence[JudgedSet]) -> Table:
-    """Return what folders of answers say of themselves, a column each."""
-    rows = [(title, *(_stated(judged, field) for judged in sets)) for field, title in STATED.items()]
+    """Return what folders of answers say of themselves, a column each; a row that none of them states is left out."""
+    rows = []
+    for field, title in STATED.items():
+        texts = [_stated(judged, field) for judged in sets]
+        if any(text != DASH for text in texts):
+            rows.append((title, *texts))
     return table(("", *(TableColumn(judged.answers.title, "fill") for judged in sets)), rows)
 
 
