@@ -7,15 +7,14 @@ recursion beside it; the scheme's spectral formulas. Importing the package costs
 
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
+from dda.linear.answers import Mode, highest_frequency, modes, response, static
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
 from dda.one_block.contact_result import ContactResult
-from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
-from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes
-from dda.one_block.natural_modes import ModalForm, modal_form
-from dda.one_block.response import response
+from dda.one_block.diagnostics import Diagnostics, diagnostics
+from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm, ModalForm, modal_form
 from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
@@ -26,8 +25,7 @@ from dda.scheme.newmark import Scheme
 from dda.system.glued import GluedBlocks, Traction, glued_blocks
 from dda.system.joints import FIXED, Joint, shared_edges
 from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
-from dda.system.response import system_response
-from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
+from dda.system.solution import solve_system
 from dda.system.subdivision import subdivided
 from dda.system.system import BlockSystem, SurfaceLoad
 
@@ -79,9 +77,7 @@ __all__ = [
     "solve_unilateral",
     "spectral",
     "spring_vectors",
-    "static_system",
+    "static",
     "subdivided",
-    "system_modes",
-    "system_response",
     "textbook_applicable",
 ]

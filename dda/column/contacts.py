@@ -6,13 +6,13 @@ import math
 from collections.abc import Sequence
 from copy import deepcopy
 from dataclasses import dataclass
-from functools import cached_property
 from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
 
 from dda.column.column import NEAR, Column
+from dda.column.equations import DISPLACEMENT, PRESSURE
 from dda.column.open_column import base_of, blocks_of, body_of, course_of, laws_of, springs_of, start_of
 from dda.column.step import (
     FORCES,
@@ -31,15 +31,15 @@ from dda.column.step import (
     Observed,
     make_column_steps,
 )
-from dda.column.stepping import DISPLACEMENT, PRESSURE, Drive, column_names
-from dda.contact.rows import FOUND, INSIDE, OUTCOMES
+from dda.column.stepping import Drive, column_names
+from dda.contact.rows import INSIDE
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
 from dda.march.energy import energies_of
 from dda.march.step import history_of, march_of, reached_history
 from dda.model.arrays import Array
-from dda.model.checks import check_count
-from dda.one_block.solution import Result, times_of
+from dda.model.checks import check_columns, check_count
+from dda.one_block.contact_result import MarchResult, run_fields
 from dda.scheme.newmark import Scheme
 
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
@@ -69,17 +69,13 @@ class ColumnOptions:
             check_count(solve_limit=self.solve_limit)
 
 
-@dataclass(frozen=True, eq=False)
-class ColumnContactResult(Result):
-    """Histories of the steps that were reached; element 0 is step 1. Forces act on the block above a contact."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class ColumnContactResult(MarchResult):
+    """Histories of a column; forces act on the block above a contact."""
 
-    outcome: str  # "completed", or why the history ends early, in words
-    step_solves: NDArray[np.int64]  # solves of the open-close iteration, the confirming one included, (steps,)
     step_switches: NDArray[np.int64]  # contacts whose state changed in a step, (steps,)
     states: NDArray[np.int8] | None  # 0 open, 1 stuck, 2 and -2 slipping, (blocks, steps), by the block above
     record: Array | None  # (RECORDED, steps + 1) from t = 0 on: energies, momentum, extremes of contacts
-    sums: Array  # (steps + 1, SUMS) of `dda.march.energy`
-    newmark: bool  # whether the scheme is Newmark's, whose algorithmic loss is a sum of the steps
 
     def state_of(self, contact: int) -> NDArray[np.int8]:
         """Return the states at the foot of a block, (steps,).
@@ -92,18 +88,6 @@ class ColumnContactResult(Result):
         if self.states is None:
             raise ValueError("states: must be asked for before the steps are made, got none")
         return np.asarray(self.states[contact])
-
-    @cached_property
-    def energies(self) -> dict[str, Array] | None:
-        """By `ENERGIES` [J/m^2], losses summed from t = 0 on; that of the load is zero at t = 0.
-
-        It is minus the work that weight, pressure, base and half-space do on the column, less what is stored at first.
-        """
-        if self.record is None:
-            return None
-        kinetic, strain, springs = self.record[[KINETIC, STRAINED, SPRINGS]]
-        load = np.full_like(kinetic, -(strain[0] + springs[0]))
-        return energies_of((kinetic, strain, springs, load), self.sums, not self.newmark)
 
 
 def solve_contact_column(
@@ -161,24 +145,26 @@ def solve_contact_column(
     )
     solves = int(history.solves.sum())  # those of the step that was not reached, too
     history = reached_history(history, reached)
-    record = history.motion[:, len(columns) :]
+    record = history.motion[:, len(columns) :].T
+
+    def balance() -> dict[str, Array]:
+        """Return the energies; that of the load is minus the work of all that drives, less what is stored at first."""
+        kinetic, strain, springs = record[[KINETIC, STRAINED, SPRINGS]]
+        load = np.full_like(kinetic, -(strain[0] + springs[0]))
+        return energies_of((kinetic, strain, springs, load), history.sums, scheme.table is not None)
+
     lowest = int(blocks.base != ROW)
-    early = () if outcome == FOUND else (f"{OUTCOMES[outcome]} at step {reached + 1}",)
+    note = f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}"
     return ColumnContactResult(
-        **times_of(scheme, reached, began, ready),
+        **run_fields(history, outcome, scheme, [note], (began, ready)) | {"solves": solves},
         columns=dict(zip(columns, history.motion[1:, : len(columns)].T + 0.0, strict=True)),
         unknowns=n + int(np.count_nonzero(blocks.half)),
         nonzeros=3 * (n - lowest) - 2,
         factorisations=0,
-        solves=solves,
-        notes=(f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}", *early),
-        outcome=OUTCOMES[outcome],
-        step_solves=history.solves[1:],
-        step_switches=record[1:, SWITCHES].astype(int),
+        step_switches=record[SWITCHES, 1:].astype(int),
         states=states_of(history.state[1:].T, march.laws.opens) if options.states else None,
-        record=record.T if options.energies else None,
-        sums=history.sums,
-        newmark=scheme.table is None,
+        record=record if options.energies else None,
+        balance=balance if options.energies else None,
     )
 
 
@@ -213,10 +199,7 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
 
 def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[float]) -> Observed:
     """Return what the columns read."""
-    names = column_names(heights, AT_HEIGHTS)
-    for name in columns:
-        if name not in names:
-            raise ValueError(f"columns: must be among {', '.join(names)}, got {name!r}")
+    check_columns(column_names(heights, AT_HEIGHTS), columns)
     rows = np.array([_observed_column(column, name, heights) for name in columns]).reshape(-1, 4)
     kind, place, lower, upper = rows.T.copy()
     return Observed(kind.astype(np.int64), place.astype(np.int64), lower, upper)

@@ -23,8 +23,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dda.column.column import Column
-from dda.column.equations import Equations, equations
+from dda.column.equations import DISPLACEMENT, PRESSURE, Equations, Loading, Observers, equations, observers
 from dda.model.arrays import Array
+from dda.model.checks import check_columns
 from dda.one_block.solution import Result, linear_result
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 from dda.scheme.stage import dashpot_matrix, inertia_force, predictor, velocity_corrector
@@ -33,9 +34,6 @@ if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
 WIDTH = 2  # diagonals beside the main one: a block couples two displacements and the opening between them
-# of the top [m], on the base [Pa]
-DISPLACEMENT = "displacement"
-PRESSURE = "contact_pressure"
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +96,7 @@ def solve_column(
     """
     import scipy.linalg  # noqa: F401  (before the clock starts)
 
-    for name in columns:
-        if name not in column_names(heights):
-            raise ValueError(f"columns: must be among {', '.join(column_names(heights))}, got {name!r}")
+    check_columns(column_names(heights), columns)
     began = perf_counter()
     system = equations(column)
     stepper = Stepper(system, scheme)
@@ -119,74 +115,6 @@ def solve_column(
         factorisations=len(stepper.solvers),
         solves=histories.shape[1] * len(stepper.solvers),
     )
-
-
-@dataclass(frozen=True, eq=False)
-class Observers:
-    """Rows that observe displacement, velocity, acceleration and the drive's four parts, one row a column."""
-
-    D: Array  # (columns, unknowns)
-    V: Array
-    A: Array
-    drive: Array  # (columns, 4)
-
-
-def observers(system: Equations, columns: Sequence[str], heights: Sequence[float]) -> Observers:
-    """Return the rows of the columns."""
-    none = np.zeros((len(columns), system.size))
-    rows = Observers(none.copy(), none.copy(), none.copy(), np.zeros((len(columns), 4)))
-    for number, name in enumerate(columns):
-        if name == DISPLACEMENT:
-            rows.D[number] = system.row(len(system.column.heights) - 1, 0.0, 1.0)
-        elif name != PRESSURE:
-            rows.D[number] = _at_height(system, name, heights)
-        elif system.prescribed:  # the force of the base on the column, by the base's own equation
-            rows.D[number] = system.K[[0]].toarray()[0]
-            rows.A[number] = system.M[[0]].toarray()[0]
-        else:  # z (2 v - V) of the half-space
-            rows.V[number, 0] = -system.dashpot
-            rows.drive[number, 1] = 2 * system.dashpot
-    return rows
-
-
-def _at_height(system: Equations, name: str, heights: Sequence[float]) -> Array:
-    kind, _, place = name.rpartition("_")
-    block, share = system.column.block_at(heights[int(place) - 1])
-    if kind == DISPLACEMENT:
-        return system.row(block, 1 - share, share)
-    spring = system.column.moduli[block] / system.column.heights[block]
-    return system.row(block, spring, -spring)
-
-
-class Loading:
-    """The equations of the free unknowns; of a base of prescribed motion only its effect on the others is left."""
-
-    def __init__(self, system: Equations) -> None:
-        """Form the matrices, and the load that each part of the drive is."""
-        from scipy.sparse import csr_array
-
-        first = int(system.prescribed)
-        self.first = first
-        self.M = system.M[first:, first:]
-        self.K = system.K[first:, first:]
-        self.C = csr_array(([system.dashpot], ([0], [0])), shape=self.M.shape)
-        base = np.eye(1, system.size)[0]
-        top = system.row(len(system.column.heights) - 1, 0.0, -1.0)
-        by_motion = -system.K[[0]].toarray()[0], -system.M[[0]].toarray()[0]
-        parts = (first * by_motion[0], (1 - first) * 2 * system.dashpot * base, first * by_motion[1], top)
-        self.push = np.array(parts).T[first:]  # (unknowns, 4)
-
-    def free(self, rows: Observers) -> tuple[Array, ...]:
-        """Return the rows of displacement, velocity and acceleration by the free unknowns."""
-        return tuple(matrix[:, self.first :] for matrix in (rows.D, rows.V, rows.A))
-
-    def prescribed(self, rows: Observers) -> Array:
-        """Return the rows of the drive, with what a base of prescribed motion adds by its motion."""
-        drive_weights = rows.drive.copy()
-        if self.first:
-            drive_weights[:, 0] += rows.D[:, 0]
-            drive_weights[:, 2] += rows.A[:, 0]
-        return drive_weights
 
 
 class Stepper:

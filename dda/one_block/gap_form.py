@@ -19,10 +19,12 @@ through the inertia alone.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.springs import Contact, base_directions
 from dda.model.arrays import Array, without_rounding
@@ -30,6 +32,9 @@ from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
+from dda.one_block.natural_modes import graded_modes
+from dda.scheme.harmonic import Complex, answering, staged_amplitude
+from dda.scheme.newmark import Scheme
 
 UNKNOWNS = ("U", "w", "s", "ex", "e2", "gxy")
 COLUMNS = (
@@ -42,6 +47,16 @@ COLUMNS = (
     "shear_strain",
 )
 D_COLUMNS = ("horizontal_displacement", "displacement", "rotation", "strain_x", "strain_y", "shear_strain")  # of D
+
+
+@dataclass(frozen=True, eq=False)
+class ModalForm:
+    """The model in its own modes, x = shapes z: (z + translation y)'' + w^2 z = load, of unit size."""
+
+    frequencies: Array  # (n,) w [rad/s]
+    shapes: Array  # (n, n) mass-normalised, one column a mode
+    load: Array  # (n,) shapes' F
+    translation: Array  # (n, 2) shapes' M R
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +88,53 @@ class GapForm:
             reached = grown
         return reached
 
+    @cached_property
+    def modal(self) -> ModalForm:
+        """The form in its own modes."""
+        return modal_form(self)
+
+    def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
+        """Return the rows of some columns by x and by the displacement of the base in x and y."""
+        own = {"horizontal_displacement": [1.0, 0.0], "displacement": [0.0, 1.0]}
+        by_base = [own.get(name, [0.0, 0.0]) for name in columns]
+        return np.array([self.observers[name] for name in columns]), np.array(by_base)
+
+    def at_base(self, F: Array, base: Array) -> tuple[Array, Array]:
+        """Return x at rest under a load, and the displacement of the base."""
+        return F / self.K, base
+
+    def pushed(self, size: float) -> Array:
+        """Return the load, or where the base alone acts the inertia M R of its unit acceleration."""
+        inertia = np.sum(self.M @ self.R, axis=1)
+        return inertia if size == 0 and np.any(inertia) else self.F
+
+    def lowest(self, count: int) -> tuple[Array, Array, Array]:
+        """Return w^2 and shapes of all modes, whose base rests."""
+        frequencies = self.modal.frequencies
+        return frequencies**2, self.modal.shapes, np.zeros((2, len(frequencies)))
+
+    def largest(self) -> float:
+        """Return the highest natural frequency [rad/s]."""
+        return float(np.max(self.modal.frequencies))
+
+    def steady(
+        self, rows: tuple[Array, Array], F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
+    ) -> Complex:
+        """Return what rows observe of a steady vibration, mode by mode, (rows, frequencies)."""
+        modal = self.modal
+        load = modal.shapes.T @ F
+        carried = modal.translation @ base
+        if len(scheme.stages) > 1 and not exact:
+            omega = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+            squares = (scheme.step * modal.frequencies) ** 2
+            parts = zip(squares.tolist(), (scheme.step**2 * load).tolist(), carried.tolist(), strict=True)
+            x = np.array([staged_amplitude(scheme, omega, *part) for part in parts])
+        else:
+            W2, factor = answering(scheme, frequencies, exact)
+            apart = modal.frequencies[:, None] ** 2 - W2
+            x = load[:, None] / apart * factor + carried[:, None] * (W2 / apart)
+        return np.asarray(rows[0] @ modal.shapes @ x + (rows[1] @ base)[:, None])
+
     def restricted(self, unknowns: NDArray[np.intp]) -> GapForm:
         """Return the form in the unknowns with the given indices."""
         return GapForm(
@@ -85,6 +147,12 @@ class GapForm:
             {name: row[unknowns] for name, row in self.observers.items()},
             self.corners[:, unknowns],
         )
+
+
+def modal_form(form: GapForm) -> ModalForm:
+    """Solve K phi = w^2 M phi."""
+    frequencies, shapes = graded_modes(form.M, form.K)
+    return ModalForm(frequencies, shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
 
 
 def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) -> GapForm:

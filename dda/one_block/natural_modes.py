@@ -3,31 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.one_block.gap_form import GapForm
 
 _SWEEPS = 40  # Jacobi's method converges quadratically: six unknowns take about five
-
-
-@dataclass(frozen=True, eq=False)
-class ModalForm:
-    """The model in its own modes, x = shapes z: (z + translation y)'' + w^2 z = load, of unit size."""
-
-    frequencies: Array  # (n,) w [rad/s]
-    shapes: Array  # (n, n) mass-normalised, one column a mode
-    load: Array  # (n,) shapes' F
-    translation: Array  # (n, 2) shapes' M R
-
-
-def modal_form(form: GapForm) -> ModalForm:
-    """Solve K phi = w^2 M phi."""
-    frequencies, shapes = graded_modes(form.M, form.K)
-    return ModalForm(frequencies, shapes, shapes.T @ form.F, shapes.T @ form.M @ form.R)
 
 
 def graded_modes(M: Array, K: Array) -> tuple[Array, Array]:

@@ -13,10 +13,9 @@ from typing import Any
 import numpy as np
 
 from dda.model.arrays import Array
-from dda.model.checks import check_count, check_share
+from dda.model.checks import check_columns, check_count, check_damping, check_share
 from dda.model.load import at_once, load_share
-from dda.one_block.gap_form import COLUMNS, GapForm
-from dda.one_block.natural_modes import ModalForm, modal_form
+from dda.one_block.gap_form import COLUMNS, GapForm, ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
 from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
@@ -72,9 +71,9 @@ def solve(
         If the number of steps is not positive or a column is unknown.
     """
     check_request(steps, columns)
-    check_damping(scheme, model.load.motion is not None)
+    check_damping(scheme.damped, model.load.motion is not None)
     began = perf_counter()
-    form = model.gap_form if full else model.gap_form.reduced()
+    form = model.equations if full else model.reached
     with np.errstate(all="ignore"):
         modal = modal_form(form)
         rows = np.array([form.observers[name] @ modal.shapes for name in columns])
@@ -143,7 +142,7 @@ def solve_adaptive(
     check_request(steps, [name for name in columns if name not in ADAPTIVE_COLUMNS])
     _check_adaptive(model, scheme, floor)
     began = perf_counter()
-    form = model.gap_form if full else model.gap_form.reduced()
+    form = model.equations if full else model.reached
     size = model.load_size
     with np.errstate(all="ignore"):
         modal = modal_form(form)
@@ -195,18 +194,10 @@ def modal_histories(scheme: Scheme, modal: ModalForm, rows: Array, steps: int, b
     return blocked_modes(scheme, modal.frequencies, rows * static, steps)
 
 
-def check_request(steps: int, columns: Sequence[str]) -> None:
+def check_request(steps: int, columns: Sequence[str], known: Sequence[str] = COLUMNS) -> None:
     """Raise ValueError unless steps is a positive integer and every column is known."""
     check_count(steps=steps)
-    for name in columns:
-        if name not in COLUMNS:
-            raise ValueError(f"columns: must be among {', '.join(COLUMNS)}, got {name!r}")
-
-
-def check_damping(scheme: Scheme, moving: bool) -> None:
-    """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
-    if scheme.damped and moving:
-        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
+    check_columns(known, columns)
 
 
 def linear_result(

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from dda.contact.springs import Contact, contact_stiffness
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, pressed_part
-from dda.one_block.gap_form import GapForm, gap_form
+from dda.one_block.gap_form import COLUMNS, GapForm, gap_form
 
 
 @dataclass(frozen=True, eq=False, init=False)
@@ -24,6 +24,16 @@ class TwoBlockModel(LoadedBlock):
     """
 
     contact: Contact
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all columns."""
+        return COLUMNS
+
+    @property
+    def motion(self) -> BaseMotion | None:
+        """Motion of the base."""
+        return self.load.motion
 
     @cached_property
     def load_size(self) -> float:
@@ -65,13 +75,15 @@ class TwoBlockModel(LoadedBlock):
             unit = replace(load, pressure=1.0, traction=0.0, gravity=0.0)
         return gap_form(self.block, self.contact, self.base, self.top, unit)
 
-    def static(self) -> dict[str, float]:
-        """Return the value of every column at rest under the constant loads, on the base's last position."""
-        form = self.gap_form
-        x = form.F / form.K
-        static = {name: float(row @ x) * self.load_size + 0.0 for name, row in form.observers.items()}
-        last = carried(self.load.motion, [math.inf])
-        return {name: value + float(last[name][0]) if name in last else value for name, value in static.items()}
+    @property
+    def equations(self) -> GapForm:
+        """The equations in all six unknowns."""
+        return self.gap_form
+
+    @cached_property
+    def reached(self) -> GapForm:
+        """The equations without the unknowns that the load cannot reach."""
+        return self.gap_form.reduced()
 
 
 def carried(motion: BaseMotion | None, instants: ArrayLike) -> dict[str, Array]:

@@ -185,8 +185,8 @@ def solve_unilateral(
     if n < 6:
         notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
 
-    def velocity(axis: int) -> Array:
-        momentum: Array = history.motion[1:, n : 2 * n] @ (block.axes[:, axis] @ block.momentum)
+    def velocity() -> Array:
+        momentum: Array = block.axes.T @ block.momentum @ history.motion[1:, n : 2 * n].T
         return momentum / (model.block.total_mass * scheme.step)
 
     return ContactResult(
@@ -198,14 +198,10 @@ def solve_unilateral(
         contacts=block.contacts,
         multiplicity=block.multiplicity,
         base_contacts=(0, 1),
-        softness=law.softness,
+        make_slide=lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+        make_velocity=velocity,
         impulses=impulses,
         step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
-        parts={
-            "slide": lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
-            "horizontal_velocity": lambda: velocity(0),
-            "velocity": lambda: velocity(1),
-        },
         balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
     )
 

@@ -171,7 +171,7 @@ class RollingResult(ContactResult):
         return self.history.sums[1:, IMPULSE]
 
     @cached_property
-    def slipped(self) -> Array:  # type: ignore[override]
+    def slipped(self) -> Array:
         """Distance that the shear reference moved by slip in each step, (contacts, steps) [m]."""
         return np.asarray(np.abs(super().slipped))
 
@@ -251,7 +251,6 @@ def solve_rolling(
     reached = len(history.solves) - 1
     motion = motion_of(history.motion)
     values = observed(body, motion, history)
-    velocity = motion.V[1:, :2] @ model.body.to_base
 
     def slide() -> Array:
         placed = motion.points(body.xi)[:, :, 0].T
@@ -267,10 +266,9 @@ def solve_rolling(
         nonzeros=int(np.count_nonzero(body.M)),
         factorisations=ran.lengths,
         contacts=len(body.xi),
-        multiplicity=1.0,
         base_contacts=body.base,
-        softness=law.softness,
-        parts={"slide": slide, "horizontal_velocity": lambda: velocity[:, 0], "velocity": lambda: velocity[:, 1]},
+        make_slide=slide,
+        make_velocity=lambda: (motion.V[1:, :2] @ body.to_base).T,
         balance=lambda: energies(model, options.rotation, corners, motion, history),
         body=body,
         motion=motion,

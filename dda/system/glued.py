@@ -18,14 +18,14 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.linear.answers import Mode, modes_of
 from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.checks import check_count
-from dda.one_block.modes import Mode, modes_of
 from dda.one_block.solution import Result
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, Point, common_part, shared_edges
-from dda.system.solution import lowest_modes, stepped
+from dda.system.solution import stepped
 from dda.system.system import BlockSystem, Equations, SurfaceLoad
 
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
@@ -201,10 +201,10 @@ class GluedBlocks:
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
         """Return the lowest modes that are no rigid motion, in rising order, their shares of the static response."""
         equations = self.statics
-        squares, shapes, _ = lowest_modes(equations, count)
+        squares, shapes, _ = equations.lowest(count)
         z, _ = equations.at_rest(equations.F, np.zeros(len(equations.pressure)))
         shares = (shapes.T @ equations.F) ** 2 / (squares * (equations.F @ z))
-        return modes_of(scheme, np.sqrt(squares), shares, 0 * shares, np.argsort(squares))
+        return modes_of(scheme, np.sqrt(squares), shares, 0 * shares)
 
     def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
         """Return what some rows observe of the blocks from rest, at each step.

@@ -145,13 +145,8 @@ def solve_opening_system(
         nonzeros=nonzeros,
         factorisations=glue.solver.cache_info().misses,
         contacts=points,
-        multiplicity=1.0,
         base_contacts=(0, -1),
-        softness=law.softness / opening.share,
-        parts={
-            "slide": slide,
-            "horizontal_velocity": lambda: momentum[0, 1:] / (mass * scheme.step),
-            "velocity": lambda: momentum[1, 1:] / (mass * scheme.step),
-        },
+        make_slide=slide,
+        make_velocity=lambda: momentum[:, 1:] / (mass * scheme.step),
         balance=balance if options.energies else None,
     )

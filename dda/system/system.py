@@ -14,12 +14,17 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from dda.linear import elimination
+from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
-from dda.one_block.gap_form import D_COLUMNS
+from dda.one_block.gap_form import COLUMNS, D_COLUMNS
 from dda.one_block.natural_modes import free_modes
+from dda.scheme.harmonic import Complex, answering
+from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
@@ -66,6 +71,11 @@ class BlockSystem:
         if self.observed is not None and not self.blocks_at(self.observed):
             raise ValueError(f"observed: must lie in a block, got {self.observed!r}")
 
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all columns: with an observed point those of one block."""
+        return COLUMNS if self.observed is not None else ("contact_pressure",)
+
     @cached_property
     def load_size(self) -> float:
         """Largest of the constant loads as a stress, 1 Pa where the base alone acts [Pa]."""
@@ -92,6 +102,7 @@ class BlockSystem:
             kappa=kappa,
             C=C,
             F=shapes.T @ self._load() / (self.load_size or 1.0),
+            inertia=np.concatenate(rigid) @ np.array([*self._moving, 0.0]),
             observers=observers,
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
         )
@@ -100,6 +111,13 @@ class BlockSystem:
     def reached(self) -> Equations:
         """The equations without the modes and gaps that no load can reach."""
         return self.equations.reduced()
+
+    @property
+    def _moving(self) -> Array:
+        """Return the directions in which the base moves, 1 or 0 in x and y; upwards without such a motion."""
+        if self.motion is None or not np.any(self.motion.displacement):
+            return np.array([0.0, 1.0])
+        return np.asarray(np.any(np.asarray(self.motion.displacement) != 0, axis=0), float)
 
     def _load(self) -> Array:
         """Return surface loads and weights, six for each block."""
@@ -152,6 +170,7 @@ class Equations:
     kappa: csr_array  # (gaps, gaps) [N/m]
     C: csr_array  # (gaps, gaps) [m/N]
     F: Array  # (modes,)
+    inertia: Array  # (modes,) load of a unit acceleration of the base, or upwards
     observers: dict[str, Array]  # column -> (modes,) row
     pressure: Array  # (gaps,) row of the contact pressure by lambda [1/m]
 
@@ -171,6 +190,53 @@ class Equations:
         """Return z and lambda of k z + B' lambda = F, B z - C lambda = g; the matrix is factorised once."""
         solution = self._factor(np.concatenate([F / self.scale, g]))
         return solution[: len(F)], self.scale * solution[len(F) :]
+
+    def at_base(self, F: Array, base: Array) -> tuple[Array, Array]:
+        """Return z and lambda at rest, where what is fixed has moved by (x, y) [m]."""
+        return self.at_rest(F, self.G @ base)
+
+    def pushed(self, size: float) -> Array:
+        """Return the load that shares refer to: the constant one, else the inertia."""
+        return self.F if np.any(self.F) else self.inertia
+
+    def steady(
+        self, rows: tuple[Array, Array], F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
+    ) -> Complex:
+        """Return what rows observe of a steady vibration, (rows, frequencies)."""
+        W2, factor = answering(scheme, frequencies, exact)
+        return np.asarray(amplitudes(self, rows, F, self.G @ base, W2) * factor)
+
+    def lowest(self, count: int) -> tuple[Array, Array, Array]:
+        """Return the lowest w^2, their normalised shapes and the joint forces of the shapes.
+
+        K^-1 is applied by the saddle-point solver, so that stiff joints cost no digits.
+        """
+        from scipy.linalg import eigh
+        from scipy.sparse.linalg import LinearOperator, eigsh
+
+        n = len(self.k)
+        still = np.zeros(len(self.pressure))
+
+        def flexibility(right: Array) -> Array:
+            return self.at_rest(np.ravel(right), still)[0]
+
+        if n <= elimination.DENSE or count >= n - 1:
+            values, shapes = eigh(np.array([flexibility(unit) for unit in np.eye(n)]))
+        else:
+            start = np.random.default_rng(0).standard_normal(n)
+            values, shapes = eigsh(LinearOperator((n, n), matvec=flexibility, dtype=float), count, v0=start)
+        order = np.argsort(-values)[:count]
+        squares = 1 / values[order]
+        shapes = shapes[:, order]
+        forces = [self.at_rest(w2 * phi, still)[1] for w2, phi in zip(squares, shapes.T, strict=True)]
+        return squares, shapes, np.array(forces).T
+
+    def largest(self) -> float:
+        """Return the highest natural frequency, joints included [rad/s]."""
+        from scipy.sparse import diags_array, eye_array
+
+        K = diags_array(self.k) + self.B.T @ self.kappa @ self.B
+        return elimination.largest_frequency(K.tocsr(), eye_array(len(self.k), format="csr"))
 
     def reduced(self) -> Equations:
         """Return the equations without the modes and gaps that no load can reach.
@@ -198,6 +264,7 @@ class Equations:
             kappa=self.kappa[gaps][:, gaps],
             C=self.C[gaps][:, gaps],
             F=self.F[modes],
+            inertia=self.inertia[modes],
             observers={name: row[modes] for name, row in self.observers.items()},
             pressure=self.pressure[gaps],
         )

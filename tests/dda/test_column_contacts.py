@@ -12,12 +12,12 @@ from oracles.column_cases import CASES, error_of, layers, unilateral
 from oracles.column_checks import check_history, random_column, random_drive, random_scheme, run_all, still
 
 import dda
-from dda import named_scheme
+from dda import highest_frequency, named_scheme
 from dda.column import contacts
 from dda.column.column import Column, Layer, Spring
 from dda.column.contacts import ColumnOptions, observed_columns, solve_contact_column
+from dda.column.equations import equations
 from dda.column.open_column import blocks_of, body_of, laws_of
-from dda.column.response import highest_frequency
 from dda.column.stepping import Drive, solve_column
 from dda.contact.band import find_in_band
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, UPPER, Laws, flexibility_for, rows_of, work_for
@@ -357,9 +357,11 @@ def test_the_highest_frequency_is_that_of_the_bonded_column() -> None:
     blocks = [Layer(4.0, 2500.0, 2e9, 0.2, 4), Layer(3.0, 2000.0, 1e9, 0.3, 3)]
     springs = [Spring(x, 1e9) for x in (0.0, 1.0, 2.0, 4.0, 5.0)]
     contacts = Column(blocks, law="unilateral", joints=springs)
-    assert highest_frequency(contacts) == pytest.approx(highest_frequency(Column(blocks, joints=springs)))
+    assert highest_frequency(equations(contacts)) == pytest.approx(
+        highest_frequency(equations(Column(blocks, joints=springs)))
+    )
     rigid = unilateral(layers([1.0] * 2, [2500.0] * 2, [RIGID] * 2, [0.0] * 2), [1e9], [0.0])
-    assert highest_frequency(rigid) == pytest.approx(math.sqrt(2 * 1e9 / 2500))
+    assert highest_frequency(equations(rigid)) == pytest.approx(math.sqrt(2 * 1e9 / 2500))
 
 
 @pytest.mark.parametrize(("blocks", "ratio"), thinned(itertools.product([2, 4], [0.01, 1.0, 3.0]), 5))
@@ -370,7 +372,7 @@ def test_the_limit_on_a_half_space_is_that_of_a_free_foot(blocks: int, ratio: fl
     column = Column([layer], "shear", law="frictional", joints=joints, impedance=ratio * 3e5)
     largest = []
     for share in (0.99, 1.01):
-        step = share * 2 / highest_frequency(column)
+        step = share * 2 / highest_frequency(equations(column))
         t = step * np.arange(1501)
         wave = Drive(0 * t, np.where(t < 20 * step, np.sin(np.pi * t / (20 * step)), 0.0), 0 * t, 0 * t)
         result = solve_contact_column(column, Scheme(0.0, 0.5, 1.0, step), wave)
@@ -381,7 +383,7 @@ def test_the_limit_on_a_half_space_is_that_of_a_free_foot(blocks: int, ratio: fl
 
 def test_explicit_steps_stay_below_their_limit() -> None:
     column = CASES["A1"].column
-    step = 1.8 / highest_frequency(column)
+    step = 1.8 / highest_frequency(equations(column))
     steps = int(0.04 / step)
     drive = random_drive(np.random.default_rng(0), step * np.arange(steps + 1), column)
     scheme = Scheme(0.0, 0.5, 1.0, step, "consistent")

@@ -112,7 +112,7 @@ def mean_penetration(theta):
     for phase in midpoints(20):
         law = Unilateral(math.inf, gap=(2 - phase) * V * dt)
         model = UnilateralModel(Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0)), law, velocity=-V)
-        gaps.append(solve_unilateral(model, scheme, 6, options=impulses(0.0)).gap_m[-1] / (V * dt))
+        gaps.append(solve_unilateral(model, scheme, 6, options=impulses(0.0)).gap[0][-1] / (V * dt))
     assert np.ptp(gaps) == pytest.approx(0.95, abs=1e-9)
     return np.mean(gaps)
 

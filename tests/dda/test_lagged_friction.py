@@ -55,6 +55,6 @@ def test_an_open_corner_closes_beyond_its_band(rules, traction):
     law = Unilateral(1e9, 1e9 if rules else 0.0, gap=1.05e-3, band=(5e-4, 0.0), **rules)
     model = UnilateralModel(square(), law, 0.0, velocity=-1.0, traction=traction)
     found = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 1e-4), 20)
-    first = int(np.argmax(found.closed_m))
-    assert found.gap_m[:first].min() == pytest.approx(-4.5e-4, rel=1e-2)
-    assert found.closed_m[first] and found.normal_force_m[first] > 0
+    first = int(np.argmax(found.closed[0]))
+    assert found.gap[0][:first].min() == pytest.approx(-4.5e-4, rel=1e-2)
+    assert found.closed[0][first] and found.normal[0][first] > 0

@@ -19,14 +19,14 @@ import fem_reference.mesh.elasticity as elasticity
 from dda.column import contacts as column_contacts
 from dda.column import equations as column_equations
 from dda.column import stepping as column_stepping
+from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
 from dda.one_block import gap_form, solution
-from dda.one_block import response as dda_vibration
 from dda.rotation import body as rolling_body
 from dda.rotation import solution as rolling
 from dda.rotation import step as rolling_step
-from dda.scheme import blocked, harmonic, newmark
+from dda.scheme import blocked, newmark
 from dda.system import glued, joints, subdivision, system
 from dda.system import solution as system_solution
 from dda.system import step as system_step
@@ -105,7 +105,7 @@ DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 DDA_SCHEME = Seam(dda_adapter, dda_adapter.scheme_of)
 
 # Answers to what vibrates
-DDA_ANSWERING = Seam(dda_vibration, dda_vibration.answering)
+DDA_ANSWERING = Seam(gap_form, gap_form.answering)
 FEM_ANSWERING = Seam(fem_vibration, fem_vibration.answering)
 BAR_ANSWERING = Seam(bar_vibration, bar_vibration.answering)
 
@@ -118,7 +118,7 @@ SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_step, system_step.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_step, system_step.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution, system_solution.observed_steps)
-SYSTEM_DENSE = Seam(harmonic, harmonic.DENSE)
+SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
 GLUED_EDGES = Seam(glued, glued.shared_edges)

@@ -43,7 +43,7 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
         block = dda.Block(SQUARE, dda.Material(2700.0, 1e16, 0.2))
         model = dda.TwoBlockModel(block, dda.Contact(P), Q, top=side, eccentricity=e, traction=tau)
         cut = dda.subdivided(model, 1, 3, 1e20)
-        static = model.static() if foundation == "block" else dda.static_system(cut)
+        static = dda.static(model) if foundation == "block" else dda.static(cut)
     rotation = moment / (P * A * A / 2)
     assert static["rotation"] == pytest.approx(rotation, rel=2e-6)  # E / p = 1e7 of rigidity
     assert static["displacement"] == pytest.approx(-Q * (A - 2 * abs(e)) / (2 * P), rel=2e-6)

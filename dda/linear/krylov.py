@@ -12,16 +12,14 @@ space of `LARGEST` vectors does not resolve or whose wave has decayed to the rou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
+from dda.linear.elimination import Elimination
 from dda.model.arrays import Array
-from dda.one_block.solution import check_request
-from dda.scheme.harmonic import Complex, Elimination, answering
-from dda.scheme.newmark import Scheme
-from dda.system.system import BlockSystem, Equations
+from dda.scheme.harmonic import Complex
 
 LARGEST = 600  # vectors
 AT_A_TIME = 16  # vectors between two looks at the remainder
@@ -33,11 +31,12 @@ CLOSED = 1e-15  # share of a new vector outside the space, over the largest, bel
 class _Space:
     """The vectors of the recursion, each with what is observed of it behind its modes."""
 
-    def __init__(self, equations: Equations, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
+    def __init__(self, equations: Any, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
         """Begin with the static response (modes, joint forces)."""
         self.equations = equations
         self.rows = rows
         self.modes = len(equations.k)
+        self.still = 0 * static[1]
         first = self.observed(*static)
         self.size = float(np.linalg.norm(static[0]))
         self.vectors = np.empty((min(LARGEST, self.modes) + 1, len(first)))
@@ -55,7 +54,7 @@ class _Space:
         n = self.modes
         j = len(self.diagonal)
         earlier = self.vectors[: j + 1]
-        vector = self.observed(*self.equations.at_rest(earlier[j, :n], np.zeros(len(self.equations.pressure))))
+        vector = self.observed(*self.equations.at_rest(earlier[j, :n], self.still))
         inside = 0.0
         for _ in range(2):  # twice is enough
             part = earlier[:, :n] @ vector[:n]
@@ -95,42 +94,25 @@ class _Space:
         return amplitudes, np.asarray(residual <= small), np.asarray(lost)
 
 
-def system_response(
-    system: BlockSystem,
-    scheme: Scheme,
-    frequencies: ArrayLike,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
-    along: tuple[float, float] | None = None,
-    exact: bool = False,
-) -> dict[str, Complex]:
-    """Return the complex amplitudes of the columns, as `dda.response` does for one block.
+def amplitudes(equations: Any, rows: tuple[Array, Array], F: Array, g: Array, W2: Complex) -> Complex:
+    """Return what rows of z and of lambda observe where (K - W2) z = F, (rows, frequencies).
 
-    Raises
-    ------
-    ValueError
-        If a column is unknown, or gg = 0 has no limit that is exact in time.
+    Parameters
+    ----------
+    equations
+        z'' + k z + B' lambda = F, B z - C lambda = g, as `Equations` of `dda.system.system` has them.
     """
     from scipy.sparse import diags_array
 
-    check_request(1, columns)
-    W2, factor = answering(scheme, frequencies, exact)
-    equations = system.reached
-    rows = equations.rows(columns)
-    if along is None:
-        F = equations.F * system.load_size
-        push = np.zeros(len(equations.pressure))
-    else:
-        F = 0 * equations.F
-        push = equations.G @ along
-    amplitudes = np.zeros((len(columns), len(W2)), complex)
+    observed = np.zeros((len(rows[0]), len(W2)), complex)
     resolved = np.zeros(len(W2), bool)
-    inertia = np.repeat([1 / equations.scale, 0.0], [len(F), len(push)])  # the forces have none
+    inertia = np.repeat([1 / equations.scale, 0.0], [len(F), len(g)])
     elimination = Elimination(equations.saddle, diags_array(inertia, format="csr"))
     if not elimination.narrow:
-        amplitudes, resolved = _Space(equations, rows, equations.at_rest(F, push)).grown(W2)
-    right = np.concatenate([F / equations.scale, push])
+        observed, resolved = _Space(equations, rows, equations.at_rest(F, g)).grown(W2)
+    right = np.concatenate([F / equations.scale, g])
     by_both = np.hstack([rows[0], equations.scale * rows[1]])
     for i in np.flatnonzero(~resolved):
         solution = elimination.solve(right, complex(W2[i]))
-        amplitudes[:, i] = by_both @ solution if np.isfinite(solution).all() else np.inf
-    return dict(zip(columns, amplitudes * factor, strict=True))
+        observed[:, i] = by_both @ solution if np.isfinite(solution).all() else np.inf
+    return observed

@@ -1,28 +1,17 @@
-"""Natural modes of the two-block model, and conditioning and stability of its step."""
+"""Conditioning and stability of the step of the two-block model."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from dda.linear.answers import Mode, modes
 from dda.model.arrays import Array
 from dda.one_block.gap_form import GapForm
-from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import roots, spectral
-from dda.scheme.newmark import Scheme, staged_step, step_matrices, viscosity
-
-
-@dataclass(frozen=True)
-class Mode:
-    """A natural mode and what one step of the scheme does to it."""
-
-    frequency: float  # w [rad/s], undamped natural
-    share: float  # of the static response, (phi'F)^2 / (w^2 F'D_static) [-]
-    eigenvalues: tuple[complex, complex]  # of the mode's own one-step operator, larger modulus first
-    contact_share: float  # static contact pressure that the mode carries, over the applied pressure [-]
+from dda.scheme.newmark import Scheme, staged_step, step_matrices
 
 
 @dataclass(frozen=True)
@@ -37,47 +26,6 @@ class Diagnostics:
     largest_omega: float  # largest w dt over the reached modes [-]
 
 
-def modes(model: TwoBlockModel, scheme: Scheme) -> tuple[Mode, ...]:
-    """Return the modes that the load can reach, the largest static share first.
-
-    Where the base alone acts the load is the inertia M R of its unit acceleration.
-    """
-    form = model.gap_form.reduced()
-    modal = modal_form(form)
-    alone = model.load_size == 0 and np.any(modal.translation)  # then form.F is that of 1 Pa
-    pushed = np.sum(modal.translation, axis=1) if alone else modal.load
-    shares = (pushed / modal.frequencies) ** 2
-    shares /= np.sum(shares)
-    carried = (form.observers["contact_pressure"] @ modal.shapes) * pushed / modal.frequencies**2
-    return modes_of(scheme, modal.frequencies, shares, carried, np.argsort(-shares))
-
-
-def modes_of(
-    scheme: Scheme, frequencies: Array, shares: Array, carried: Array, order: NDArray[np.intp]
-) -> tuple[Mode, ...]:
-    """Return modes in some order, with what a step of the scheme does to each."""
-    rows = zip(frequencies[order].tolist(), shares[order].tolist(), carried[order].tolist(), strict=True)
-    return tuple(Mode(w, share, scalar_eigenvalues(scheme, w), pressure) for w, share, pressure in rows)
-
-
-def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, complex]:
-    """Return the two non-zero eigenvalues of one step of a mode, the larger modulus first.
-
-    The step is applied to the unit states of (D, dt V) with the acceleration that equilibrium
-    gives them, A = -w^2 D - (a0 + a1 w^2) V, which every step but the first starts from. Of schemes by their stages
-    they are those of the closed form, `dda.scheme.roots`.
-    """
-    if scheme.table is not None:
-        return roots.eigenvalues(scheme, frequency * scheme.step)
-    k = (frequency * scheme.step) ** 2
-    S = step_matrices(scheme, 1.0, k)
-    a, c, *_ = staged_step(scheme, S, k, [0.0], [0.0], (1.0, 0.0, -k, -k))
-    b, d, *_ = staged_step(scheme, S, k, [0.0], [0.0], (0.0, 1.0, 0.0 - viscosity(scheme, k), 0.0))
-    root = np.sqrt(complex(((a - d) / 2) ** 2 + b * c))
-    pair = sorted(((a + d) / 2 + root, (a + d) / 2 - root), key=abs, reverse=True)
-    return complex(pair[0]), complex(pair[1])
-
-
 def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
     """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
     k = scheme.step**2 * form.K
@@ -89,7 +37,7 @@ def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
 
 def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the assembled step."""
-    form = model.gap_form.reduced()
+    form = model.reached
     M, k, F = _scaled(form, scheme)
     S = step_matrices(scheme, M, np.diag(k))[-1]
     x = np.linalg.solve(S, F)
