@@ -32,7 +32,7 @@ from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
-from dda.one_block.natural_modes import graded_modes
+from dda.one_block.natural_modes import free_modes, graded_modes
 from dda.scheme.harmonic import Complex, answering, staged_amplitude
 from dda.scheme.newmark import Scheme
 
@@ -189,6 +189,17 @@ def _moments(i: AreaIntegrals) -> Array:
     """Return the integrals of the products of 1, x' and y', (3, 3), with the zeros of a symmetric shape made exact."""
     x, xy = without_rounding([i.x, i.xy], np.sqrt([i.area * i.xx, i.xx * i.yy])).tolist()
     return np.array([[i.area, x, i.y], [x, i.xx, xy], [i.y, xy, i.yy]])
+
+
+def free_block(M: Array, block: Block) -> tuple[Array, Array]:
+    """Return w^2 and shapes, one column a mode, of a block that nothing holds, by its inertia M in its six unknowns.
+
+    In ex, e2 = ey + c ex and gxy, c the free lateral contraction, its stiffness is a diagonal.
+    """
+    own = np.eye(6)
+    own[4, 3] = -block.material.contraction
+    k, shapes = free_modes(own.T @ M @ own, elastic_stiffness(block.material, block.section.area))
+    return k, own @ shapes
 
 
 def elastic_stiffness(material: Material, area: float) -> Array:

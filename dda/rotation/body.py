@@ -33,8 +33,7 @@ from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.one_block.gap_form import elastic_stiffness
-from dda.one_block.natural_modes import free_modes
+from dda.one_block.gap_form import free_block
 
 EXACT = "exact"
 FIRST_ORDER = "first-order"
@@ -134,35 +133,23 @@ def strain_matrices(e: Array) -> Array:
     return np.array([[e[:, 0], e[:, 2] / 2], [e[:, 2] / 2, e[:, 1]]]).transpose(2, 0, 1)
 
 
-class FreeModes(NamedTuple):
-    """Natural modes of a block that nothing holds."""
-
-    k: Array  # (6,) squares of their frequencies [1/s^2]; 0 of rigid motions
-    shapes: Array  # (6, 6) unknowns (c, r, ex, ey, gxy) of each, one column a mode, of unit inertia
-
-
 @dataclass(frozen=True, eq=False)
 class Body:
     """Outline and matrices of a block in the frame of its base."""
 
     xi: Array  # (n, 2) outline about its centroid [m]; the base edge runs along +x
     centroid: Array  # (2,) above the start of the base edge [m]
-    tangent: Array  # (2,) base edge in the axes of the block's own coordinates
+    to_base: Array  # (2, 2) components along and away from the base, from those of the block's coordinates
     M: Array  # (6, 6) inertia
     K: Array  # (3, 3) elastic stiffness of (ex, ey, gxy) [N m]
     base: tuple[int, int]  # corners M and N
-    modes: FreeModes
+    k: Array  # (6,) squares of the frequencies of its free modes [1/s^2]; 0 of rigid motions
+    shapes: Array  # (6, 6) unknowns (c, r, ex, ey, gxy) of each, one column a mode, of unit inertia
 
     @property
     def size(self) -> float:
         """Greatest distance of a corner from the centroid [m]."""
         return float(np.sqrt(np.max(np.sum(self.xi**2, axis=1))))
-
-    @property
-    def to_base(self) -> Array:
-        """Components along and across the base from those of the block's coordinates, (2, 2)."""
-        tx, ty = self.tangent
-        return np.array([[tx, ty], [-ty, tx]])
 
 
 def body(block: Block, base: int) -> Body:
@@ -184,15 +171,4 @@ def body(block: Block, base: int) -> Body:
     c = np.array(placed.section.centroid)
     ends = base, (base + 1) % len(placed.corners)
     M = placed.mass()
-    return Body(placed.corners - c, c, tangent, M, placed.elastic()[3:, 3:], ends, modes_of(M, placed))
-
-
-def modes_of(M: Array, block: Block) -> FreeModes:
-    """Return the free modes of a block of the inertia M.
-
-    In ex, e2 = ey + c ex and gxy, c the free lateral contraction, its stiffness is a diagonal.
-    """
-    own = np.eye(6)
-    own[4, 3] = -block.material.contraction
-    k, shapes = free_modes(own.T @ M @ own, elastic_stiffness(block.material, block.section.area))
-    return FreeModes(k, own @ shapes)
+    return Body(placed.corners - c, c, frame, M, placed.elastic()[3:, 3:], ends, *free_block(M, placed))

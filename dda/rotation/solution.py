@@ -116,11 +116,10 @@ class RollingModel(LoadedBlock):
         for (x, y), force in zip(*self.dead, strict=True):
             directions(spin, Q, q, x, y, across, up)
             push += force[0] * across + force[1] * up
-        modes = body.modes
         dt = scheme.step
-        R = dt * dt * (modes.shapes.T @ push)
+        R = dt * dt * (body.shapes.T @ push)
         a = R.copy() if scheme.start == "consistent" else np.zeros(6)
-        p = late_momentum(scheme, dt * (modes.shapes.T @ body.M @ V), a)
+        p = late_momentum(scheme, dt * (body.shapes.T @ body.M @ V), a)
         ways = len(gap) if self.contact.shear else 0
         opening = np.concatenate([gap, np.zeros(ways)])
         state = state_of(6, opening, np.where(opening > 0, LOWER, INSIDE))
@@ -225,11 +224,11 @@ def solve_rolling(
         start = model.start(scheme)
     corners = laws_of(law, len(body.xi), len(start.path), options.solve_limit)
     base = base_motion(model)
-    weight = body.modes.shapes[:2].T @ (body.M[0, 0] * model.weight)
+    weight = body.shapes[:2].T @ (body.M[0, 0] * model.weight)
     rows = 4 if law.shear else 2
     march = rolling_march(
         ModalBody(
-            k=body.modes.k,
+            k=body.k,
             loads=weight[None],
             stored=np.ones(1),
             first=np.zeros(rows, dtype=np.int64),
@@ -240,7 +239,7 @@ def solve_rolling(
         laws_of(law, 2, rows, options.solve_limit),
         corners,
         scheme,
-        body.modes.shapes,
+        body.shapes,
         body.xi,
         *model.dead,
         options.rotation,

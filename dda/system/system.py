@@ -21,8 +21,7 @@ from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
-from dda.one_block.gap_form import COLUMNS, D_COLUMNS
-from dda.one_block.natural_modes import free_modes
+from dda.one_block.gap_form import COLUMNS, D_COLUMNS, free_block
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
 from dda.system.joints import FIXED, Joint, gap_groups
@@ -297,15 +296,8 @@ def factor(matrix: csr_array, definite: bool = True) -> Callable[[Array], Array]
 
 def _free_block(block: Block) -> tuple[Array, Array, Array]:
     """Return k and shapes of a block in its free modes, and their momentum in rigid motions of everything."""
-    axes = np.eye(6)
-    K = np.diag(block.elastic()).copy()
-    if block.material.contraction != 0:  # the two direct strains resist in their sum and in their difference
-        axes[3:5, 3:5] = [[1.0, 1.0], [1.0, -1.0]]
-        K[3] *= 2 * (1 + block.material.contraction)
-        K[4] = 4 * block.section.area * block.material.shear_modulus
     mass = _without_rounding(block.mass())
-    k, modes = free_modes(axes.T @ mass @ axes, K)
-    shapes = axes @ modes
+    k, shapes = free_block(mass, block)
     motions = np.eye(6, 3)
     motions[:2] = displacement_rows(*block.section.centroid)[:, :3]
     return k, shapes, shapes.T @ mass @ motions

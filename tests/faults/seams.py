@@ -129,7 +129,7 @@ FEM_PLANE_STIFFNESS = Seam(plane_model.PlaneModel, plane_model.PlaneModel.elasti
 # Blocks that turn
 ROLLING_WEIGHT = Seam(rolling.RollingModel, rolling.RollingModel.weight)
 ROLLING_LAWS = Seam(rolling, rolling.laws_of)
-ROLLING_MODES = Seam(rolling_body, rolling_body.modes_of)
+ROLLING_MODES = Seam(rolling_body, rolling_body.free_block)
 ROLLING_START = Seam(rolling.RollingModel, rolling.RollingModel.start)
 ROLLING_STEPS = Seam(rolling, rolling.make_steps)
 ROLLING_BASE = Seam(rolling, rolling.base_motion)
