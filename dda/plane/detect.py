@@ -16,14 +16,22 @@ belongs to is nearly parallel, the other end of it and those ends of the first e
 corners that coincide one is taken. Cuts of a polygon that is not convex carry no contact, but tell when the other
 part came in through another part of the block.
 
-The functions take arrays of records, compiled, or lists of objects with the same attributes, in plain Python.
+Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
+`dda.march.compiled` takes them.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
+
+from dda.contact.dense import Matrix, Vector
+from dda.model.arrays import Array
+from dda.model.polygon import section
+from dda.plane.polygons import Corners, Parts, Sides, outlines
 
 REACH = 0.02  # of the size of the smallest block, within which contacts are kept
 SAME = 1e-9  # of that size: what rounding leaves of a touch
@@ -36,212 +44,240 @@ NONE = -1
 TOO_MANY = -2  # contacts, for the records that were given
 TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
 
-FOUND_CONTACT = np.dtype(
-    [
-        ("corner", np.int64),  # numbers among all corners
-        ("edge", np.int64),
-        ("share", float),  # of the edge, at which the corner's foot is
-        ("gap", float),  # at the start of the step, along the edge's outward normal [m]
-        ("law", np.int64),
-        ("origin", np.int64),  # contact of the step before from which it goes on, -1: none
-        ("same", np.int64),  # 1 where that is the same corner at the same edge
-        ("normal", float),  # force, by the step [N]
-        ("closed", np.int64),  # 1 where it is, by the step
-        ("chain", np.int64),  # work: next contact of a list
-        ("heir", np.int64),  # work: contact of the next step that goes on from it; one only, lest forces double
-    ]
-)
+
+class FoundContacts(NamedTuple):
+    """Contacts of a step, (most,) each."""
+
+    corner: Any  # numbers among all corners
+    edge: Any
+    share: Vector  # of the edge, at which the corner's foot is
+    gap: Vector  # at the start of the step, along the edge's outward normal [m]
+    law: Any
+    origin: Any  # contact of the step before from which it goes on, -1: none
+    same: Any  # 1 where that is the same corner at the same edge
+    normal: Vector  # force, as the step leaves it [N]
+    closed: Any  # 1 where it is, as the step leaves it
+    chain: Any  # work: next contact of a list
+    heir: Any  # work: contact of the next step that goes on from it; one only, lest forces double
 
 
-def find_contacts(
-    corners: Any, sides: Any, parts: Any, blocks: Any, pairs: Any, previous: Any, known: int, contacts: Any, size: float
-) -> int:
-    """Write the contacts of a step; return how many there are, or TOO_MANY or TOO_DEEP.
+class Detection(NamedTuple):
+    """What contacts are found among, and where they are written."""
+
+    corners: Corners
+    sides: Sides
+    parts: Parts
+    moves: Any  # (b,) 0 of blocks that cannot
+    head: Any  # (b,) work: first contact of the step before of a block
+    law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
+    contacts: FoundContacts
+    previous: FoundContacts
+    count: Any  # (2,) how many contacts and previous ones there are
+    size: float  # of the smallest block that moves [m]
+
+
+def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, most: int) -> Detection:
+    """Return what finds contacts of blocks with the corners (n, 2) [m], at most so many.
 
     Parameters
     ----------
-    corners, sides, parts
-        Records of `dda.plane.polygons.outlines`, the corners at their places of this step.
-    blocks
-        Records with `moves`, 0 of those that cannot, and room for `head`.
-    pairs
-        Number of the law of two blocks i and j at i * blocks + j, -1 where no contact is looked for.
-    previous, known
-        Contacts of the step before, as it left them, and how many of the records are.
-    contacts
-        Records with the fields of `FOUND_CONTACT`, which are filled.
-    size
-        Length of the smallest block [m].
+    law : (b, b) array of int
+        Number of the law of two blocks, -1 where they are not looked at; blocks of which neither moves are not.
     """
-    margin = REACH * size
-    place_boxes(corners, sides, parts, margin / 2)
-    along_x = sort_parts(parts, blocks)
-    for block in range(len(blocks)):
-        blocks[block].head = NONE
-    for number in range(known - 1, -1, -1):
-        old = previous[number]
-        keeper = keeper_of(blocks, corners[old.corner].block, corners[old.edge].block)
-        old.heir = NONE
-        old.chain = blocks[keeper].head
-        blocks[keeper].head = number
-    for corner in range(len(corners)):
-        corners[corner].found = NONE
-    count = 0
-    for place in range(len(parts)):
-        p = parts[place].order
-        for later in range(place + 1, len(parts)):
-            r = parts[later].order
-            if along_x:
-                if parts[r].left > parts[p].right:
-                    break
-                apart = parts[r].low > parts[p].high or parts[p].low > parts[r].high
-            else:
-                if parts[r].low > parts[p].high:
-                    break
-                apart = parts[r].left > parts[p].right or parts[p].left > parts[r].right
-            if apart or pairs[parts[p].block * len(blocks) + parts[r].block] == NONE:
+    movable = np.array(moves, dtype=np.int64)
+    looked_at = np.array(law, dtype=np.int64)
+    looked_at[~np.logical_or.outer(movable, movable)] = NONE
+    np.fill_diagonal(looked_at, NONE)
+    areas = [section(vertices).area for vertices, moving in zip(polygons, moves, strict=True) if moving]
+    found = [
+        np.zeros(most, dtype) for dtype in (np.int64,) * 2 + (float,) * 2 + (np.int64,) * 3 + (float,) + (np.int64,) * 3
+    ]
+    return Detection(
+        *outlines(polygons),
+        moves=movable,
+        head=np.full(len(polygons), NONE),
+        law=looked_at.ravel(),
+        contacts=FoundContacts(*found),
+        previous=FoundContacts(*(array.copy() for array in found)),
+        count=np.zeros(2, np.int64),
+        size=float(np.sqrt(min(areas))),
+    )
+
+
+def keep_contacts(detection: Detection) -> None:
+    """Take the contacts of a step that was accepted for those of the step before."""
+    contacts = detection.contacts
+    previous = detection.previous
+    detection.count[1] = detection.count[0]
+    for number in range(detection.count[0]):
+        previous.corner[number] = contacts.corner[number]
+        previous.edge[number] = contacts.edge[number]
+        previous.normal[number] = contacts.normal[number]
+        previous.closed[number] = contacts.closed[number]
+
+
+def find_contacts(detection: Detection) -> int:
+    """Write the contacts of a step; return how many there are, or TOO_MANY or TOO_DEEP.
+
+    The corners are where the step begins, `now`, and where it would end without contact, `then`.
+    """
+    corners = detection.corners
+    parts = detection.parts
+    previous = detection.previous
+    head = detection.head
+    blocks = len(head)
+    along = place_parts(detection)
+    for block in range(blocks):
+        head[block] = NONE
+    for number in range(detection.count[1] - 1, -1, -1):
+        keeper = keeper_of(detection, corners.block[previous.corner[number]], corners.block[previous.edge[number]])
+        previous.heir[number] = NONE
+        previous.chain[number] = head[keeper]
+        head[keeper] = number
+    for corner in range(len(corners.found)):
+        corners.found[corner] = NONE
+    detection.count[0] = 0
+    for place in range(len(parts.order)):
+        p = parts.order[place]
+        box = parts.box[p]
+        for later in range(place + 1, len(parts.order)):
+            r = parts.order[later]
+            other = parts.box[r]
+            if other[2 * along] > box[2 * along + 1]:
+                break
+            across = 2 - 2 * along
+            apart = other[across] > box[across + 1] or box[across] > other[across + 1]
+            if apart or detection.law[parts.block[p] * blocks + parts.block[r]] == NONE:
                 continue
-            count = touch_parts(
-                corners, sides, parts, blocks, min(p, r), max(p, r), pairs, previous, contacts, count, size
-            )
+            count = touch_parts(detection, min(p, r), max(p, r))
             if count < 0:
                 return count
-    inherit(corners, blocks, previous, contacts, count, NEAR * size)
-    return count
+            detection.count[0] = count
+    inherit(detection)
+    return int(detection.count[0])
 
 
-def keeper_of(blocks: Any, i: int, j: int) -> int:
+def keeper_of(detection: Detection, i: int, j: int) -> int:
     """Return that of two blocks whose list holds their contacts: one that moves, as a floor has very many."""
-    if blocks[i].moves == 0:
+    if detection.moves[i] == 0:
         return j
-    if blocks[j].moves == 0:
+    if detection.moves[j] == 0:
         return i
     return min(i, j)
 
 
-def place_boxes(corners: Any, sides: Any, parts: Any, margin: float) -> None:
-    """Write the boxes that hold the parts at both ends of the step, and a margin."""
-    for number in range(len(parts)):
-        part = parts[number]
-        first = corners[sides[part.first].corner]
-        left = first.x0
-        right = first.x0
-        low = first.y0
-        high = first.y0
-        for side in range(part.first, part.last):
-            corner = corners[sides[side].corner]
-            left = min(left, corner.x0, corner.x1)
-            right = max(right, corner.x0, corner.x1)
-            low = min(low, corner.y0, corner.y1)
-            high = max(high, corner.y0, corner.y1)
-        part.left = left - margin
-        part.right = right + margin
-        part.low = low - margin
-        part.high = high + margin
+def place_parts(detection: Detection) -> int:
+    """Write the boxes that hold the parts at both ends of the step, and sort them; return along which axis.
 
-
-def sort_parts(parts: Any, blocks: Any) -> bool:
-    """Sort the parts along the axis on which those that move are spread more; return whether that is x."""
-    left = np.inf
-    right = -np.inf
-    low = np.inf
-    high = -np.inf
-    for number in range(len(parts)):
-        part = parts[number]
-        if blocks[part.block].moves != 0:
-            left = min(left, part.left)
-            right = max(right, part.right)
-            low = min(low, part.low)
-            high = max(high, part.high)
-    along_x = right - left >= high - low
-    for number in range(1, len(parts)):  # nearly sorted from the step before
-        p = parts[number].order
-        start = parts[p].left if along_x else parts[p].low
+    It is that along which the parts that move are spread more.
+    """
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    margin = REACH * detection.size / 2
+    for number in range(len(parts.order)):
+        box = parts.box[number]
+        for axis in range(2):
+            least = math.inf
+            greatest = -math.inf
+            for side in range(parts.first[number], parts.last[number]):
+                corner = sides.corner[side]
+                least = min(least, corners.now[corner][axis], corners.then[corner][axis])
+                greatest = max(greatest, corners.now[corner][axis], corners.then[corner][axis])
+            box[2 * axis] = least - margin
+            box[2 * axis + 1] = greatest + margin
+    along = 0
+    widest = -math.inf
+    for axis in range(2):
+        least = math.inf
+        greatest = -math.inf
+        for number in range(len(parts.order)):
+            if detection.moves[parts.block[number]] != 0:
+                least = min(least, parts.box[number][2 * axis])
+                greatest = max(greatest, parts.box[number][2 * axis])
+        if greatest - least > widest:
+            widest = greatest - least
+            along = axis
+    for number in range(1, len(parts.order)):  # nearly sorted from the step before
+        p = parts.order[number]
         place = number - 1
-        while place >= 0:
-            r = parts[place].order
-            if (parts[r].left if along_x else parts[r].low) <= start:
-                break
-            parts[place + 1].order = r
+        while place >= 0 and parts.box[parts.order[place]][2 * along] > parts.box[p][2 * along]:
+            parts.order[place + 1] = parts.order[place]
             place -= 1
-        parts[place + 1].order = p
-    return along_x
+        parts.order[place + 1] = p
+    return along
 
 
-def touch_parts(
-    corners: Any,
-    sides: Any,
-    parts: Any,
-    blocks: Any,
-    p: int,
-    r: int,
-    pairs: Any,
-    previous: Any,
-    contacts: Any,
-    count: int,
-    size: float,
-) -> int:
+def touch_parts(detection: Detection, p: int, r: int) -> int:
     """Add the contacts of two convex parts; return how many contacts there are then, or TOO_MANY or TOO_DEEP."""
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    contacts = detection.contacts
+    previous = detection.previous
+    size = detection.size
     same = SAME * size
     margin = REACH * size
+    i = parts.block[p]
+    j = parts.block[r]
+    count = int(detection.count[0])
     # a. the edge through which they are pressed; of several that with the greatest force
-    i = parts[p].block
-    j = parts[r].block
     kept = NONE
     greatest = 0.0
     deepest = margin
-    number = blocks[keeper_of(blocks, i, j)].head
-    while number >= 0:
-        old = previous[number]
-        number = old.chain
-        block = corners[old.corner].block
-        on = corners[old.edge].block
-        if old.closed == 0 or not ((block == i and on == j) or (block == j and on == i)):
-            continue
-        deepest = DEEP * size  # they touched: what they have come to since, they were pressed to
-        own = p if on == i else r
-        opposite = r if on == i else p
-        edge = side_from(sides, parts[own], old.edge)
-        if edge < 0 or old.normal < greatest or side_from(sides, parts[opposite], old.corner) < 0:
-            continue
-        _, length, along, gap = foot(corners, old.corner, old.edge, sides[edge].end, False)
-        if sides[edge].real != 0 and gap < -same and -same <= along <= length + same:
-            kept = edge
-            greatest = old.normal
+    old = detection.head[keeper_of(detection, i, j)]
+    while old >= 0:
+        number = previous.corner[old]
+        start = previous.edge[old]
+        on = corners.block[start]
+        if (
+            previous.closed[old] != 0
+            and min(corners.block[number], on) == min(i, j)
+            and max(corners.block[number], on) == max(i, j)
+        ):
+            deepest = DEEP * size  # they touched: how deep they are, they were pressed
+            edge = side_from(sides, parts, p if on == i else r, start)
+            if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
+                length, along, gap = foot(corners.now, number, start, sides.end[edge])
+                if previous.normal[old] >= greatest and gap < -same and -same <= along <= length + same:
+                    kept = edge
+                    greatest = previous.normal[old]
+        old = previous.chain[old]
     edge = NONE
     point = NONE
-    best = -np.inf
-    best_cut = -np.inf
+    best = -math.inf
+    best_cut = -math.inf
     touching = NONE
     touching_point = NONE
-    farthest = -np.inf
+    farthest = -math.inf
     for turn in range(2):
         own = p if turn == 0 else r
         opposite = r if turn == 0 else p
-        for side in range(parts[own].first, parts[own].last):
+        for side in range(parts.first[own], parts.last[own]):
             if kept >= 0 and side != kept:
                 continue
-            start, lowest, end, lowest_then = front(corners, sides, side, parts[opposite])
+            before, lowest = front(corners.now, sides, parts, side, opposite)
             if kept >= 0:
                 edge = side
                 point = lowest
                 break
-            if min(start, end) >= margin:
+            after, lowest_then = front(corners.then, sides, parts, side, opposite)
+            if min(before, after) >= margin:
                 return count
-            if start <= same:
-                key = start / size
-            elif end < 0:
-                key = 1 + start / (start - end)
+            if before <= same:
+                key = before / size
+            elif after < 0:
+                key = 1 + before / (before - after)
             else:
-                key = 2 + min(start, end) / size
-            if sides[side].real == 0:
+                key = 2 + min(before, after) / size
+            nearest = lowest_then if after < before else lowest
+            if sides.real[side] == 0:
                 best_cut = max(best_cut, key)
                 continue
-            nearest = lowest_then if end < start else lowest
-            if -SOFT * size < start <= same and end > farthest + same:
+            if -SOFT * size < before <= same and after > farthest + same:
                 touching = side
                 touching_point = nearest
-                farthest = end
+                farthest = after
             if key > best + SAME:
                 best = key
                 edge = side
@@ -252,154 +288,139 @@ def touch_parts(
     elif edge < 0 or best_cut > best + CROSSED_EARLIER:
         return count
     # the other part's edge that is most opposite to this one
-    before = sides[point].prior
-    cosine = between(corners, sides, edge, point)
-    cosine_before = between(corners, sides, edge, before)
-    opposite_edge = point if cosine < cosine_before else before
-    other_end = sides[point].after if opposite_edge == point else before
-    parallel = min(cosine, cosine_before) < PARALLEL and sides[opposite_edge].real != 0
-    law = pairs[i * len(blocks) + j]
+    prior = sides.prior[point]
+    cosine = cosine_between(corners.now, sides, edge, point)
+    cosine_prior = cosine_between(corners.now, sides, edge, prior)
+    opposite_edge = point if cosine < cosine_prior else prior
+    other_end = sides.after[point] if opposite_edge == point else prior
+    parallel = min(cosine, cosine_prior) < PARALLEL and sides.real[opposite_edge] != 0
     found = count
     for late in range(2):  # over the edge at the start of the step, or else at its end
         for attempt in range(4 if parallel else 1):  # the corner, its edge's other end, the ends of the edge it meets
-            corner = point
+            corner = sides.corner[point]
             against = edge
             slack = same
             if attempt == 1:
-                corner = other_end
+                corner = sides.corner[other_end]
             elif attempt > 1:
-                corner = edge if attempt == 2 else sides[edge].after
+                corner = sides.corner[edge] if attempt == 2 else sides.end[edge]
                 against = opposite_edge
                 slack = -same
-            number = sides[corner].corner
-            first = sides[against].corner
-            end_corner = sides[against].end
-            share, length, along, gap = foot(corners, number, first, end_corner, False)
-            _, length_then, along_then, gap_then = foot(corners, number, first, end_corner, True)
+            start = sides.corner[against]
+            length, along, gap = foot(corners.now, corner, start, sides.end[against])
+            share = along / length
+            length_then, along_then, gap_then = foot(corners.then, corner, start, sides.end[against])
             if late == 1:
                 length = length_then
                 along = along_then
-            if corners[number].convex == 0 or min(gap, gap_then) >= margin or not -slack <= along <= length + slack:
+            is_over = -slack <= along <= length + slack
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not is_over:
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
                     return TOO_DEEP
                 continue
-            earlier = corners[number].found
-            while earlier >= 0 and contacts[earlier].edge != first:
-                earlier = contacts[earlier].chain
+            earlier = corners.found[corner]
+            while earlier >= 0 and contacts.edge[earlier] != start:
+                earlier = contacts.chain[earlier]
             if earlier >= 0:  # by another part of a block that is not convex
                 continue
-            if found >= len(contacts):
+            if found >= len(contacts.corner):
                 return TOO_MANY
-            contact = contacts[found]
-            contact.corner = number
-            contact.edge = first
-            contact.share = min(max(share, 0.0), 1.0)
-            contact.gap = gap
-            contact.law = law
-            contact.chain = corners[number].found
-            corners[number].found = found
+            contacts.corner[found] = corner
+            contacts.edge[found] = start
+            contacts.share[found] = min(max(share, 0.0), 1.0)
+            contacts.gap[found] = gap
+            contacts.law[found] = detection.law[i * len(detection.head) + j]
+            contacts.chain[found] = corners.found[corner]
+            corners.found[corner] = found
             found += 1
         if found > count:
             break
     return found
 
 
-def side_from(sides: Any, part: Any, corner: int) -> int:
+def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
     """Return the side of a part that starts from a corner, -1 where there is none."""
-    for side in range(part.first, part.last):
-        if sides[side].corner == corner:
+    for side in range(parts.first[part], parts.last[part]):
+        if sides.corner[side] == corner:
             return side
     return NONE
 
 
-def front(corners: Any, sides: Any, side: int, part: Any) -> tuple[float, int, float, int]:
-    """Return how far a part is in front of an edge, and its lowest side's number, at the start and at the end."""
-    a = corners[sides[side].corner]
-    b = corners[sides[side].end]
-    tx = b.x0 - a.x0
-    ty = b.y0 - a.y0
-    ux = b.x1 - a.x1
-    uy = b.y1 - a.y1
-    start = np.inf
-    end = np.inf
-    lowest = part.first
-    lowest_then = part.first
-    for number in range(part.first, part.last):
-        c = corners[sides[number].corner]
-        gap = ty * (c.x0 - a.x0) - tx * (c.y0 - a.y0)
-        if gap < start:
-            start = gap
+def front(places: Matrix, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
+    """Return how far a part is in front of the edge of a side [m], and from which of its sides' corners."""
+    a = places[sides.corner[side]]
+    b = places[sides.end[side]]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    least = math.inf
+    lowest = NONE
+    for number in range(parts.first[part], parts.last[part]):
+        c = places[sides.corner[number]]
+        gap = ty * (c[0] - a[0]) - tx * (c[1] - a[1])
+        if gap < least:
+            least = gap
             lowest = number
-        gap = uy * (c.x1 - a.x1) - ux * (c.y1 - a.y1)
-        if gap < end:
-            end = gap
-            lowest_then = number
-    return start / (tx * tx + ty * ty) ** 0.5, lowest, end / (ux * ux + uy * uy) ** 0.5, lowest_then
+    return least / math.sqrt(tx * tx + ty * ty), lowest
 
 
-def foot(corners: Any, corner: int, start: int, end: int, late: bool) -> tuple[float, float, float, float]:
-    """Return share, length and distance along an edge at which a corner is, and its gap, at an end of the step."""
-    a = corners[start]
-    b = corners[end]
-    c = corners[corner]
-    if late:
-        tx = b.x1 - a.x1
-        ty = b.y1 - a.y1
-        x = c.x1 - a.x1
-        y = c.y1 - a.y1
-    else:
-        tx = b.x0 - a.x0
-        ty = b.y0 - a.y0
-        x = c.x0 - a.x0
-        y = c.y0 - a.y0
-    length = (tx * tx + ty * ty) ** 0.5
-    along = (tx * x + ty * y) / length
-    return along / length, length, along, (ty * x - tx * y) / length
+def foot(places: Matrix, corner: int, start: int, end: int) -> tuple[float, float, float]:
+    """Return the length of an edge, how far along it a corner is, and its gap [m]."""
+    a = places[start]
+    b = places[end]
+    c = places[corner]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    x = c[0] - a[0]
+    y = c[1] - a[1]
+    length = math.sqrt(tx * tx + ty * ty)
+    return length, (tx * x + ty * y) / length, (ty * x - tx * y) / length
 
 
-def between(corners: Any, sides: Any, first: int, second: int) -> float:
-    """Return the cosine between two sides at the start of the step."""
-    a = corners[sides[first].corner]
-    b = corners[sides[first].end]
-    c = corners[sides[second].corner]
-    d = corners[sides[second].end]
-    tx = b.x0 - a.x0
-    ty = b.y0 - a.y0
-    ux = d.x0 - c.x0
-    uy = d.y0 - c.y0
-    return float((tx * ux + ty * uy) / ((tx * tx + ty * ty) * (ux * ux + uy * uy)) ** 0.5)
+def cosine_between(places: Matrix, sides: Sides, first: int, second: int) -> float:
+    """Return the cosine between two sides."""
+    a = places[sides.corner[first]]
+    b = places[sides.end[first]]
+    c = places[sides.corner[second]]
+    d = places[sides.end[second]]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    ux = d[0] - c[0]
+    uy = d[1] - c[1]
+    return float((tx * ux + ty * uy) / math.sqrt((tx * tx + ty * ty) * (ux * ux + uy * uy)))
 
 
-def inherit(corners: Any, blocks: Any, previous: Any, contacts: Any, count: int, near: float) -> None:
+def inherit(detection: Detection) -> None:
     """Write from which contact of the step before each goes on: the same corner and edge, or else the same place."""
+    corners = detection.corners
+    contacts = detection.contacts
+    previous = detection.previous
+    for number in range(detection.count[0]):
+        contacts.origin[number] = NONE
+        contacts.same[number] = 0
     for attempt in range(2):
-        for number in range(count):
-            contact = contacts[number]
-            if attempt == 0:
-                contact.origin = NONE
-                contact.same = 0
-            elif contact.same != 0:
+        for number in range(detection.count[0]):
+            if contacts.same[number] != 0:
                 continue
-            corner = corners[contact.corner]
-            i = corner.block
-            j = corners[contact.edge].block
-            nearest = near
-            candidate = blocks[keeper_of(blocks, i, j)].head
-            while candidate >= 0:
-                old = previous[candidate]
-                place = corners[old.corner]
+            corner = contacts.corner[number]
+            i = corners.block[corner]
+            j = corners.block[contacts.edge[number]]
+            nearest = NEAR * detection.size
+            old = detection.head[keeper_of(detection, i, j)]
+            while old >= 0:
                 if attempt == 0:
-                    if old.corner == contact.corner and old.edge == contact.edge:
-                        contact.origin = candidate
-                        contact.same = 1
-                elif old.closed != 0 and old.heir == NONE:
-                    on = corners[old.edge].block
-                    distance = ((place.x0 - corner.x0) ** 2 + (place.y0 - corner.y0) ** 2) ** 0.5
-                    if min(place.block, on) == min(i, j) and max(place.block, on) == max(i, j) and distance < nearest:
+                    if previous.corner[old] == corner and previous.edge[old] == contacts.edge[number]:
+                        contacts.origin[number] = old
+                        contacts.same[number] = 1
+                elif previous.closed[old] != 0 and previous.heir[old] == NONE:
+                    block = corners.block[previous.corner[old]]
+                    on = corners.block[previous.edge[old]]
+                    place = corners.now[previous.corner[old]]
+                    distance = math.hypot(place[0] - corners.now[corner][0], place[1] - corners.now[corner][1])
+                    if min(block, on) == min(i, j) and max(block, on) == max(i, j) and distance < nearest:
                         nearest = distance
-                        contact.origin = candidate
-                candidate = old.chain
-            if contact.origin >= 0:
-                previous[contact.origin].heir = number
+                        contacts.origin[number] = old
+                old = previous.chain[old]
+            if contacts.origin[number] >= 0:
+                previous.heir[contacts.origin[number]] = number

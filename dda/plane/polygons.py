@@ -1,4 +1,4 @@
-"""Outlines of blocks as contacts see them: convex parts of a polygon, and the records of corners and sides.
+"""Outlines of blocks as contacts see them: corners, and the sides of convex parts.
 
 A polygon that is not convex is cut by diagonals between its own corners only. So every side of a part is either a whole
 edge of the outline or a cut, and no contact is looked for through a cut. Corners on a straight line bound no part: the
@@ -8,49 +8,45 @@ edge goes on over them, and has the number of the corner from which it starts.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.contact.dense import Matrix
 from dda.model.arrays import Array
 
 STRAIGHT = 1e-9  # sine of the turn at a corner, up to which it counts as lying on a straight edge
 
-CORNER = np.dtype(
-    [
-        ("block", np.int64),
-        ("first", np.int64),  # number of the block's first corner
-        ("after", np.int64),  # where the edge ends that starts here
-        ("convex", np.int64),  # 1 where it can touch an edge
-        ("x0", float),  # place at the start of a step [m]
-        ("y0", float),
-        ("x1", float),  # place at its end, as it would be without contact
-        ("y1", float),
-        ("found", np.int64),  # last contact of this corner in this step, -1: none
-    ]
-)
-SIDE = np.dtype([("corner", np.int64), ("end", np.int64), ("after", np.int64), ("prior", np.int64), ("real", np.int64)])
-PART = np.dtype(
-    [
-        ("first", np.int64),  # its sides are those from `first` to before `last`
-        ("last", np.int64),
-        ("block", np.int64),
-        ("left", float),  # box over a step [m]
-        ("right", float),
-        ("low", float),
-        ("high", float),
-        ("order", np.int64),  # number of the part at this place of the sweep
-    ]
-)
+
+class Corners(NamedTuple):
+    """Corners of all blocks, (n,) each, block by block in the order of the outlines."""
+
+    block: Any
+    start: Any  # number of the block's first corner
+    convex: Any  # 1 where it can touch an edge
+    now: Matrix  # (n, 2) places at the start of a step [m]
+    then: Matrix  # (n, 2) places at its end, as they would be without contact
+    found: Any  # work: last contact of the corner in this step
 
 
-class Outlines(NamedTuple):
-    """Corners of blocks, sides of their convex parts, and these parts: arrays of records."""
+class Sides(NamedTuple):
+    """Sides of convex parts, (n,) each. A side that is real is the edge with the number of its first corner."""
 
-    corners: Any
-    sides: Any
-    parts: Any
+    corner: Any
+    end: Any  # corner
+    after: Any  # next side of the part
+    prior: Any
+    real: Any  # 0 of a cut inside a block
+
+
+class Parts(NamedTuple):
+    """Convex parts of blocks, (n,) each."""
+
+    first: Any  # its sides are those from here
+    last: Any  # to before this one
+    block: Any
+    box: Matrix  # (n, 4) left, right, low, high over a step [m]
+    order: Any  # numbers of the parts in the order of the sweep
 
 
 def sine_of_turn(a: Array, b: Array, c: Array) -> float:
@@ -127,44 +123,36 @@ def _joined(vertices: Array, parts: list[list[int]]) -> list[list[int]]:
     return parts
 
 
-def outlines(polygons: Sequence[Array]) -> Outlines:
-    """Return the records of blocks with the corners (n, 2) [m], block by block in the order of their corners.
-
-    The places of a step, `x0`, `y0`, `x1`, `y1`, are those given.
-    """
-    corners = np.zeros(sum(len(vertices) for vertices in polygons), CORNER)
+def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
+    """Return corners, sides and convex parts of blocks with the corners (n, 2) [m], at these places."""
+    sizes = [len(vertices) for vertices in polygons]
+    start = np.cumsum([0, *sizes[:-1]])
+    convex: list[int] = []
     sides: list[tuple[int, int, int, int, int]] = []
     parts: list[tuple[int, int, int]] = []
-    first = 0
     for block, vertices in enumerate(polygons):
-        outline = without_straight_corners(vertices)
-        following = dict(zip(outline, outline[1:] + outline[:1], strict=True))
-        own = corners[first : first + len(vertices)]
-        own["block"] = block
-        own["first"] = first
-        own["after"] = first + (np.arange(len(vertices)) + 1) % len(vertices)
-        own["convex"][outline] = np.array(turns_of(vertices, outline)) > 0
-        for corner, end in following.items():
-            own["after"][corner] = first + end
-        for column, number in (("x0", 0), ("y0", 1), ("x1", 0), ("y1", 1)):
-            own[column] = vertices[:, number]
-        for ring in convex_parts(vertices):
-            base = len(sides)
-            for number, corner in enumerate(ring):
-                end = ring[(number + 1) % len(ring)]
-                after = base + (number + 1) % len(ring)
-                prior = base + (number - 1) % len(ring)
-                sides.append((first + corner, first + end, after, prior, int(following[corner] == end)))
-            parts.append((base, len(sides), block))
-        first += len(vertices)
-    part_records = np.zeros(len(parts), PART)
-    for name, values in zip(("first", "last", "block"), np.transpose(parts), strict=True):
-        part_records[name] = values
-    part_records["order"] = np.arange(len(parts))
-    return Outlines(corners, np.array(sides, SIDE), part_records)
-
-
-def as_objects(records: Any) -> list[Any]:
-    """Return an array of records as a list of objects with the same attributes, which plain Python reads faster."""
-    names = records.dtype.names
-    return [SimpleNamespace(**dict(zip(names, row, strict=True))) for row in records.tolist()]
+        ring = without_straight_corners(vertices)
+        turning_left = {corner for corner, turn in zip(ring, turns_of(vertices, ring), strict=True) if turn > 0}
+        convex += [int(corner in turning_left) for corner in range(len(vertices))]
+        following = dict(zip(ring, ring[1:] + ring[:1], strict=True))
+        for part in convex_parts(vertices):
+            first = len(sides)
+            for number, corner in enumerate(part):
+                end = part[(number + 1) % len(part)]
+                after = first + (number + 1) % len(part)
+                prior = first + (number - 1) % len(part)
+                is_edge = int(following[corner] == end)
+                sides.append((int(start[block]) + corner, int(start[block]) + end, after, prior, is_edge))
+            parts.append((first, len(sides), block))
+    places = np.vstack(polygons)
+    n = len(parts)
+    corners = Corners(
+        block=np.repeat(np.arange(len(polygons)), sizes),
+        start=np.repeat(start, sizes),
+        convex=np.array(convex),
+        now=places.copy(),
+        then=places.copy(),
+        found=np.full(len(places), -1),
+    )
+    first, last, owner = np.transpose(parts)
+    return corners, Sides(*np.transpose(sides)), Parts(first, last, owner, np.zeros((n, 4)), np.arange(n))
