@@ -4,7 +4,8 @@ Two convex parts are apart while one edge of either has the other part in front 
 by the first of these rules that holds:
 
 a. the edge through which they are really pressed, however deep, as long as its corner lies over it;
-b. of the edges at which they touch, that which the step without contact leaves farthest in front;
+b. of the edges at which they touch, that which the step without contact leaves farthest in front, unless nothing of the
+   other part lies over it and another edge is crossed in this step;
 c. of the edges that have the other part in front, that which this step crosses last: through it they come to touch;
 d. where none has, the one with the least penetration.
 
@@ -134,8 +135,6 @@ def find_contacts(detection: Detection) -> int:
         previous.heir[number] = NONE
         previous.chain[number] = head[keeper]
         head[keeper] = number
-    for corner in range(len(corners.found)):
-        corners.found[corner] = NONE
     detection.count[0] = 0
     for place in range(len(parts.order)):
         p = parts.order[place]
@@ -213,14 +212,12 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     corners = detection.corners
     sides = detection.sides
     parts = detection.parts
-    contacts = detection.contacts
     previous = detection.previous
     size = detection.size
     same = SAME * size
     margin = REACH * size
     i = parts.block[p]
     j = parts.block[r]
-    count = int(detection.count[0])
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
@@ -263,7 +260,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
                 break
             after, lowest_then = front(corners.then, sides, parts, side, opposite)
             if min(before, after) >= margin:
-                return count
+                return int(detection.count[0])
             if before <= same:
                 key = before / size
             elif after < 0:
@@ -282,11 +279,35 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
                 best = key
                 edge = side
                 point = nearest
-    if touching >= 0:
-        edge = touching
-        point = touching_point
-    elif edge < 0 or best_cut > best + CROSSED_EARLIER:
-        return count
+    if edge >= 0 and best_cut > best + CROSSED_EARLIER:
+        edge = NONE
+    count = int(detection.count[0])
+    for choice in range(2):
+        chosen = touching if choice == 0 else edge
+        # a corner that has left the edge at which they touch may cross another one in this very step
+        if chosen < 0 or (choice == 1 and touching >= 0 and not 1 < best < 2):
+            continue
+        found = add_points(detection, p, r, chosen, touching_point if choice == 0 else point, deepest)
+        if found != count:
+            return found
+    return count
+
+
+def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deepest: float) -> int:
+    """Add the contacts of two parts at an edge; return how many contacts there are then, or TOO_MANY or TOO_DEEP.
+
+    Parameters
+    ----------
+    edge, point
+        Sides: that of the edge, and that which starts from the other part's lowest corner.
+    deepest
+        How deep a corner may be [m].
+    """
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    contacts = detection.contacts
+    same = SAME * detection.size
     # the other part's edge that is most opposite to this one
     prior = sides.prior[point]
     cosine = cosine_between(corners.now, sides, edge, point)
@@ -294,6 +315,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     opposite_edge = point if cosine < cosine_prior else prior
     other_end = sides.after[point] if opposite_edge == point else prior
     parallel = min(cosine, cosine_prior) < PARALLEL and sides.real[opposite_edge] != 0
+    count = int(detection.count[0])
     found = count
     for late in range(2):  # over the edge at the start of the step, or else at its end
         for attempt in range(4 if parallel else 1):  # the corner, its edge's other end, the ends of the edge it meets
@@ -314,16 +336,13 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
                 length = length_then
                 along = along_then
             is_over = -slack <= along <= length + slack
-            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not is_over:
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= REACH * detection.size or not is_over:
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
                     return TOO_DEEP
                 continue
-            earlier = corners.found[corner]
-            while earlier >= 0 and contacts.edge[earlier] != start:
-                earlier = contacts.chain[earlier]
-            if earlier >= 0:  # by another part of a block that is not convex
+            if (parts.alone[p] == 0 or parts.alone[r] == 0) and is_known(detection, found, corner, start):
                 continue
             if found >= len(contacts.corner):
                 return TOO_MANY
@@ -331,13 +350,29 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             contacts.edge[found] = start
             contacts.share[found] = min(max(share, 0.0), 1.0)
             contacts.gap[found] = gap
-            contacts.law[found] = detection.law[i * len(detection.head) + j]
-            contacts.chain[found] = corners.found[corner]
-            corners.found[corner] = found
+            contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
     return found
+
+
+def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
+    """Tell whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
+    corners = detection.corners
+    contacts = detection.contacts
+    place = corners.now[corner]
+    near = 2 * SAME * detection.size
+    for number in range(found):
+        known = contacts.corner[number]
+        against = contacts.edge[number]
+        if known == corner and against == edge:
+            return True
+        if corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]:
+            other = corners.now[known]
+            if math.hypot(place[0] - other[0], place[1] - other[1]) <= near:
+                return True
+    return False
 
 
 def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:

@@ -26,7 +26,6 @@ class Corners(NamedTuple):
     convex: Any  # 1 where it can touch an edge
     now: Matrix  # (n, 2) places at the start of a step [m]
     then: Matrix  # (n, 2) places at its end, as they would be without contact
-    found: Any  # work: last contact of the corner in this step
 
 
 class Sides(NamedTuple):
@@ -45,6 +44,7 @@ class Parts(NamedTuple):
     first: Any  # its sides are those from here
     last: Any  # to before this one
     block: Any
+    alone: Any  # 1 of one that is its whole block
     box: Matrix  # (n, 4) left, right, low, high over a step [m]
     order: Any  # numbers of the parts in the order of the sweep
 
@@ -152,7 +152,7 @@ def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
         convex=np.array(convex),
         now=places.copy(),
         then=places.copy(),
-        found=np.full(len(places), -1),
     )
     first, last, owner = np.transpose(parts)
-    return corners, Sides(*np.transpose(sides)), Parts(first, last, owner, np.zeros((n, 4)), np.arange(n))
+    alone = (np.bincount(owner)[owner] == 1).astype(np.int64)
+    return corners, Sides(*np.transpose(sides)), Parts(first, last, owner, alone, np.zeros((n, 4)), np.arange(n))
