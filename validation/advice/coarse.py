@@ -117,7 +117,7 @@ def removal_of(scene: Scene, frequency: float) -> Removal:
     steps = min(max(2 * math.pi / omega_dt, 2.0), t.steps)  # two at least: a history shows no swing in fewer
     pair = _scheme(scene).roots(omega_dt)[:2]
     rate = 0.0
-    if scene.kind == "block":
+    if scene.kind.name == "block":
         rate = scene.damping.mass + scene.damping.stiffness * frequency**2
     damped = math.sqrt(t.discount) * math.exp(-rate * t.step / 2)
     greatest = min(float(max(abs(pair))), 1.0)
@@ -147,9 +147,9 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
 def motions(scene: Scene, frequency: float | None = None) -> Iterator[Motion]:
     """Yield what the motion of a scene is made of: the first mode, and the wave that drives a column."""
-    if scene.kind == "block" and (_moves_as_a_whole(scene) or _is_driven_slowly(scene)):
+    if scene.kind.name == "block" and (_moves_as_a_whole(scene) or _is_driven_slowly(scene)):
         return
-    if scene.kind in ("rigid", "plane"):  # no mode; and glued blocks, which are read at rest and not over time
+    if scene.kind.name in ("rigid", "plane"):  # no mode; and glued blocks, which are read at rest and not over time
         return
     first = first_frequency(scene) if frequency is None else frequency
     if first is not None and math.isfinite(first) and first > 0 and not _is_ramped(scene, first):
@@ -174,7 +174,7 @@ def _is_driven_slowly(scene: Scene) -> bool:
 
 def _is_ramped(scene: Scene, frequency: float) -> bool:
     """Whether the loads rise so slowly that they hardly move a mode."""
-    return scene.kind == "block" and scene.block.velocity == 0 and frequency * scene.load.ramp >= LONG_RAMP
+    return scene.kind.name == "block" and scene.block.velocity == 0 and frequency * scene.load.ramp >= LONG_RAMP
 
 
 def first_frequency(scene: Scene) -> float | None:

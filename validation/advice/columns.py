@@ -24,10 +24,10 @@ import numpy as np
 
 from validation.advice.alarm import Alarm, alarm
 from validation.advice.contact_alarms import gained
+from validation.models.column.tables import MOST_HEIGHTS, ColumnSection, LayerSection
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.column import MOST_HEIGHTS, ColumnSection, LayerSection
 from validation.scenes.scene import Scene
 from validation.solvers.registry import solve
 from validation.theory import columns

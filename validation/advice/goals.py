@@ -461,7 +461,7 @@ def recommendation(
     return Recommendation(
         goal,
         condition,
-        chosen.settings | ({"contact.stiffness": scene.contact.stiffness} if scene.kind == "block" else {}),
+        chosen.settings | ({"contact.stiffness": scene.contact.stiffness} if scene.kind.name == "block" else {}),
         chosen.error <= error,
         chosen.displacement_error,
         chosen.force_error,

@@ -21,10 +21,10 @@ from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
 from validation.errors import InputError
+from validation.models.column.tables import NEAR
 from validation.runs.history import Array, Complex
 from validation.runs.numbers import share_text
 from validation.scenes import features
-from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
 from validation.theory import statics
 from validation.theory.edges import edge

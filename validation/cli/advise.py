@@ -62,7 +62,7 @@ def everything(
     words = _words(scene, assignments)
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True) as progress:
-        if case.kind == "block":
+        if case.kind.name == "block":
             from validation.advice.goals import GOALS
             from validation.advice.overview import lines, overview
 
@@ -105,9 +105,9 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
         alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
         data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
         return data, (*advised(case, bounds, resting), *alarms)
-    if case.kind == "rigid":
+    if case.kind.name == "rigid":
         refuse_column(case, "advise")
-    sentence, offer = of_beam(case, error) if case.kind == "plane" else of_column(case, error, frequency)
+    sentence, offer = of_beam(case, error) if case.kind.name == "plane" else of_column(case, error, frequency)
     answer = Overview(case.name, error, (), None, (offer,), {})
     return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(source, answer))
 

@@ -16,11 +16,11 @@ import numpy as np
 
 from validation.diagnosis.numbers import Values, layers, numbers
 from validation.metrics.values import largest
+from validation.models.column.tables import ColumnSection
 from validation.problems.problem import Problem
 from validation.problems.truth import exact, truth_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import share_text
-from validation.scenes.column import ColumnSection
 from validation.scenes.scene import Scene, parse_scene
 
 UNKNOWN = 0.01  # relative error of a datum that nobody knows better

@@ -18,8 +18,8 @@ import numpy as np
 from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.metrics import boxes as measures
+from validation.models.rigid.tables import FORCE, RigidSection
 from validation.runs.history import Array, History
-from validation.scenes.rigid import FORCE, RigidSection
 from validation.scenes.scene import Scene, load_scene
 from validation.theory.boxes import (
     ShakenBox,
@@ -162,25 +162,12 @@ class BoxProblem:
     def _with_forces(self, scene: Scene) -> Scene:
         if not self.forces:
             return scene
-        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
+        return scene.with_values({"run.columns": list(scene.table(RigidSection).columns)})
 
 
 @functools.cache
 def _scene(name: str) -> Scene:
     return load_scene(PREFIX + name)
-
-
-def boxes_of(scene: Scene) -> RigidSection:
-    """Return the rigid boxes of a scene.
-
-    Raises
-    ------
-    InputError
-        It has none.
-    """
-    if scene.rigid is None:
-        raise InputError("must be there", source=scene.name, field="rigid", value=scene.kind_in_words)
-    return scene.rigid
 
 
 def measured(quantities: Sequence[BoxQuantity], history: History) -> tuple[MeasuredQuantity, ...]:
@@ -210,7 +197,7 @@ def around(name: str, unit: str, exact: float, changed: Sequence[float], reason:
 
 def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return the creep of a box that stands on a slope, or how far one slides that does not."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     if rigid.friction > rigid.slope:
         allowed = 1e3 * UNKNOWN * box.width / MINUTE
@@ -255,7 +242,7 @@ STANDING_CASES = tuple(
 
 def restitution(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return the rebound over the speed of a landing without weight."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     speed = -box.velocity[1]
     landing = box.lift / speed
@@ -291,7 +278,7 @@ def _restitution_cases() -> tuple[BoxCase, ...]:
 
 
 def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     first = measures.first_energy(rigid)
     reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
     return (
@@ -328,7 +315,7 @@ def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
 
     Its motion is chaotic; these are not.
     """
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     landing_speed = math.sqrt(2 * rigid.gravity * box.lift)
     return (
@@ -354,7 +341,7 @@ def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
 
 def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return how far the uppermost of some boxes at rest moves, and the force below the lowest."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     top = len(rigid.box)
     start = rigid.starts[-1]
     height = start[1] + rigid.box[-1].reach
@@ -418,27 +405,27 @@ HEAVY_TOP_CASES = tuple(
 
 def rectangle_of(scene: Scene) -> Rectangle:
     """Return the first box of a scene."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     return Rectangle(rigid.box[0].width, rigid.box[0].height, rigid.gravity)
 
 
 def started_about_corner(scene: Scene, spin: float) -> dict[str, Any]:
     """Return the first box of a scene, which lies flat, with a spin about its lower left corner, as keys of a box."""
-    box = boxes_of(scene).box[0]
+    box = scene.table(RigidSection).box[0]
     sign = math.copysign(1.0, spin)  # to the right it turns about the right one
     velocity = [-spin * box.height / 2, sign * spin * box.width / 2]
     return {"width": box.width, "height": box.height, "density": box.density, "velocity": velocity, "spin": spin}
 
 
 def _rotation(scene: Scene) -> Callable[[History], float]:
-    start = boxes_of(scene).starts[0][2]
+    start = scene.table(RigidSection).starts[0][2]
     return lambda history: measures.peak(np.abs(measures.column(history, "angle") - start))
 
 
 def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
     box = rectangle_of(scene)
-    spin = abs(boxes_of(scene).box[0].spin)
+    spin = abs(scene.table(RigidSection).box[0].spin)
     widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
     if spin >= min(critical_spin(changed_box) for changed_box in widths):
         return overturning(scene)
@@ -459,7 +446,7 @@ def overturning(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return whether a box overturns."""
     box = rectangle_of(scene)
     rotation = _rotation(scene)
-    exact = float(abs(boxes_of(scene).box[0].spin) > critical_spin(box))
+    exact = float(abs(scene.table(RigidSection).box[0].spin) > critical_spin(box))
     return (
         BoxQuantity(
             "overturns",
@@ -493,14 +480,14 @@ def _toppling_cases() -> tuple[BoxCase, ...]:
 
 def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
     """Return the first box of a scene on its moving ground, tan(phi) multiplied by a factor."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     friction = factor * rigid.friction_coefficient
     return ShakenBox(rigid.base_amplitude, rigid.base_frequency, friction, rigid.gravity)
 
 
 def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return how far a box slips on shaken ground."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
     exact = shaken_box(scene).slip(time)
     changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
@@ -545,7 +532,7 @@ def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> Spring
     InputError
         The scene gives no stiffness.
     """
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     if rigid.stiffness is None:
         raise InputError("must be given in this problem", source=scene.name, field="rigid.stiffness", value="nothing")
@@ -555,7 +542,7 @@ def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> Spring
 
 def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
     """Return force, duration and rebound of a landing on a spring."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     exact = impact_of(scene)
     factors = [(factor, 1.0) for factor in EITHER_WAY] + [(1.0, factor) for factor in EITHER_WAY]
@@ -671,9 +658,9 @@ def problem_posed(scene: Scene) -> BoxProblem:
         raise InputError(rule, source=scene.name, field="rigid", advice="name the problem, and use --set")
     problem = box_problems()[name]
     own_scene = problem.scene()
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     for field_name in RigidSection.model_fields:
-        is_changed = getattr(rigid, field_name) != getattr(boxes_of(own_scene), field_name)
+        is_changed = getattr(rigid, field_name) != getattr(own_scene.table(RigidSection), field_name)
         if is_changed and field_name not in (*problem.changeable, "refine"):
             free = " and ".join(f"rigid.{key}" for key in problem.changeable) or "nothing"
             rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"

@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.models.rigid.tables import POSE
 from validation.problems import boxes
 from validation.problems.boxes import BoxQuantity
 from validation.problems.truth import Truth, truth_of
 from validation.runs.columns import unit_of
 from validation.runs.history import Array
 from validation.runs.units import named
-from validation.scenes.rigid import POSE
 from validation.scenes.scene import Scene, load_scene
 
 ROUNDING = 1e-12  # relative, of the last instant

@@ -58,7 +58,7 @@ def truth_of(scene: Scene) -> Truth:
         solver = get_solver(name)
         kinds = {features.COLUMN: "column", features.RIGID_BOXES: "rigid"}
         kinds_taken = {kind for feature, kind in kinds.items() if feature in solver.handles} or {"block"}
-        if scene.kind not in kinds_taken:
+        if scene.kind.name not in kinds_taken:
             continue  # what it says of the other kind of scene tells nobody anything
         reason = solver.refusal(scene)
         if reason is None:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
+from validation.models.column.tables import InputSection
 from validation.runs.history import Array
-from validation.scenes.column import InputSection
 from validation.scenes.record import read_columns
 from validation.scenes.scene import Scene
 

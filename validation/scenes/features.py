@@ -191,7 +191,7 @@ def refuse_column(scene: Scene, what: str) -> None:
     InputError
         The scene has a column.
     """
-    if scene.kind != "block":
+    if scene.kind.name != "block":
         raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
 
 

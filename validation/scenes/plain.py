@@ -8,10 +8,10 @@ from dataclasses import fields
 from typing import Any
 
 from validation.errors import InputError
+from validation.models.column.tables import Contact, InputSection, JointSection, LayerSection
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.units import named
-from validation.scenes.column import Contact, InputSection, JointSection, LayerSection
 from validation.scenes.keys import Section, keys_of, stated, stated_value
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.scenes.tables import BlockSection, ContactSection, LoadSection
 
@@ -44,7 +44,7 @@ def scene_data(scene: Scene) -> dict[str, Any]:
         return {"rigid": _rigid_data(scene.rigid)}
     if scene.column is not None:
         return _column_data(scene)
-    if scene.kind != "block":
+    if scene.kind.name != "block":
         raise InputError("must be a block, a column or rigid boxes", source=scene.name, value=scene.kind_in_words)
     (left, low), (right, high) = scene.block.outline[0], scene.block.outline[2]
     block = {"width_m": right - left, "height_m": high - low, **_table(scene.block, "width", "height")}
@@ -147,7 +147,7 @@ def lines(scene: Scene) -> Iterator[str]:
     data["columns"] = list(scene.run.columns)
     yield from _flat("", data)
     sections: dict[str, Section] = {"damping": scene.damping}
-    if scene.kind == "block":
+    if scene.kind.name == "block":
         sections |= {"block": scene.block, "contact": scene.contact, "load": scene.load}
     for place, section in sections.items():
         for name, value, key in stated(section):

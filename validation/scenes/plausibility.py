@@ -15,8 +15,8 @@ from pathlib import Path
 from typing import Any
 
 from validation.errors import PlausibilityWarning
-from validation.scenes.column import ColumnSection
-from validation.scenes.rigid import RigidSection
+from validation.models.column.tables import ColumnSection
+from validation.models.rigid.tables import RigidSection
 from validation.scenes.scene import Scene
 
 TABLE: dict[str, Any] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))

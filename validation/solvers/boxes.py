@@ -12,9 +12,9 @@ import numpy as np
 
 import dda
 from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from validation.models.rigid.tables import RigidSection
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.contract import Prepared

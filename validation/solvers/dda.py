@@ -8,12 +8,12 @@ import numpy as np
 
 import dda
 from validation.errors import InputError
+from validation.models.rigid.tables import MOST_BOXES, columns_of_boxes
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.record import base_direction, base_record
-from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
 from validation.solvers import translation
 from validation.solvers.blocks.closed import block_of, load_of

@@ -21,11 +21,11 @@ from typing import Any
 import numpy as np
 
 from validation.errors import InputError
+from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
-from validation.scenes.plane import PlaneSection
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver

@@ -86,7 +86,7 @@ def force(scene: Scene, history: History, reference: History) -> str | None:
     size = norm(expected)
     if not (0 < size < math.inf and norm(history.columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
         return None
-    width = scene.block.base_length if scene.kind == "block" else 1.0
+    width = scene.block.base_length if scene.kind.name == "block" else 1.0
     values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
     sizes = norm(values), norm(pressure)
     if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.scenes.plane import PlaneSection
+from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 

@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
+from validation.models.column.tables import ColumnSection
 from validation.runs.history import Array
 from validation.runs.run import Outcome, Run
-from validation.scenes.column import ColumnSection
 from validation.scenes.drive import motion_at, read_drive
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
@@ -73,7 +73,7 @@ def reach(scene: Scene) -> float:
     It is infinite where the motion of the base cannot be read: the solver that ran the scene has not read it either;
     of rigid boxes, whose columns are positions, and of blocks in the plane.
     """
-    if scene.kind in ("rigid", "plane"):
+    if scene.kind.name in ("rigid", "plane"):
         return math.inf
     with np.errstate(all="ignore"):
         try:
@@ -113,9 +113,7 @@ def _base_motion(scene: Scene, time: float) -> float:
 
 
 def _reach_of_column(scene: Scene) -> float:
-    column = scene.column
-    if column is None:
-        raise InputError("is needed", source=scene.name, field="column", value="a scene of a block")
+    column = scene.table(ColumnSection)
     masses = [layer.thickness * layer.density for layer in column.layer]  # kg/m2
     kinetic_energy = sum(mass * layer.velocity**2 / 2 for mass, layer in zip(masses, column.layer, strict=True))
     # where contacts open, the lightest block may take all that is put in

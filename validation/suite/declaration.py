@@ -21,8 +21,8 @@ from validation.solvers.registry import role
 def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
     judged = {scene: row for (scene, solver), row in finished.rows.items() if role(solver) is Role.JUDGED}
-    blocks = [scene for scene in scenes if scene.kind == "block"]
-    columns = [scene for scene in scenes if scene.name in judged and scene.kind == "column"]
+    blocks = [scene for scene in scenes if scene.kind.name == "block"]
+    columns = [scene for scene in scenes if scene.name in judged and scene.kind.name == "column"]
     of_columns = (column_alarms(scene, judged[scene.name]) for scene in columns)
     return {
         "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_columns))],

@@ -103,7 +103,7 @@ class Stepping:
         t = scene.time
         if t.scheme != "newmark":
             return cls.named(t.scheme, t.step, t.discount, t.rho_inf, t.split, t.gg_rate)
-        implicit = scene.kind == "block" and scene.contact.rule == "implicit"
+        implicit = scene.kind.name == "block" and scene.contact.rule == "implicit"
         return cls(t.step, t.alpha, t.delta, t.discount, t.gg_rate, implicit)
 
     @classmethod

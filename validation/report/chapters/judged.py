@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from validation.gates.gate import Status
+from validation.models.rigid.tables import POSE
 from validation.problems.cause import Cause
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.figures.curves import EXACT, HistoryPanel
 from validation.runs.history import History
 from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
-from validation.scenes.rigid import POSE
 from validation.scenes.tables import TimeSection
 from validation.suite.judging import JudgedAnswer
 

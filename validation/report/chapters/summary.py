@@ -113,7 +113,7 @@ def _step(group: CaseGroup, scenes: Sequence[Scene]) -> str:
     turns = [w * case.scene.time.step for case in group.cases if (w := frequency_of(case)) is not None]
     if turns:
         parts.append(f"a period of the first mode takes {_range(2 * math.pi / turn for turn in turns)} steps")
-    if scenes[0].kind == "block" and scenes[0].block.rectangle is not None:
+    if scenes[0].kind.name == "block" and scenes[0].block.rectangle is not None:
         crossings = [spectra.transit(scene) / scene.time.step for scene in scenes]
         parts.append(f"a wave crosses the block in {_range(crossings)}")
     return f"{'; '.join(parts)}."
@@ -212,7 +212,7 @@ def reference_note(group: CaseGroup, case: CaseResults) -> str:
         more = " (continuum in run.solvers tells it)" if features.linear(case.scene) else ""
         return f"The reference, {reference}, is exact in space and {same}{more}."
     mesh = ""
-    if case.scene.kind == "block" and case.scene.block.rectangle is not None:
+    if case.scene.kind.name == "block" and case.scene.block.rectangle is not None:
         shift = spectra.mesh_frequency_error(case.scene)
         mesh = f", as a bar its mesh is off by {bounded(shift, percent(shift))} in the first frequency,"
     return f"The reference, {reference}, is the finest mesh that was run{mesh} and {same}."

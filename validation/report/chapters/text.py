@@ -7,12 +7,12 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from validation.models.rigid.tables import RigidSection
 from validation.runs.case_name import CaseName
 from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
 from validation.runs.text import shown
 from validation.scenes.keys import keys_of, stated, stated_value
-from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
 AS_STATED = "as stated"  # label of a case without swept values
@@ -169,4 +169,4 @@ def _written(value: Any) -> str:
 
 def load_size(scene: Scene) -> float:
     """Return the size of the pressure on a block [Pa], beside which smaller ones are rounding; else there is none."""
-    return abs(scene.load.pressure) if scene.kind == "block" else math.inf
+    return abs(scene.load.pressure) if scene.kind.name == "block" else math.inf

@@ -12,10 +12,10 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
+from validation.models.plane.tables import PlaneSection, Segment
 from validation.report.figures.curves import GREY, engineering
 from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
 from validation.runs.history import Array
-from validation.scenes.plane import PlaneSection, Segment
 from validation.scenes.scene import Scene
 
 FACE = "#fbe3d3"  # DDA's colour, pale
@@ -120,7 +120,7 @@ def scene_figure(scene: Scene) -> Figure:
     """Draw a scene, as high as it needs."""
     with house_style():
         figure, ((axes,),) = axes_grid([(HEIGHTS[1], 0.0)], 1, MARGINS, WIDTH)
-        PAINTERS[scene.kind](axes, scene)
+        PAINTERS[scene.kind.name](axes, scene)
         height = size_of(axes)[0] * np.ptp(axes.get_ylim()) / np.ptp(axes.get_xlim())
         figure.set_figheight((np.clip(height, *HEIGHTS) + MARGINS.top + MARGINS.bottom) / 25.4)
     return figure

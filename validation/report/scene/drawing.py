@@ -10,10 +10,10 @@ from operator import itemgetter
 
 import numpy as np
 
+from validation.models.plane.tables import PlaneSection, Segment
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.report.texts import Texts
 from validation.scenes.keys import described, stated
-from validation.scenes.plane import PlaneSection, Segment
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
 TEXTS = Texts(__file__)

@@ -21,8 +21,8 @@ from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
 from validation.advice.columns import column_alarms, limits
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
+from validation.models.rigid.tables import RigidSection
 from validation.scenes import outline
-from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.theory import boxes, landing, statics
@@ -71,7 +71,7 @@ def numbers(scene: Scene) -> list[Number]:
     """Return the derived numbers of one case, all of them finite."""
     of_a_block = (_block, _modes, _opening, _slope)
     parts_of_kind = {"block": of_a_block, "column": (_column,), "rigid": (_rigid,), "plane": (_plane,)}
-    derived = itertools.chain(*(part(scene) for part in parts_of_kind[scene.kind]), _steps(scene))
+    derived = itertools.chain(*(part(scene) for part in parts_of_kind[scene.kind.name]), _steps(scene))
     return [number for number in derived if math.isfinite(number.value)]
 
 
@@ -79,7 +79,7 @@ def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
     values = {number.name: number.value for number in derived}
     of_columns = (alarm.sentence for alarm in column_alarms(scene))
-    frequency = values.get("w1") if scene.kind == "block" else None
+    frequency = values.get("w1") if scene.kind.name == "block" else None
     of_step = (OF_STEPS[alarm.kind] for alarm in coarse_alarms(scene, frequency))
     parts = (part(scene, values) for part in (_unstable, _ringing, _landing, _steep, _of_boxes))
     return [*of_step, *itertools.chain(*parts), *of_columns]
@@ -316,7 +316,9 @@ def _landing(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
 
 def _steep(scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
     slope = values.get("tan b", 0.0)
-    if scene.kind != "block" or slope == 0 or scene.contact.law != "unilateral":  # a locked contact holds the block
+    if (
+        scene.kind.name != "block" or slope == 0 or scene.contact.law != "unilateral"
+    ):  # a locked contact holds the block
         return
     friction = math.inf
     if scene.contact.cohesion == 0:

@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.models.column.tables import NEAR, ColumnSection
 from validation.runs import extras
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
-from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.drive import read_drive
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of

@@ -1,0 +1,35 @@
+"""The kind of rigid boxes: its table, and what runs it."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from validation.models.rigid.tables import POSE, RigidSection
+from validation.scenes.kinds import Kind
+
+
+class RigidBoxes(Kind):
+    """Rigid boxes on a plane."""
+
+    name = "rigid"
+    words = "rigid boxes"
+    rank = 2.0
+    tables: ClassVar = {"rigid": RigidSection}
+    refuses = ("damping", "fem")
+
+    def run(self, table: object) -> dict[str, Any]:
+        """Return the exact motion as solver, and the poses of all boxes as columns."""
+        boxes = table.get("box") if isinstance(table, dict) else None
+        boxes = boxes if isinstance(boxes, list | tuple) else ()  # anything else is refused by the table itself
+        poses = [f"{part}_{number}" for number in range(1, len(boxes) + 1) for part in POSE]
+        return {"solvers": ["rigid-exact"], "columns": poses or list(POSE)}
+
+    def check(self, scene: Any) -> None:
+        """Check that the columns are those of its boxes."""
+        rigid: RigidSection = scene.rigid
+        for name in scene.run.columns:
+            if name not in rigid.columns:
+                raise ValueError(f"run: columns must be among {', '.join(rigid.columns)}, got {name!r}")
+
+
+KIND = RigidBoxes
