@@ -79,6 +79,10 @@ class Kind:
         """Return the tables of this kind that a scene may leave out."""
         return ()
 
+    def motion_unread(self, scene: Any) -> str | None:
+        """Return None, or in words what of a scene keeps the motion of another program from being explained."""
+        return None
+
     def check(self, scene: Any) -> None:
         """Check tables against each other.
 

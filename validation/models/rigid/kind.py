@@ -24,6 +24,10 @@ class RigidBoxes(Kind):
         poses = [f"{part}_{number}" for number in range(1, len(boxes) + 1) for part in POSE]
         return {"solvers": ["rigid-exact"], "columns": poses or list(POSE)}
 
+    def motion_unread(self, scene: Any) -> str:
+        """Return that boxes are judged by numbers of their motion."""
+        return f"a scene of {self.words}"
+
     def check(self, scene: Any) -> None:
         """Check that the columns are those of its boxes."""
         rigid: RigidSection = scene.rigid
