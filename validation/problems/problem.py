@@ -64,7 +64,7 @@ class Problem:
 
     def unit(self, column: str) -> str:
         """Return the SI unit of a column."""
-        return unit_of(column, self.scene.rigid is not None)
+        return unit_of(column, self.scene.kind.columns)
 
     def named(self, column: str) -> str:
         """Return a column as tables of answers name it, with its unit; a number of boxes has its own name."""

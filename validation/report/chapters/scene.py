@@ -455,4 +455,4 @@ def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Se
             static[column] = numbers[0]
     finer = {solver: history.between for solver, history in drawn.items() if history.between is not None}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer, of_boxes=case.scene.rigid is not None)
+    return HistoryPanel(title, drawn, static, reference, finer=finer, own=case.scene.kind.columns)

@@ -18,7 +18,7 @@ import numpy as np
 
 from validation.advice import contact
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
-from validation.advice.columns import column_alarms, limits
+from validation.advice.hooks import AdviceHooks
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
 from validation.models.rigid.tables import RigidSection
@@ -78,7 +78,7 @@ def numbers(scene: Scene) -> list[Number]:
 def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
     """Return in words the limits that a case with these numbers lies beyond."""
     values = {number.name: number.value for number in derived}
-    of_columns = (alarm.sentence for alarm in column_alarms(scene))
+    of_columns = (alarm.sentence for alarm in AdviceHooks.of(scene).alarms(scene))
     frequency = values.get("w1") if scene.kind.name == "block" else None
     of_step = (OF_STEPS[alarm.kind] for alarm in coarse_alarms(scene, frequency))
     parts = (part(scene, values) for part in (_unstable, _ringing, _landing, _steep, _of_boxes))
@@ -220,7 +220,7 @@ def _layer(scene: Scene, place: str, speed: float, height: float) -> Iterator[Nu
 
 def _contacts(scene: Scene) -> Iterator[Number]:
     """Yield what is known of contacts that open or slip."""
-    bounds = limits(scene)
+    bounds = AdviceHooks.of(scene).contact_limits(scene)
     if bounds is None:
         return
     yield Number("contacts", bounds.contacts, "", "that open or slip")
