@@ -139,7 +139,7 @@ def scene_section(
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
     scene = group.cases[0].scene
-    if features.linear(scene) and scene.kind.name == "block":
+    if features.linear(scene) and "block" in scene.tables():
         table = damping_table(group)
         blocks += [table] if table.rows else []
     return blocks
