@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 
 import numpy as np
@@ -12,8 +12,9 @@ import numpy as np
 from validation.advice import contact
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
+from validation.report.chapters.text import range_of
 from validation.report.scene.drawing import BESIDE, body_height, body_width, box_rows
-from validation.report.scene.hooks import Number, Rows, ShowingHooks
+from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
 from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
@@ -61,6 +62,21 @@ class HOOKS(ShowingHooks):
         foot = "z" if c.law == "locked" else "x"
         rows += [(f"  {foot}{' ' * across}{foot}", ", ".join(springs)), (f" {'=' * (across + 4)}", ", ".join(holds))]
         return across, rows
+
+    def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
+        """Return stiffness, law and penetration, and what a step leaves of the contact mode."""
+        ratios = [scene.contact.stiffness / scene.block.young for scene in scenes]
+        law = scenes[0].contact.law
+        text = f"p = {range_of(ratios)} E, {'carrying no tension' if law == 'unilateral' else 'locked'}"
+        depths = numbers("dda", "contact.penetration")
+        if depths:
+            text += f"; at most {range_of(1e3 * depth for depth in depths)}\u00a0mm of penetration"
+        left = numbers("dda", "contact.spectral_radius")
+        if left:
+            text += f". A step leaves {range_of(100 * share for share in left)}\u00a0% of the contact mode"
+            if min(numbers("dda", "contact.least_root"), default=0.0) < 0:
+                text += ", which changes sign from step to step"
+        return f"{text}."
 
     def numbers(self, scene: Scene) -> Iterator[Number]:
         """Yield mass, speeds and springs, modes, what a landing does, and what a slope needs."""

@@ -20,6 +20,7 @@ class Column(Kind):
 
     name = "column"
     words = "a column"
+    feature = "column"
     rank = 1.0
     tables: ClassVar = {"column": ColumnSection, "input": InputSection}
     fem_keys = ("elements", "degree")

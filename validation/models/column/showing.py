@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import suppress
 
 from validation.advice.hooks import AdviceHooks
@@ -11,10 +11,12 @@ from validation.advice.spectra import stable_step
 from validation.errors import InputError
 from validation.models.column.tables import ColumnSection
 from validation.report.scene.drawing import INSIDE
-from validation.report.scene.hooks import Number, Rows, ShowingHooks
+from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
+from validation.runs.numbers import short
 from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
+from validation.theory import columns
 
 TEXTS = Texts(__file__)
 # keys of a column whose contacts open or slip
@@ -34,6 +36,16 @@ class HOOKS(ShowingHooks):
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
         """Return the layers from the top down, and what they stand on."""
         return INSIDE, list(_layers(scene))
+
+    def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
+        """Return the springs between the blocks, and their law."""
+        column = scenes[0].table(ColumnSection)
+        stiffness = column.stiffness or column.glue
+        return "" if stiffness is None else f"{short(stiffness)} Pa/m between the blocks, {column.law}."
+
+    def first_frequency(self, scene: Scene, of_run: float | None) -> float | None:
+        """Return the closed form."""
+        return columns.first_frequency(scene.table(ColumnSection))
 
     def numbers(self, scene: Scene) -> Iterator[Number]:
         """Yield speeds and sizes of the layers, limits of contacts, and impedances."""

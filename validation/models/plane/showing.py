@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection, Segment
 from validation.report.scene.drawing import body_height, body_width, box_rows
-from validation.report.scene.hooks import Number, Rows, ShowingHooks
+from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
+from validation.runs.numbers import short
 from validation.scenes import outline
 from validation.scenes.scene import Scene
 
@@ -44,6 +45,13 @@ class HOOKS(ShowingHooks):
             beside.append(TEXTS.text("gravity", plane))
         beside += [TEXTS.text("traction", load, _segment(load.edge)) for load in plane.load]
         return across, box_rows(across, body_height(across, slenderness), beside)
+
+    def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
+        """Return the glue."""
+        return f"Glue of {short(scenes[0].table(PlaneSection).glue)} E at each end of a shared edge."
+
+    def first_frequency(self, scene: Scene, of_run: float | None) -> None:
+        """Return none: glued blocks are read at rest."""
 
     def numbers(self, scene: Scene) -> Iterator[Number]:
         """Yield number and mass of the blocks, and the wave."""

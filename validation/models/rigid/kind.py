@@ -24,6 +24,7 @@ class RigidBoxes(Kind):
 
     name = "rigid"
     words = "rigid boxes"
+    feature = "rigid boxes"
     rank = 2.0
     tables: ClassVar = {"rigid": RigidSection}
     solvers: ClassVar = {"rigid-exact": "validation.models.rigid.exact:RigidExact"}

@@ -24,6 +24,7 @@ TEXTS = Texts(__file__)
 class HOOKS(ShowingHooks):
     """Boxes on the ground."""
 
+    chooses_steps = False
     no_data = frozenset({*NEWMARK_DATA, "time.start", "fem.degree", "fem.foundation"})
 
     def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:

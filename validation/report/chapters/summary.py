@@ -18,11 +18,10 @@ from validation.report.blocks import Beside, Blocks, Heading, Paragraph, Points,
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, varied_fields
 from validation.report.chapters.described import CaseValue, Description
-from validation.report.chapters.hooks import PageHooks
 from validation.report.chapters.text import AS_STATED, parameters, range_of, span
 from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
-from validation.report.scene.hooks import SCHEMES
+from validation.report.scene.hooks import SCHEMES, ShowingHooks
 from validation.runs.numbers import DASH, bounded, percent, plain, short
 from validation.runs.row import Row
 from validation.runs.run import Outcome
@@ -93,11 +92,11 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
 def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
     """Yield time step, springs and discount of the cases, and what they do."""
     scenes = [case.scene for case in group.cases]
-    hooks = PageHooks.of(scenes[0])
+    hooks = ShowingHooks.of(scenes[0])
     if not hooks.chooses_steps:
         return
     yield "Time step.", _step(group, scenes)
-    if springs := hooks.springs(group):
+    if springs := hooks.springs(scenes, group.numbers):
         yield "Springs.", springs
     yield "Discount.", _discount(scenes)
 
@@ -106,7 +105,7 @@ def _step(group: CaseGroup, scenes: Sequence[Scene]) -> str:
     steps = [scene.time.step for scene in scenes]
     step = f"{range_of(steps)}\u00a0s" if max(steps) >= 1 else f"{range_of(1e3 * step for step in steps)}\u00a0ms"
     parts = [f"dt = {step}, {', '.join(dict.fromkeys(map(_scheme, scenes)))}"]
-    frequencies = [PageHooks.of(case.scene).first_frequency(case) for case in group.cases]
+    frequencies = [_frequency_of(case) for case in group.cases]
     turns = [w * scene.time.step for w, scene in zip(frequencies, scenes, strict=True) if w is not None]
     if turns:
         parts.append(f"a period of the first mode takes {range_of(2 * math.pi / turn for turn in turns)} steps")
@@ -235,11 +234,16 @@ def fastest(group: CaseGroup) -> Blocks:
 # ---- damping --------------------------------------------------------------------------------------------------------
 
 
+def _frequency_of(case: CaseResults) -> float | None:
+    """Return the first natural frequency of DDA's model [rad/s]."""
+    return ShowingHooks.of(case.scene).first_frequency(case.scene, case.number("dda", "mode1.frequency"))
+
+
 def damping_blocks(group: CaseGroup) -> Blocks:
     """Return what damping removed: of the first mode where there is one, else of the energy of a contact that opens."""
     modes = []
     for case in group.cases[:MOST_CASES]:
-        frequency = PageHooks.of(case.scene).first_frequency(case)
+        frequency = _frequency_of(case)
         if frequency is not None:
             modes.append((case, mode_damping(case, frequency)))
     if modes and not any(abs(part or 0.0) > NONE for _, parts in modes for part in parts.values()):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from validation.advice.plain import Line
@@ -17,6 +17,7 @@ SCHEMES = {
     (1 / 6, 0.5): "linear acceleration",
     (0.0, 0.5): "central differences",
 }
+Numbers = Callable[[str, str], Sequence[float]]  # of a solver and a metric, those that the cases have
 Rows = list[tuple[str, str]]  # lines of the drawing, and the words beside each
 
 
@@ -35,11 +36,20 @@ class ShowingHooks(Hooks):
 
     module = "showing"
     no_data: frozenset[str] = frozenset()  # keys that say nothing of such scenes
+    chooses_steps: bool = True  # whether step and discount are the scene's, and not each program's
     first_mode = ""  # name of the number that is the frequency of the first mode
 
     def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:
         """Yield what a scene is made of, without the keys that vary between its cases."""
         yield from ()
+
+    def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
+        """Return what the springs of some cases are and do, by metrics of their runs; nothing where none are told."""
+        return ""
+
+    def first_frequency(self, scene: Scene, of_run: float | None) -> float | None:
+        """Return the first natural frequency of DDA's model [rad/s]: that of its run, or of a closed form."""
+        return of_run
 
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
         """Return how many characters the body is wide, and the drawing's lines with their words.
