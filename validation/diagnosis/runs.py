@@ -348,13 +348,11 @@ class Runs:
         state[:, -1] = 1.0
         return state
 
-    def observers(self) -> Array:
-        """Return the rows of displacement and pressure in a state, (variants, 2, n)."""
-        rows = np.zeros((len(self.springs), 2, self.size))
-        rows[:, 0, self.r] = 1.0
-        rows[:, 0, self.r + 1] = self.of.point * self.rectangle.height * self.of.side * self.of.tall / 2
-        rows[:, 1, -2] = 1 / self.base_width
-        return rows
+    def observed(self, states: Array) -> Array:
+        """Return displacement and pressure of states, or of what states are made of, (..., variants, n)."""
+        height = self.of.point * self.rectangle.height * self.of.side * self.of.tall / 2
+        displacement = states[..., self.r] + height * states[..., self.r + 1]
+        return np.stack([displacement, states[..., -2] / self.base_width], axis=-1)
 
     # ---- locked contact in equal steps ------------------------------------------------------------------------------
 
@@ -363,7 +361,9 @@ class Runs:
         small = dt / parts
         q = self.equations(self.of.side, self.of.side * self.of.tall)
         power = self.exponential(q, dt) if self.is_exact else np.linalg.matrix_power(self.locked(q, small), parts)
-        rows = self.observers() @ power  # of the first step, then of more and more of them
+        rows = np.moveaxis(
+            self.observed(np.moveaxis(power, -1, 0)), 0, -1
+        )  # of the first step, then of more and more of them
         state = self.start(small)
         length = 1
         while length < min(BLOCK, steps):
@@ -387,7 +387,6 @@ class Runs:
             self.of.side,
             self.of.side * self.of.tall,
         )
-        observers = self.observers()
         kept = []
         before = 0.0
         for dt in steps.tolist():
@@ -399,9 +398,9 @@ class Runs:
                 moving.state[:, self.R] *= ratio**2
                 before = dt
             is_open = self._pressed(sets[-1][0], moving, dt) if self.law != "springs" else self._opened(sets, moving)
-            displacement, pressure = np.moveaxis(times(observers, moving.state), -1, 0)
-            kept.append((displacement, pressure, is_open))
-        return tuple(map(np.array, zip(*kept, strict=True)))
+            kept.append((self.observed(moving.state), is_open))
+        observed, flags = map(np.array, zip(*kept, strict=True))
+        return observed[..., 0], observed[..., 1], flags
 
     def _couplings(self) -> tuple[bool, ...]:
         """Return for which states of the contact the equations are made: its coupling may be another one."""
