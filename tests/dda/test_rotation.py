@@ -32,7 +32,7 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
 
     def vibrating(model, scheme):
         start = real(model, scheme)
-        return start._replace(p=scheme.step * (model.body.modes.shapes.T @ model.body.M @ V))
+        return start._replace(p=scheme.step * (model.body.shapes.T @ model.body.M @ V))
 
     with patch.object(RollingModel, "start", vibrating):
         result = solve_rolling(model, scheme, 300)
@@ -72,7 +72,7 @@ def test_the_modes_of_a_grown_outline_are_those_of_its_polygon(monkeypatch):
     larger = Block(model.body.xi * 1.1, MATERIAL)
     S = larger.mass()
     S[3:, 3:] += 0.5e-6 * larger.elastic()[3:, 3:]
-    shapes = model.body.modes.shapes
+    shapes = model.body.shapes
     flexible = shapes * np.multiply(march.body.mobility, length.inverse) @ shapes.T
     assert growth == pytest.approx(1.21, rel=1e-15)
     assert np.allclose(flexible @ S, np.eye(6), rtol=0, atol=1e-12)
