@@ -5,6 +5,17 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
+from dda.bodies.block_system import BlockSystem, SurfaceLoad
+from dda.bodies.diagnostics import Diagnostics, diagnostics
+from dda.bodies.gap_form import UNKNOWNS, GapForm, ModalForm, modal_form
+from dda.bodies.glued_blocks import GluedBlocks, Traction, glued_blocks
+from dda.bodies.joints import FIXED, Joint, shared_edges
+from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve, solve_adaptive
+from dda.bodies.locked_system import solve_system
+from dda.bodies.opening_system import OpeningSystem, opening_subdivided, solve_opening_system
+from dda.bodies.subdivision import subdivided
+from dda.bodies.two_block import TwoBlockModel
+from dda.bodies.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
 from dda.linear.answers import Mode, highest_frequency, modes, response, static
@@ -12,22 +23,12 @@ from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
-from dda.one_block.contact_result import ContactResult
-from dda.one_block.diagnostics import Diagnostics, diagnostics
-from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm, ModalForm, modal_form
-from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
-from dda.one_block.textbook import solve_textbook, textbook_applicable
-from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.result.contact_result import ContactResult
+from dda.result.result import COLUMNS, Result
 from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
-from dda.system.glued import GluedBlocks, Traction, glued_blocks
-from dda.system.joints import FIXED, Joint, shared_edges
-from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
-from dda.system.solution import solve_system
-from dda.system.subdivision import subdivided
-from dda.system.system import BlockSystem, SurfaceLoad
+from dda.textbook import solve_textbook, textbook_applicable
 
 __all__ = [
     "ADAPTIVE_COLUMNS",

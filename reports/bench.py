@@ -32,9 +32,9 @@ from rivals import block_modes, block_numpy, column_numpy, elements_skfem, engin
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
-from dda.column.column import Column, Layer, Spring  # noqa: E402
-from dda.column.contacts import ColumnContactResult, solve_contact_column  # noqa: E402
-from dda.column.stepping import Drive  # noqa: E402
+from dda.bodies.bonded_column import Drive  # noqa: E402
+from dda.bodies.column import Column, Layer, Spring  # noqa: E402
+from dda.bodies.contact_column import ColumnContactResult, solve_contact_column  # noqa: E402
 from dda.march import compiled  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402

@@ -100,7 +100,7 @@ def amplitudes(equations: Any, rows: tuple[Array, Array], F: Array, g: Array, W2
     Parameters
     ----------
     equations
-        z'' + k z + B' lambda = F, B z - C lambda = g, as `Equations` of `dda.system.system` has them.
+        z'' + k z + B' lambda = F, B z - C lambda = g, as `Equations` of `dda.bodies.block_system` has them.
     """
     from scipy.sparse import diags_array
 

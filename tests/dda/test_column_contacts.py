@@ -13,12 +13,12 @@ from oracles.column_checks import check_history, random_column, random_drive, ra
 
 import dda
 from dda import highest_frequency, named_scheme
-from dda.column import contacts
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnOptions, observed_columns, solve_contact_column
-from dda.column.equations import equations
-from dda.column.open_column import blocks_of, body_of, laws_of
-from dda.column.stepping import Drive, solve_column
+from dda.bodies import contact_column as contacts
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.bodies.contact_column import ColumnOptions, observed_columns, solve_contact_column
+from dda.bodies.open_column import blocks_of, body_of, laws_of
 from dda.contact.band import find_in_band
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, UPPER, Laws, flexibility_for, rows_of, work_for
 from dda.contact.unilateral import OPEN
@@ -184,7 +184,7 @@ def test_sliders_have_one_solution_from_any_start() -> None:
 
 def thrown(
     n: int, young: float, step: float, alpha: float, limit: int | None = None
-) -> dda.column.contacts.ColumnContactResult:  # type: ignore[name-defined]
+) -> dda.bodies.contact_column.ColumnContactResult:  # type: ignore[name-defined]
     """Return one step of touching blocks that are thrown on their base at 1 m/s."""
     blocks = layers([1.0] * n, [2500.0] * n, [young] * n, [-1.0] * n)
     column = unilateral(blocks, [1e9] * n, [0.0] * n, 0.0)

@@ -10,7 +10,7 @@ from oracles.frictional import KNOWN, shaken, sliding, square
 from oracles.unilateral_checks import DT, apart
 
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
-from dda.rotation.solution import RollingModel, solve_rolling
+from dda.bodies.turning_block import RollingModel, solve_rolling
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 AVERAGE, CONSTANT = (0.25, 0.5, "consistent"), (0.5, 1.0, "zero")

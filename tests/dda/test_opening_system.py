@@ -9,7 +9,7 @@ from conftest import thinned
 from oracles.frictional import rubbing_model
 from oracles.unilateral_checks import apart, complementarity, energy, momentum, random_model, size, sums
 
-import dda.system.step as step
+import dda.bodies.glued_step as step
 from dda import (
     Block,
     Contact,
@@ -25,10 +25,10 @@ from dda import (
     solve_unilateral,
     subdivided,
 )
+from dda.bodies.glued_step import make_stage
 from dda.contact.rows import FOUND, NONE
 from dda.march import compiled
 from dda.march.step import Part, steps_by
-from dda.system.step import make_stage
 
 MATERIAL = Material(2700.0, 1e9, 0.2)
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, MATERIAL), Unilateral(1e9, 1e9), 5e6)

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from oracles.contact_bodies import put_stage
 
-import dda.rotation.solution as solution
-import dda.rotation.step as step
+import dda.bodies.turning_block as solution
+import dda.bodies.turning_step as step
 from dda import Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, named_scheme
 from dda import solve_unilateral as solve_small
+from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_body import FIRST_ORDER, turned
 from dda.march.step import set_length
-from dda.rotation.body import FIRST_ORDER, turned
-from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", "strain_x", "strain_y")
 MATERIAL = Material(2700.0, 1e9, 0.2)

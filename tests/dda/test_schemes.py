@@ -27,7 +27,7 @@ from dda import (
     static,
     textbook_applicable,
 )
-from dda.one_block.diagnostics import step_of_mode
+from dda.bodies.diagnostics import step_of_mode
 from dda.scheme import roots
 
 # name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1

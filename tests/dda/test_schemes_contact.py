@@ -24,12 +24,12 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnOptions, solve_contact_column
-from dda.column.equations import equations
-from dda.column.stepping import Drive, solve_column
-from dda.one_block.natural_modes import free_modes
-from dda.one_block.opening_block import unknowns_of
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.bodies.contact_column import ColumnOptions, solve_contact_column
+from dda.bodies.opening_block import unknowns_of
+from dda.linear.natural_modes import free_modes
 
 ENERGIES = UnilateralOptions(energies=True)
 

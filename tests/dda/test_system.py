@@ -8,7 +8,7 @@ from oracles.plain_newmark import SIDE, glued, stepped, upright
 
 import dda
 import fem_reference
-from dda.system.system import BlockSystem
+from dda.bodies.block_system import BlockSystem
 from validation import load_scene, solve
 from validation.errors import InputError
 

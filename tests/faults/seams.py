@@ -16,20 +16,21 @@ import dda
 import fem_reference.exact.bar as exact_bar
 import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
-from dda.column import contacts as column_contacts
-from dda.column import equations as column_equations
-from dda.column import stepping as column_stepping
+from dda.bodies import block_system as system
+from dda.bodies import bonded_column as column_stepping
+from dda.bodies import column_equations, gap_form, joints, subdivision
+from dda.bodies import contact_column as column_contacts
+from dda.bodies import glued_blocks as glued
+from dda.bodies import glued_step as system_step
+from dda.bodies import locked_block as solution
+from dda.bodies import locked_system as system_solution
+from dda.bodies import turning_block as rolling
+from dda.bodies import turning_body as rolling_body
+from dda.bodies import turning_step as rolling_step
 from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
-from dda.one_block import gap_form, solution
-from dda.rotation import body as rolling_body
-from dda.rotation import solution as rolling
-from dda.rotation import step as rolling_step
 from dda.scheme import blocked, newmark
-from dda.system import glued, joints, subdivision, system
-from dda.system import solution as system_solution
-from dda.system import step as system_step
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points

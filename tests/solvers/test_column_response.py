@@ -7,10 +7,10 @@ from oracles.stepped_vibration import fit
 
 import dda
 import fem_reference
-from dda.column.column import Column, Layer, Spring
-from dda.column.equations import equations
-from dda.column.stepping import Drive, solve_column
-from dda.one_block.solution import Result
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.result.result import Result
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response

@@ -16,7 +16,7 @@ from oracles.elements import make
 
 import dda
 import fem_reference
-from dda.system.joints import gap_groups
+from dda.bodies.joints import gap_groups
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.model import assemble
 
@@ -145,7 +145,7 @@ def test_joints_whose_ends_differ_by_rounding_meet(off: float, met: bool) -> Non
 
 def test_inverses_of_graded_matrices_keep_their_digits() -> None:
     """The inverse of R H R is (1/R) H^-1 (1/R) entry by entry, however R is graded."""
-    from dda.system.system import _inverse
+    from dda.bodies.block_system import _inverse
 
     rng = np.random.default_rng(1)
     for _ in range(100):

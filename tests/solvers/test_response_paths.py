@@ -95,7 +95,7 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
     def refuse(*_: object) -> NoReturn:
         raise AssertionError("a step was run")
 
-    for target in ("dda.system.solution.run_glued", "dda.one_block.solution.modal_histories"):
+    for target in ("dda.bodies.locked_system.run_glued", "dda.bodies.locked_block.modal_histories"):
         monkeypatch.setattr(target, refuse)
     for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.step_change"):
         monkeypatch.setattr(target, refuse)

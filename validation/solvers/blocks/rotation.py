@@ -17,7 +17,7 @@ from validation.solvers.contract import Prepared, completed
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    from dda.rotation.solution import RollingResult
+    from dda.bodies.turning_block import RollingResult
 
 AREA = "area"  # column: of the outline, over that of the start [-]
 ROLLING_COLUMNS = (*OPENING, AREA)
@@ -38,7 +38,7 @@ class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None) -> None:
-        from dda.rotation.solution import RollingModel, RollingOptions
+        from dda.bodies.turning_block import RollingModel, RollingOptions
 
         self.scene = scene
         self.scheme = scheme
@@ -63,7 +63,7 @@ class RollingBlock(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        from dda.rotation.solution import solve_rolling
+        from dda.bodies.turning_block import solve_rolling
 
         check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))
         requested_columns = self.scene.run.columns

@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 import dda
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
-from dda.column.equations import equations
-from dda.column.step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
-from dda.column.stepping import Drive, solve_column
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.bodies.column_step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
+from dda.bodies.contact_column import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.contact.unilateral import OPEN, SLIP
 from validation.models.column.tables import ColumnSection
 from validation.runs.contact import ContactRecord

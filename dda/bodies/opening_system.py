@@ -1,8 +1,8 @@
 r"""A block cut into sub-blocks over a base that carries no tension.
 
-The sub-blocks and their glue are those of `dda.system.subdivision`; in place of the locked springs every base edge of
+The sub-blocks and their glue are those of `dda.bodies.subdivision`; in place of the locked springs every base edge of
 a sub-block has a contact point at each end, with its share p l / a of the corner springs. A step is that of
-`dda.system.step`.
+`dda.bodies.glued_step`.
 """
 
 from __future__ import annotations
@@ -14,6 +14,12 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.bodies.block_system import BlockSystem
+from dda.bodies.glued_step import glued_march, run_glued
+from dda.bodies.joints import FIXED
+from dda.bodies.subdivision import Pattern, subdivided
+from dda.bodies.two_block import TwoBlockModel
+from dda.bodies.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
 from dda.contact.rows import laws_of
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
@@ -22,15 +28,9 @@ from dda.march.energy import energies_of
 from dda.march.step import course_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion
-from dda.one_block.contact_result import ContactResult, run_fields
-from dda.one_block.solution import check_request, step_times
-from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
+from dda.result.contact_result import ContactResult, run_fields
+from dda.result.result import check_request, step_times
 from dda.scheme.newmark import Scheme
-from dda.system.joints import FIXED
-from dda.system.step import glued_march, run_glued
-from dda.system.subdivision import Pattern, subdivided
-from dda.system.system import BlockSystem
 
 
 @dataclass(frozen=True, eq=False)

@@ -11,10 +11,10 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.column.column import NEAR, Column
-from dda.column.equations import DISPLACEMENT, PRESSURE
-from dda.column.open_column import base_of, blocks_of, body_of, course_of, laws_of, springs_of, start_of
-from dda.column.step import (
+from dda.bodies.bonded_column import Drive, column_names
+from dda.bodies.column import NEAR, Column
+from dda.bodies.column_equations import DISPLACEMENT, PRESSURE
+from dda.bodies.column_step import (
     FORCES,
     GAP,
     HALF_SPACE,
@@ -31,7 +31,7 @@ from dda.column.step import (
     Observed,
     make_column_steps,
 )
-from dda.column.stepping import Drive, column_names
+from dda.bodies.open_column import base_of, blocks_of, body_of, course_of, laws_of, springs_of, start_of
 from dda.contact.rows import INSIDE
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
@@ -39,7 +39,7 @@ from dda.march.energy import energies_of
 from dda.march.step import history_of, march_of, reached_history
 from dda.model.arrays import Array
 from dda.model.checks import check_columns, check_count
-from dda.one_block.contact_result import MarchResult, run_fields
+from dda.result.contact_result import MarchResult, run_fields
 from dda.scheme.newmark import Scheme
 
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is

@@ -1,4 +1,4 @@
-"""Histories of a system of blocks; a step is that of `dda.system.step`."""
+"""Histories of a system of blocks; a step is that of `dda.bodies.glued_step`."""
 
 from __future__ import annotations
 
@@ -7,17 +7,17 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.bodies.block_system import BlockSystem, Equations
+from dda.bodies.glued_step import glued_march, run_glued
 from dda.contact.rows import laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.step import March, course_of
 from dda.model.arrays import Array
 from dda.model.checks import check_damping
 from dda.model.load import BaseMotion
-from dda.one_block.solution import Result, check_request, linear_result
+from dda.result.result import Result, check_request, linear_result
 from dda.scheme.newmark import Scheme
 from dda.scheme.stage import plain_stage
-from dda.system.step import glued_march, run_glued
-from dda.system.system import BlockSystem, Equations
 
 
 def solve_system(

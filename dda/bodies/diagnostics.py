@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dda.bodies.gap_form import GapForm
+from dda.bodies.two_block import TwoBlockModel
 from dda.linear.answers import Mode, modes
 from dda.model.arrays import Array
-from dda.one_block.gap_form import GapForm
-from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import roots, spectral
 from dda.scheme.newmark import Scheme, staged_step, step_matrices
 

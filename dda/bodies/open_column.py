@@ -6,9 +6,9 @@ import math
 
 import numpy as np
 
-from dda.column.column import Column, Spring
-from dda.column.step import ABSENT, HALF_SPACE, ROW, SWEEPS, WELDED, Blocks, Observed, of_top
-from dda.column.stepping import Drive
+from dda.bodies.bonded_column import Drive
+from dda.bodies.column import Column, Spring
+from dda.bodies.column_step import ABSENT, HALF_SPACE, ROW, SWEEPS, WELDED, Blocks, Observed, of_top
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
 from dda.march.step import Body, Course, Length, March, State, moved_row, write_flexibility

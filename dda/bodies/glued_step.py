@@ -26,6 +26,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from dda.bodies.block_system import Equations, factor
 from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, find, rows_of, unpair
 from dda.march.account import account_with
 from dda.march.compiled import as_lists, as_record, called_often
@@ -50,7 +51,6 @@ from dda.march.step import (
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, predictor, velocity_corrector
-from dda.system.system import Equations, factor
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

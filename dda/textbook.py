@@ -13,9 +13,9 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.bodies.two_block import TwoBlockModel
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, check_request, linear_result
-from dda.one_block.two_block import TwoBlockModel
+from dda.result.result import Result, check_request, linear_result
 from dda.scheme.newmark import Scheme
 
 _STATE = {"displacement": 0, "strain_x": 1, "strain_y": 2, "contact_pressure": 3}

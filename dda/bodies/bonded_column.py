@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dda.column.column import Column
-from dda.column.equations import DISPLACEMENT, PRESSURE, Equations, Loading, Observers, equations, observers
+from dda.bodies.column import Column
+from dda.bodies.column_equations import DISPLACEMENT, PRESSURE, Equations, Loading, Observers, equations, observers
 from dda.model.arrays import Array
 from dda.model.checks import check_columns
-from dda.one_block.solution import Result, linear_result
+from dda.result.result import Result, linear_result
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 from dda.scheme.stage import dashpot_matrix, inertia_force, predictor, velocity_corrector
 

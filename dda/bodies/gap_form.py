@@ -27,25 +27,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.springs import Contact, base_directions
+from dda.linear.natural_modes import free_modes, graded_modes
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
-from dda.one_block.natural_modes import free_modes, graded_modes
+from dda.result.result import COLUMNS
 from dda.scheme.harmonic import Complex, answering, staged_amplitude
 from dda.scheme.newmark import Scheme
 
 UNKNOWNS = ("U", "w", "s", "ex", "e2", "gxy")
-COLUMNS = (
-    "displacement",
-    "contact_pressure",
-    "horizontal_displacement",
-    "rotation",
-    "strain_x",
-    "strain_y",
-    "shear_strain",
-)
 D_COLUMNS = ("horizontal_displacement", "displacement", "rotation", "strain_x", "strain_y", "shear_strain")  # of D
 
 

@@ -15,6 +15,8 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.bodies.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
+from dda.bodies.two_block import carried
 from dda.contact.rows import Laws, laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.energy import CONTACT, DASHPOT, energies_of
@@ -25,10 +27,8 @@ from dda.march.step import History, course_of, march_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
-from dda.one_block.contact_result import ContactResult, run_fields
-from dda.one_block.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
-from dda.one_block.solution import check_request, step_times
-from dda.one_block.two_block import carried
+from dda.result.contact_result import ContactResult, run_fields
+from dda.result.result import check_request, step_times
 from dda.scheme.newmark import Scheme
 
 NEWMARK = "newmark"

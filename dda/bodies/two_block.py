@@ -9,10 +9,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dda.bodies.gap_form import GapForm, gap_form
 from dda.contact.springs import Contact, contact_stiffness
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, pressed_part
-from dda.one_block.gap_form import COLUMNS, GapForm, gap_form
+from dda.result.result import COLUMNS
 
 
 @dataclass(frozen=True, eq=False, init=False)

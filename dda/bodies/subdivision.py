@@ -9,13 +9,13 @@ from typing import Literal
 
 import numpy as np
 
+from dda.bodies.block_system import BlockSystem, SurfaceLoad
+from dda.bodies.joints import FIXED, Joint, Point, common_part
+from dda.bodies.two_block import TwoBlockModel
 from dda.contact.springs import base_directions
 from dda.model.block import Block
 from dda.model.checks import check_positive
 from dda.model.load import at_once, pressed_part
-from dda.one_block.two_block import TwoBlockModel
-from dda.system.joints import FIXED, Joint, Point, common_part
-from dda.system.system import BlockSystem, SurfaceLoad
 
 Pattern = Literal["squares", "triangles"]
 Corner = tuple[int, int]

@@ -29,11 +29,11 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.bodies.gap_form import free_block
 from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.one_block.gap_form import free_block
 
 EXACT = "exact"
 FIRST_ORDER = "first-order"

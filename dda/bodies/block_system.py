@@ -16,15 +16,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dda.bodies.gap_form import D_COLUMNS, free_block
+from dda.bodies.joints import FIXED, Joint, gap_groups
 from dda.linear import elimination
 from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
-from dda.one_block.gap_form import COLUMNS, D_COLUMNS, free_block
+from dda.result.result import COLUMNS
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
-from dda.system.joints import FIXED, Joint, gap_groups
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array

@@ -14,7 +14,7 @@ from dda.contact.rows import FOUND, INSIDE, OUTCOMES
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.step import History
 from dda.model.arrays import Array
-from dda.one_block.solution import Result, times_of
+from dda.result.result import Result, times_of
 from dda.scheme.newmark import Scheme
 
 

@@ -1,6 +1,6 @@
 r"""One block over corners that open, as a body in its free modes and as rows of contact.
 
-Its unknowns are those of `dda.one_block.gap_form` without the springs: mean way U and mean gap w of the base, its
+Its unknowns are those of `dda.bodies.gap_form` without the springs: mean way U and mean gap w of the base, its
 rotation s, and the strains ex, e2, gxy, on which alone its own stiffness acts, K = A diag(E', lambda + 2 G, G). The
 rows of contact are the gaps w -+ (a/2) s of its corners M and N and their ways U -+ (a/2) ex along the base, these as
 mean and difference. So w and s, and U where the corners have springs in shear, are read from the rows, which no
@@ -16,13 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dda.bodies.gap_form import elastic_stiffness, gap_form
 from dda.contact.rows import INSIDE, LOWER
 from dda.contact.springs import Contact, base_directions
+from dda.linear.natural_modes import free_modes
 from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, load_share
-from dda.one_block.gap_form import elastic_stiffness, gap_form
-from dda.one_block.natural_modes import free_modes
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 
 U, W, S, EX, E2, GXY = range(6)  # numbers of the unknowns

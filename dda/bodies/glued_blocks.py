@@ -18,15 +18,15 @@ from time import perf_counter
 
 import numpy as np
 
+from dda.bodies.block_system import BlockSystem, Equations, SurfaceLoad
+from dda.bodies.joints import FIXED, Joint, Point, common_part, shared_edges
+from dda.bodies.locked_system import stepped
 from dda.linear.answers import Mode, modes_of
 from dda.model.arrays import Array
 from dda.model.block import Block
 from dda.model.checks import check_count
-from dda.one_block.solution import Result
+from dda.result.result import Result
 from dda.scheme.newmark import Scheme
-from dda.system.joints import FIXED, Joint, Point, common_part, shared_edges
-from dda.system.solution import stepped
-from dda.system.system import BlockSystem, Equations, SurfaceLoad
 
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
 SAME_LINE = 1e-9  # of the extent: how far a point may lie beside a line

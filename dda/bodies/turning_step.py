@@ -1,8 +1,8 @@
 r"""One time step of a block that turns.
 
-Without contact its free modes move as those of any block, whatever the angle (`dda.rotation.body`); the rest of a stage
-is `dda.march.step`, but that the rows of contact follow the turn: the law of the contacts holds at the end of the step,
-for the exact gaps and ways there, and the stage is solved again with the turn that it found until nothing changes.
+Without contact its free modes move as those of any block, whatever the angle (`dda.bodies.turning_body`); the rest of a
+stage is `dda.march.step`, but that the rows of contact follow the turn: the law of the contacts holds at the end of the
+step, for the exact gaps and ways there, and the stage is solved again with the turn that it found until all is settled.
 
 The forces act in the directions B_f = (2 delta - 1) B + (2 - 2 delta) B_1, B the chord and B_1 the derivative at the
 end of the step. Their impulse then has the direction of the middle of the step for every delta: average acceleration
@@ -23,6 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
@@ -49,7 +50,6 @@ from dda.march.step import (
     write_flexibility,
 )
 from dda.model.arrays import Array
-from dda.rotation.body import EXACT, Turn, directions, place, turn
 from dda.scheme.newmark import Scheme
 
 ROUNDS = 40  # of the turn; two to four are usual

@@ -23,7 +23,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dda.column.column import Column
+from dda.bodies.column import Column
 from dda.linear.elimination import Elimination, largest_frequency
 from dda.model.arrays import Array
 from dda.scheme.harmonic import Complex, acceleration_share, chosen

@@ -12,19 +12,7 @@ from time import perf_counter
 
 import numpy as np
 
-from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
-from dda.contact.unilateral import Unilateral
-from dda.march.energy import IMPULSE, energies_of
-from dda.march.run import run
-from dda.march.step import Body as ModalBody
-from dda.march.step import History, course_of, state_of
-from dda.model.arrays import Array
-from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
-from dda.one_block.contact_result import ContactResult, run_fields
-from dda.one_block.gap_form import COLUMNS
-from dda.one_block.solution import check_request
-from dda.one_block.unilateral import check_iteration, check_scheme
-from dda.rotation.body import (
+from dda.bodies.turning_body import (
     EXACT,
     FIRST_ORDER,
     Body,
@@ -35,7 +23,18 @@ from dda.rotation.body import (
     strain_matrices,
     turned,
 )
-from dda.rotation.step import STATE, RollingState, make_steps, rolling_march
+from dda.bodies.turning_step import STATE, RollingState, make_steps, rolling_march
+from dda.bodies.unilateral import check_iteration, check_scheme
+from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
+from dda.contact.unilateral import Unilateral
+from dda.march.energy import IMPULSE, energies_of
+from dda.march.run import run
+from dda.march.step import Body as ModalBody
+from dda.march.step import History, course_of, state_of
+from dda.model.arrays import Array
+from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
+from dda.result.contact_result import ContactResult, run_fields
+from dda.result.result import COLUMNS, check_request
 from dda.scheme.newmark import Scheme, late_momentum
 
 
