@@ -60,7 +60,7 @@ def test_one_contact_for_both_corners_is_the_full_model(scheme):
 )
 def test_a_contact_that_never_opens_is_the_locked_one(pressure, dt, gg, eccentricity):
     block, scheme = PAPER.block, Scheme(0.5, 1.0, gg, dt)
-    contact, names = Contact(1e9, 0.4e9), ("displacement", "contact_pressure", "rotation")
+    contact, names = Contact(1e9, 0.4e9), ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
     locked = solve(TwoBlockModel(block, contact, pressure, eccentricity=eccentricity), scheme, 60, names)
     model = UnilateralModel(block, Unilateral(1e9, 0.4e9), pressure, eccentricity=eccentricity)
     opens = solve_unilateral(model, scheme, 60, names)
