@@ -161,7 +161,6 @@ class BarsEvents(Solver):
     handles = features.SCHEMES | frozenset(
         {features.COLUMN, features.UNILATERAL_COLUMN, features.FRICTIONAL_COLUMN, features.RIGID_JOINTS}
     )
-    sections = ("column", "input", "time", "run")
     unread = ("column.solve_limit", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference.events", "fem_reference.problem")
     role = Role.TRUTH

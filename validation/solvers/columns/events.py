@@ -236,7 +236,6 @@ class ColumnEvents(Solver):
 
     name = "column-events"
     handles = features.OF_MOVING_COLUMN | features.SCHEMES | {features.COLUMN, features.RIGID_BLOCKS}
-    sections = ("column", "input", "time", "run")
     unread = ("column.glue", "column.solve_limit", *OF_SCHEMES)
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
