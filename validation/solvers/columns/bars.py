@@ -173,7 +173,7 @@ class BarsEvents(Solver):
         """Return None, or why there is no exact motion for this scene."""
         if "column" not in scene.tables():
             return "it takes columns only"
-        if scene.column.law == "bonded":
+        if scene.table(ColumnSection).law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for a bonded one'
         if scene.time.discount != 1:
             return "the exact motion has no kinetic damping, and gg is below 1"
