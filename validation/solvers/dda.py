@@ -143,10 +143,7 @@ class DDA(Solver):
         (features.ADAPTIVE, features.COURSES | {features.SUB_BLOCKS}),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (
-        *("block", "contact", "load", "damping", "column", "input", "rigid", "plane"),
-        *("time", "run"),
-    )
+    sections: tuple[str, ...] = ("damping", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role = Role.JUDGED
     rank = 0.0
