@@ -91,10 +91,6 @@ def test_two_corners_on_dashpots_move_as_the_exact_block():
 # ---- impulses --------------------------------------------------------------------------------------------------------
 
 
-def impulses(e):
-    return UnilateralOptions("impact", restitution=e, energies=True)
-
-
 @pytest.mark.parametrize("theta", [0.5, 0.75, 1.0])
 @pytest.mark.parametrize("e", [0.0, 0.37, 1.0])
 def test_impulses_return_e_at_every_phase(theta, e):
@@ -102,43 +98,6 @@ def test_impulses_return_e_at_every_phase(theta, e):
     given = {"rule": "impact", "restitution": e, "steps": 12}
     check_rebounds(scheme, impact_steps(e, theta), math.inf, tolerance=1e-10, **given)
     assert rebounds(impact_steps(e, theta), PHASES) == pytest.approx(np.full(len(PHASES), e), abs=1e-12)
-
-
-def mean_penetration(theta):
-    """Return the mean gap after a plastic landing over its phase, in V dt."""
-    dt = 1e-3
-    scheme = Scheme(theta**2, 2 * theta - 0.5, 1.0, dt)
-    gaps = []
-    for phase in midpoints(20):
-        law = Unilateral(math.inf, gap=(2 - phase) * V * dt)
-        model = UnilateralModel(Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0)), law, velocity=-V)
-        gaps.append(solve_unilateral(model, scheme, 6, options=impulses(0.0)).gap_m[-1] / (V * dt))
-    assert np.ptp(gaps) == pytest.approx(0.95, abs=1e-9)
-    return np.mean(gaps)
-
-
-def test_what_a_landing_leaves_of_penetration():
-    """Uniform in (-1, 0) at theta = 1/2 and in (-1/2, 1/2) at theta = 1."""
-    assert mean_penetration(0.5) == pytest.approx(-0.5, abs=1e-9)
-    assert mean_penetration(1.0) == pytest.approx(0.0, abs=1e-9)
-
-
-def test_impulses_tend_to_the_plastic_answer_and_displacements_on_a_rigid_stop_do_not():
-    """Exact (piecewise closed form): v at 0.01, 0.02 and 0.05 s, and m/4 times the speed of the first landing."""
-    exact = np.array([-0.00350963748, -0.00744841152, -0.00275254957])
-    model = replace(PAPER, contact=Unilateral(math.inf))
-
-    def run(n, alpha, delta, options=None):
-        scheme = Scheme(alpha, delta, 1.0, 0.05 / n, "consistent")
-        result = solve_unilateral(model, scheme, n, ("displacement",), options)
-        times = np.array([n // 5, 2 * n // 5, n]) - 1
-        return result, np.max(np.abs(result.columns["displacement"][times] - exact)) / np.max(np.abs(exact))
-
-    result, error = run(6400, 0.25, 0.5, UnilateralOptions("impact", restitution=0.0))
-    assert error < 0.01
-    landing = np.flatnonzero(result.impulses[0])[0]
-    assert 2 * result.impulses[0][landing] == pytest.approx(10145.031, rel=1e-2)
-    assert run(3200, 0.5, 1.0)[1] > 0.015
 
 
 # ---- passes ----------------------------------------------------------------------------------------------------------

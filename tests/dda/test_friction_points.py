@@ -46,14 +46,6 @@ def test_every_point_obeys_the_law(seed, scheme):
     assert delta < 1 or np.max(np.diff(stored)) < 1e-11 * np.max(np.abs(total))
 
 
-def test_cohesion_is_shared_among_the_points():
-    model = KNOWN["incline"].model
-    law = replace(model.contact, cohesion=6e3)
-    opening = opening_subdivided(replace(model, contact=law), 4, 1, 1e12)
-    assert opening.law == law
-    assert opening.share * opening.contact.shape[1] == pytest.approx(2)
-
-
 def test_what_points_cannot_do_is_refused():
     model, scheme = KNOWN["incline"].model, Scheme(0.5, 1.0, 1.0, 1e-3)
     late = replace(model, contact=replace(model.contact, rules="lagged"))

@@ -112,18 +112,6 @@ def test_momentum_and_the_law_of_the_base_of_random_motions(seed: int) -> None:
     )
 
 
-def test_the_points_of_the_bar_meet_the_base_and_the_top() -> None:
-    problem = random_problem(34)
-    motion = solve(problem, 7 * problem.travel)
-    t = np.array([0.4, 1.7, 3.3, 6.1]) * problem.travel
-    now = motion.at(t)
-    base, middle, top = (motion.bars.point(0, y, t) for y in (0.0, problem.height / 2, problem.height))
-    assert base.displacement + problem.gap == pytest.approx(now.gap, rel=1e-12)
-    assert middle.displacement == pytest.approx(now.displacement, rel=1e-14)
-    assert base.stress == pytest.approx(now.contact_pressure, abs=1e-14 * abs(problem.pressure))
-    assert top.stress == pytest.approx(problem.pressure, rel=1e-14)
-
-
 def test_resting_states() -> None:
     still = solve(replace(PAPER, pressure=0.0), 0.02)
     assert still.closed_at_start

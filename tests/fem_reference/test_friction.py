@@ -93,59 +93,9 @@ def test_while_all_points_slide_one_sum_of_the_mean_motion_is_free(rule, foundat
         assert most <= 1e-11 * x
 
 
-@pytest.mark.parametrize(("degree", "foundation"), thinned([(1, "distributed"), (2, "corner")], 2))
-def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, foundation):
-    angle, scheme, steps = 25.0, replace(CONSTANT, step=5e-2), 400
-    # what the first fall of the weight has set off is slowed, or made faster, by g sin(0.01 deg) / cos(phi)
-    faster = 9.81 * np.sin(np.radians(0.01)) / np.cos(np.radians(angle))
-    for slope, expected in ((angle - 0.01, 0.0), (angle + 0.01, faster)):
-        problem = incline(slope, 9.81, elements=2, degree=degree, foundation=foundation)
-        slide = solve_unilateral(problem, scheme, steps, RUBBING, columns=("largest_slide",)).columns["largest_slide"]
-        speed = np.diff(slide[steps // 2 :]) / scheme.step
-        gained = (speed[-1] - speed[0]) / (scheme.step * (len(speed) - 1))
-        # at rest to the last bit; or sped up by the sum of all forces, but for what still rings on the springs
-        assert gained == pytest.approx(expected, rel=1e-4, abs=0.0)
-        assert (speed[-1] == 0) == (expected == 0)
-
-
-def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one():
-    still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))
-    problem = replace(incline(10.0, 98.1, foundation="nodes", p=1e8, shear=3e7), motion=still)
-    contact = replace(RUBBING, friction=Friction(60.0, 1e6))
-    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-    scheme = replace(CONSTANT, step=1e-3)
-    steps = 20
-    run, locked = (
-        solve_unilateral(problem, scheme, steps, contact).columns,
-        solve(problem, scheme, steps, names).columns,
-    )
-    assert run["open_share"].max() == run["largest_slide"].max() == 0.0
-    for name in names:
-        scale = np.abs(locked["contact_pressure" if name == "contact_pressure" else "displacement"]).max()
-        # twenty solutions, each with the rounding of a matrix of condition 1e4
-        assert np.abs(run[name] - locked[name]).max() <= 1e-11 * scale, name
-
-
 def test_a_base_must_begin_where_the_block_stands():
     with pytest.raises(ValueError, match=r"^motion: must be zero at t = 0"):
         solve_unilateral(replace(incline(0.0), motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1)
-
-
-@pytest.mark.parametrize("foundation", thinned(["distributed", "corner"], 2))
-def test_no_limit_glues_and_none_at_all_lets_go(foundation):
-    problem = replace(make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8), foundation=foundation)
-    problem = replace(problem, traction=1e6)
-    cases = ((Friction(0.0, 1e12), GLUED), (Friction(0.0), Unilateral()))
-    for friction, other in cases:
-        names = ("displacement", "contact_pressure", "horizontal_displacement", "base_shear", "rotation", "open_share")
-        found, expected = (
-            solve_unilateral(problem, CONSTANT, 120, contact, columns=names).columns
-            for contact in (replace(GLUED, friction=friction), other)
-        )
-        assert 0 < expected["open_share"].mean() < 1
-        for name in names[:-1]:
-            size = np.abs(expected["displacement" if "displacement" in name else name]).max()
-            assert np.abs(found[name] - expected[name]).max() <= 1e-9 * size, name
 
 
 def test_a_point_that_closes_and_slides_has_slid_since_it_crossed():

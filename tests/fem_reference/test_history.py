@@ -80,20 +80,6 @@ def test_sparse_and_dense_modes_agree(monkeypatch):
     assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=2e-2)
 
 
-@pytest.mark.parametrize(
-    "scheme", [Scheme(0.5, 1.0, 0.93, 2e-3), Scheme(0.3025, 0.6, 1.0, 5e-3), Scheme(0.0, 0.5, 1.0, 1e-4)]
-)
-def test_one_step_operator_has_the_roots_of_trace_and_determinant(scheme):
-    mode = modes(make(elements=4), scheme)[0]
-    h = (mode.frequency * scheme.step) ** 2
-    h /= 1 + scheme.alpha * h
-    trace = 1 - h / 2 + scheme.gg * (1 - scheme.delta * h)
-    det = scheme.gg * (1 + (0.5 - scheme.delta) * h)
-    assert mode.eigenvalues[:2].sum() == pytest.approx(trace, abs=1e-12)
-    assert mode.eigenvalues[:2].prod() == pytest.approx(det, abs=1e-12)
-    assert abs(mode.eigenvalues[2]) <= 1e-12
-
-
 def test_central_differences_are_stable_up_to_the_highest_frequency():
     problem = make(elements=4)
     limit = 2 / highest_frequency(problem)

@@ -9,7 +9,6 @@ from oracles.elements import make
 
 from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
-from fem_reference.exact.bar import Bar
 from fem_reference.exact.opening_bar import OpeningBar, applicable, closed_forms
 from fem_reference.problem.bar import BarProblem
 
@@ -31,28 +30,6 @@ def test_closed_forms_to_the_last_digits(size):
                 expected = complex((value - 1) / root**2)
                 # near a free mode, x = i n pi, a rounding of x^2 is multiplied by the distance
                 assert abs(values[i] - expected) <= 1e-13 * abs(expected)
-
-
-@pytest.mark.parametrize(
-    "scheme",
-    [
-        replace(CONSTANT, step=1e-3),
-        Scheme(0.5, 1.0, 0.95, 1e-2),
-        Scheme(0.5, 1.0, 0.0, 1e-3),
-        Scheme(0.5625, 1.0, 1.0, 3e-4, "consistent"),
-        Scheme(0.3025, 0.6, 0.98, 2e-3, "consistent"),
-    ],
-)
-def test_a_bar_that_stays_closed_is_the_locked_one(scheme):
-    problem = make(UPRIGHT, p=1e7)
-    steps = min(300, round(0.05 / scheme.step))
-    found, locked = OpeningBar.of(problem).solve(scheme, steps), Bar.of(problem).solve(scheme, steps)
-    assert found.contact_pressure.min() > 0
-    for name in ("displacement", "contact_pressure"):
-        size = np.abs(locked.columns[name]).max()
-        # of the size of the locked bar's own truncation, TARGET, where that is not below rounding
-        assert np.abs(getattr(found, name) - locked.columns[name]).max() <= (1e-12 + 2 * locked.estimate) * size
-    assert np.array_equal(found.gap, -found.contact_pressure * (1.5 / 2e7))
 
 
 @pytest.mark.parametrize(

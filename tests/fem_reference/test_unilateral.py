@@ -9,13 +9,12 @@ from conftest import thinned
 from oracles.elements import make
 from oracles.random_contact import at_every_point
 
-from fem_reference import Friction, Scheme, Unilateral, solve, solve_unilateral
+from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
 from fem_reference.problem.bar import BarProblem
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-SLOPE = ((1.0, 5.0), (4.0, 5.4), (3.6, 6.6), (1.4, 6.3))
 GLUED = Unilateral(shear="glued")
 
 
@@ -49,37 +48,6 @@ def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
     assert np.all(run.columns["contact_pressure"][:5] == 0) == (contact.gap > 0)
     # twice what order one leaves of the coarser runs of the test above at this mesh
     assert error[0] < 0.02 and error[1] < 0.1
-
-
-@pytest.mark.parametrize(
-    ("problem", "contact"),
-    thinned(
-        [
-            (make(p=1e8, elements=6), Unilateral()),
-            (make(p=1e8, elements=6, degree=1, poisson=0.25, foundation="nodes", shear=0.0), Unilateral()),
-            (make(elements=6, degree=1, poisson=0.25, foundation="nodes", shear=4e8, eccentricity=0.1), GLUED),
-            (make(elements=4, poisson=0.3, foundation="corner", shear=4e8), GLUED),
-            (make(elements=6, poisson=0.25, foundation="patch", patch_width=0.7, shear=4e8), GLUED),
-            (make(SLOPE, elements=4, degree=1, foundation="nodes", p=1e8, poisson=0.1), GLUED),
-        ],
-        4,
-    ),
-)
-@pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.long)])
-def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
-    check_locked(problem, Scheme(0.5, 1.0, 0.98, 1e-2), contact, full)
-
-
-def check_locked(problem, scheme, contact, full):
-    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-    run = solve_unilateral(problem, scheme, 40, contact, full, columns=(*names, "open_share"))
-    assert np.all(run.columns["open_share"] == 0)
-    locked = solve(problem, scheme, 40, names, full=True).columns
-    size = {"contact_pressure": np.abs(locked["contact_pressure"]).max()}
-    for name in names:
-        scale = size.get(name, np.abs(locked["displacement"]).max())
-        # forty solutions, each with the rounding of a matrix of condition 1e4
-        assert np.abs(run.columns[name] - locked[name]).max() <= 1e-11 * scale, name
 
 
 def test_one_column_is_the_whole_block():

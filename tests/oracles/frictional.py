@@ -25,10 +25,6 @@ def square(poisson=0.0):
 
 
 KNOWN = {
-    "glued": Known(
-        UnilateralModel(square(), Unilateral(YOUNG, YOUNG), 5e6, eccentricity=0.3),
-        {0.03: (5.3825976780e-4, -1.262046085987e-2, -2.464006670949e-3)},
-    ),
     "rubbing": Known(
         UnilateralModel(square(), Unilateral(YOUNG, YOUNG, friction=0.5), 5e6, eccentricity=0.3),
         {
