@@ -22,7 +22,6 @@ from dda import (
     opening_subdivided,
     solve_opening_system,
     solve_system,
-    solve_unilateral,
     subdivided,
 )
 from dda.contact.rows import NONE
@@ -71,17 +70,6 @@ def test_random_blocks_keep_the_invariants(seed, scheme):
     energy(model, result, 1e-10)
     if scheme.delta == 1:
         assert np.max(np.diff(sums(result)[0])) < 1e-12 * size(result)
-
-
-def test_long_glued_steps_are_cut_as_those_of_one_block():
-    """No single state, or several: long steps of stiff glued corners."""
-    cuts, scheme = 0, Scheme(0.5, 1.0, 1.0, 8e-3)
-    for seed in range(10):
-        model = random_model(seed, glued=True)
-        one, block = run(model, (1, 1), scheme, 12, options=None), solve_unilateral(model, scheme, 12)
-        assert np.array_equal(one.step_cuts, block.step_cuts) and np.array_equal(one.step_solves, block.step_solves)
-        cuts += int(np.sum(one.step_cuts))
-    assert cuts > 0
 
 
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):

@@ -6,7 +6,7 @@ from conftest import thinned
 from faults import seams
 from oracles.elements import INCLINED, make
 
-from fem_reference import Bar, Scheme, highest_frequency, modes, solve
+from fem_reference import Scheme, highest_frequency, modes, solve
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
@@ -46,17 +46,6 @@ def test_dropped_unknowns_are_counted():
 @pytest.mark.parametrize("change", [{"elements": 5}, {"vertices": INCLINED, "base": 1, "top": 3}])
 def test_no_saving_where_none_is_exact(change):
     assert solve(make(**change, poisson=0.3), CONSTANT, 1).notes == ("stepped: few steps",)
-
-
-@pytest.mark.parametrize(("degree", "order"), thinned([(1, 2.0), (2, 4.0)], 2))
-@pytest.mark.parametrize("full", [False, True])
-def test_order_in_the_element_size(degree, order, full):
-    meshes = [4, 6, 8, 12, 16]
-    bar = Bar.of(make()).solve(CONSTANT, 100)
-    error = [errors(solve(make(elements=n, degree=degree), CONSTANT, 100, full=full), bar) for n in meshes]
-    slope = -np.polyfit(np.log(meshes), np.log(error), 1)[0]
-    # The coarsest mesh is not yet asymptotic.
-    assert slope == pytest.approx(order, abs=0.06)
 
 
 def test_first_axial_mode():
