@@ -271,3 +271,31 @@ STILL = rectangle(0.0, 0.0, 1.0, 1.0)
 def test_what_cannot_be_is_refused_by_field(ask, field):
     with pytest.raises(ValueError, match=f"^{field}: "):
         ask()
+
+
+def test_a_free_body_turns_about_its_centre_of_mass():
+    """A trapezoid, its middle beside its centroid: u, v and rotation are those of velocity and spin, strains none."""
+    polygon = ((3.0, 1.0), (6.0, 1.0), (4.0, 3.0), (3.0, 3.0))
+    body = PlaneBody((polygon,), DENSITY, YOUNG, 0.3, velocity=(0.2, -0.4), spin=0.01, elements=1)
+    model = PlaneModel([body])
+    found = model.history(replace(CONSTANT, step=1e-2), 10, model.means(0))
+    for number, rate in enumerate((0.2, -0.4, 0.01, 0.0, 0.0, 0.0)):
+        assert found.columns[str(number)] == pytest.approx(rate * found.time, abs=1e-12)
+
+
+def test_bodies_that_begin_at_rest_stay_there():
+    """Over gaps: the springs are as long at rest as the weight says, and nothing moves."""
+    weight = {"gravity": (0.0, -GRAVITY), "elements": 2}
+    bodies = [rectangle(0.0, 0.0, 2.0, 1.0, **weight), rectangle(0.0, 1.01, 2.0, 2.01, **weight)]
+    law = {"stiffness": 1e9, "gap": 0.01}
+    contacts = patches(0, None, 0.0, 2.0, 0.0, 0.5, **law) + patches(1, 0, 0.0, 2.0, 1.01, 0.5, **law)
+    model = PlaneModel(bodies, contacts)
+    half = DENSITY * GRAVITY
+    assert model.settled.normal == pytest.approx([2 * half, 2 * half, half, half], rel=1e-9)
+    rows = np.vstack([model.means(0), model.means(1)])
+    assert rows[7] @ model.rest < rows[1] @ model.rest - 0.01 < -0.02
+    consistent = replace(CONSTANT, start="consistent")
+    found = model.history(consistent, 50, rows, settled=True)
+    at_rest = rows @ model.rest
+    for number, values in found.columns.items():
+        assert np.abs(values - at_rest[int(number)]).max() < 1e-12
