@@ -1,0 +1,1 @@
+"""Blocks in the plane that touch, slide and turn."""
