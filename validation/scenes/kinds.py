@@ -79,6 +79,10 @@ class Kind:
         """Return the tables of this kind that a scene may leave out."""
         return ()
 
+    def has_column(self, scene: Any, column: str) -> bool:
+        """Whether a history of a scene may hold a column, beside those that solvers have of every scene."""
+        return False
+
     def check(self, scene: Any) -> None:
         """Check tables against each other.
 

@@ -13,6 +13,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
+from validation.scenes.kinds import Hooks
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import translation
@@ -131,6 +132,29 @@ class SubBlocks(OneBlock):
 NOT_WITH_METHODS = frozenset({features.SUB_BLOCKS, features.DEAD_BAND})
 
 
+class AdapterHooks(Hooks):
+    """How DDA takes the scenes of a kind."""
+
+    module = "adapter"
+
+    def build(self, scene: Scene, scheme: dda.Scheme, full: bool) -> Prepared:
+        """Build the model of a scene."""
+        if scene.column is not None:
+            from validation.solvers.columns.blocks import BlockColumn, ContactColumn
+
+            return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme)
+        if scene.rigid is not None:
+            from validation.solvers.boxes import BlocksOfBoxes
+
+            return BlocksOfBoxes(scene, scene.rigid, scheme)
+        if features.ROTATION in features.of(scene):
+            return RollingBlock(scene, scheme, base_motion(scene))
+        if features.UNILATERAL in features.of(scene):
+            kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
+            return kind(scene, scheme, base_motion(scene), full)
+        return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
+
+
 class DDA(Solver):
     """Discontinuous deformation analysis in its robust form."""
 
@@ -187,24 +211,7 @@ class DDA(Solver):
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
-        if scene.column is not None:
-            from validation.solvers.columns.blocks import BlockColumn, ContactColumn
-
-            return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme_of(scene))
-        if scene.rigid is not None:
-            from validation.solvers.boxes import BlocksOfBoxes
-
-            return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
-        if scene.plane is not None:
-            from validation.solvers.plane.blocks import PlaneBlocks
-
-            return PlaneBlocks(scene, scene.plane, scheme_of(scene))
-        if features.ROTATION in features.of(scene):
-            return RollingBlock(scene, scheme_of(scene), base_motion(scene))
-        if features.UNILATERAL in features.of(scene):
-            kind = OpeningBlock if scene.block.subdivide is None else OpeningSubBlocks
-            return kind(scene, scheme_of(scene), base_motion(scene), full)
-        return OneBlock(scene, full) if scene.block.subdivide is None else SubBlocks(scene, full)
+        return AdapterHooks.of(scene).build(scene, scheme_of(scene), full)
 
 
 class Printed(OneBlock):

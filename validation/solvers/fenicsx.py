@@ -320,7 +320,7 @@ def request_of_plane(scene: Scene, plane: PlaneSection) -> dict[str, Any]:
     body = body_of(scene, plane)
     points, cells = points_and_cells(body)
     names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
-    observe = plane.observe
+    observe = plane.observed
     return {
         **{name: getattr(body, name) for name in names},
         "points": points,

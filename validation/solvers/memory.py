@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.models.plane.tables import PlaneSection
+from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 
@@ -24,15 +24,22 @@ GIGABYTE = 1e9
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    if scene.rigid is not None:
-        model = 0.0, "rigid.box"
-    elif scene.plane is not None:
-        model = _plane(scene.plane, scene.fem.per_side if solver.meshed else 0)
-    elif scene.column is not None:
-        model = _column(scene, solver)
-    else:
-        model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
+    model = MemoryHooks.of(scene).model(scene, solver)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
+
+
+class MemoryHooks(Hooks):
+    """The memory that the model of a kind takes."""
+
+    module = "memory"
+
+    def model(self, scene: Scene, solver: Solver) -> tuple[float, str]:
+        """Return the bytes of a model, and the field that they come from most."""
+        if scene.rigid is not None:
+            return 0.0, "rigid.box"
+        if scene.column is not None:
+            return _column(scene, solver)
+        return _mesh(scene, solver) if solver.meshed else _blocks(scene)
 
 
 def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
@@ -46,19 +53,6 @@ def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
     uniform = scene.block.poisson == 0 and scene.block.vertices is None and scene.fem.foundation == "distributed"
     saves = solver.saves and scene.fem.cells == "quadrilaterals"
     unknowns = 2 * along if saves and uniform and scene.load.centred else 2 * along * along
-    return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
-
-
-def _plane(plane: PlaneSection, elements: int) -> tuple[float, str]:
-    """Bytes of the sparse matrices of blocks and joints, or of a mesh of elements along the shorter side."""
-    blocks = len(plane.polygons)
-    if not elements:
-        unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
-        field = "plane.block" if plane.rectangle is None else "plane.subdivide"
-        return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), field
-    sides = plane.rectangle or (1.0, 1.0)
-    cells = elements**2 * max(sides) / min(sides) * len(plane.outline_polygons)
-    unknowns = 8.0 * cells
     return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
 
 

@@ -12,12 +12,13 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Polygon
 from numpy.typing import ArrayLike
 
-from validation.models.plane.tables import PlaneSection, Segment
 from validation.report.figures.curves import GREY, engineering
 from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
 from validation.runs.history import Array
+from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
+Segment = tuple[Sequence[float], Sequence[float]]
 FACE = "#fbe3d3"  # DDA's colour, pale
 ARROWS = 4  # along a loaded edge
 LONGEST = 0.16  # arrow, of the larger side of the body
@@ -72,6 +73,10 @@ class Sketch:
         if words:
             self.axes.annotate(words, start, (2.5, 1.0), textcoords="offset points", fontsize=6.5, va="bottom")
 
+    def dot(self, point: Sequence[float]) -> None:
+        """Draw a dot at a point."""
+        self.axes.plot(*self._placed([point]).T, color="black", marker="o", ms=1.6, lw=0)
+
     def spring(self, foot: Sequence[float]) -> None:
         """Draw a spring between the ground and a corner above it."""
         length = SPRING * self.size
@@ -120,38 +125,33 @@ def scene_figure(scene: Scene) -> Figure:
     """Draw a scene, as high as it needs."""
     with house_style():
         figure, ((axes,),) = axes_grid([(HEIGHTS[1], 0.0)], 1, MARGINS, WIDTH)
-        PAINTERS[scene.kind.name](axes, scene)
+        DrawingHooks.of(scene).draw(axes, scene)
         height = size_of(axes)[0] * np.ptp(axes.get_ylim()) / np.ptp(axes.get_xlim())
         figure.set_figheight((np.clip(height, *HEIGHTS) + MARGINS.top + MARGINS.bottom) / 25.4)
     return figure
 
 
-def blocks_figure(drawn: Sequence[tuple[str, PlaneSection]], height: float) -> Figure:
-    """Draw blocks in the plane side by side, each under its title, to one scale of its own, so many mm high."""
+def scenes_figure(drawn: Sequence[tuple[str, Scene]], height: float) -> Figure:
+    """Draw scenes side by side, each under its title, to one scale of its own, so many mm high."""
     with house_style():
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(drawn), MARGINS)
-        for axes, (title, plane) in zip(row, drawn, strict=True):
-            _draw_blocks(axes, plane)
+        for axes, (title, scene) in zip(row, drawn, strict=True):
+            DrawingHooks.of(scene).draw(axes, scene)
             axes.set_title(title)
     return figure
 
 
-def _draw_blocks(axes: Axes, plane: PlaneSection) -> None:
-    """Draw blocks as they are cut, clamps hatched, loads as arrows."""
-    sketch = Sketch(axes, plane.polygons)
-    for clamp in plane.clamp:
-        sketch.hatched(clamp.edge)
-    largest = max([math.hypot(*load.traction) for load in plane.load], default=0.0)
-    for load in plane.load:
-        vector = LONGEST * sketch.size * np.array(load.traction) / largest
-        for tail in _along(load.edge):
-            sketch.arrow(tail, vector)
-    if any(plane.gravity):
-        sketch.arrow(sketch.middle, LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity), "g")
-    sketch.fit()
+class DrawingHooks(Hooks):
+    """How a kind of scenes is drawn."""
+
+    module = "drawing"
+
+    def draw(self, axes: Axes, scene: Scene) -> None:
+        """Draw bodies, what they stand on and what drives them."""
+        PAINTERS[scene.kind.name](axes, scene)
 
 
-def _along(edge: Segment) -> Array:
+def along(edge: Segment) -> Array:
     """Return where the arrows stand along an edge."""
     shares = (np.arange(ARROWS) + 0.5)[:, None] / ARROWS
     start, end = np.array(edge)
@@ -176,14 +176,14 @@ def _block(axes: Axes, scene: Scene) -> None:
     sketch.ground(length + gap, corners, load.base_motion is not None)
     arrow = LONGEST * sketch.size
     left, right = block.edge(block.top)
-    words = _quantity(load.pressure, "Pa")
-    for place in _along((left, right)) if load.pressure else ():
+    words = quantity(load.pressure, "Pa")
+    for place in along((left, right)) if load.pressure else ():
         sketch.arrow(place + np.array([0.0, arrow]), (0.0, -arrow), words)
         words = ""
     if load.traction:
         above = 1.6 * arrow if load.pressure else 0.3 * arrow
         start = (min(left[0], right[0]), max(left[1], right[1]) + above)
-        sketch.arrow(start, (2 * arrow, 0.0), _quantity(load.traction, "Pa"))
+        sketch.arrow(start, (2 * arrow, 0.0), quantity(load.traction, "Pa"))
     if load.gravity:  # which turns with the ground
         slope = math.radians(load.slope)
         sketch.arrow(sketch.middle, (arrow * math.sin(slope), -arrow * math.cos(slope)), "g")
@@ -265,13 +265,7 @@ def _boxes(axes: Axes, scene: Scene) -> None:
     sketch.fit()
 
 
-def _plane(axes: Axes, scene: Scene) -> None:
-    """Draw blocks in the plane."""
-    if scene.plane is not None:
-        _draw_blocks(axes, scene.plane)
-
-
-def _quantity(value: float, unit: str) -> str:
+def quantity(value: float, unit: str) -> str:
     """Return a number with its unit and an SI prefix, ``5 MPa``."""
     factor, unit = engineering(abs(value), unit)
     return f"{factor * value:.3g} {unit}"
@@ -281,5 +275,4 @@ PAINTERS: Mapping[str, Callable[[Axes, Scene], None]] = {
     "block": _block,
     "column": _column,
     "rigid": _boxes,
-    "plane": _plane,
 }

@@ -10,10 +10,10 @@ from operator import itemgetter
 
 import numpy as np
 
-from validation.models.plane.tables import PlaneSection, Segment
 from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.report.texts import Texts
 from validation.scenes.keys import described, stated
+from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
 TEXTS = Texts(__file__)
@@ -27,28 +27,31 @@ Rows = list[tuple[str, str]]  # lines of the drawing, and the words beside each
 
 def drawing(scene: Scene, width: int | None) -> Iterator[str]:
     """Yield the model of a scene, drawn in text."""
-    across, rows = _rows_of(scene, width)
+    across, rows = TextHooks.of(scene).rows(scene, width)
     for art, words in rows:
         yield (art.ljust(across + BESIDE) + words).rstrip()
 
 
 def model_words(scene: Scene) -> list[str]:
     """Return what stands beside the drawing: loads, sizes, materials, contacts."""
-    return [words for _, words in _rows_of(scene, None)[1] if words]
+    return [words for _, words in TextHooks.of(scene).rows(scene, None)[1] if words]
 
 
-def _rows_of(scene: Scene, width: int | None) -> tuple[int, Rows]:
-    """Return how many characters the body is wide, and the drawing's lines with their words."""
-    if scene.rigid is not None:
-        return INSIDE, list(boxes(scene.rigid))
-    if scene.plane is not None:
-        return plane_blocks(scene.plane)
-    if scene.column is not None:
-        return INSIDE, list(column(scene))
-    return block(scene, width)
+class TextHooks(Hooks):
+    """How a kind of scenes is drawn in text."""
+
+    module = "words"
+
+    def rows(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
+        """Return how many characters the body is wide, and the drawing's lines with their words."""
+        if scene.rigid is not None:
+            return INSIDE, list(boxes(scene.rigid))
+        if scene.column is not None:
+            return INSIDE, list(column(scene))
+        return block(scene, width)
 
 
-def _across(slenderness: float) -> int:
+def across_of(slenderness: float) -> int:
     """Return the characters of a body's width; a tall one has fewer."""
     return INSIDE if slenderness >= 0.5 else max(NARROWEST, round(2 * INSIDE * slenderness))
 
@@ -58,8 +61,8 @@ def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
     b = scene.block
     wide, high = np.ptp(b.outline, axis=0)
     slenderness = wide / high
-    across = _across(slenderness)
-    height = _height(across, slenderness)
+    across = across_of(slenderness)
+    height = height_of(across, slenderness)
     c = scene.contact
     shape = "" if b.vertices is None else f", {len(b.vertices)} vertices"
     cut = "" if b.subdivide is None else TEXTS.text("cut", b)
@@ -75,7 +78,7 @@ def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
     if scene.load.pressure:
         mark = "v"
     arrows = " " + "   ".join([mark] * (across // 4 + 1)) if mark else ""
-    rows += [(f"  {arrows}", last), *_box_rows(across, height, beside)]
+    rows += [(f"  {arrows}", last), *box_rows(across, height, beside)]
     springs = ["rigid" if math.isinf(c.stiffness) else TEXTS.text("springs", c)]
     if c.shear_stiffness is not None:
         springs.append(TEXTS.text("shear", c))
@@ -87,14 +90,14 @@ def block(scene: Scene, width: int | None) -> tuple[int, Rows]:
     return across, rows
 
 
-def _box_rows(across: int, height: int, beside: list[str]) -> Rows:
+def box_rows(across: int, height: int, beside: list[str]) -> Rows:
     """Return a box of so many characters and rows, with words beside its first rows."""
     edge = (f"  +{'-' * across}+", "")
     inside = [(f"  |{' ' * across}|", text) for text in (*beside, *[""] * (height - len(beside)))]
     return [edge, *inside, edge]
 
 
-def _height(across: int, slenderness: float) -> int:
+def height_of(across: int, slenderness: float) -> int:
     """Return the rows of a body's inside; a row is as high as two columns are wide."""
     return min(max(3, round(across / slenderness / 2)), INSIDE // 2)
 
@@ -142,28 +145,6 @@ def column(scene: Scene) -> Iterator[tuple[str, str]]:
     yield f" {'=' * (INSIDE + 4)}", f"{layered_column.base} base{base_motion}"
 
 
-def plane_blocks(plane: PlaneSection) -> tuple[int, Rows]:
-    """Return the outline of blocks in the plane with what they are beside it."""
-    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-    wide, high = np.ptp(corners, axis=0)
-    slenderness = wide / high
-    across = _across(slenderness)
-    cut = TEXTS.text("plane-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
-    beside = [TEXTS.text("size", wide, high, cut), TEXTS.text("material", plane), TEXTS.text("glue", plane)]
-    if plane.clamp:
-        beside.append(f"clamped along {', '.join(_segment(clamp.edge) for clamp in plane.clamp)}")
-    if any(plane.stress):
-        beside.append(TEXTS.text("stress", plane))
-    if any(plane.gravity):
-        beside.append(TEXTS.text("gravity", plane))
-    beside += [TEXTS.text("traction", load, _segment(load.edge)) for load in plane.load]
-    return across, _box_rows(across, _height(across, slenderness), beside)
-
-
-def _segment(edge: Segment) -> str:
-    return " to ".join(f"({x:g}, {y:g})" for x, y in edge)
-
-
 def boxes(section: RigidSection) -> Iterator[tuple[str, str]]:
     """Yield rigid boxes on each other from the top down, equal neighbours as one, and the ground."""
     left = min(box.x - box.width / 2 for box in section.box)
@@ -176,7 +157,7 @@ def boxes(section: RigidSection) -> Iterator[tuple[str, str]]:
         across = max(NARROWEST, round(characters_per_metre * box.width))
         shift = min(INSIDE - across, round(characters_per_metre * (box.x - box.width / 2 - left)))
         beside = _box(box, last - first + 1)
-        rows = max(len(beside), _height(across, box.width / box.height) if len(section.box) == 1 else 1)
+        rows = max(len(beside), height_of(across, box.width / box.height) if len(section.box) == 1 else 1)
         margin = " " * (2 + shift)
         edge = f"{margin}+{'-' * across}+"
         yield edge, ""

@@ -2,7 +2,6 @@
 
 A block: c = sqrt(E' / rho), h / c, c dt / h, p / E, the modes w of the DDA block with w dt, and the limits of the step.
 A column: the same of each layer, its blocks a wavelength, and what the base reflects.
-Blocks in the plane: their number and mass, and the wave along the larger side.
 Rigid boxes: masses, slenderness, friction against slope and ground motion, landings, and contacts of given stiffness.
 """
 
@@ -22,7 +21,7 @@ from validation.advice.columns import column_alarms, limits
 from validation.advice.spectra import CONTACT, FIRST, FLIPPING, dda_modes, mode_damping, mode_names, stable_step
 from validation.errors import InputError
 from validation.models.rigid.tables import RigidSection
-from validation.scenes import outline
+from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.theory import boxes, landing, statics
@@ -69,10 +68,19 @@ def ranges(numbers_by_case: Sequence[Sequence[Number]]) -> Ranges:
 
 def numbers(scene: Scene) -> list[Number]:
     """Return the derived numbers of one case, all of them finite."""
-    of_a_block = (_block, _modes, _opening, _slope)
-    parts_of_kind = {"block": of_a_block, "column": (_column,), "rigid": (_rigid,), "plane": (_plane,)}
-    derived = itertools.chain(*(part(scene) for part in parts_of_kind[scene.kind.name]), _steps(scene))
+    derived = itertools.chain(NumberHooks.of(scene).numbers(scene), _steps(scene))
     return [number for number in derived if math.isfinite(number.value)]
+
+
+class NumberHooks(Hooks):
+    """The numbers that follow from a scene of a kind."""
+
+    module = "numbers"
+
+    def numbers(self, scene: Scene) -> Iterator[Number]:
+        """Yield the numbers of one case, steps aside."""
+        parts_of_kind = {"block": (_block, _modes, _opening, _slope), "column": (_column,), "rigid": (_rigid,)}
+        return itertools.chain(*(part(scene) for part in parts_of_kind[scene.kind.name]))
 
 
 def remarks(scene: Scene, derived: Sequence[Number]) -> list[str]:
@@ -155,23 +163,6 @@ def _steps(scene: Scene) -> Iterator[Number]:
     yield Number("n dt", t.duration, "s", "simulated time")
     if 0 < t.discount < 1:
         yield Number("-ln gg/dt", -math.log(t.discount) / t.step, "1/s", "rate at which gg reduces velocity")
-
-
-# ---- blocks in the plane --------------------------------------------------------------------------------------------
-
-
-def _plane(scene: Scene) -> Iterator[Number]:
-    plane = scene.plane
-    if plane is None:
-        return
-    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-    size = float(np.max(np.ptp(corners, axis=0)))
-    speed = math.sqrt(plane.young / plane.density)
-    area = sum(outline.area(polygon) for polygon in plane.polygons)
-    yield Number("blocks", len(plane.polygons), "", "blocks of one strain")
-    yield Number("m", plane.density * area, "kg", "mass of all blocks")
-    yield Number("c", speed, "m/s", "speed of a wave along a bar, sqrt(E/rho)")
-    yield Number("L/c", size / speed, "s", "travel time of the wave along the larger side")
 
 
 # ---- a column -----------------------------------------------------------------------------------------------------
