@@ -19,7 +19,6 @@ KNOWING = ("solvers/", "models/", "studies/", "suite/", "report/", "cli/")
 NAMED = {
     "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
-    "scenes/plain.py": {"layers"},  # those of a column
     "runs/units.py": {"bar"},  # the unit
     "advice/columns.py": {"dda"},  # whose run shows when a stack rests
     "engine/case.py": {"fem"},  # the section of a scene

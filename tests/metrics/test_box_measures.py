@@ -7,9 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.metrics import boxes as measures
+from validation.models.rigid import measures
+from validation.models.rigid.problems import box_problems
 from validation.models.rigid.tables import RigidSection
-from validation.problems.boxes import BoxQuantity, MeasuredQuantity, box_problems, measured
+from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
 
@@ -144,8 +145,8 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
 
 
 def test_an_error_is_beside_the_part_of_the_band_on_its_side() -> None:
-    one = BoxQuantity("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
-    assert [MeasuredQuantity(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
+    one = JudgedNumber("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
+    assert [MeasuredNumber(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
     assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
 
 

@@ -40,7 +40,7 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
     """
     instants = np.asarray(instants, float)
     still = np.zeros_like(instants)
-    if scene.column is not None and scene.stated_input is None:  # weight or velocities move the column
+    if "input" in scene.kind.optional(scene) and scene.stated_input is None:  # weight or velocities move the column
         return Motion(still, still, still, still)
     integral, value, derivative = _signal(scene.input)(instants)
     if scene.input.at == "top":

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self
 
+from validation.runs.columns import NO_OWN, OwnColumns
 from validation.scenes.keys import Section
 
 MODELS = "validation.models"
@@ -60,10 +61,19 @@ class Kind:
 
     name: str = ""  # of the folder, and of the table that says that a scene is of this kind
     words: str = ""  # after "a scene of"
+    feature: str = ""  # that its scenes have, by which solvers say that they take them; none of a block
     rank: float = 9.0  # place among the kinds; a scene without a table of any kind is of the first
     tables: ClassVar[Mapping[str, type[Section]]] = {}  # by name, that of the kind first
+    columns: OwnColumns = NO_OWN  # numbered columns of histories that only this kind has, without their numbers
+    greatest_number: int = 0  # of these
+    solvers: ClassVar[Mapping[str, str]] = {}  # that the folder brings, each as ``module:class``
     refuses: Collection[str] = ()  # common tables that do not go with it
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
+
+    def column_names(self) -> Iterator[str]:
+        """Yield the names of all columns that only scenes of this kind have, ``x_1`` and so on."""
+        for number in range(1, self.greatest_number + 1):
+            yield from (f"{part}_{number}" for part in self.columns)
 
     def run(self, table: object) -> dict[str, Any]:
         """Return keys of `run`, such as solvers and columns, for a scene that does not state them.
@@ -82,6 +92,10 @@ class Kind:
     def has_column(self, scene: Any, column: str) -> bool:
         """Whether a history of a scene may hold a column, beside those that solvers have of every scene."""
         return False
+
+    def motion_unread(self, scene: Any) -> str | None:
+        """Return None, or in words what of a scene keeps the motion of another program from being explained."""
+        return None
 
     def check(self, scene: Any) -> None:
         """Check tables against each other.

@@ -20,6 +20,7 @@ class Column(Kind):
 
     name = "column"
     words = "a column"
+    feature = "column"
     rank = 1.0
     tables: ClassVar = {"column": ColumnSection, "input": InputSection}
     fem_keys = ("elements", "degree")
@@ -34,6 +35,10 @@ class Column(Kind):
         column: ColumnSection = scene.column
         has_weight = column.law == "unilateral" and column.gravity > 0
         return ("input",) if has_weight or any(layer.velocity for layer in column.layer) else ()
+
+    def motion_unread(self, scene: Any) -> str | None:
+        """Return that a bonded column is judged by its wave."""
+        return "one with a bonded column" if scene.column.law == "bonded" else None
 
 
 KIND = Column

@@ -18,6 +18,7 @@ class BlocksInThePlane(Kind):
 
     name = "plane"
     words = "blocks in the plane"
+    feature = "blocks in the plane"
     rank = 3.0
     tables: ClassVar = {"plane": PlaneSection}
     fem_keys = ("elements", "degree")

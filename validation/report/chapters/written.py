@@ -282,16 +282,16 @@ class WrittenChapter:
         return [self.page.figure(name, panels, self.directory, **values)]
 
     def _picture(self, name: str) -> Blocks:
-        """Return drawings of the first case of each scene."""
+        """Return scenes as they are drawn, of the first case of each scene."""
         described = self.page.described("picture", name)
-        drawn = []
+        cut = []
         for scene, title in described["scenes"].items():
             for line in self.table.lines({"of": scene})[:1]:
                 if line.case is not None:
-                    drawn.append((title, line.case.scene))
-        if not drawn:
+                    cut.append((title, line.case.scene))
+        if not cut:
             return []
-        figure = scenes_figure(drawn, described["height"])
+        figure = scenes_figure(cut, described["height"])
         return [saved(figure, self.directory, described["file"], described["caption"])]
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:

@@ -172,7 +172,7 @@ class BarsEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""
-        if scene.column is None:
+        if "column" not in scene.tables():
             return "it takes columns only"
         if scene.column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for a bonded one'

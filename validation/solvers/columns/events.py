@@ -247,7 +247,7 @@ class ColumnEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
-        if scene.column is None:
+        if "column" not in scene.tables():
             return "it takes columns only"
         if scene.column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for bonded columns'

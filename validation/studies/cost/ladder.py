@@ -165,7 +165,7 @@ class Ladder:
         InputError
             The scene is of no block, its base moves, or the block turns or does not come down in time.
         """
-        if base.kind.name != "block":
+        if "block" not in base.tables():
             raise InputError("must have the table block", source=base.name, field="--scene", value=base.kind.name)
         fixed = {
             "run.geometry": "small",

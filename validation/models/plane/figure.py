@@ -7,17 +7,15 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import centroid, thickness
 from validation.models.plane.geometry import inside
 from validation.models.plane.motion import forces_at, outlines_at
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import PlaneSection, Segment
 from validation.report.figures.curves import GREY, style_of
-from validation.report.figures.drawing import FACE, LONGEST, DrawingHooks, Segment, Sketch, along, quantity
-from validation.report.figures.histories import Margins, axes_grid, house_style
+from validation.report.figures.drawing import FACE, LONGEST, FigureHooks, Sketch, along, quantity
+from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
 from validation.runs.history import Array, History
 from validation.scenes.scene import Scene
 
@@ -33,15 +31,15 @@ NAME_HEIGHT = 2.0  # mm
 MARGINS = Margins(11.0, 3.0, 5.0, 9.0, 5.0)  # mm, of frames
 
 
-class HOOKS(DrawingHooks):
+class HOOKS(FigureHooks):
     """How blocks in the plane are drawn."""
 
-    def draw(self, axes: Axes, scene: Scene) -> None:
+    def draw(self, axes: Any, scene: Scene) -> None:
         """Draw the blocks of a scene, what joins them and what drives them."""
         draw_plane(axes, scene.table(PlaneSection))
 
 
-def draw_plane(axes: Axes, plane: PlaneSection) -> None:
+def draw_plane(axes: Any, plane: PlaneSection) -> None:
     """Draw blocks, what joins them and what drives them."""
     sketch = Sketch(axes, plane.polygons)
     for clamp in plane.clamp:
@@ -88,11 +86,9 @@ def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
             sketch.arrow(centroid(block.vertices), vector, f"{speed:.3g} m/s")
 
 
-def _name_blocks(axes: Axes, assembly: Assembly) -> None:
+def _name_blocks(axes: Any, assembly: Assembly) -> None:
     """Write the name of each block into it, where it fits: below the arrows that begin or end at its centroid."""
-    figure = axes.get_figure()
-    figure_width = figure.get_figwidth() if isinstance(figure, Figure) else 1.0
-    millimetre = np.ptp(axes.get_xlim()) / (axes.get_position().width * figure_width * 25.4)  # in metres
+    millimetre = np.ptp(axes.get_xlim()) / size_of(axes)[0]  # of the drawing, in metres
     loaded = {load.block for load in assembly.loads if load.edge is None}
     for number, block in enumerate(assembly.blocks):
         x, y = centroid(block.vertices)
@@ -107,7 +103,7 @@ def _name_blocks(axes: Axes, assembly: Assembly) -> None:
 
 def frames_figure(
     plane: PlaneSection, history: History, steps: Sequence[int], solver: str, height: float = 40.0
-) -> Figure:
+) -> Any:
     """Draw blocks at some steps side by side to one scale, with contact forces as arrows in the solver's colour.
 
     The longest arrow of all frames is the largest force, which the first title states; axes are in metres.

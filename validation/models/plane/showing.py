@@ -1,20 +1,23 @@
-"""Blocks in the plane, drawn in text with what they are beside it."""
+"""Blocks in the plane before anything runs: drawn in text, masses, waves of glued ones, contacts of moving ones."""
 
 from __future__ import annotations
 
 import itertools
 import math
 import string
+from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.geometry import inside
-from validation.models.plane.joints import Segment
-from validation.models.plane.tables import PlaneSection
-from validation.report.scene.drawing import Rows, TextHooks, across_of, box_rows, height_of
+from validation.models.plane.tables import PlaneSection, Segment
+from validation.report.scene.drawing import body_height, body_width, box_rows
+from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
+from validation.runs.numbers import short
 from validation.scenes.keys import described, stated
+from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 
 TEXTS = Texts(__file__)
@@ -23,13 +26,33 @@ FIXED = "/"
 LETTERS = string.ascii_letters
 
 
-class HOOKS(TextHooks):
-    """How blocks in the plane are drawn in text."""
+class HOOKS(ShowingHooks):
+    """What is said of blocks in the plane."""
 
-    def rows(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
-        """Return how many characters the body is wide, and the drawing's lines with their words."""
+    no_data = frozenset({"fem.foundation"})
+
+    def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:
+        """Yield the number of blocks."""
+        if not {"plane.block", "plane.subdivide"} & {*varied}:
+            yield f"{len(scene.table(PlaneSection).polygons)} blocks"
+
+    def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
+        """Return the blocks in text, with what they are beside them."""
         plane = scene.table(PlaneSection)
         return glued_rows(plane) if plane.is_glued else moving_rows(plane)
+
+    def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
+        """Return the glue."""
+        plane = scenes[0].table(PlaneSection)
+        return f"Glue of {short(plane.glue)} E at each end of a shared edge." if plane.is_glued else ""
+
+    def first_frequency(self, scene: Scene, of_run: float | None) -> None:
+        """Return none: glued blocks are read at rest, and moving ones have no modes."""
+
+    def numbers(self, scene: Scene) -> Iterator[Number]:
+        """Yield the numbers of one case."""
+        plane = scene.table(PlaneSection)
+        return glued_numbers(plane) if plane.is_glued else moving_numbers(plane, scene.time.step)
 
 
 def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
@@ -37,7 +60,7 @@ def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
     corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
     wide, high = np.ptp(corners, axis=0)
     slenderness = wide / high
-    across = across_of(slenderness)
+    across = body_width(slenderness)
     cut = TEXTS.text("stated-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
     beside = [TEXTS.text("size", wide, high, cut), TEXTS.text("material", plane), TEXTS.text("glue", plane)]
     if plane.clamp:
@@ -47,7 +70,7 @@ def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
     if any(plane.gravity):
         beside.append(TEXTS.text("gravity", *plane.gravity))
     beside += [TEXTS.text("traction", *traction, _segment(edge)) for edge, traction in plane.tractions]
-    return across, box_rows(across, height_of(across, slenderness), beside)
+    return across, box_rows(across, body_height(across, slenderness), beside)
 
 
 def _segment(edge: Segment) -> str:
@@ -107,3 +130,33 @@ def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
         if block.spin or any(block.velocity):
             lines.append(TEXTS.text("velocity", block.name, *block.velocity, block.spin))
     return [line for line in lines if line]
+
+
+def glued_numbers(plane: PlaneSection) -> Iterator[Number]:
+    """Yield the numbers of glued blocks."""
+    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
+    size = float(np.max(np.ptp(corners, axis=0)))
+    speed = math.sqrt(plane.young / plane.density)
+    yield Number("blocks", len(plane.polygons), "", "blocks of one strain")
+    yield Number("m", plane.density * sum(map(area, plane.polygons)), "kg", "mass of all blocks")
+    yield Number("c", speed, "m/s", "speed of a wave along a bar, sqrt(E/rho)")
+    yield Number("L/c", size / speed, "s", "travel time of the wave along the larger side")
+
+
+def moving_numbers(plane: PlaneSection, step: float) -> Iterator[Number]:
+    """Yield the numbers of moving blocks: a corner of the lightest one on the stiffest spring is the fastest motion."""
+    assembly = plane.assembly
+    moving = [block for block in assembly.blocks if not block.fixed]
+    masses = [block.density * area(block.vertices) for block in moving]
+    yield Number("blocks", len(moving), "", "blocks that move")
+    yield Number("m", sum(masses), "kg", "mass of all that move")
+    springs = [*assembly.springs_of_pairs.values(), *([assembly.springs] if assembly.springs else [])]
+    if not springs or not masses:
+        return
+    stiffest = max(contact.stiffness for contact in springs)
+    if weight := sum(masses) * math.hypot(*plane.gravity):
+        softest = min(contact.stiffness for contact in springs)
+        yield Number("W/p", weight / softest, "m", "compression of one spring under the weight of all that moves")
+    frequency = math.sqrt(stiffest / min(masses))
+    yield Number("wc", frequency, "rad/s", "lightest block on the stiffest spring, sqrt(p/m)")
+    yield Number("wc dt", frequency * step, "", "times the step; a period takes 2 pi over this many steps")
