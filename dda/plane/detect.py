@@ -14,8 +14,7 @@ nowhere. The edge crossed last alone stops a corner that slides over a seam at t
 
 At that edge the other part's lowest corner is a contact if it lies over the edge; and, where the edge that this corner
 belongs to is nearly parallel, the other end of it and those ends of the first edge that lie strictly inside. So of
-corners that coincide one is taken. Cuts of a polygon that is not convex carry no contact, but tell when the other
-part came in through another part of the block.
+corners that coincide one is taken. Cuts of a polygon that is not convex, and corners into which it turns, carry none.
 
 Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
 `dda.march.compiled` takes them.
@@ -40,7 +39,6 @@ SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may
 NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
 DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
-CROSSED_EARLIER = 1e-6  # of a step, by which a cut must be crossed later than every edge
 NONE = -1
 TOO_MANY = -2  # contacts, for the records that were given
 TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
@@ -243,7 +241,6 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     edge = NONE
     point = NONE
     best = -math.inf
-    best_cut = -math.inf
     touching = NONE
     touching_point = NONE
     farthest = -math.inf
@@ -268,9 +265,8 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             else:
                 key = 2 + min(before, after) / size
             nearest = lowest_then if after < before else lowest
-            if sides.real[side] == 0:
-                best_cut = max(best_cut, key)
-                continue
+            if sides.real[side] == 0 or corners.convex[sides.corner[nearest]] == 0:
+                continue  # what lies there is another part of one of the two blocks
             if -SOFT * size < before <= same and after > farthest + same:
                 touching = side
                 touching_point = nearest
@@ -279,8 +275,6 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
                 best = key
                 edge = side
                 point = nearest
-    if edge >= 0 and best_cut > best + CROSSED_EARLIER:
-        edge = NONE
     count = int(detection.count[0])
     for choice in range(2):
         chosen = touching if choice == 0 else edge
