@@ -233,8 +233,10 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             deepest = DEEP * size  # they touched: how deep they are, they were pressed
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
-                length, along, gap = foot(corners.now, number, start, sides.end[edge])
-                if previous.normal[old] >= greatest and gap < -same and -same <= along <= length + same:
+                end = sides.end[edge]
+                length, along, gap = foot(corners.now, number, start, end)
+                over = is_over(corners, start, end, length, along, same, margin)
+                if previous.normal[old] >= greatest and gap < -same and over:
                     kept = edge
                     greatest = previous.normal[old]
         old = previous.chain[old]
@@ -302,6 +304,7 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
     parts = detection.parts
     contacts = detection.contacts
     same = SAME * detection.size
+    margin = REACH * detection.size
     # the other part's edge that is most opposite to this one
     prior = sides.prior[point]
     cosine = cosine_between(corners.now, sides, edge, point)
@@ -323,14 +326,15 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 against = opposite_edge
                 slack = -same
             start = sides.corner[against]
-            length, along, gap = foot(corners.now, corner, start, sides.end[against])
+            end = sides.end[against]
+            length, along, gap = foot(corners.now, corner, start, end)
             share = along / length
-            length_then, along_then, gap_then = foot(corners.then, corner, start, sides.end[against])
+            length_then, along_then, gap_then = foot(corners.then, corner, start, end)
             if late == 1:
                 length = length_then
                 along = along_then
-            is_over = -slack <= along <= length + slack
-            if corners.convex[corner] == 0 or min(gap, gap_then) >= REACH * detection.size or not is_over:
+            over = is_over(corners, start, end, length, along, slack, margin)
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not over:
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
@@ -342,13 +346,23 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 return TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
-            contacts.share[found] = min(max(share, 0.0), 1.0)
+            contacts.share[found] = share
             contacts.gap[found] = gap
             contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
     return found
+
+
+def is_over(corners: Corners, start: int, end: int, length: float, along: float, slack: float, margin: float) -> bool:
+    """Tell whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
+
+    A corner in a notch that is pressed into one of its edges has left the other by as much, and is still held by it.
+    """
+    before = slack if corners.convex[start] != 0 else margin
+    beyond = slack if corners.convex[end] != 0 else margin
+    return -before <= along <= length + beyond
 
 
 def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:

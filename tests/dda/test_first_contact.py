@@ -55,7 +55,7 @@ INSTANTS = {
         *((1, 3, 0, (2 + math.sqrt(2.43)) / 4),),
     ),
     "a bar swings onto a wall": (
-        *(BAR, (0, 0, 135, 0, 0, -3), 2 * SQUARE, (3.2, 0, 0, 0, 0, 0)),
+        *(BAR * (0.5, 1) + (1, 0), (0, 0, 135, 0, 0, -3), 2 * SQUARE, (3.2, 0, 0, 0, 0, 0)),
         *((math.radians(135) - math.atan(0.05) - math.acos(1.2 / math.sqrt(4.01))) / 3,),
         *((0, 1, 3, (2 - math.sqrt(4.01 - 1.44)) / 4),),
     ),
