@@ -13,7 +13,7 @@ from dda.model.material import Material
 from dda.model.polygon import Section
 from dda.one_block.contact_result import ContactResult
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
-from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
+from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.response import response
 from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
@@ -67,7 +67,6 @@ __all__ = [
     "modal_form",
     "modes",
     "named_scheme",
-    "one_step_operator",
     "opening_subdivided",
     "response",
     "roots",

@@ -44,7 +44,7 @@ class Solution(Run):
             name = DISPLACEMENT if DISPLACEMENT in self.history.columns else next(iter(self.history.columns))
             values = self.history.columns[name]
             peak = max(map(float, values), key=abs, default=0.0)
-            unit = unit_of(name, self.scene.rigid is not None)
+            unit = unit_of(name, self.scene.kind.columns)
             parts.append(f"peak {name} {peak:.4g} {unit}".rstrip())
         parts.append(f"{sum(self.seconds.values()):.2g} s")
         return f"<Solution: {', '.join(parts)}>"
@@ -82,7 +82,7 @@ class Solution(Run):
         from validation.report.figures.response import save_as
         from validation.report.figures.solution import solution_figure
 
-        figure = solution_figure(history, names, self.solver, self.scene.rigid is not None)
+        figure = solution_figure(history, names, self.solver, self.scene.kind.columns)
         if target is not None:
             save_as(figure, target)
         return figure

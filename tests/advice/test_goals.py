@@ -10,11 +10,12 @@ import pytest
 from conftest import typed
 
 from validation import damping, load_scene, solve
-from validation.advice import cuts, goals
-from validation.advice.cuts import of_beam, of_column
+from validation.advice import goals
+from validation.advice.cuts import CutHooks
 from validation.advice.goals import Recommendation, recommend
 from validation.advice.overview import overview
 from validation.errors import InputError
+from validation.models.plane import cuts
 from validation.scenes.scene import Scene, parse_assignment
 from validation.solvers.registry import get_solver
 from validation.theory import landing
@@ -128,19 +129,19 @@ def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
 
 def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
     scene = load_scene("waves-base").expand()[0]
-    _, offer = of_column(scene, 0.05, None)
+    _, offer = CutHooks.of(scene).recommended(scene, 0.05)
     case = with_settings(scene, offer, **{"time.steps": offer.steps, "run.columns": ["displacement"]})
     a, b = (solve(case, name).displacement for name in ("dda", "layers"))
     assert np.linalg.norm(a - b) / np.linalg.norm(b) == pytest.approx(offer.displacement_error, rel=1e-9)
     assert offer.is_reached and "50 Hz" in offer.condition
     with pytest.raises(InputError):
-        of_column(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
+        CutHooks.of(scene).recommended(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
 
 
 def test_a_beam_of_squares_that_lock_is_cut_into_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cuts, "MOST_BLOCKS", 100)  # squares lock in any number
     scene = load_scene("beams-squares").expand()[0].with_values({"plane.subdivide": [1, 8]})
-    sentence, offer = of_beam(scene, 0.5)
+    sentence, offer = CutHooks.of(scene).recommended(scene, 0.5)
     assert offer.settings["plane.pattern"] == "triangles" and offer.is_reached
     case = with_settings(scene, offer)
     euler = 1e4 * 8**3 / (3 * 1e9 / 12)  # and 2 % of shear

@@ -5,7 +5,7 @@ import pytest
 
 import validation.cli.entry  # noqa: F401 (declares the commands)
 from validation import load_scene, solve
-from validation.advice import wave_advice
+from validation.advice.hooks import AdviceHooks
 from validation.advice.wave_advice import advise_wave
 from validation.errors import InputError
 from validation.scenes.scene import Scene
@@ -75,7 +75,7 @@ def test_where_only_unstable_steps_would_do_the_advice_says_so() -> None:
 
 def test_joints_stay_between_the_advised_blocks() -> None:
     (blocks,) = advise_wave(JOINT, 250.0, 0.5).blocks
-    (layer,) = wave_advice.layers_of(JOINT)
+    (layer,) = AdviceHooks.of(JOINT).layers(JOINT)
     assert layer.joints == (12.0 / JOINT.column.height,)
     assert (blocks * layer.joints[0]).is_integer()
     assert advise_wave(JOINT.with_values({"column.joint": []}), 250.0, 0.5).blocks[0] <= blocks

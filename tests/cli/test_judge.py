@@ -15,7 +15,8 @@ from conftest import refused, typed
 from oracles.answers import answered
 from oracles.processes import answer_here
 
-from validation.problems import bands, boxes, packs
+from validation.models.rigid import problems as boxes
+from validation.problems import bands, packs
 from validation.problems.bands import standard
 from validation.problems.cause import Cause
 from validation.problems.data import PACK

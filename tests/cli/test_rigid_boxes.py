@@ -15,6 +15,7 @@ from validation.report.chapters.text import parameter_items
 from validation.report.figures.curves import HistoryPanel, common_range
 from validation.runs.columns import axis_of
 from validation.runs.history import History
+from validation.scenes.kinds import kinds
 from validation.scenes.scene import Scene, parse_scene
 
 SCENE = """
@@ -114,7 +115,7 @@ def test_a_scene_of_boxes_is_run_reported_and_drawn(rigid_file: Path, tmp_path: 
     [("x_1", "x, box 1", "m"), ("angle_12", "Rotation, box 12", "rad"), ("force_1", "Normal force, box 1", "N")],
 )
 def test_columns_of_boxes_have_words_and_units(column: str, words: str, unit: str) -> None:
-    assert axis_of(column, of_boxes=True) == (words, unit)
+    assert axis_of(column, kinds()["rigid"].columns) == (words, unit)
 
 
 def test_a_solution_says_its_peak_in_the_unit_of_the_column() -> None:
@@ -128,7 +129,7 @@ def test_a_solution_says_its_peak_in_the_unit_of_the_column() -> None:
 def test_rounding_of_a_box_at_rest_is_drawn_as_rest() -> None:
     time = np.linspace(0.01, 1, 100)
     history = History(time, {"angle_1": 1e-16 * np.sin(time)})
-    low, high = common_range([HistoryPanel("", {"mine": history}, {}, None, of_boxes=True)], "angle_1")
+    low, high = common_range([HistoryPanel("", {"mine": history}, {}, None, own=kinds()["rigid"].columns)], "angle_1")
     assert (low, high) == (-1e-9, 1e-9)
 
 

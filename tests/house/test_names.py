@@ -13,13 +13,12 @@ from faults.seams import Seam
 from validation.solvers.registry import BUILT_IN
 
 ROOT = Path(__file__).parents[2]
-KNOWING = ("solvers/", "studies/", "suite/", "report/", "cli/")  # rooms that declare, draw and tell named solvers
+# rooms that declare, draw and tell named solvers
+KNOWING = ("solvers/", "models/", "studies/", "suite/", "report/", "cli/")
 # What the other modules name today; it may only become less.
 NAMED = {
     "entry/siblings.py": {"dda"},  # the package
     "scenes/tables.py": {"dda", "fem", "bar"},  # what a scene runs where it does not say
-    "scenes/kinds.py": {"dda", "fem", "layers", "column-events", "rigid-exact"},  # the same of other kinds
-    "scenes/plain.py": {"layers"},  # those of a column
     "runs/units.py": {"bar"},  # the unit
     "advice/columns.py": {"dda"},  # whose run shows when a stack rests
     "engine/case.py": {"fem"},  # the section of a scene

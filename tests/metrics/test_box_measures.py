@@ -7,15 +7,17 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.metrics import boxes as measures
-from validation.problems.boxes import BoxQuantity, MeasuredQuantity, box_problems, boxes_of, measured
+from validation.models.rigid import measures
+from validation.models.rigid.problems import box_problems
+from validation.models.rigid.tables import RigidSection
+from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
 
 
 def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag: float = 0.0) -> History:
     """Step one box that stays flat by symplectic Euler: velocities, impulses at the velocities, positions."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     e = rigid.restitution if bounce is None else bounce
     step = scene.time.step / parts
@@ -81,7 +83,7 @@ def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts: int, step_shar
     """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
     scene = scene_of("bouncing", **{"time.steps": 25})
     history = flat_engine(scene, parts)
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     flying = measures.in_flight(history, rigid)
     assert flying[2:-2].all() and not flying[:2].any()
     energy = measures.energies(history, rigid)[flying]
@@ -100,7 +102,7 @@ def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
         scene = scene_of("bouncing", **{"rigid.box": [box], "time.steps": 200})
         history = solve(scene, "rigid-exact").history
         assert history is not None
-        rigid = boxes_of(scene)
+        rigid = scene.table(RigidSection)
         energy = measures.energies(history, rigid)[measures.in_flight(history, rigid)]
         np.testing.assert_allclose(energy, measures.first_energy(rigid), rtol=1e-9)
 
@@ -128,7 +130,7 @@ def test_a_loss_of_energy_is_seen_and_is_no_gain() -> None:
 def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing() -> None:
     values = {"time.steps": 100}
     history = flat_engine(scene_of("bouncing", **values), parts=16, drag=0.04)
-    assert np.sum(measures.in_flight(history, boxes_of(scene_of("bouncing")))) > 80
+    assert np.sum(measures.in_flight(history, scene_of("bouncing").table(RigidSection))) > 80
     found = numbers("bouncing", history, **values)
     assert found["energy in the end over that at the start"][1] == "FAIL"
     assert found["largest gain of energy"] == (0.0, "PASS")
@@ -143,8 +145,8 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
 
 
 def test_an_error_is_beside_the_part_of_the_band_on_its_side() -> None:
-    one = BoxQuantity("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
-    assert [MeasuredQuantity(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
+    one = JudgedNumber("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
+    assert [MeasuredNumber(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
     assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
 
 

@@ -13,6 +13,7 @@ import pytest
 from oracles.answers import QUICK, STATED, answered, stated
 
 from validation.errors import InputError
+from validation.models.rigid.tables import POSE
 from validation.problems import packs
 from validation.problems.answers import FILE, AnswerSet, folder_name, keep, read_sets, read_tables
 from validation.problems.bands import standard
@@ -21,7 +22,6 @@ from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
 from validation.problems.problem import problem, problem_of
 from validation.runs.defects import DefectsError
 from validation.runs.history import History
-from validation.scenes.rigid import POSE
 from validation.scenes.scene import load_scene
 from validation.suite.judging import judged_sets
 

@@ -7,7 +7,7 @@ import pytest
 
 from validation.errors import InputError
 from validation.gates.gate import Status
-from validation.problems import boxes
+from validation.models.rigid import problems as boxes
 from validation.problems.bands import LARGEST, band, changes, standard
 from validation.problems.judge import judge
 from validation.problems.problem import Problem, problem, problem_of

@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.problems.boxes import BoxQuantity, box_problems
+from validation.models.rigid.problems import box_problems
+from validation.problems.numbered import JudgedNumber
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.user import UserSolver
 
@@ -85,7 +86,7 @@ def numbers(text: str) -> list[float]:
     return [float(number) for number in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e-?\d+)?", text)]
 
 
-def half_band(quantity: BoxQuantity) -> float:
+def half_band(quantity: JudgedNumber) -> float:
     return max(quantity.high - quantity.exact, quantity.exact - quantity.low)
 
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from validation.gates.gate import Status
-from validation.problems.boxes import BoxCase, box_problems, measured
+from validation.models.rigid.problems import BoxCase, box_problems
+from validation.problems.numbered import measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.registry import get_solver

@@ -58,7 +58,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
     rows_by_scene: dict[str, dict[str, Row]] = {}
     for (name, solver), row in finished.rows.items():
         rows_by_scene.setdefault(name, {})[solver] = row
-    blocks = [scene for scene in listed if scene.kind == "block"]
+    blocks = [scene for scene in listed if "block" in scene.tables()]
     for scene in listed:
         rows = rows_by_scene.get(scene.name, {})
         if _stepped(rows):

@@ -16,18 +16,15 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from validation.advice.alarm import Alarm, alarm
-from validation.advice.spectra import dda_modes
-from validation.errors import InputError
+from validation.advice.hooks import AdviceHooks
 from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.theory import columns
 from validation.theory.stepping import Stepping
 
 AGREEMENT = "agreement by damping"
@@ -36,18 +33,8 @@ KINDS = (AGREEMENT, SAMPLED)
 REMOVED = 1 / 3  # of the amplitude in a period, by a damping ratio of 6.4 %: more than rock and structures are given
 FOLLOWED = 0.01  # damping ratio of the step that is named instead: a tenth of the amplitude is left after 37 periods
 SHOWN = 20  # steps a period that are named where fewer than two are taken
-LONG_RAMP = 40.0  # w times the ramp: a load that rises so slowly moves the mode by 2 / 40 = 5 % of its static part
 RESOLVED = 1e-3  # w dt at which every scheme has less than `FOLLOWED`
 TURNS = 50  # of w dt between which that step is looked for
-MOST_SUB_BLOCKS = 64  # whose modes are found here; those of more come from the run
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What a step must follow."""
-
-    name: str
-    frequency: float  # [rad/s]
 
 
 @dataclass(frozen=True)
@@ -81,7 +68,7 @@ def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Calla
     agreement
         Says which programs agree, and how well; called where there is an alarm.
     """
-    for motion in motions(scene, frequency):
+    for motion in AdviceHooks.of(scene).motions(scene, frequency):
         removal = removal_of(scene, motion.frequency)
         if removal.by_damping >= REMOVED:
             continue
@@ -116,9 +103,7 @@ def removal_of(scene: Scene, frequency: float) -> Removal:
     omega_dt = frequency * t.step
     steps = min(max(2 * math.pi / omega_dt, 2.0), t.steps)  # two at least: a history shows no swing in fewer
     pair = _scheme(scene).roots(omega_dt)[:2]
-    rate = 0.0
-    if scene.kind == "block":
-        rate = scene.damping.mass + scene.damping.stiffness * frequency**2
+    rate = scene.damping.mass + scene.damping.stiffness * frequency**2
     damped = math.sqrt(t.discount) * math.exp(-rate * t.step / 2)
     greatest = min(float(max(abs(pair))), 1.0)
     return Removal(omega_dt, 1 - greatest**steps, 1 - damped**steps)
@@ -140,52 +125,6 @@ def _followed(stepping: Stepping, beyond: float) -> float:
     turns = np.geomspace(RESOLVED, beyond, TURNS)
     first = next((i for i, turn in enumerate(turns) if excess(turn) >= 0), 0)
     return float(brentq(excess, turns[first - 1], turns[first], rtol=1e-6)) / beyond if first else 1.0
-
-
-# ---- what must be followed -----------------------------------------------------------------------------------------
-
-
-def motions(scene: Scene, frequency: float | None = None) -> Iterator[Motion]:
-    """Yield what the motion of a scene is made of: the first mode, and the wave that drives a column."""
-    if scene.kind == "block" and (_moves_as_a_whole(scene) or _is_driven_slowly(scene)):
-        return
-    if scene.kind in ("rigid", "plane"):  # no mode; and glued blocks, which are read at rest and not over time
-        return
-    first = first_frequency(scene) if frequency is None else frequency
-    if first is not None and math.isfinite(first) and first > 0 and not _is_ramped(scene, first):
-        yield Motion("the first mode", first)
-    driven = scene.stated_input
-    if scene.column is not None and driven is not None and driven.frequency is not None:
-        yield Motion("the input", 2 * math.pi * driven.frequency)
-
-
-def _moves_as_a_whole(scene: Scene) -> bool:
-    """Whether a block may slide or turn, which springs that ring below it do not change."""
-    load = scene.load
-    slides = scene.contact.friction is not None and (load.slope != 0 or load.base_motion is not None)
-    return slides or scene.run.geometry == "updated"
-
-
-def _is_driven_slowly(scene: Scene) -> bool:
-    """Whether nothing but a record moves the block: its samples hold no more than the step shows."""
-    load = scene.load
-    return load.base_motion is not None and load.gravity == 0 and load.pressure == 0 and not load.off_centre
-
-
-def _is_ramped(scene: Scene, frequency: float) -> bool:
-    """Whether the loads rise so slowly that they hardly move a mode."""
-    return scene.kind == "block" and scene.block.velocity == 0 and frequency * scene.load.ramp >= LONG_RAMP
-
-
-def first_frequency(scene: Scene) -> float | None:
-    """Return the frequency of the first mode [rad/s], contacts closed and sticking; None where there is none."""
-    if scene.column is not None:
-        return columns.first_frequency(scene.column)
-    if math.prod(scene.block.subdivide or (1,)) > MOST_SUB_BLOCKS:
-        return None
-    with suppress(InputError):  # DDA does not take the scene
-        return dda_modes(closed(scene))[0].frequency
-    return None
 
 
 def closed(scene: Scene) -> Scene:

@@ -24,10 +24,10 @@ import numpy as np
 
 from validation.advice.alarm import Alarm, alarm
 from validation.advice.contact_alarms import gained
+from validation.models.column.tables import MOST_HEIGHTS, ColumnSection, LayerSection
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.column import MOST_HEIGHTS, ColumnSection, LayerSection
 from validation.scenes.scene import Scene
 from validation.solvers.registry import solve
 from validation.theory import columns
@@ -65,9 +65,9 @@ class Rest:
 
 
 def limits(scene: Scene) -> ColumnLimits | None:
-    """Return what is known of a scene before it is run, None of another scene."""
-    column = scene.column
-    if column is None or column.law == "bonded":
+    """Return what is known of a scene before it is run, None where its contacts are bonded."""
+    column = scene.table(ColumnSection)
+    if column.law == "bonded":
         return None
     t = scene.time
     stepping = Stepping.of(scene)
@@ -86,9 +86,9 @@ def rest(scene: Scene) -> Rest | None:
     A start far from rest and contacts that open have no closed form. The run is doubled until its second half stays
     within the band: a flight or a swing that passes the band is shorter than what came before it.
     """
-    column = scene.column
+    column = scene.table(ColumnSection)
     stepping = Stepping.of(scene)
-    if column is None or not _comes_to_rest(scene) or (not stepping.damps and stepping.gg == 1):
+    if not _comes_to_rest(scene) or (not stepping.damps and stepping.gg == 1):
         return None
     middles, at_rest, settlement = _at_rest(column)
     if settlement == 0:
@@ -114,8 +114,8 @@ def rest(scene: Scene) -> Rest | None:
 
 def _comes_to_rest(scene: Scene) -> bool:
     """Whether a scene is a stack that its weight alone brings to rest from another state."""
-    column = scene.column
-    if column is None or column.law != "unilateral" or scene.stated_input is not None:
+    column = scene.table(ColumnSection)
+    if column.law != "unilateral" or scene.stated_input is not None:
         return False
     return column.base in ("rigid", "springs") and column.gravity > 0 and not column.settled
 
@@ -201,7 +201,7 @@ ADVICE = {
 def advised(scene: Scene, bound: ColumnLimits, resting: Rest | None = None) -> Iterator[str]:
     """Yield in words what to allow and to choose for a column whose contacts open or slip."""
     step = scene.time.step
-    slips = scene.column is not None and scene.column.law == "frictional"
+    slips = scene.table(ColumnSection).law == "frictional"
     if slips:
         yield ADVICE["slips"].format(most=2 * bound.contacts + 1)
     else:
@@ -226,9 +226,9 @@ def column_alarms(scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
     row
         Of the judged method's run; without one, what may happen is told.
     """
-    column = scene.column
+    column = scene.table(ColumnSection)
     bound = limits(scene)
-    if column is None or bound is None:
+    if bound is None:
         return
     t = scene.time
     if column.law == "frictional":

@@ -457,11 +457,12 @@ def recommendation(
 ) -> Recommendation:
     """Return a candidate as what is recommended, timed on the scene that it was run on."""
     case = scene.with_values(chosen.settings)
+    contact = scene.stated_contact
     steps = math.ceil(duration / case.time.step * (1 - 1e-9))
     return Recommendation(
         goal,
         condition,
-        chosen.settings | ({"contact.stiffness": scene.contact.stiffness} if scene.kind == "block" else {}),
+        chosen.settings | ({} if contact is None else {"contact.stiffness": contact.stiffness}),
         chosen.error <= error,
         chosen.displacement_error,
         chosen.force_error,

@@ -89,7 +89,7 @@ def scheme_of(scene: Scene) -> Stepping:
     InputError
         It is another, or the scene has rigid boxes, which nothing strains.
     """
-    if scene.rigid is not None:
+    if "damping" in scene.kind.refuses:
         features.refuse_column(scene, "advise rayleigh")
     stepping = Stepping.of(scene)
     if stepping.scheme != "newmark":

@@ -15,6 +15,7 @@ from validation.errors import InputError
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.threads import one_thread
 from validation.scenes import features
+from validation.scenes.keys import is_fulfilled
 from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Solver
 
@@ -165,7 +166,8 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
     """
     f = _checked(frequencies)
     check_scene(scene)
-    if scene.column is not None and scene.column.impedance is not None and not np.all(f > 0):
+    tables = scene.tables()
+    if is_fulfilled('column.base = "transmitting"', "", tables) and not np.all(f > 0):
         raise InputError(
             "must be above 0 on a transmitting base, which has no static stiffness",
             source=scene.name,
@@ -185,7 +187,7 @@ def response(scene: Scene, frequencies: ArrayLike, solver: str | Solver, exact: 
         columns = answer(f)
     except NotReported as error:
         raise InputError(f"solver {chosen.name}: {error}", source=scene.name) from None
-    base = scene.input.at == "base" if scene.column is not None else scene.load.base_motion is not None
+    base = any(is_fulfilled(stated, "", tables) for stated in ('input.at = "base"', "load.base_motion"))
     return Response(scene.name, chosen.name, exact, base, f, columns, answer)
 
 

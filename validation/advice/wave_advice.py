@@ -10,26 +10,24 @@ solver's own model of these blocks, whose glue, joints and contact springs may b
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
+from validation.advice.hooks import AdviceHooks, Layer
 from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
 from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
-from validation.errors import InputError
+from validation.models.column.tables import NEAR
 from validation.runs.history import Array, Complex
 from validation.runs.numbers import share_text
 from validation.scenes import features
-from validation.scenes.column import NEAR
 from validation.scenes.scene import Scene
-from validation.theory import statics
 from validation.theory.edges import edge
 from validation.theory.stepping import Stepping
-from validation.theory.waves import Column
 
 MOST_BLOCKS = 10_000_000
 ROUNDING = 1e-12  # of a loss, a delay or a damping ratio that is none
@@ -40,32 +38,6 @@ LIMITS = (
     Limit("--phase-error", "must be above 0 and below 1", below=1.0),
 )
 GRID = 400  # steps looked at, from 1e-6 periods to half a period
-
-
-@dataclass(frozen=True)
-class Layer:
-    """A part of the column: what it is made of, and how it is cut."""
-
-    thickness: float  # [m]
-    density: float  # [kg/m^3]
-    modulus: float  # of the wave [Pa]
-    blocks: int
-    glue: float | None = None  # of the springs between blocks [Pa/m]; None where they are perfectly bonded
-    joints: tuple[float, ...] = ()  # heights of joints over the layer's foot, as shares of its thickness [1]
-
-    @property
-    def height(self) -> float:
-        """Height of a block [m]."""
-        return self.thickness / self.blocks
-
-    @property
-    def speed(self) -> float:
-        """Speed of the wave [m/s]."""
-        return math.sqrt(self.modulus / self.density)
-
-    def wavenumber(self, w2: Complex) -> Complex:
-        """Return k [rad/m] of the blocks at squared frequencies."""
-        return Column(self.height, self.density, self.modulus, self.glue).wavenumber(w2)
 
 
 @dataclass(frozen=True)
@@ -173,7 +145,7 @@ def advise_wave(
     check_scene(scene)
     check_sampled(frequency, scene.time.step, "--fmax")
     features.refuse_damping(scene, "advise")
-    layers = layers_of(scene)
+    layers = AdviceHooks.of(scene).layers(scene)
     path = _WavePath(layers, frequency, 1.0)
     if wavelengths is not None:
         path = replace(path, times=wavelengths / path.wavelengths)
@@ -202,40 +174,6 @@ def advise_wave(
         _sentence(scene, path, present),
         _advised(scene, advised, limits_height, largest),
     )
-
-
-def layers_of(scene: Scene) -> tuple[Layer, ...]:
-    """Return the layers of a scene: those of its column, or its block, cut into rows of sub-blocks.
-
-    Raises
-    ------
-    InputError
-        The block is no upright rectangle.
-    """
-    if scene.column is not None:
-        c = scene.column
-        layers = []
-        foot = 0.0
-        for x in c.layer:
-            shares = [(joint.height - foot) / x.thickness for joint in c.joint]
-            inside = tuple(share for share in shares if 0 < share < 1)
-            layers.append(Layer(x.thickness, x.density, c.modulus(x), x.blocks, c.glue, inside))
-            foot += x.thickness
-        return tuple(layers)
-    b = scene.block
-    if b.rectangle is None:
-        raise InputError(
-            "must be an upright rectangle on its lower edge for a wave",
-            source=scene.name,
-            field="block",
-            value="another",
-        )
-    width, height = statics.size(scene)
-    modulus, _ = statics.moduli(scene)
-    if b.subdivide is None:
-        return (Layer(height, b.density, modulus, 1),)
-    columns, rows = b.subdivide
-    return (Layer(height, b.density, modulus, rows, 2 * b.glue_ratio * b.young * columns / width),)
 
 
 def _cut(path: _WavePath, allowed: float) -> tuple[_WavePath | None, str]:
@@ -327,25 +265,12 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     is_newmark = scheme.scheme == "newmark"
     if 2 * scheme.alpha >= scheme.delta >= 0.5 if is_newmark else scheme.scheme != "leapfrog":
         return lambda step: True
-    highest = highest_frequency(advised_scene(scene, [layer.blocks for layer in path.layers]))
+    highest = highest_frequency(AdviceHooks.of(scene).cut(scene, [layer.blocks for layer in path.layers]))
 
     def is_stable(step: float) -> bool:
         return step * highest <= scheme.at(step).critical_omega
 
     return is_stable
-
-
-def advised_scene(scene: Scene, counts: Sequence[int]) -> Scene:
-    """Return the scene with the advised blocks, a number for each layer."""
-    if scene.column is not None:
-        layers = [
-            layer.model_dump() | {"blocks": blocks} for layer, blocks in zip(scene.column.layer, counts, strict=True)
-        ]
-        return scene.with_values({"column.layer": layers})
-    if scene.block.subdivide is None and counts[0] == 1:
-        return scene
-    columns = 1 if scene.block.subdivide is None else scene.block.subdivide[0]
-    return scene.with_values({"block.subdivide": [columns, counts[0]]})
 
 
 def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:

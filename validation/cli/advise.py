@@ -62,7 +62,7 @@ def everything(
     words = _words(scene, assignments)
     case = one_case(scene, assignments)
     with _progress("advise", between_calls=True) as progress:
-        if case.kind == "block":
+        if "block" in case.tables():
             from validation.advice.goals import GOALS
             from validation.advice.overview import lines, overview
 
@@ -94,20 +94,19 @@ def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) 
     """Say into how many blocks to cut a column or a beam; of contacts that open or slip, what solving them takes."""
     from dataclasses import asdict
 
-    from validation.advice.columns import advised, column_alarms, limits, rest
-    from validation.advice.cuts import of_beam, of_column
+    from validation.advice.columns import advised, rest
+    from validation.advice.cuts import CutHooks
+    from validation.advice.hooks import AdviceHooks
     from validation.advice.overview import Overview, recommended
-    from validation.scenes.features import refuse_column
 
-    bounds = limits(case)
+    hooks = AdviceHooks.of(case)
+    bounds = hooks.contact_limits(case)
     if bounds is not None:
         resting = rest(case)
-        alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in column_alarms(case))
+        alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in hooks.alarms(case))
         data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
         return data, (*advised(case, bounds, resting), *alarms)
-    if case.kind == "rigid":
-        refuse_column(case, "advise")
-    sentence, offer = of_beam(case, error) if case.kind == "plane" else of_column(case, error, frequency)
+    sentence, offer = CutHooks.of(case).recommended(case, error, frequency)
     answer = Overview(case.name, error, (), None, (offer,), {})
     return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(source, answer))
 

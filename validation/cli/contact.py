@@ -46,11 +46,11 @@ def contact(
     open or slip it says the solves of the open-close iteration, and which to allow: advise contact columns-weight
     """
     from validation.advice import contact_page
-    from validation.advice.columns import limits
+    from validation.advice.hooks import AdviceHooks
     from validation.scenes import features
 
     case = one_case(scene, assignments)
-    bounds = limits(case)
+    bounds = AdviceHooks.of(case).contact_limits(case)
     if bounds is not None and penetration is not None:
         features.refuse_column(case, "advise contact with --penetration")
     scenes = contact_page.scenes(case) if bounds is None else contact_page.column_scenes(case)

@@ -8,14 +8,12 @@ energy, complementarity) is left to judge.
 
 from __future__ import annotations
 
-import math
-from typing import Any
-
 from validation.metrics.contact import SHIFT
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
+from validation.solvers.hooks import SolvingHooks
 
 
 def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:
@@ -23,15 +21,5 @@ def shadow(solver: Solver, scene: Scene, full: bool) -> History | None:
 
     The density is changed where p is infinite, and that of all layers of a column.
     """
-    run = solver.prepare(scene.with_values(shifted(scene)), full).run()
+    run = solver.prepare(scene.with_values(SolvingHooks.of(scene).scaled(scene, 1 + SHIFT)), full).run()
     return run.history if run.outcome is Outcome.COMPLETED else None
-
-
-def shifted(scene: Scene) -> dict[str, Any]:
-    """Return the key of a scene that is shifted, with its value."""
-    if scene.column is not None:
-        layers = scene.definition()["column"]["layer"]
-        return {"column.layer": [layer | {"density": layer["density"] * (1 + SHIFT)} for layer in layers]}
-    field = "contact.stiffness" if math.isfinite(scene.contact.stiffness) else "block.density"
-    section, _, key = field.partition(".")
-    return {field: getattr(getattr(scene, section), key) * (1 + SHIFT)}

@@ -19,14 +19,12 @@ from validation.problems.bands import standard
 from validation.problems.data import PACK, AnswersData
 from validation.problems.pack import ANSWERS_TEMPLATE, CHOSEN
 from validation.problems.packs import packs, stale
-from validation.problems.problem import Problem, problem
+from validation.problems.problem import Problem, ProblemHooks, problem
 from validation.problems.problem import names as names_of_pack
 from validation.problems.stated import Document, checked, read_document
-from validation.runs.columns import split, unit_of
 from validation.runs.defects import Defects, Place
 from validation.runs.files import atomic_directory
 from validation.runs.history import PRESSURE, History
-from validation.runs.units import ratios
 from validation.scenes.unknown import did_you_mean
 from validation.solvers.foreign import factor, force
 from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
@@ -36,7 +34,6 @@ EXPORT = "dda-validate export-pack DIR writes the problems, and files to fill in
 ABSENT = f"not_reported in {FILE} is for what the program cannot report"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
-FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
 Progress = Callable[[int, int, str], None]
 
@@ -369,14 +366,9 @@ def read_answer(
 
 def _differences(history: History, posed: Problem) -> Iterator[tuple[str, str]]:
     """Yield the columns that are the exact ones, or begin where they do, in another unit or of another sign."""
-    if posed.scene.rigid is not None:
-        for column, values in history.columns.items():
-            part, box = split(column)
-            start = posed.scene.rigid.starts[int(box) - 1][1] if part == "y" else 0.0
-            for ratio, other_unit in ratios(unit_of(column)).items():
-                if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
-                    rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
-                    yield column, rule
+    other_units = ProblemHooks.of(posed.scene).other_units(posed.scene, history)
+    if other_units is not None:
+        yield from other_units
         return
     exact = standard(posed).exact
     for column, values in history.columns.items():

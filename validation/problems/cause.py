@@ -153,7 +153,8 @@ def springs_alike(scene: Scene, number: str, factor: float) -> str:
 
 def _by_mass(scene: Scene, rate: float) -> str:
     """Return the density that does the same: of M x'' + K x = F from rest, without weight, it sets the rate of time."""
-    if scene.column is not None or scene.load.gravity or scene.block.velocity or scene.load.base_motion:
+    load = scene.stated_load
+    if load is None or load.gravity or scene.block.velocity or load.base_motion:
         return ""
     return f", as a density of {rate**-2:.4g} times the scene's does"
 
@@ -370,7 +371,8 @@ def _scheme_sentence(base: Base, scene: Scene) -> str:
     alpha, delta = base.alpha(t), base.delta(t)
     damps = delta > 0.5 or t.discount < 1
     why = "numerical damping" if damps else "the error of its step"
-    if scene.column is not None and features.RIGID_BLOCKS not in features.of(scene):
+    scene_features = features.of(scene)
+    if features.COLUMN in scene_features and features.RIGID_BLOCKS not in scene_features:
         why += ", and the error of so many blocks"
     if base.every == 1 and (alpha, delta) == (0.5, 1.0):
         return f"DDA's usual scheme, {base.words}, at this step: {why}"

@@ -11,7 +11,7 @@ from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.metrics.pairs import relative_l2
 from validation.problems.bands import Band, Standard, standard
-from validation.problems.boxes import measured
+from validation.problems.numbered import measured
 from validation.problems.problem import Problem
 from validation.problems.quantities import Quantity, quantities
 from validation.runs.history import Array, History

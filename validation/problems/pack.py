@@ -74,7 +74,7 @@ def problem_data(posed: Problem) -> ProblemData:
 
 def _column_data(posed: Problem, column: str) -> ColumnOfAnswer:
     """Return a column of an answer; with its band where it is judged by the exact motion."""
-    kind = kind_of(column, posed.scene.rigid is not None)
+    kind = kind_of(column, posed.scene.kind.columns)
     meaning = "" if kind is None else kind.meaning.format(n=split(column)[1])
     if posed.numbers:
         return ColumnOfAnswer(name=posed.named(column), meaning=meaning)

@@ -4,23 +4,32 @@ from __future__ import annotations
 
 import functools
 import math
-import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.problems import boxes
-from validation.problems.boxes import BoxQuantity
+from validation.diagnosis.numbers import Values
+from validation.problems.numbered import JudgedNumber
 from validation.problems.truth import Truth, truth_of
 from validation.runs.columns import unit_of
-from validation.runs.history import Array
+from validation.runs.history import Array, History
 from validation.runs.units import named
-from validation.scenes.rigid import POSE
+from validation.scenes.kinds import Hooks, kinds
 from validation.scenes.scene import Scene, load_scene
 
 ROUNDING = 1e-12  # relative, of the last instant
 PREFIX = "field-"  # of the scenes of problems
+
+
+@dataclass(frozen=True)
+class Number:
+    """A number that a column shows."""
+
+    name: str
+    unit: str
+    column: str
+    of: Callable[[Array, Array], float | None]  # of time [s] and column
 
 
 @dataclass(frozen=True)
@@ -40,7 +49,7 @@ class Problem:
     truth
         The exact motion; None where numbers are judged.
     numbers
-        What is measured on an answer of rigid boxes.
+        What is measured on an answer in place of the motion.
     """
 
     name: str
@@ -48,14 +57,12 @@ class Problem:
     title: str
     scene: Scene
     truth: Truth | None
-    numbers: tuple[BoxQuantity, ...] = ()
+    numbers: tuple[JudgedNumber, ...] = ()
 
     @property
     def columns(self) -> tuple[str, ...]:
-        """Columns that an answer has to hold: those of the scene, of boxes their positions."""
-        if self.scene.rigid is None:
-            return self.scene.run.columns
-        return tuple(f"{part}_{number}" for number in range(1, len(self.scene.rigid.box) + 1) for part in POSE)
+        """Columns that an answer has to hold: those of the scene, or what its numbers need."""
+        return ProblemHooks.of(self.scene).answer_columns(self.scene)
 
     @property
     def further_columns(self) -> tuple[str, ...]:
@@ -64,7 +71,7 @@ class Problem:
 
     def unit(self, column: str) -> str:
         """Return the SI unit of a column."""
-        return unit_of(column, self.scene.rigid is not None)
+        return unit_of(column, self.scene.kind.columns)
 
     def named(self, column: str) -> str:
         """Return a column as tables of answers name it, with its unit; a number of boxes has its own name."""
@@ -76,6 +83,42 @@ class Problem:
         steps = self.scene.time.step * np.arange(1.0, self.scene.time.steps + 1)
         until = math.inf if self.truth is None else self.truth.until
         return np.asarray(steps[steps <= until * (1 + ROUNDING)])
+
+
+class ProblemHooks(Hooks):
+    """What an answer to a kind of scene has to hold, and what it is judged by."""
+
+    module = "problems"
+
+    def problems(self) -> Iterator[tuple[str, Callable[[], Problem]]]:
+        """Yield name and maker of the problems of the pack that are answered by numbers."""
+        yield from ()
+
+    def answer_columns(self, scene: Scene) -> tuple[str, ...]:
+        """Return the columns that an answer has to hold."""
+        return scene.run.columns
+
+    def judged_numbers(self, scene: Scene) -> tuple[JudgedNumber, ...]:
+        """Return the numbers that answers to a scene are judged by; none where the exact motion judges.
+
+        Raises
+        ------
+        InputError
+            Nothing is known of the scene that could be measured.
+        """
+        return ()
+
+    def changes(self, scene: Scene) -> dict[str, Values] | None:
+        """Return what one per cent of each datum is, by its name; None where bodies and springs tell it."""
+        return None
+
+    def shown_numbers(self, scene: Scene) -> Iterator[Number] | None:
+        """Return the numbers that a motion is understood by, the first ones first; None of a block."""
+        return None
+
+    def other_units(self, scene: Scene, history: History) -> Iterator[tuple[str, str]] | None:
+        """Return columns that begin in another unit, each with a sentence; None where the exact motion shows it."""
+        return None
 
 
 ASKS = {
@@ -99,21 +142,12 @@ def _of_scene(name: str) -> Problem:
     return Problem(name, ASKS[name], scene.title or name, scene, truth_of(scene))
 
 
-def _of_boxes(name: str, posed: boxes.BoxProblem, case: boxes.BoxCase) -> Problem:
-    scene = posed.scene(case)
-    title = ": ".join(part for part in (scene.title, case.label) if part)
-    return Problem(name, boxes.ASKS[posed.name], title, scene, None, (case.quantities or posed.quantities)(scene))
-
-
 @functools.cache
 def _makers() -> dict[str, Callable[[], Problem]]:
-    """Return what makes each problem of the pack, by name; a case of rigid boxes has its values in the name."""
+    """Return what makes each problem of the pack, by name; a case that numbers judge has its values in the name."""
     makers: dict[str, Callable[[], Problem]] = {name: functools.partial(_of_scene, name) for name in ASKS}
-    for posed in boxes.box_problems().values():
-        for case in posed.cases:
-            label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower()).strip("-")
-            name = "-".join(part for part in (posed.name, label) if part)
-            makers[name] = functools.partial(_of_boxes, name, posed, case)
+    for kind in kinds():
+        makers.update(ProblemHooks.of_kind(kind).problems())
     return makers
 
 
@@ -145,6 +179,5 @@ def problem_of(scene: Scene) -> Problem:
     """
     asks = f"The scene {scene.name}."
     title = scene.title or scene.name
-    if scene.rigid is None:
-        return Problem(scene.name, asks, title, scene, truth_of(scene))
-    return Problem(scene.name, asks, title, scene, None, boxes.problem_posed(scene).quantities(scene))
+    numbers = ProblemHooks.of(scene).judged_numbers(scene)
+    return Problem(scene.name, asks, title, scene, None if numbers else truth_of(scene), numbers)

@@ -10,8 +10,7 @@ import numpy as np
 
 from validation.metrics.poles import poles
 from validation.metrics.values import largest
-from validation.problems.problem import Problem
-from validation.runs.columns import split, unit_of
+from validation.problems.problem import Number, Problem, ProblemHooks
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -37,16 +36,6 @@ class Quantity:
     band: tuple[float, float] | None = None
 
 
-@dataclass(frozen=True)
-class Number:
-    """A number that a column shows."""
-
-    name: str
-    unit: str
-    column: str
-    of: Callable[[Array, Array], float | None]  # of time [s] and column
-
-
 def quantities(problem: Problem, history: History, exact: History) -> tuple[Quantity, ...]:
     """Return at most `MOST` numbers of an answer, over the rows of the exact motion."""
     rows, shown_numbers = len(exact.time), []
@@ -65,12 +54,9 @@ def quantities(problem: Problem, history: History, exact: History) -> tuple[Quan
 def numbers(scene: Scene) -> Iterator[Number]:
     """Yield the numbers that a kind of scene is understood by, the first ones first."""
     scene_features = features.of(scene)
-    if scene.column is not None and scene.column.law != "bonded":
-        yield from _numbers_of_contacts(scene)
-    elif scene.column is not None:
-        for name in scene.run.columns:
-            yield Number(f"arrival of {name}", "s", name, arrival)
-            yield Number(f"largest {name}", "m", name, lambda t, x: largest(x))
+    own = ProblemHooks.of(scene).shown_numbers(scene)
+    if own is not None:
+        yield from own
     elif features.ROTATION in scene_features:
         yield Number("rotation at the last judged step", "rad", ROTATION, last)
         yield Number("instant of landing", "s", ROTATION, _landing(scene))
@@ -86,18 +72,6 @@ def numbers(scene: Scene) -> Iterator[Number]:
         yield Number("frequency", "Hz", DISPLACEMENT, lambda t, x: _pole(t, x)[0])
         yield Number("damping ratio", "1", DISPLACEMENT, lambda t, x: _pole(t, x)[1])
         yield Number("displacement in the end", "m", DISPLACEMENT, last)
-
-
-def _numbers_of_contacts(scene: Scene) -> Iterator[Number]:
-    """Yield what the contacts of a column come to: what opened or slipped in the end, the largest force, the motion."""
-    for part in ("slip", "gap", "force", "velocity", DISPLACEMENT):
-        for name in reversed(scene.run.columns):  # the uppermost first, which moves most
-            if split(name)[0] != part:
-                continue
-            if part == "force":
-                yield Number(f"largest {name}", unit_of(name), name, lambda t, x: largest(x))
-            else:
-                yield Number(f"{name} in the end", unit_of(name), name, last)
 
 
 def last(time: Array, x: Array) -> float:

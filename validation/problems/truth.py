@@ -12,6 +12,7 @@ from validation.errors import InputError
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
+from validation.scenes.kinds import kinds
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, get_solver
@@ -54,11 +55,10 @@ def truth_of(scene: Scene) -> Truth:
     if features.ROTATION in features.of(scene):
         return Truth(ROCKING, _comes_down(scene))
     reasons = []
+    of_kinds = {kind.feature for kind in kinds().values() if kind.feature}
     for name in by_role(_role(scene)):
         solver = get_solver(name)
-        kinds = {features.COLUMN: "column", features.RIGID_BOXES: "rigid"}
-        kinds_taken = {kind for feature, kind in kinds.items() if feature in solver.handles} or {"block"}
-        if scene.kind not in kinds_taken:
+        if scene.kind.feature not in (of_kinds & solver.handles or {""}):
             continue  # what it says of the other kind of scene tells nobody anything
         reason = solver.refusal(scene)
         if reason is None:
@@ -76,7 +76,7 @@ def _role(scene: Scene) -> Role:
         The scene asks for both.
     """
     scene_features = {*features.of(scene)}
-    if features.RIGID_BLOCKS in scene_features and scene.column is not None:
+    if features.RIGID_BLOCKS in scene_features:
         elastic = [layer.young for layer in scene.column.layer if math.isfinite(layer.young)]
         if elastic:
             raise InputError(

@@ -1,13 +1,14 @@
 """The columns of histories: their words, units and meanings, in the order in which they are drawn.
 
-``displacement_2`` is the displacement at the second height of a column, ``x_1`` a position of the first rigid box;
-``force_1`` is a stress in a column and a force on a box.
+``displacement_2`` is the displacement at the second height of a column. A kind of scene may have numbered columns of
+its own, ``x_1``: `own`, by their words without the number.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 
 from validation.runs.history import DISPLACEMENT, PRESSURE
 
@@ -18,7 +19,8 @@ class ColumnKind:
 
     unit: str
     meaning: str
-    words: str = ""
+    words: str = ""  # in a figure, with {n}
+    rounding: float = 0.0  # size below which its values are those of a body at rest
 
 
 OF_BLOCK: Mapping[str, ColumnKind] = {
@@ -49,12 +51,8 @@ AT_HEIGHT: Mapping[str, ColumnKind] = {
         "m", "slip of the contact at the {n}. of the heights since t = 0, of what is above it against what is below"
     ),
 }
-OF_BOX: Mapping[str, ColumnKind] = {
-    "x": ColumnKind("m", "position of the centre of box {n} along the ground, down a slope positive", "x"),
-    "y": ColumnKind("m", "height of the centre of box {n} above the ground, normal to it", "y"),
-    "angle": ColumnKind("rad", "angle of box {n}, counter-clockwise positive, not folded", "Rotation"),
-    "force": ColumnKind("N", "normal force between box {n} and what it stands on", "Normal force"),
-}
+OwnColumns = Mapping[str, ColumnKind]
+NO_OWN: OwnColumns = MappingProxyType({})
 
 
 def split(column: str) -> tuple[str, str]:
@@ -63,27 +61,26 @@ def split(column: str) -> tuple[str, str]:
     return (plain, number) if number.isdigit() else (column, "")
 
 
-def kind_of(column: str, of_boxes: bool = False) -> ColumnKind | None:
+def kind_of(column: str, own: OwnColumns = NO_OWN) -> ColumnKind | None:
     """Return what a column holds, None where it is of no kind that is known."""
     plain, number = split(column)
     if not number:
         return OF_BLOCK.get(plain)
-    kinds = (OF_BOX, AT_HEIGHT) if of_boxes else (AT_HEIGHT, OF_BOX)
-    return next((kind[plain] for kind in kinds if plain in kind), None)
+    return own.get(plain) or AT_HEIGHT.get(plain)
 
 
-def unit_of(column: str, of_boxes: bool = False) -> str:
+def unit_of(column: str, own: OwnColumns = NO_OWN) -> str:
     """Return the unit of a column; nothing where it is not known."""
-    kind = kind_of(column, of_boxes)
+    kind = kind_of(column, own)
     return "" if kind is None else kind.unit
 
 
-def axis_of(column: str, of_boxes: bool = False) -> tuple[str, str]:
+def axis_of(column: str, own: OwnColumns = NO_OWN) -> tuple[str, str]:
     """Return what a column is, in words, and its unit."""
-    kind = kind_of(column, of_boxes)
-    if of_boxes and kind is not None and kind.words:
-        return f"{kind.words}, box {split(column)[1]}", kind.unit
-    return column.replace("_", " ").capitalize(), unit_of(column, of_boxes)
+    kind = kind_of(column, own)
+    if kind is not None and kind.words:
+        return kind.words.format(n=split(column)[1]), kind.unit
+    return column.replace("_", " ").capitalize(), unit_of(column, own)
 
 
 def rank(column: str) -> tuple[int, int]:

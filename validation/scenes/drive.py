@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
+from validation.models.column.tables import InputSection
 from validation.runs.history import Array
-from validation.scenes.column import InputSection
 from validation.scenes.record import read_columns
 from validation.scenes.scene import Scene
 
@@ -40,7 +40,7 @@ def motion_at(scene: Scene, instants: Array) -> Motion:
     """
     instants = np.asarray(instants, float)
     still = np.zeros_like(instants)
-    if scene.column is not None and scene.stated_input is None:  # weight or velocities move the column
+    if "input" in scene.kind.optional(scene) and scene.stated_input is None:  # weight or velocities move the column
         return Motion(still, still, still, still)
     integral, value, derivative = _signal(scene.input)(instants)
     if scene.input.at == "top":

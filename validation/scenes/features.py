@@ -191,7 +191,7 @@ def refuse_column(scene: Scene, what: str) -> None:
     InputError
         The scene has a column.
     """
-    if scene.kind != "block":
+    if "block" not in scene.tables():
         raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
 
 
@@ -203,9 +203,6 @@ def refuse_bonded_column(scene: Scene, what: str) -> None:
     InputError
         The scene has such a column, or rigid boxes.
     """
-    if scene.rigid is not None or (scene.column is not None and not OF_MOVING_COLUMN & {*of(scene)}):
-        raise InputError(
-            f"{what} takes scenes of a block, or of a column whose contacts open or slip, only",
-            source=scene.name,
-            value="one with a bonded column" if scene.rigid is None else scene.kind_in_words,
-        )
+    if refused := scene.kind.motion_unread(scene):
+        rule = f"{what} takes scenes of a block, or of a column whose contacts open or slip, only"
+        raise InputError(rule, source=scene.name, value=refused)

@@ -22,8 +22,8 @@ from pydantic import Field, ValidationError, model_validator
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
-from validation.scenes.kinds import SceneTables
 from validation.scenes.places import scene_files
+from validation.scenes.tabled import SceneTables
 from validation.scenes.tables import GateSection, RunSection, TimeSection
 from validation.scenes.unknown import clip, refuse_unknown_keys
 
@@ -59,48 +59,11 @@ class Scene(SceneTables):
         if count > MOST_CASES:
             raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
         check_needs(self.tables())
-        # check lengths of load and springs against those of the block
-        width = self.fem.patch_width
-        if width is not None and width > self.block.base_length / 2:
-            rule = f"must be at most half the base length {self.block.base_length / 2:g}"
-            raise ValueError(f"fem: patch_width {rule}, got {width:g}")
-        if self.kind == "block" and self.load.eccentricity:
-            half = math.dist(*self.block.edge(self.block.top)) / 2
-            if abs(self.load.eccentricity) >= half:
-                raise ValueError(
-                    f"load: eccentricity must be below half the top edge {half:g}, got {self.load.eccentricity:g}"
-                )
-        if self.rigid is not None:
-            for name in self.run.columns:
-                if name not in self.rigid.columns:
-                    raise ValueError(f"run: columns must be among {', '.join(self.rigid.columns)}, got {name!r}")
+        self.kind.check(self)
         if self.damping.kinetic == "adaptive" and self.time.discount != 1:
             raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
-        if self.kind == "block" and self.contact.rule not in ("newmark", "augmented"):
-            self._check_rule()
         self._check_files()
         return self
-
-    def _check_rule(self) -> None:
-        """Check the scheme of a rule that steps the block by its own one."""
-        rule = f"rule = {self.contact.rule!r}"
-        t = self.time
-        if t.scheme != "newmark":
-            raise ValueError(f'contact: {rule} goes with time.scheme = "newmark", got "{t.scheme}"')
-        numbers = f"got {t.alpha:g} and {t.delta:g}"
-        if self.contact.rule == "impact":
-            # Moreau and Jean's theta is this family of Newmark's; 1e-12 is for numbers of few digits.
-            theta = (t.delta + 0.5) / 2
-            if not (0.5 <= theta <= 1 and math.isclose(t.alpha, theta**2, rel_tol=1e-12)):
-                raise ValueError(
-                    f"contact: {rule} steps by Moreau's theta: time.alpha must be theta^2 and time.delta "
-                    f"2 theta - 1/2 with theta from 1/2 to 1, such as 0.25 and 0.5, {numbers}"
-                )
-        elif (t.alpha, t.delta) != (0.25, 0.5):
-            raise ValueError(
-                f"contact: {rule} steps the block by average acceleration: time.alpha must be 0.25 and time.delta "
-                f"0.5, {numbers}"
-            )
 
     def _check_files(self) -> None:
         for field in FILES:

@@ -10,7 +10,7 @@ from typing import Any
 
 from validation.errors import InputError
 from validation.scenes.keys import Section, keys_of
-from validation.scenes.kinds import OF_KIND
+from validation.scenes.kinds import kinds
 
 OTHER_NAMES: dict[str, list[str]] = tomllib.loads(
     Path(__file__).with_name("other_names.toml").read_text(encoding="utf-8")
@@ -40,10 +40,12 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     unknown = list(_unknown_keys(data, "", "", tables))
     if not unknown:
         return
-    kind = next((kind for kind in ("rigid", "column") if kind in data), "block")
-    absent = [place for other, places in OF_KIND.items() if other != kind for place in places]
-    if kind == "rigid":
-        absent += set(tables) - {"rigid", "time", "run", "gate"}
+    every = list(kinds().values())
+    kind = next((kind for kind in reversed(every) if kind.name in data), every[0])
+    absent = [*kind.refuses]
+    for other in every:
+        if other is not kind:
+            absent += other.tables
     known_keys = []
     for place, table in tables.items():
         if place and place.partition(".")[0] not in absent:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -12,8 +13,8 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
+from validation.scenes.kinds import kinds
 from validation.scenes.record import base_direction, base_record
-from validation.scenes.rigid import MOST_BOXES, columns_of_boxes
 from validation.scenes.scene import Scene
 from validation.solvers import translation
 from validation.solvers.blocks.closed import block_of, load_of
@@ -21,6 +22,7 @@ from validation.solvers.blocks.opening import OPENING, PASSES, OpeningBlock, Ope
 from validation.solvers.blocks.rotation import AREA, COMPATIBLE, RollingBlock
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.hooks import SolvingHooks
 from validation.solvers.translation import check_columns, naming, to_run
 
 
@@ -167,15 +169,13 @@ class DDA(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        of_boxes = columns_of_boxes(MOST_BOXES)
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS, *of_boxes)
+        of_kinds = itertools.chain(*(kind.column_names() for kind in kinds().values()))
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS, *of_kinds)
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why a band and friction do not go together, or what boxes DDA has no blocks for."""
-        if scene.rigid is not None:
-            from validation.solvers.boxes import refusal
-
-            return refusal(scene.rigid)
+        if reason := SolvingHooks.of(scene).refusal(scene, self.name):
+            return reason
         consistent = {features.FRICTION, features.DEAD_BAND} <= set(features.of(scene)) and (
             scene.contact.rules == "consistent"
         )
@@ -187,18 +187,8 @@ class DDA(Solver):
         """Build the block, on locked springs or on corners that open, or its sub-blocks."""
         if reason := self.applicable(scene):
             raise InputError(f"solver {self.name}: {reason}", source=scene.name)
-        if scene.column is not None:
-            from validation.solvers.columns.blocks import BlockColumn, ContactColumn
-
-            return (BlockColumn if scene.column.law == "bonded" else ContactColumn)(scene, scheme_of(scene))
-        if scene.rigid is not None:
-            from validation.solvers.boxes import BlocksOfBoxes
-
-            return BlocksOfBoxes(scene, scene.rigid, scheme_of(scene))
-        if scene.plane is not None:
-            from validation.solvers.plane.blocks import PlaneBlocks
-
-            return PlaneBlocks(scene, scene.plane, scheme_of(scene))
+        if (prepared := SolvingHooks.of(scene).build(scene, self.name, full)) is not None:
+            return prepared
         if features.ROTATION in features.of(scene):
             return RollingBlock(scene, scheme_of(scene), base_motion(scene))
         if features.UNILATERAL in features.of(scene):

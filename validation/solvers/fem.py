@@ -19,6 +19,7 @@ from validation.scenes.scene import Scene
 from validation.solvers import opened, translation
 from validation.solvers.columns.names import AT_HEIGHTS
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
+from validation.solvers.hooks import SolvingHooks
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_modes, to_run
 
 if TYPE_CHECKING:
@@ -293,13 +294,6 @@ class FiniteElements(Solver):
 
     def build(self, scene: Scene, full: bool) -> Prepared:
         """Mesh the block, on locked springs or on a base that opens."""
-        if scene.column is not None:
-            from validation.solvers.columns.elements import ContactLineColumn, LineColumn
-
-            kind = LineColumn if scene.column.law == "bonded" else ContactLineColumn
-            return kind(scene, scheme_of(scene))
-        if scene.plane is not None:
-            from validation.solvers.plane.mesh import PlaneMesh
-
-            return PlaneMesh(scene, scene.plane, scheme_of(scene))
+        if (prepared := SolvingHooks.of(scene).build(scene, self.name, full)) is not None:
+            return prepared
         return OpeningMesh(scene, full) if features.UNILATERAL in features.of(scene) else Mesh(scene, full)

@@ -25,7 +25,6 @@ from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
-from validation.scenes.plane import PlaneSection
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
@@ -39,7 +38,7 @@ from validation.solvers.fem import (
     points_and_cells_of_file,
     problem_of,
 )
-from validation.solvers.plane.mesh import body_of, elastic_model, points_and_cells
+from validation.solvers.hooks import SolvingHooks
 from validation.solvers.processes.worker import ask
 from validation.solvers.translation import check_columns, switches_between_steps, tension_note
 
@@ -222,10 +221,10 @@ class RemoteMesh(Prepared):
         self.solver = solver
         self.scene = scene
 
-    def highest_frequency(self) -> float:
+    def highest_frequency(self) -> float | None:
         """Return the largest frequency of the same mesh, every point of its base closed [rad/s]."""
-        if self.scene.plane is not None:
-            return elastic_model(self.scene, self.scene.plane).highest_frequency()
+        if (prepared := SolvingHooks.of(self.scene).build(self.scene, "fem", True)) is not None:
+            return prepared.highest_frequency()
         problem = problem_of(self.scene)
         if features.UNILATERAL in features.of(self.scene):
             return opening_frequency(problem, full=True)
@@ -283,8 +282,8 @@ def request(scene: Scene) -> dict[str, Any]:
         "start": t.start,
         "steps": t.steps,
     }
-    if scene.plane is not None:
-        return stepping | request_of_plane(scene, scene.plane)
+    if (body := SolvingHooks.of(scene).request(scene)) is not None:
+        return stepping | body
     problem = problem_of(scene)
     c = scene.contact
     record = base_record(scene)
@@ -312,21 +311,6 @@ def request(scene: Scene) -> dict[str, Any]:
         "solve_limit": c.solve_limit,
         "cut": c.cut,
         **(_mesh_of(scene) if problem.mesh else {}),
-    }
-
-
-def request_of_plane(scene: Scene, plane: PlaneSection) -> dict[str, Any]:
-    """Return blocks in the plane as the worker takes them: the elastic body of their outline on the mesh of `fem`."""
-    body = body_of(scene, plane)
-    points, cells = points_and_cells(body)
-    names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
-    observe = plane.observe
-    return {
-        **{name: getattr(body, name) for name in names},
-        "points": points,
-        "cells": cells,
-        "observe": {"place": observe.place, "direction": observe.direction, "less": observe.less},
-        "moved": None,
     }
 
 

@@ -67,7 +67,7 @@ class Outside(Solver):
         """
         instants = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         names = (*scene.run.columns, *OF_BLOCK)
-        units = {name: unit_of(name, scene.rigid is not None) for name in names}
+        units = {name: unit_of(name, scene.kind.columns) for name in names}
         defects = Defects()
         table = read_table(path, instants, units, scene.run.columns[:1], defects, text=text)
         defects.check()

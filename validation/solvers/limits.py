@@ -7,9 +7,15 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from validation.errors import InputError
-from validation.scenes import features
+from validation.scenes.keys import is_fulfilled
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
+
+DASHPOTS = {  # what tables state to what then grows where delta is below 1/2
+    'column.base = "transmitting"': "a transmitting base",
+    "contact.has_dashpots": "contact dashpots",
+    "damping.present": "damping tables",
+}
 
 
 def check_step(scene: Scene, highest_frequency: Callable[[], float | None]) -> None:
@@ -80,13 +86,8 @@ def check_dampers(scene: Scene) -> None:
     t = scene.time
     if t.scheme != "newmark" or t.delta >= 0.5 or t.allow_unstable:
         return
-    dashpots = None
-    if scene.column is not None and scene.column.impedance is not None:
-        dashpots = "a transmitting base"
-    elif features.DASHPOTS in features.of(scene):
-        dashpots = "contact dashpots"
-    elif features.DAMPING in features.of(scene):
-        dashpots = "damping tables"
+    tables = scene.tables()
+    dashpots = next((words for stated, words in DASHPOTS.items() if is_fulfilled(stated, "", tables)), None)
     if dashpots is None:
         return
     raise InputError(

@@ -8,9 +8,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
+from validation.solvers.hooks import SolvingHooks
 
 NUMBER = 8  # bytes
 COPIES = 4  # of a history while it is made, observed, checked and kept
@@ -21,61 +21,16 @@ MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
 
 
+def sparse(unknowns: float) -> float:
+    """Return the bytes of assembly and factor of sparse matrices in the plane."""
+    return unknowns * (UNKNOWN + FILL * math.log2(unknowns))
+
+
 def needed(scene: Scene, solver: Solver) -> tuple[float, str]:
     """Return the bytes that a run will take, and the field that they come from most."""
     steps = float(scene.time.steps) * NUMBER * (COPIES * (len(scene.run.columns) + 1) + MODES)
-    if scene.rigid is not None:
-        model = 0.0, "rigid.box"
-    elif scene.plane is not None:
-        model = _plane(scene.plane, scene.fem.per_side if solver.meshed else 0)
-    elif scene.column is not None:
-        model = _column(scene, solver)
-    else:
-        model = _mesh(scene, solver) if solver.meshed else _blocks(scene)
+    model = SolvingHooks.of(scene).memory(scene, solver)
     return steps + model[0], "time.steps" if steps > model[0] else model[1]
-
-
-def _mesh(scene: Scene, solver: Solver) -> tuple[float, str]:
-    """Bytes of assembly and factor of the mesh."""
-    if scene.fem.mesh is not None:
-        try:
-            return 200.0 * Path(scene.fem.mesh).stat().st_size, "fem.mesh"
-        except OSError:
-            return 0.0, "fem.mesh"  # that it cannot be read is said where it is read
-    along = float(scene.fem.degree) * scene.fem.per_side + 1
-    uniform = scene.block.poisson == 0 and scene.block.vertices is None and scene.fem.foundation == "distributed"
-    saves = solver.saves and scene.fem.cells == "quadrilaterals"
-    unknowns = 2 * along if saves and uniform and scene.load.centred else 2 * along * along
-    return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
-
-
-def _plane(plane: PlaneSection, elements: int) -> tuple[float, str]:
-    """Bytes of the sparse matrices of blocks and joints, or of a mesh of elements along the shorter side."""
-    blocks = len(plane.polygons)
-    if not elements:
-        unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
-        field = "plane.block" if plane.rectangle is None else "plane.subdivide"
-        return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), field
-    sides = plane.rectangle or (1.0, 1.0)
-    cells = elements**2 * max(sides) / min(sides) * len(plane.outline_polygons)
-    unknowns = 8.0 * cells
-    return unknowns * (UNKNOWN + FILL * math.log2(unknowns)), "fem.elements"
-
-
-def _column(scene: Scene, solver: Solver) -> tuple[float, str]:
-    """Bytes of the few diagonals of a column's matrices."""
-    blocks = float(sum(layer.blocks for layer in scene.column.layer)) if scene.column else 0.0
-    unknowns_of_block = scene.fem.degree * scene.fem.per_side if solver.meshed else 2
-    return UNKNOWN * blocks * unknowns_of_block, "column.layer"
-
-
-def _blocks(scene: Scene) -> tuple[float, str]:
-    """Bytes of the dense matrices of sub-blocks."""
-    if scene.block.subdivide is None:
-        return 0.0, "time.steps"
-    along, up = scene.block.subdivide
-    unknowns = 6.0 * along * up * (2 if scene.block.pattern == "triangles" else 1)
-    return COPIES * NUMBER * unknowns**2, "block.subdivide"
 
 
 def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:

@@ -15,6 +15,7 @@ from validation.errors import InputError
 from validation.runs.run import Run
 from validation.runs.threads import one_thread
 from validation.scenes import features
+from validation.scenes.kinds import kinds
 from validation.scenes.scene import Scene
 from validation.solvers import memory
 from validation.solvers.contract import Role, Solver
@@ -32,7 +33,7 @@ BUILT_IN = {
     "bar-events": "validation.solvers.events:BarEvents",
     "column-events": "validation.solvers.columns.events:ColumnEvents",
     "bars-events": "validation.solvers.columns.bars:BarsEvents",
-    "rigid-exact": "validation.solvers.rigid.boxes:RigidExact",
+    **{name: target for kind in kinds().values() for name, target in kind.solvers.items()},
     "dda-60": "validation.solvers.sixty_digits.adapters:PreciseDDA",
 }
 USERS = "validation.solvers.user:UserSolver"

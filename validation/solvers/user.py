@@ -26,13 +26,10 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import NotReported, Prepared, Solver
 from validation.solvers.dda import DDA
 from validation.solvers.foreign import one_line, run_of_columns
+from validation.solvers.hooks import SolvingHooks
 from validation.solvers.processes.worker import WorkerDied, WorkerHangs, ask
 
 TIME_LIMIT = 300.0  # s a case beside the steps
-# s of a case of rigid boxes, of which a study has dozens, and s more for each second of motion, box and halving of the
-# step: the slowest program takes some 0.5 s for it on a core of its own
-BOXES_LIMIT = 60.0
-BOXES_ALLOWANCE = 3.0
 VARIABLE = "DDA_VALIDATE_TIMEOUT"  # sets another
 # s for each step of the scene: an interpreted loop over a small dense system takes some 0.03 ms a step, a code that
 # writes a line of text some 0.1 ms; on a busy machine ten times that, with as much again in hand.
@@ -179,8 +176,5 @@ class UserScene(Prepared):
 
 def base_limit(scene: Scene | None = None) -> float:
     """Return the time limit of a case beside what its steps add [s]."""
-    usual = TIME_LIMIT
-    if scene is not None and scene.rigid is not None:
-        motion = scene.time.duration * len(scene.rigid.box) * 2**scene.rigid.refine
-        usual = BOXES_LIMIT + BOXES_ALLOWANCE * motion
-    return float(os.environ.get(VARIABLE, usual))
+    usual = None if scene is None else SolvingHooks.of(scene).time_limit(scene)
+    return float(os.environ.get(VARIABLE, TIME_LIMIT if usual is None else usual))

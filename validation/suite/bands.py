@@ -17,7 +17,6 @@ from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
 from validation.runs.numbers import significant
 from validation.runs.row import Value
-from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene, load_scene
 
 Band = tuple[float, float]
@@ -35,13 +34,6 @@ def cases(*names: str) -> Iterator[Scene]:
 @cache
 def _expanded(name: str) -> tuple[Scene, ...]:
     return load_scene(name).expand()
-
-
-def plane_of(case: Scene) -> PlaneSection:
-    """Return the blocks in the plane of a case."""
-    if case.plane is None:
-        raise ValueError(f"{case.name}: must be of blocks in the plane")
-    return case.plane
 
 
 def about(value: float, half: float) -> Band:

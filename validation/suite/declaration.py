@@ -8,7 +8,7 @@ from itertools import chain
 
 from validation.advice.alarms import alarms
 from validation.advice.budget import budgets
-from validation.advice.columns import column_alarms
+from validation.advice.hooks import AdviceHooks
 from validation.engine import study
 from validation.engine.finished import Finished
 from validation.runs.records import Annotations
@@ -21,12 +21,12 @@ from validation.solvers.registry import role
 def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
     judged = {scene: row for (scene, solver), row in finished.rows.items() if role(solver) is Role.JUDGED}
-    blocks = [scene for scene in scenes if scene.kind == "block"]
-    columns = [scene for scene in scenes if scene.name in judged and scene.kind == "column"]
-    of_columns = (column_alarms(scene, judged[scene.name]) for scene in columns)
+    run_scenes = [scene for scene in scenes if scene.name in judged]
+    of_contacts = (AdviceHooks.of(scene).alarms(scene, judged[scene.name]) for scene in run_scenes)
+    blocks = (scene for scene in run_scenes if "block" in scene.tables())
     return {
-        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_columns))],
-        "budgets": list(budgets(scene for scene in blocks if scene.name in judged and features.linear(scene))),
+        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_contacts))],
+        "budgets": list(budgets(filter(features.linear, blocks))),
     }
 
 

@@ -17,8 +17,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from validation.models.column.tables import NEAR, ColumnSection
 from validation.runs.history import Array
-from validation.scenes.column import NEAR, ColumnSection
 from validation.theory.stepping import Stepping
 
 GRID = 33  # values of w at which a root is looked for at once

@@ -103,8 +103,9 @@ class Stepping:
         t = scene.time
         if t.scheme != "newmark":
             return cls.named(t.scheme, t.step, t.discount, t.rho_inf, t.split, t.gg_rate)
-        implicit = scene.kind == "block" and scene.contact.rule == "implicit"
-        return cls(t.step, t.alpha, t.delta, t.discount, t.gg_rate, implicit)
+        contact = scene.stated_contact
+        is_implicit = contact is not None and contact.rule == "implicit"
+        return cls(t.step, t.alpha, t.delta, t.discount, t.gg_rate, is_implicit)
 
     @classmethod
     def named(

@@ -7,8 +7,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from validation.models.rigid.tables import FORCE, POSE, BoxSection, RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers.foreign import PROGRAM_STEPS
 

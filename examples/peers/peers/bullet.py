@@ -12,8 +12,8 @@ from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_e
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import check_plane
+from validation.models.rigid.tables import BoxSection
 from validation.runs.history import Array
-from validation.scenes.rigid import BoxSection
 from validation.scenes.scene import Scene
 
 RECIPE = "pip install pybullet==3.2.7"

@@ -13,7 +13,7 @@ from peers.columns import NEAR, Stretch, stretches
 
 if TYPE_CHECKING:
     from peers.calculix_deck import Array
-    from validation.scenes.column import ColumnSection
+    from validation.models.column.tables import ColumnSection
     from validation.scenes.drive import Motion
     from validation.scenes.scene import Scene
 

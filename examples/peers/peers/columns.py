@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from validation.scenes.column import ColumnSection, LayerSection
+    from validation.models.column.tables import ColumnSection, LayerSection
 
 NEAR = 1e-9  # of a column's height, within which two levels are one
 

@@ -11,8 +11,8 @@ from typing import Any
 from peers.boxes import Pose, boxes_of, record, spring_step, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
 RECIPE = "pip install drake==1.51.1"

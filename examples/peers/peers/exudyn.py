@@ -16,8 +16,8 @@ import numpy as np
 from peers.boxes import Pose, boxes_of, corners_of, named, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
 PACKAGE = "exudyn"

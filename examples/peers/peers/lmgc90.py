@@ -21,8 +21,8 @@ import numpy as np
 from peers.boxes import Pose, boxes_of, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
 PACKAGE = "compas_lmgc90"

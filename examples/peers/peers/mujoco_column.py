@@ -8,8 +8,8 @@ import numpy as np
 
 from peers.columns import NEAR, Stretch, stretches
 from peers.mujoco_model import MOST, Columns, March, Network, Spring, parts, refuse
+from validation.models.column.tables import ColumnSection
 from validation.runs.history import Array
-from validation.scenes.column import ColumnSection
 from validation.scenes.drive import Motion, motion_at
 from validation.scenes.scene import Scene
 

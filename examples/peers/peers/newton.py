@@ -16,8 +16,8 @@ from peers.boxes import Pose, boxes_of, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
+from validation.models.rigid.tables import RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene
 
 RECIPE = "pip install newton==1.8.0 warp-lang==1.19.0"

@@ -52,7 +52,7 @@ class Histories:
         NotImplementedError
             There is none, or the histories are not here.
         """
-        if scene.kind != "block":
+        if scene.kind.name != "block":
             raise NotImplementedError(f"a history is data: those here are of a block, not of {scene.kind_in_words}")
         file, beside, otherwise = ON_SLOPE if scene.load.gravity else PRESSED
         own = load_scene(directory() / beside).with_values(otherwise)

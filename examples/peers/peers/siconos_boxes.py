@@ -15,8 +15,8 @@ import numpy as np
 
 from peers.boxes import boxes_of, named, substeps
 from peers.siconos import corner_on_ground, times
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.history import Array
-from validation.scenes.rigid import BoxSection, RigidSection
 from validation.scenes.scene import Scene
 
 DEFAULT_STEP = 5e-4  # s: h of MechanicsHdf5Runner.run, for Siconos' kernel has no default

@@ -14,9 +14,9 @@ from validation.problems.cause import Cause
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.figures.curves import EXACT, HistoryPanel
+from validation.runs.columns import split
 from validation.runs.history import History
 from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
-from validation.scenes.rigid import POSE
 from validation.scenes.tables import TimeSection
 from validation.suite.judging import JudgedAnswer
 
@@ -188,8 +188,8 @@ def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
     columns = answer.history.columns
     if answer.standard is not None:
         return [(name, answer.standard.exact) for name in columns if name in answer.standard.exact.columns]
-    top = len(answer.problem.columns) // len(POSE)
-    poses = [f"{part}_{top}" for part in POSE]
+    _, uppermost = split(answer.problem.columns[-1])
+    poses = [name for name in answer.problem.columns if split(name)[1] == uppermost]
     return [(name, None) for name in poses if name in columns and np.ptp(columns[name]) >= STILL]
 
 

@@ -139,7 +139,7 @@ def scene_section(
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
     scene = group.cases[0].scene
-    if features.linear(scene) and scene.kind == "block":
+    if features.linear(scene) and "block" in scene.tables():
         table = damping_table(group)
         blocks += [table] if table.rows else []
     return blocks
@@ -455,4 +455,4 @@ def _panel(case: CaseResults, columns: Sequence[str], window: float, without: Se
             static[column] = numbers[0]
     finer = {solver: history.between for solver, history in drawn.items() if history.between is not None}
     title = "" if case.label == AS_STATED else case.label
-    return HistoryPanel(title, drawn, static, reference, finer=finer, of_boxes=case.scene.rigid is not None)
+    return HistoryPanel(title, drawn, static, reference, finer=finer, own=case.scene.kind.columns)

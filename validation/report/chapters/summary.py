@@ -18,10 +18,10 @@ from validation.report.blocks import Beside, Blocks, Heading, Paragraph, Points,
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, varied_fields
 from validation.report.chapters.described import CaseValue, Description
-from validation.report.chapters.text import AS_STATED, parameters, span
+from validation.report.chapters.text import AS_STATED, parameters, range_of, span
 from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
-from validation.report.scene.page import SCHEMES
+from validation.report.scene.hooks import SCHEMES, ShowingHooks
 from validation.runs.numbers import DASH, bounded, percent, plain, short
 from validation.runs.row import Row
 from validation.runs.run import Outcome
@@ -29,7 +29,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, role
-from validation.theory import columns, spectra
+from validation.theory import spectra
 from validation.theory.stepping import Stepping
 
 PAGE = Description(__file__)
@@ -92,30 +92,27 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
 def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
     """Yield time step, springs and discount of the cases, and what they do."""
     scenes = [case.scene for case in group.cases]
-    if scenes[0].rigid is not None:  # whose programs choose for themselves
+    hooks = ShowingHooks.of(scenes[0])
+    if not hooks.chooses_steps:
         return
     yield "Time step.", _step(group, scenes)
-    if springs := _springs(group, scenes[0]):
+    if springs := hooks.springs(scenes, group.numbers):
         yield "Springs.", springs
     yield "Discount.", _discount(scenes)
 
 
-def _range(values: Iterable[float]) -> str:
-    """Return the range of some numbers, ``0.1 to 0.5``."""
-    ordered = sorted(values)
-    return " to ".join(dict.fromkeys(short(value, 3) for value in (ordered[0], ordered[-1])))
-
-
 def _step(group: CaseGroup, scenes: Sequence[Scene]) -> str:
     steps = [scene.time.step for scene in scenes]
-    step = f"{_range(steps)}\u00a0s" if max(steps) >= 1 else f"{_range(1e3 * step for step in steps)}\u00a0ms"
+    step = f"{range_of(steps)}\u00a0s" if max(steps) >= 1 else f"{range_of(1e3 * step for step in steps)}\u00a0ms"
     parts = [f"dt = {step}, {', '.join(dict.fromkeys(map(_scheme, scenes)))}"]
-    turns = [w * case.scene.time.step for case in group.cases if (w := frequency_of(case)) is not None]
+    frequencies = [_frequency_of(case) for case in group.cases]
+    turns = [w * scene.time.step for w, scene in zip(frequencies, scenes, strict=True) if w is not None]
     if turns:
-        parts.append(f"a period of the first mode takes {_range(2 * math.pi / turn for turn in turns)} steps")
-    if scenes[0].kind == "block" and scenes[0].block.rectangle is not None:
+        parts.append(f"a period of the first mode takes {range_of(2 * math.pi / turn for turn in turns)} steps")
+    block = scenes[0].stated_block
+    if block is not None and block.rectangle is not None:
         crossings = [spectra.transit(scene) / scene.time.step for scene in scenes]
-        parts.append(f"a wave crosses the block in {_range(crossings)}")
+        parts.append(f"a wave crosses the block in {range_of(crossings)}")
     return f"{'; '.join(parts)}."
 
 
@@ -124,34 +121,15 @@ def _scheme(scene: Scene) -> str:
     return SCHEMES.get((t.alpha, t.delta), "Newmark") if t.scheme == "newmark" else Stepping.of(scene).name
 
 
-def _springs(group: CaseGroup, first: Scene) -> str:
-    if first.plane is not None:
-        return f"Glue of {short(first.plane.glue)} E at each end of a shared edge."
-    if first.column is not None:
-        stiffness = first.column.stiffness or first.column.glue
-        return "" if stiffness is None else f"{short(stiffness)} Pa/m between the blocks, {first.column.law}."
-    ratios = [case.scene.contact.stiffness / case.scene.block.young for case in group.cases]
-    text = f"p = {_range(ratios)} E, {'carrying no tension' if first.contact.law == 'unilateral' else 'locked'}"
-    depths = group.numbers("dda", "contact.penetration")
-    if depths:
-        text += f"; at most {_range(1e3 * depth for depth in depths)}\u00a0mm of penetration"
-    left = group.numbers("dda", "contact.spectral_radius")
-    if left:
-        text += f". A step leaves {_range(100 * share for share in left)}\u00a0% of the contact mode"
-        if min(group.numbers("dda", "contact.least_root"), default=0.0) < 0:
-            text += ", which changes sign from step to step"
-    return f"{text}."
-
-
 def _discount(scenes: Sequence[Scene]) -> str:
     if scenes[0].time.gg_rate is not None:
-        return f"Held as a rate of {_range(scene.time.gg_rate or 0.0 for scene in scenes)} 1/s, whatever the step."
+        return f"Held as a rate of {range_of(scene.time.gg_rate or 0.0 for scene in scenes)} 1/s, whatever the step."
     discounts = [scene.time.discount for scene in scenes]
     if min(discounts) == 1:
         return "gg = 1: none."
     rates = [-math.log(scene.time.discount) / scene.time.step for scene in scenes if scene.time.discount > 0]
-    at_steps = f", at these steps a rate of {_range(rates)} 1/s" if rates else ""
-    return f"gg = {_range(discounts)} per step{at_steps}."
+    at_steps = f", at these steps a rate of {range_of(rates)} 1/s" if rates else ""
+    return f"gg = {range_of(discounts)} per step{at_steps}."
 
 
 # ---- error and cost -------------------------------------------------------------------------------------------------
@@ -212,7 +190,8 @@ def reference_note(group: CaseGroup, case: CaseResults) -> str:
         more = " (continuum in run.solvers tells it)" if features.linear(case.scene) else ""
         return f"The reference, {reference}, is exact in space and {same}{more}."
     mesh = ""
-    if case.scene.kind == "block" and case.scene.block.rectangle is not None:
+    block = case.scene.stated_block
+    if block is not None and block.rectangle is not None:
         shift = spectra.mesh_frequency_error(case.scene)
         mesh = f", as a bar its mesh is off by {bounded(shift, percent(shift))} in the first frequency,"
     return f"The reference, {reference}, is the finest mesh that was run{mesh} and {same}."
@@ -255,18 +234,16 @@ def fastest(group: CaseGroup) -> Blocks:
 # ---- damping --------------------------------------------------------------------------------------------------------
 
 
-def frequency_of(case: CaseResults) -> float | None:
-    """Return the first natural frequency of DDA's model [rad/s], of a row or of a column's closed form."""
-    if case.scene.column is not None:
-        return columns.first_frequency(case.scene.column)
-    return None if case.scene.plane is not None else case.number("dda", "mode1.frequency")  # glued: read at rest
+def _frequency_of(case: CaseResults) -> float | None:
+    """Return the first natural frequency of DDA's model [rad/s]."""
+    return ShowingHooks.of(case.scene).first_frequency(case.scene, case.number("dda", "mode1.frequency"))
 
 
 def damping_blocks(group: CaseGroup) -> Blocks:
     """Return what damping removed: of the first mode where there is one, else of the energy of a contact that opens."""
     modes = []
     for case in group.cases[:MOST_CASES]:
-        frequency = frequency_of(case)
+        frequency = _frequency_of(case)
         if frequency is not None:
             modes.append((case, mode_damping(case, frequency)))
     if modes and not any(abs(part or 0.0) > NONE for _, parts in modes for part in parts.values()):

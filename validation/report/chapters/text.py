@@ -7,12 +7,12 @@ from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
+from validation.report.scene.hooks import ShowingHooks
 from validation.runs.case_name import CaseName
 from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
 from validation.runs.text import shown
-from validation.scenes.keys import keys_of, stated, stated_value
-from validation.scenes.rigid import RigidSection
+from validation.scenes.keys import keys_of, stated_value
 from validation.scenes.scene import Scene
 
 AS_STATED = "as stated"  # label of a case without swept values
@@ -21,7 +21,7 @@ _MEANINGS = (
     ("not reported", "n. r.", "not reported, the solver does not give what the metric needs."),
 )
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
-_UNITS = str.maketrans("23", "²³")
+UNITS = str.maketrans("23", "²³")
 
 PLACES = (  # tables of data
     "block", "column", "rigid", "plane", "contact", "load", "input", "damping", "time", "fem", "run",
@@ -30,7 +30,6 @@ ALWAYS = {  # data that are written at their defaults too
     "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
 }  # fmt: skip
 NEWMARK_DATA = {"time.alpha", "time.delta"}  # which no other scheme has
-OF_STEPPING = {*NEWMARK_DATA, "time.start", "fem.degree", "fem.foundation"}  # which rigid boxes have none of
 NO_DATA = {  # edges of a polygon, the cut of which the blocks are counted, and what is run
     "block.base", "block.top", "plane.subdivide", "run.solvers", "run.columns",
 }  # fmt: skip
@@ -54,6 +53,12 @@ def span(values: Sequence[float]) -> str:
     low = percent(min(values))
     high = percent(max(values))
     return low if low == high else f"{low} to {high}"
+
+
+def range_of(values: Iterable[float]) -> str:
+    """Return the range of some numbers, ``0.1 to 0.5``."""
+    ordered = sorted(values)
+    return " to ".join(dict.fromkeys(short(value, 3) for value in (ordered[0], ordered[-1])))
 
 
 def cell(value: Value) -> str:
@@ -98,7 +103,7 @@ def _symbol(scene: Scene, field: str) -> tuple[str, str]:
     table = scene.tables().get(place)
     for key_name, _, key in keys_of(type(table)) if table is not None else ():
         if key_name == name:
-            unit = "°" if key.unit == "deg" else f" {key.unit.translate(_UNITS)}".rstrip()
+            unit = "°" if key.unit == "deg" else f" {key.unit.translate(UNITS)}".rstrip()
             unit = "E" if field == "block.glue_ratio" else unit
             return name.replace("_", " ") if key.symbol is None else key.symbol, unit
     return name.replace("_", " "), ""
@@ -121,47 +126,26 @@ def parameters(scene: Scene, varied: set[str]) -> str:
 
 def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
     """Return the data of a scene by their symbols or keys, without the fields that vary between its cases."""
-    items = []
-    if scene.column is not None and "column.layer" not in varied:
-        blocks = sum(layer.blocks for layer in scene.column.layer)
-        items.append(f"{blocks} blocks, layers: {len(scene.column.layer)}, {scene.column.height:g} m high")
-    if scene.rigid is not None and "rigid.box" not in varied:
-        items += _boxes(scene.rigid)
-    if scene.plane is not None and not {"plane.block", "plane.subdivide"} & varied:
-        items.append(f"{len(scene.plane.polygons)} blocks")
-    without = OF_STEPPING if scene.rigid is not None else {"fem.foundation"} if scene.plane is not None else set()
+    hooks = ShowingHooks.of(scene)
+    items = list(hooks.bodies(scene, varied))
     for place, table in scene.tables().items():
         for name, field, _ in keys_of(type(table)) if place in PLACES else ():
             path = f"{place}.{name}"
             value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)
             is_newmarks = path in NEWMARK_DATA and scene.time.scheme != "newmark"
-            if path in varied | NO_DATA | without or is_default or is_newmarks:
+            if path in varied | NO_DATA | hooks.no_data or is_default or is_newmarks:
                 continue
             symbol, unit = _symbol(scene, path)
-            items.append(f"{symbol} = {_written(value)}{unit}" if symbol else f"{_written(value)}{unit}")
+            items.append(f"{symbol} = {written(value)}{unit}" if symbol else f"{written(value)}{unit}")
     return items
 
 
-def _boxes(section: RigidSection) -> list[str]:
-    """Return the number of rigid boxes, and what all of them are."""
-    count = len(section.box)
-    items = [f"{count} boxes" if count > 1 else "a box"]
-    boxes = [{name: value for name, value, _ in stated(box)} for box in section.box]
-    for name, _, key in keys_of(type(section.box[0])):
-        values = [box.get(name) for box in boxes]
-        if values[0] is not None and len(set(values)) == 1:
-            items.append(f"{name} = {_written(values[0])} {key.unit.translate(_UNITS)}".replace(" deg", "°"))
-        elif any(values):
-            items.append(f"{name} by box")
-    return items
-
-
-def _written(value: Any) -> str:
+def written(value: Any) -> str:
     """Return a value in words: of a file its name, of a list of more than numbers its length."""
     if isinstance(value, tuple):
         is_plain = all(isinstance(part, int | float) for part in value)
-        return ", ".join(map(_written, value)) if is_plain else str(len(value))
+        return ", ".join(map(written, value)) if is_plain else str(len(value))
     if isinstance(value, str):
         return shown(Path(value).name)
     return str(value) if isinstance(value, bool) else short(value)
@@ -169,4 +153,5 @@ def _written(value: Any) -> str:
 
 def load_size(scene: Scene) -> float:
     """Return the size of the pressure on a block [Pa], beside which smaller ones are rounding; else there is none."""
-    return abs(scene.load.pressure) if scene.kind == "block" else math.inf
+    load = scene.stated_load
+    return math.inf if load is None else abs(load.pressure)

@@ -48,7 +48,7 @@ from validation.report.chapters.queries import Line, Query, StudyTable
 from validation.report.chapters.scene import gate_count, history_block, opening, outcomes, scene_section
 from validation.report.chapters.text import capital
 from validation.report.figures.charts import ChartLine
-from validation.report.figures.drawing import blocks_figure
+from validation.report.figures.drawing import scenes_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array
@@ -282,16 +282,16 @@ class WrittenChapter:
         return [self.page.figure(name, panels, self.directory, **values)]
 
     def _picture(self, name: str) -> Blocks:
-        """Return blocks in the plane as they are cut, of the first case of each scene."""
+        """Return scenes as they are drawn, of the first case of each scene."""
         described = self.page.described("picture", name)
         cut = []
         for scene, title in described["scenes"].items():
             for line in self.table.lines({"of": scene})[:1]:
-                if line.case is not None and line.case.scene.plane is not None:
-                    cut.append((title, line.case.scene.plane))
+                if line.case is not None:
+                    cut.append((title, line.case.scene))
         if not cut:
             return []
-        figure = blocks_figure(cut, described["height"])
+        figure = scenes_figure(cut, described["height"])
         return [saved(figure, self.directory, described["file"], described["caption"])]
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:

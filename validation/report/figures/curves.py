@@ -14,11 +14,11 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.runs.columns import OwnColumns, kind_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import LineStyle
 from validation.solvers.registry import get_solver, is_solver
 
-ROUNDING = 1e-9  # m, rad, N: smaller positions, rotations and forces of rigid boxes are zero
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
 
@@ -99,7 +99,7 @@ class HistoryPanel:
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
-    of_boxes: bool = False  # whether its columns are those of rigid boxes
+    own: OwnColumns = field(default_factory=dict)  # numbered columns that only its kind of scene has
 
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
@@ -119,8 +119,9 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
         columns.append(np.ones(1))
     values = np.concatenate(columns)
     values = values[np.isfinite(values)]
-    if any(panel.of_boxes for panel in panels) and np.abs(values).max() < ROUNDING:
-        return -ROUNDING, ROUNDING  # a box that does not move is at rest, and not a line of rounding errors
+    rounding = max([kind.rounding for panel in panels if (kind := kind_of(column, panel.own))], default=0.0)
+    if np.abs(values).max() < rounding:
+        return -rounding, rounding  # what does not move is at rest, and not a line of rounding errors
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 

@@ -1,10 +1,10 @@
-"""Scenes as they are drawn: bodies in metres, what they stand on, what drives them; a painter for each kind."""
+"""Scenes as they are drawn: bodies in metres, what they stand on, what drives them."""
 
 from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from validation.report.figures.curves import GREY, engineering
 from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
 from validation.runs.history import Array
-from validation.scenes.plane import PlaneSection, Segment
+from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
 FACE = "#fbe3d3"  # DDA's colour, pale
@@ -24,8 +24,6 @@ LONGEST = 0.16  # arrow, of the larger side of the body
 GROUND = 0.06  # hatched band of what stands still, of the same
 SPRING = 0.14  # length of a spring, of the same
 COILS = 4
-MOST_FACES = 60  # of a column; more lines would fill its layers
-SLENDEREST = 0.3  # width of a column over its height
 MARGINS = Margins(4.0, 4.0, 6.0, 3.0, 8.0)  # mm
 WIDTH = 60.0  # mm, of the drawing of a scene
 HEIGHTS = (14.0, 46.0)  # mm, the least and the greatest
@@ -42,7 +40,7 @@ class Sketch:
 
     def __init__(self, axes: Axes, bodies: Sequence[ArrayLike], slope: float = 0.0) -> None:
         self.axes = axes
-        self._turn = _rotation(-math.radians(slope))
+        self._turn = rotation(-math.radians(slope))
         self._drawn: list[Array] = []
         corners = np.vstack([np.asarray(body, dtype=float) for body in bodies])
         self.low, self.high = corners.min(axis=0), corners.max(axis=0)
@@ -111,47 +109,42 @@ class Sketch:
         self.axes.set_axis_off()
 
 
-def _rotation(angle: float) -> Array:
+def rotation(angle: float) -> Array:
     """Return the matrix that turns points, a row each, counter-clockwise [rad]."""
     return np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+
+
+class FigureHooks(Hooks):
+    """How a kind of scene is drawn."""
+
+    module = "figure"
+
+    def draw(self, axes: Axes, scene: Scene) -> None:
+        """Draw a scene on a `Sketch` of these axes, and set their limits."""
+        axes.set_axis_off()
 
 
 def scene_figure(scene: Scene) -> Figure:
     """Draw a scene, as high as it needs."""
     with house_style():
         figure, ((axes,),) = axes_grid([(HEIGHTS[1], 0.0)], 1, MARGINS, WIDTH)
-        PAINTERS[scene.kind](axes, scene)
+        FigureHooks.of(scene).draw(axes, scene)
         height = size_of(axes)[0] * np.ptp(axes.get_ylim()) / np.ptp(axes.get_xlim())
         figure.set_figheight((np.clip(height, *HEIGHTS) + MARGINS.top + MARGINS.bottom) / 25.4)
     return figure
 
 
-def blocks_figure(drawn: Sequence[tuple[str, PlaneSection]], height: float) -> Figure:
-    """Draw blocks in the plane side by side, each under its title, to one scale of its own, so many mm high."""
+def scenes_figure(drawn: Sequence[tuple[str, Scene]], height: float) -> Figure:
+    """Draw scenes side by side, each under its title, to one scale of its own, so many mm high."""
     with house_style():
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(drawn), MARGINS)
-        for axes, (title, plane) in zip(row, drawn, strict=True):
-            _draw_blocks(axes, plane)
+        for axes, (title, scene) in zip(row, drawn, strict=True):
+            FigureHooks.of(scene).draw(axes, scene)
             axes.set_title(title)
     return figure
 
 
-def _draw_blocks(axes: Axes, plane: PlaneSection) -> None:
-    """Draw blocks as they are cut, clamps hatched, loads as arrows."""
-    sketch = Sketch(axes, plane.polygons)
-    for clamp in plane.clamp:
-        sketch.hatched(clamp.edge)
-    largest = max([math.hypot(*load.traction) for load in plane.load], default=0.0)
-    for load in plane.load:
-        vector = LONGEST * sketch.size * np.array(load.traction) / largest
-        for tail in _along(load.edge):
-            sketch.arrow(tail, vector)
-    if any(plane.gravity):
-        sketch.arrow(sketch.middle, LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity), "g")
-    sketch.fit()
-
-
-def _along(edge: Segment) -> Array:
+def along(edge: ArrayLike) -> Array:
     """Return where the arrows stand along an edge."""
     shares = (np.arange(ARROWS) + 0.5)[:, None] / ARROWS
     start, end = np.array(edge)
@@ -159,127 +152,7 @@ def _along(edge: Segment) -> Array:
     return places
 
 
-def _block(axes: Axes, scene: Scene) -> None:
-    """Draw a block on its springs, or above them, with the loads on its top."""
-    block, load, contact = scene.block, scene.load, scene.contact
-    pivot = np.array(block.outline[0])
-    outline = (np.array(block.outline) - pivot) @ _rotation(math.radians(block.tilt)) + pivot
-    sketch = Sketch(axes, [outline], load.slope)
-    for cut in _cuts(outline, block.subdivide, block.pattern):
-        sketch.line(cut, 0.35)
-    length = 0.0 if math.isinf(contact.stiffness) else SPRING * sketch.size
-    gap = GROUND * sketch.size if contact.gap or block.velocity > 0 else 0.0  # not to scale
-    corners = block.edge(block.base)
-    for corner in corners:
-        if length:
-            sketch.spring((corner[0], corner[1] - gap))
-    sketch.ground(length + gap, corners, load.base_motion is not None)
-    arrow = LONGEST * sketch.size
-    left, right = block.edge(block.top)
-    words = _quantity(load.pressure, "Pa")
-    for place in _along((left, right)) if load.pressure else ():
-        sketch.arrow(place + np.array([0.0, arrow]), (0.0, -arrow), words)
-        words = ""
-    if load.traction:
-        above = 1.6 * arrow if load.pressure else 0.3 * arrow
-        start = (min(left[0], right[0]), max(left[1], right[1]) + above)
-        sketch.arrow(start, (2 * arrow, 0.0), _quantity(load.traction, "Pa"))
-    if load.gravity:  # which turns with the ground
-        slope = math.radians(load.slope)
-        sketch.arrow(sketch.middle, (arrow * math.sin(slope), -arrow * math.cos(slope)), "g")
-    if block.velocity:
-        rise = math.copysign(arrow, block.velocity)
-        sketch.arrow((sketch.low[0] - 0.5 * arrow, sketch.middle[1]), (0.0, rise), f"{abs(block.velocity):g} m/s")
-    sketch.fit()
-
-
-def _cuts(outline: Array, subdivide: tuple[int, int] | None, pattern: str) -> list[Array]:
-    """Return the lines along which a quadrilateral is cut into sub-blocks, its own edges among them."""
-    if subdivide is None:
-        return []
-    across, up = (np.linspace(0.0, 1.0, count + 1) for count in subdivide)
-    s = across[:, None, None]
-    t = up[None, :, None]
-    a, b, c, d = outline
-    grid = (1 - t) * ((1 - s) * a + s * b) + t * ((1 - s) * d + s * c)
-    cuts = [*grid, *grid.swapaxes(0, 1)]
-    if pattern == "triangles":
-        diagonals = np.stack([grid[:-1, :-1], grid[1:, 1:]], axis=2)
-        cuts += [*diagonals.reshape(-1, 2, 2)]
-    return cuts
-
-
-def _column(axes: Axes, scene: Scene) -> None:
-    """Draw the layers of a column, its joints, its base and where it is driven."""
-    column, excitation = scene.column, scene.stated_input
-    if column is None:
-        return
-    half = SLENDEREST * column.height / 2
-    tops = np.cumsum([layer.thickness for layer in column.layer]).tolist()
-    layers = [
-        ((-half, low), (half, low), (half, high), (-half, high)) for low, high in itertools.pairwise([0.0, *tops])
-    ]
-    sketch = Sketch(axes, layers)
-    for height in column.faces if len(column.faces) <= MOST_FACES else ():
-        sketch.line([(-half, height), (half, height)], 0.35)
-    for joint in column.joint:
-        sketch.line([(-1.25 * half, joint.height), (1.25 * half, joint.height)], 1.2, ls=(0, (2.0, 1.0)))
-    if column.base == "springs":
-        sketch.spring((-0.7 * half, 0.0))
-        sketch.spring((0.7 * half, 0.0))
-        sketch.ground(SPRING * sketch.size)
-    elif column.base == "transmitting":
-        deep = -1.5 * SPRING * sketch.size
-        sketch.polygon([(-2 * half, 0.0), (2 * half, 0.0), (2 * half, deep), (-2 * half, deep)], facecolor="#e8e8e4")
-    elif column.base == "rigid":
-        sketch.ground()
-    arrow = LONGEST * sketch.size
-    if excitation is not None:
-        top = excitation.at == "top"
-        level = column.height + 0.3 * arrow if top else -2.4 * SPRING * sketch.size
-        words = excitation.shape or "record"
-        if column.motion == "shear":
-            sketch.arrow((-arrow / 2, level), (arrow, 0.0), words)
-        elif top:
-            sketch.arrow((0.0, level + arrow), (0.0, -arrow), words)
-        else:
-            sketch.arrow((0.0, level - arrow / 2), (0.0, arrow), words)
-    sketch.fit()
-
-
-def _boxes(axes: Axes, scene: Scene) -> None:
-    """Draw rigid boxes on the ground, with their velocities."""
-    section = scene.rigid
-    if section is None:
-        return
-    bodies = []
-    for box, (x, y, angle) in zip(section.box, section.starts, strict=True):
-        corners = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)]) * (box.width / 2, box.height / 2)
-        bodies.append(corners @ _rotation(angle) + (x, y))
-    sketch = Sketch(axes, bodies, section.slope)
-    sketch.ground(moves=section.base_amplitude != 0)
-    for box, (x, y, _) in zip(section.box, section.starts, strict=True):
-        speed = math.hypot(*box.velocity)
-        if speed:
-            sketch.arrow((x, y), LONGEST * sketch.size * np.array(box.velocity) / speed, f"{speed:.3g} m/s")
-    sketch.fit()
-
-
-def _plane(axes: Axes, scene: Scene) -> None:
-    """Draw blocks in the plane."""
-    if scene.plane is not None:
-        _draw_blocks(axes, scene.plane)
-
-
-def _quantity(value: float, unit: str) -> str:
+def quantity(value: float, unit: str) -> str:
     """Return a number with its unit and an SI prefix, ``5 MPa``."""
     factor, unit = engineering(abs(value), unit)
     return f"{factor * value:.3g} {unit}"
-
-
-PAINTERS: Mapping[str, Callable[[Axes, Scene], None]] = {
-    "block": _block,
-    "column": _column,
-    "rigid": _boxes,
-    "plane": _plane,
-}

@@ -38,7 +38,7 @@ from validation.report.figures.histories import (
     size_of,
     small_multiples,
 )
-from validation.runs.columns import axis_of
+from validation.runs.columns import NO_OWN, axis_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
@@ -199,7 +199,7 @@ def _scale(panels: HistoryPanels, column: str) -> tuple[float, str]:
 
 
 def _axis(panels: HistoryPanels, column: str) -> tuple[str, str]:
-    return axis_of(column, any(panel.of_boxes for panel in panels))
+    return axis_of(column, panels[0].own if panels else NO_OWN)
 
 
 def _label(panels: HistoryPanels, column: str) -> str:

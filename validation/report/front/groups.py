@@ -28,8 +28,9 @@ def paper_scene(groups: Groups) -> Scene | None:
     if group is None or not any("dda" in case.rows and case.rows["dda"].metrics for case in group.cases):
         return None
     scene = group.cases[0].scene
-    has_closed_forms = scene.block.vertices is None and scene.block.poisson == 0 and features.linear(scene)
-    return scene if has_closed_forms and scene.column is None else None
+    block = scene.stated_block
+    has_closed_forms = block is not None and block.vertices is None and block.poisson == 0 and features.linear(scene)
+    return scene if has_closed_forms else None
 
 
 def case_where(group: CaseGroup | None, fits: Callable[[Scene], bool]) -> CaseResults | None:

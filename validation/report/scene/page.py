@@ -12,19 +12,13 @@ from validation.advice.plain import Line
 from validation.report.blocks import Blocks, Callout, Listing, Table, TableColumn, table
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing, model_words
+from validation.report.scene.hooks import Number, ShowingHooks
 from validation.runs.numbers import stated_text
 from validation.scenes import features
 from validation.scenes.keys import described, stated
 from validation.scenes.plausibility import plausibility_warnings
 from validation.scenes.scene import Scene
-from validation.theory.stepping import Stepping
 
-SCHEMES = {
-    (0.5, 1.0): "constant acceleration",
-    (0.25, 0.5): "average acceleration",
-    (1 / 6, 0.5): "linear acceleration",
-    (0.0, 0.5): "central differences",
-}
 WRITTEN = {  # keys of `contact`, `damping` and `run` that have words of their own
     *("law", "stiffness", "shear_stiffness", "friction", "cohesion", "rule", "gap"),
     *("mass", "solvers", "columns"),
@@ -63,7 +57,7 @@ class SceneDescription:
         return cls(numbers.cases(scene), len(scene.expand()), varied, scene.run.solvers, len(scene.gate))
 
     @cached_property
-    def numbers(self) -> list[list[numbers.Number]]:
+    def numbers(self) -> list[list[Number]]:
         """The derived numbers of each case."""
         return [numbers.numbers(case) for case in self.cases]
 
@@ -104,12 +98,7 @@ class SceneDescription:
     def _facts(self) -> Iterator[Line]:
         """Yield the steps and the scheme of the first case, and what the scene varies and is run with."""
         first = self.cases[0]
-        if first.rigid is None:
-            yield from _stepping(first)
-        else:
-            t = first.time
-            halved = f", halved {first.rigid.refine} times" if first.rigid.refine else ""
-            yield "rows", f"{t.steps}, one each {t.step:g} s; between them a program takes its own steps{halved}"
+        yield from ShowingHooks.of(first).stepping(first)
         if others := list(_other_keys(first)):
             yield "keys", ", ".join(others)
         if scene_features := features.of(first):
@@ -125,20 +114,6 @@ class SceneDescription:
 
 def _fact_table(facts: Sequence[Line]) -> Table:
     return table(("", TableColumn("", "fill")), facts, ruled=False)
-
-
-def _stepping(first: Scene) -> Iterator[Line]:
-    """Yield the steps, the scheme and the damping of a scene that is stepped by it."""
-    t = first.time
-    scheme = Stepping.of(first).name
-    if t.scheme == "newmark":
-        scheme = f"{SCHEMES.get((t.alpha, t.delta), 'Newmark')}, alpha = {t.alpha:.4g}, delta = {t.delta:g}"
-    start = "from zero acceleration" if t.start == "zero" else "from the acceleration of the load"
-    yield "steps", f"{t.steps} of dt = {t.step:g} s, {start}"
-    discount = f"gg_rate = {t.gg_rate:g} 1/s" if t.gg_rate is not None else f"gg = {t.discount:g}"
-    yield "scheme", f"{scheme}, {discount}"
-    if first.damping.present:
-        yield "damping", f"C = a0 M + a1 K, a0 = {first.damping.mass:g} 1/s, a1 = {first.damping.stiffness:g} s"
 
 
 def _other_keys(scene: Scene) -> Iterator[str]:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.models.column.tables import NEAR, ColumnSection
 from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.modes import Switch
 from validation.scenes import features
-from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.scene import Scene
 from validation.solvers.columns.events import drive_of
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, VELOCITY, column_of
@@ -172,7 +172,7 @@ class BarsEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""
-        if scene.column is None:
+        if "column" not in scene.tables():
             return "it takes columns only"
         if scene.column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for a bonded one'

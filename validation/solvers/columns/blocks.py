@@ -13,11 +13,11 @@ from dda.column.response import column_response, highest_frequency
 from dda.column.step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
 from dda.column.stepping import Drive, solve_column
 from dda.contact.unilateral import OPEN, SLIP
+from validation.models.column.tables import ColumnSection
 from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Switch
 from validation.runs.run import Run
-from validation.scenes.column import ColumnSection
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene
 from validation.solvers import opened

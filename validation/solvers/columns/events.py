@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from validation.models.column.tables import NEAR, ColumnSection
 from validation.runs import extras
 from validation.runs.contact import LOST, STORED, ContactRecord
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.scenes import features
-from validation.scenes.column import NEAR, ColumnSection
 from validation.scenes.drive import read_drive
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import AT_HEIGHTS, FORCE, GAP, SLIP, STRESS, column_of
@@ -247,7 +247,7 @@ class ColumnEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
-        if scene.column is None:
+        if "column" not in scene.tables():
             return "it takes columns only"
         if scene.column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for bonded columns'

@@ -78,7 +78,7 @@ class ExactLayers(Solver):
         """Return None, or why there is no exact motion for this scene."""
         from fem_reference.exact.layers import applicable
 
-        if scene.column is None:
+        if "column" not in scene.tables():
             return "it takes columns only"
         return applicable(time_of(scene))
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 
 from validation.errors import InputError
+from validation.models.column.tables import MOST_HEIGHTS, NEAR, ColumnSection
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.scenes.column import MOST_HEIGHTS, NEAR, ColumnSection
 from validation.scenes.scene import Scene
 
 STRESS = "stress"
@@ -41,17 +41,16 @@ def column_of(scene: Scene) -> ColumnSection:
     InputError
         The scene has a block, or asks for the history of a height that it does not give.
     """
-    if scene.column is None:
-        raise InputError("is needed for what is asked", source=scene.name, field="column", value="a scene of a block")
-    parts = BONDED if scene.column.law == "bonded" else MOVING
-    column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(scene.column.heights), parts))
+    column = scene.table(ColumnSection)
+    parts = BONDED if column.law == "bonded" else MOVING
+    column_names = (DISPLACEMENT, PRESSURE, *at_heights(len(column.heights), parts))
     unknown = [name for name in scene.run.columns if name not in column_names]
     if unknown:
         raise InputError(
             f"must be among {', '.join(column_names)}", source=scene.name, field="run.columns", value=repr(unknown[0])
         )
-    _check_contacts(scene, scene.column)
-    return scene.column
+    _check_contacts(scene, column)
+    return column
 
 
 def _check_contacts(scene: Scene, column: ColumnSection) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from validation.scenes.plane import PlaneSection
+from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.plane.modelled import PlaneModelled
 

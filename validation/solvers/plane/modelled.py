@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from validation.models.plane.tables import PlaneSection
 from validation.runs.history import DISPLACEMENT, STRESS_ERROR
 from validation.runs.modes import Mode
 from validation.runs.run import Run
-from validation.scenes.plane import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
 from validation.solvers.plane.observed import MODES, observed_row

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 
+from validation.models.plane.tables import PlaneSection, Point
 from validation.runs.history import Array
-from validation.scenes.plane import PlaneSection, Point
 
 MODES = 4  # that are reported
 

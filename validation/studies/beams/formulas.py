@@ -18,9 +18,10 @@ from functools import partial
 import numpy as np
 
 from validation.engine.finished import Derived, Finished, NothingToDerive
+from validation.models.plane.tables import PlaneSection
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases, plane_of
+from validation.suite.bands import Band, cases
 
 ORDER = "order"
 FREQUENCIES = tuple(f"frequency.{number}" for number in (1, 2, 3, 4))
@@ -51,7 +52,7 @@ READ = ("displacement.static", *FREQUENCIES)
 
 def _blocks(case: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return the blocks across the beam, and the glue over n / sqrt(24)."""
-    plane = plane_of(case)
+    plane = case.table(PlaneSection)
     across = min(plane.subdivide or (1, 1))
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
@@ -117,7 +118,7 @@ def locked_tip(case: Scene) -> Band:
 
 def _parts(case: Scene) -> tuple[float, float, int]:
     """Return the shear and the bending of the end of a cantilever of squares [m], and the number of its rows."""
-    plane = plane_of(case)
+    plane = case.table(PlaneSection)
     across, rows = plane.subdivide or (1, 1)
     width, length = plane.rectangle or (1.0, 1.0)
     force = plane.load[0].traction[0] * width

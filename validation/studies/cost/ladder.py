@@ -165,8 +165,8 @@ class Ladder:
         InputError
             The scene is of no block, its base moves, or the block turns or does not come down in time.
         """
-        if base.kind != "block":
-            raise InputError("must have the table block", source=base.name, field="--scene", value=base.kind)
+        if "block" not in base.tables():
+            raise InputError("must have the table block", source=base.name, field="--scene", value=base.kind.name)
         fixed = {
             "run.geometry": "small",
             "contact.rule": "newmark",

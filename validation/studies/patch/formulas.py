@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.scenes.plane import PlaneSection
+from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, plane_of
+from validation.suite.bands import Band
 from validation.theory.spectra import EPS
 
 
 def rounding(case: Scene) -> float:
     """Return what rounding may leave of a stress over the largest: 1e3 eps, and as much times the glue."""
-    return 1e3 * EPS * (1 + plane_of(case).glue)
+    return 1e3 * EPS * (1 + case.table(PlaneSection).glue)
 
 
 def rounding_of_joints(case: Scene) -> Band:
@@ -39,13 +39,13 @@ def elongation(case: Scene) -> Band | None:
 def _about(value: float, case: Scene) -> Band | None:
     if value == 0:
         return None
-    plane = plane_of(case)
+    plane = case.table(PlaneSection)
     slack = 1e5 * EPS * float(np.max(np.abs(plane.stress))) / plane.young * (1 + plane.glue)
     return value - slack, value + slack
 
 
 def _elastic(case: Scene) -> float:
-    plane = plane_of(case)
+    plane = case.table(PlaneSection)
     length = float(np.ptp([x for polygon in plane.polygons for x, _ in polygon]))
     s_xx, s_yy, _ = plane.stress
     modulus = plane.young
@@ -62,7 +62,7 @@ def _opening(case: Scene) -> float:
     At a height between the ends a way crosses one joint of two blocks, two of four blocks about a crossing, and n - 1
     of a strip of n; what the ends observe is the mean over the height.
     """
-    plane = plane_of(case)
+    plane = case.table(PlaneSection)
     s_xx, _, s_xy = plane.stress
     opening = 0.0
     for (x0, y0), (x1, y1) in _joints(plane):

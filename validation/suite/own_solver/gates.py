@@ -152,7 +152,7 @@ def applies(study: str, gate: Gate) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
         return False
     case = cases(study)[gate.cases[0]]
-    is_centred_block = case.scene.kind == "block" and case.scene.block.subdivide is None and case.scene.load.centred
+    is_centred_block = "block" in case.scene.tables() and case.scene.block.subdivide is None and case.scene.load.centred
     return is_centred_block and "stability" not in case.measures
 
 

@@ -9,17 +9,22 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
+from validation.diagnosis.numbers import Values
 from validation.errors import InputError
-from validation.gates.gate import Status
-from validation.metrics import boxes as measures
+from validation.models.rigid import measures
+from validation.models.rigid.tables import FORCE, POSE, RigidSection
+from validation.problems.numbered import UNKNOWN, JudgedNumber, around
+from validation.problems.problem import Problem, ProblemHooks
+from validation.runs.columns import split, unit_of
 from validation.runs.history import Array, History
-from validation.scenes.rigid import FORCE, RigidSection
+from validation.runs.units import ratios
 from validation.scenes.scene import Scene, load_scene
 from validation.theory.boxes import (
     ShakenBox,
@@ -30,77 +35,11 @@ from validation.theory.boxes import (
 )
 from validation.theory.rocking import Rectangle
 
+FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 PREFIX = "rigid-"  # of the scenes of problems
-UNKNOWN = 0.01  # relative error of a datum that nobody knows better
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
-ROUNDING = 1e-9  # relative, of an edge: what one per cent of a datum changes is inside
 EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
-
-
-@dataclass(frozen=True)
-class BoxQuantity:
-    """A number of an answer.
-
-    Attributes
-    ----------
-    name, unit
-        What it is.
-    exact
-        The exact value.
-    low, high
-        Edges of the band, both inside.
-    scale
-        What an error is told as a share of, in the number's unit.
-    reason
-        Why the band ends there.
-    measure
-        Function of the answer; None where it cannot be measured on it.
-    optional
-        Whether an answer may do without it, since it is of a column beside the positions.
-    """
-
-    name: str
-    unit: str
-    exact: float
-    low: float
-    high: float
-    scale: float
-    reason: str
-    measure: Callable[[History], float | None]
-    optional: bool = False
-
-    def passes(self, value: float) -> bool:
-        """Whether a value is in the band."""
-        margin = ROUNDING * max(abs(self.low), abs(self.high))
-        return self.low - margin <= value <= self.high + margin
-
-
-@dataclass(frozen=True)
-class MeasuredQuantity:
-    """A number of an answer beside its exact value; None where it could not be measured."""
-
-    quantity: BoxQuantity
-    value: float | None
-    is_reported: bool = True  # whether the columns are there that it is measured on
-
-    @property
-    def status(self) -> Status:
-        """Whether it is in its band, or not reported; a number that the positions hold and do not give fails."""
-        if not self.is_reported or (self.quantity.optional and self.value is None):
-            return Status.NOT_REPORTED
-        if self.value is None:
-            return Status.FAIL
-        return Status.PASS if self.quantity.passes(self.value) else Status.FAIL
-
-    @property
-    def shares(self) -> tuple[float | None, float]:
-        """Error, None where it cannot be measured, and what is allowed on its side, as shares of the number's scale."""
-        quantity = self.quantity
-        above = self.value is None or self.value > quantity.exact or quantity.low == quantity.exact
-        room = quantity.high - quantity.exact if above else quantity.exact - quantity.low
-        error = None if self.value is None else abs(self.value - quantity.exact) / quantity.scale
-        return error, room / quantity.scale
 
 
 @dataclass(frozen=True)
@@ -119,7 +58,7 @@ class BoxCase:
 
     label: str
     values: Mapping[str, Any] = field(default_factory=dict)
-    quantities: Callable[[Scene], tuple[BoxQuantity, ...]] | None = None
+    quantities: Callable[[Scene], tuple[JudgedNumber, ...]] | None = None
 
 
 @dataclass(frozen=True)
@@ -141,7 +80,7 @@ class BoxProblem:
     """
 
     name: str
-    quantities: Callable[[Scene], tuple[BoxQuantity, ...]]
+    quantities: Callable[[Scene], tuple[JudgedNumber, ...]]
     variants: tuple[BoxCase, ...] = ()
     forces: bool = False
     changeable: tuple[str, ...] = ()
@@ -162,7 +101,7 @@ class BoxProblem:
     def _with_forces(self, scene: Scene) -> Scene:
         if not self.forces:
             return scene
-        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
+        return scene.with_values({"run.columns": list(scene.table(RigidSection).columns)})
 
 
 @functools.cache
@@ -170,52 +109,17 @@ def _scene(name: str) -> Scene:
     return load_scene(PREFIX + name)
 
 
-def boxes_of(scene: Scene) -> RigidSection:
-    """Return the rigid boxes of a scene.
-
-    Raises
-    ------
-    InputError
-        It has none.
-    """
-    if scene.rigid is None:
-        raise InputError("must be there", source=scene.name, field="rigid", value=scene.kind_in_words)
-    return scene.rigid
-
-
-def measured(quantities: Sequence[BoxQuantity], history: History) -> tuple[MeasuredQuantity, ...]:
-    """Return the numbers of an answer."""
-    values = []
-    for quantity in quantities:
-        try:
-            value = quantity.measure(history)
-        except KeyError:  # of a column that the answer withholds
-            values.append(MeasuredQuantity(quantity, None, is_reported=False))
-            continue
-        if value is not None and not math.isfinite(value):
-            value = None
-        values.append(MeasuredQuantity(quantity, value))
-    return tuple(values)
-
-
-def around(name: str, unit: str, exact: float, changed: Sequence[float], reason: str, **others: Any) -> BoxQuantity:
-    """Return a number whose band reaches as far to both sides as changed data move it, told as a share of itself."""
-    half = max(abs(value - exact) for value in changed)
-    band = {"low": exact - half, "high": exact + half, "scale": abs(exact)}
-    return BoxQuantity(name, unit, exact, reason=reason, **{**band, **others})
-
-
 # ---- standing -------------------------------------------------------------------------------------------------------
 
 
-def standing(scene: Scene) -> tuple[BoxQuantity, ...]:
+def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the creep of a box that stands on a slope, or how far one slides that does not."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     if rigid.friction > rigid.slope:
         allowed = 1e3 * UNKNOWN * box.width / MINUTE
         return (
-            BoxQuantity(
+            JudgedNumber(
                 "creep",
                 "mm/s",
                 exact=0.0,
@@ -253,14 +157,14 @@ STANDING_CASES = tuple(
 # ---- bounces --------------------------------------------------------------------------------------------------------
 
 
-def restitution(scene: Scene) -> tuple[BoxQuantity, ...]:
+def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the rebound over the speed of a landing without weight."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     speed = -box.velocity[1]
     landing = box.lift / speed
     return (
-        BoxQuantity(
+        JudgedNumber(
             "restitution",
             "1",
             exact=rigid.restitution,
@@ -290,12 +194,12 @@ def _restitution_cases() -> tuple[BoxCase, ...]:
     return tuple(cases)
 
 
-def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
-    rigid = boxes_of(scene)
+def _energy(scene: Scene) -> tuple[JudgedNumber, JudgedNumber]:
+    rigid = scene.table(RigidSection)
     first = measures.first_energy(rigid)
     reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
     return (
-        BoxQuantity(
+        JudgedNumber(
             "energy in the end over that at the start",
             "1",
             exact=1.0,
@@ -305,7 +209,7 @@ def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
             reason=reason,
             measure=lambda history: measures.last_energy(history, rigid) / first,
         ),
-        BoxQuantity(
+        JudgedNumber(
             "largest gain of energy",
             "1",
             exact=0.0,
@@ -318,22 +222,22 @@ def _energy(scene: Scene) -> tuple[BoxQuantity, BoxQuantity]:
     )
 
 
-def bouncing(scene: Scene) -> tuple[BoxQuantity, ...]:
+def bouncing(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the energy of a box that bounces without loss."""
     return _energy(scene)
 
 
-def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
+def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return energy and momentum along the ground of a box that tumbles without friction or loss.
 
     Its motion is chaotic; these are not.
     """
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     landing_speed = math.sqrt(2 * rigid.gravity * box.lift)
     return (
         *_energy(scene),
-        BoxQuantity(
+        JudgedNumber(
             "change of the speed along the ground",
             "m/s",
             exact=0.0,
@@ -352,9 +256,9 @@ def tumbling(scene: Scene) -> tuple[BoxQuantity, ...]:
 # ---- piles ----------------------------------------------------------------------------------------------------------
 
 
-def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
+def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far the uppermost of some boxes at rest moves, and the force below the lowest."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     top = len(rigid.box)
     start = rigid.starts[-1]
     height = start[1] + rigid.box[-1].reach
@@ -371,7 +275,7 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
         return float(np.mean(values[late:]))
 
     return (
-        BoxQuantity(
+        JudgedNumber(
             "drift of the top",
             "mm",
             exact=0.0,
@@ -381,7 +285,7 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
             reason="it stands exactly; the place of a block is known to one per cent of its width",
             measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, "x", top) - start[0]))),
         ),
-        BoxQuantity(
+        JudgedNumber(
             "sinking of the top",
             "mm",
             exact=0.0,
@@ -391,7 +295,7 @@ def pile(scene: Scene) -> tuple[BoxQuantity, ...]:
             reason="rigid boxes do not sink; the height of what is piled up is known to one per cent",
             measure=lambda history: 1e3 * float(start[1] - measures.column(history, "y", top)[-1]),
         ),
-        BoxQuantity(
+        JudgedNumber(
             "force below the lowest box",
             "N",
             exact=weight,
@@ -418,27 +322,27 @@ HEAVY_TOP_CASES = tuple(
 
 def rectangle_of(scene: Scene) -> Rectangle:
     """Return the first box of a scene."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     return Rectangle(rigid.box[0].width, rigid.box[0].height, rigid.gravity)
 
 
 def started_about_corner(scene: Scene, spin: float) -> dict[str, Any]:
     """Return the first box of a scene, which lies flat, with a spin about its lower left corner, as keys of a box."""
-    box = boxes_of(scene).box[0]
+    box = scene.table(RigidSection).box[0]
     sign = math.copysign(1.0, spin)  # to the right it turns about the right one
     velocity = [-spin * box.height / 2, sign * spin * box.width / 2]
     return {"width": box.width, "height": box.height, "density": box.density, "velocity": velocity, "spin": spin}
 
 
 def _rotation(scene: Scene) -> Callable[[History], float]:
-    start = boxes_of(scene).starts[0][2]
+    start = scene.table(RigidSection).starts[0][2]
     return lambda history: measures.peak(np.abs(measures.column(history, "angle") - start))
 
 
-def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
+def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
     box = rectangle_of(scene)
-    spin = abs(boxes_of(scene).box[0].spin)
+    spin = abs(scene.table(RigidSection).box[0].spin)
     widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
     if spin >= min(critical_spin(changed_box) for changed_box in widths):
         return overturning(scene)
@@ -455,13 +359,13 @@ def toppling(scene: Scene) -> tuple[BoxQuantity, ...]:
     )
 
 
-def overturning(scene: Scene) -> tuple[BoxQuantity, ...]:
+def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return whether a box overturns."""
     box = rectangle_of(scene)
     rotation = _rotation(scene)
-    exact = float(abs(boxes_of(scene).box[0].spin) > critical_spin(box))
+    exact = float(abs(scene.table(RigidSection).box[0].spin) > critical_spin(box))
     return (
-        BoxQuantity(
+        JudgedNumber(
             "overturns",
             "1",
             exact=exact,
@@ -493,14 +397,14 @@ def _toppling_cases() -> tuple[BoxCase, ...]:
 
 def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
     """Return the first box of a scene on its moving ground, tan(phi) multiplied by a factor."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     friction = factor * rigid.friction_coefficient
     return ShakenBox(rigid.base_amplitude, rigid.base_frequency, friction, rigid.gravity)
 
 
-def shaken(scene: Scene) -> tuple[BoxQuantity, ...]:
+def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box slips on shaken ground."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
     exact = shaken_box(scene).slip(time)
     changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
@@ -545,7 +449,7 @@ def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> Spring
     InputError
         The scene gives no stiffness.
     """
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     if rigid.stiffness is None:
         raise InputError("must be given in this problem", source=scene.name, field="rigid.stiffness", value="nothing")
@@ -553,9 +457,9 @@ def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> Spring
     return SpringImpact(mass * box.mass, stiffness * rigid.stiffness, rigid.gravity, speed)
 
 
-def impact(scene: Scene) -> tuple[BoxQuantity, ...]:
+def impact(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return force, duration and rebound of a landing on a spring."""
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     box = rigid.box[0]
     exact = impact_of(scene)
     factors = [(factor, 1.0) for factor in EITHER_WAY] + [(1.0, factor) for factor in EITHER_WAY]
@@ -623,22 +527,6 @@ def _times(factor: float, value: float | None) -> float | None:
     return None if value is None else factor * value
 
 
-# ---- all of them ----------------------------------------------------------------------------------------------------
-
-
-ASKS = {
-    "standing": "A box on a slope that friction holds: does it stand for a minute, and from which friction on?",
-    "restitution": "A box thrown flat at the ground: what is asked of its rebound, and what comes back?",
-    "bouncing": "A box that bounces without loss for a minute: does its energy stay?",
-    "tumbling": "A tilted box that tumbles without friction or loss: do energy and momentum stay?",
-    "pile": "Ten equal boxes on each other at rest: do they stay, and what is the force below?",
-    "heavy-top": "A heavy box on a light one: do both stay, up to which mass ratio?",
-    "toppling": "A slender box started about its corner: how far it turns, and from which spin on it overturns.",
-    "shaken": "A box on ground that shakes more than friction can pass on: how far it slips.",
-    "impact": "A box that falls on a spring of given stiffness: peak force, time of contact, rebound.",
-}
-
-
 @functools.cache
 def box_problems() -> Mapping[str, BoxProblem]:
     """Return the problems of rigid boxes by name."""
@@ -656,6 +544,19 @@ def box_problems() -> Mapping[str, BoxProblem]:
     return {box_problem.name: box_problem for box_problem in problems}
 
 
+ASKS = {
+    "standing": "A box on a slope that friction holds: does it stand for a minute, and from which friction on?",
+    "restitution": "A box thrown flat at the ground: what is asked of its rebound, and what comes back?",
+    "bouncing": "A box that bounces without loss for a minute: does its energy stay?",
+    "tumbling": "A tilted box that tumbles without friction or loss: do energy and momentum stay?",
+    "pile": "Ten equal boxes on each other at rest: do they stay, and what is the force below?",
+    "heavy-top": "A heavy box on a light one: do both stay, up to which mass ratio?",
+    "toppling": "A slender box started about its corner: how far it turns, and from which spin on it overturns.",
+    "shaken": "A box on ground that shakes more than friction can pass on: how far it slips.",
+    "impact": "A box that falls on a spring of given stiffness: peak force, time of contact, rebound.",
+}
+
+
 def problem_posed(scene: Scene) -> BoxProblem:
     """Return the problem that a scene of rigid boxes poses: one of the suite's, some of its data perhaps changed.
 
@@ -671,9 +572,9 @@ def problem_posed(scene: Scene) -> BoxProblem:
         raise InputError(rule, source=scene.name, field="rigid", advice="name the problem, and use --set")
     problem = box_problems()[name]
     own_scene = problem.scene()
-    rigid = boxes_of(scene)
+    rigid = scene.table(RigidSection)
     for field_name in RigidSection.model_fields:
-        is_changed = getattr(rigid, field_name) != getattr(boxes_of(own_scene), field_name)
+        is_changed = getattr(rigid, field_name) != getattr(own_scene.table(RigidSection), field_name)
         if is_changed and field_name not in (*problem.changeable, "refine"):
             free = " and ".join(f"rigid.{key}" for key in problem.changeable) or "nothing"
             rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
@@ -682,3 +583,44 @@ def problem_posed(scene: Scene) -> BoxProblem:
     if not same_time:
         raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
     return problem
+
+
+def _problem(name: str, posed: BoxProblem, case: BoxCase) -> Problem:
+    scene = posed.scene(case)
+    title = ": ".join(part for part in (scene.title, case.label) if part)
+    return Problem(name, ASKS[posed.name], title, scene, None, (case.quantities or posed.quantities)(scene))
+
+
+class HOOKS(ProblemHooks):
+    """Answers are positions, of which numbers are judged."""
+
+    def problems(self) -> Iterator[tuple[str, Callable[[], Problem]]]:
+        """Yield the cases of all problems; a case has its values in the name."""
+        for posed in box_problems().values():
+            for case in posed.cases:
+                label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower()).strip("-")
+                name = "-".join(part for part in (posed.name, label) if part)
+                yield name, functools.partial(_problem, name, posed, case)
+
+    def answer_columns(self, scene: Scene) -> tuple[str, ...]:
+        """Return the poses of all boxes."""
+        count = len(scene.table(RigidSection).box)
+        return tuple(f"{part}_{number}" for number in range(1, count + 1) for part in POSE)
+
+    def judged_numbers(self, scene: Scene) -> tuple[JudgedNumber, ...]:
+        """Return the numbers of the problem that a scene poses."""
+        return problem_posed(scene).quantities(scene)
+
+    def changes(self, scene: Scene) -> dict[str, Values]:
+        """Return none: the bands are those of the numbers."""
+        return {}
+
+    def other_units(self, scene: Scene, history: History) -> Iterator[tuple[str, str]]:
+        """Yield heights that begin in another unit."""
+        for column, values in history.columns.items():
+            part, box = split(column)
+            start = scene.table(RigidSection).starts[int(box) - 1][1] if part == "y" else 0.0
+            for ratio, other_unit in ratios(unit_of(column, scene.kind.columns)).items():
+                if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
+                    rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
+                    yield column, rule

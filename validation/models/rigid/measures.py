@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.models.rigid.tables import BoxSection, RigidSection
 from validation.runs.history import Array, History
-from validation.scenes.rigid import BoxSection, RigidSection
 
 Rows = NDArray[np.bool_]
 SAME_FALL = 0.05  # of g h^2: what the second difference of a free flight may be off, air damping of programs included

@@ -11,10 +11,10 @@ from time import perf_counter
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from validation.models.rigid.tables import FORCE, POSE, BoxSection, RigidSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
-from validation.scenes.rigid import FORCE, POSE, BoxSection, RigidSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.rigid.rocking import friction_needed

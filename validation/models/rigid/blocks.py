@@ -12,9 +12,9 @@ import numpy as np
 
 import dda
 from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from validation.models.rigid.tables import RigidSection
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.scenes.rigid import RigidSection
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.contract import Prepared
@@ -22,24 +22,6 @@ from validation.solvers.contract import Prepared
 YOUNG = 1.0e9  # Pa, of the blocks, and N/m, of their springs: p = 1E, where the scene gives no stiffness
 OWN_STEP = 2.0e-3  # s: the step of the damping study that this suite began with
 ROUNDING = 1e-9
-
-
-def refusal(rigid: RigidSection) -> str | None:
-    """Return None, or why DDA cannot express rigid boxes.
-
-    Springs give back what they took, less what the scheme damps: that is restitution 1. A lower one cannot be set, and
-    is refused where a box falls.
-    """
-    if rigid.restitution < 1 and rigid.stiffness is None and any(box.lift for box in rigid.box):
-        why = "DDA has no coefficient of restitution below 1: its springs give back everything"
-        return f"{why}, got {rigid.restitution:g}"
-    if len(rigid.box) == 1:
-        return None
-    if any(box.lift or box.spin or any(box.velocity) for box in rigid.box) or rigid.slope or rigid.base_amplitude:
-        return "several boxes are a column of blocks: at rest, on level ground that does not move"
-    if len({(box.width, box.x) for box in rigid.box}) > 1:
-        return "several boxes are a column of blocks: of one width, above each other"
-    return None
 
 
 class BlocksOfBoxes(Prepared):

@@ -1,0 +1,44 @@
+"""The kind of a column: its tables, and the solvers that run it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from typing import Any, ClassVar
+
+from validation.models.column.tables import ColumnSection, InputSection
+from validation.scenes.kinds import Kind
+
+TAKE = {  # the solvers that run a scene which names none, by the law of its springs
+    "bonded": ("dda", "fem", "layers"),
+    "unilateral": ("dda", "column-events"),
+    "frictional": ("dda", "column-events"),
+}
+
+
+class Column(Kind):
+    """Layers on each other under an input."""
+
+    name = "column"
+    words = "a column"
+    feature = "column"
+    rank = 1.0
+    tables: ClassVar = {"column": ColumnSection, "input": InputSection}
+    fem_keys = ("elements", "degree")
+
+    def run(self, table: object) -> dict[str, Any]:
+        """Return the solvers that take the law of its springs."""
+        law = str(table.get("law")) if isinstance(table, dict) else ""
+        return {"solvers": list(TAKE.get(law, TAKE["bonded"]))}
+
+    def optional(self, scene: Any) -> Collection[str]:
+        """Return the input of a column that weight or velocities at t = 0 move."""
+        column: ColumnSection = scene.column
+        has_weight = column.law == "unilateral" and column.gravity > 0
+        return ("input",) if has_weight or any(layer.velocity for layer in column.layer) else ()
+
+    def motion_unread(self, scene: Any) -> str | None:
+        """Return that a bonded column is judged by its wave."""
+        return "one with a bonded column" if scene.column.law == "bonded" else None
+
+
+KIND = Column

@@ -1,0 +1,22 @@
+"""Values of blocks in the plane that no rock has."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from validation.models.plane.tables import PlaneSection
+from validation.scenes.plausibility import Implausible, PlausibilityHooks, material, stepping
+from validation.scenes.scene import Scene
+
+
+class HOOKS(PlausibilityHooks):
+    """What the values of blocks in the plane are held against."""
+
+    def values(self, scene: Scene) -> Iterator[Implausible]:
+        """Yield what the material under the greatest stress says, and the steps."""
+        plane = scene.table(PlaneSection)
+        largest = max([*map(abs, plane.stress), *(math.hypot(*load.traction) for load in plane.load)])
+        speed = math.sqrt(plane.young / plane.density)
+        yield from material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
+        yield from stepping(scene)

@@ -1,0 +1,59 @@
+"""Blocks in the plane in the solvers of several kinds, and the memory that they take."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from validation.models.plane.tables import PlaneSection
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Prepared, Solver
+from validation.solvers.hooks import SolvingHooks
+from validation.solvers.memory import sparse
+
+
+class HOOKS(SolvingHooks):
+    """Glued blocks by `dda`, the elastic body of their outline by elements."""
+
+    def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
+        """Return blocks for `dda`, a mesh for `fem`."""
+        plane = scene.table(PlaneSection)
+        if solver == "dda":
+            from validation.solvers.dda import scheme_of as dda_scheme
+            from validation.solvers.plane.blocks import PlaneBlocks
+
+            return PlaneBlocks(scene, plane, dda_scheme(scene))
+        from validation.solvers.fem import scheme_of
+        from validation.solvers.plane.mesh import PlaneMesh
+
+        return PlaneMesh(scene, plane, scheme_of(scene))
+
+    def request(self, scene: Scene) -> dict[str, Any]:
+        """Return the elastic body of the outline on the mesh of `fem`, as the worker takes it."""
+        plane = scene.table(PlaneSection)
+        from validation.solvers.plane.mesh import body_of, points_and_cells
+
+        body = body_of(scene, plane)
+        points, cells = points_and_cells(body)
+        names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
+        observe = plane.observe
+        return {
+            **{name: getattr(body, name) for name in names},
+            "points": points,
+            "cells": cells,
+            "observe": {"place": observe.place, "direction": observe.direction, "less": observe.less},
+            "moved": None,
+        }
+
+    def memory(self, scene: Scene, solver: Solver) -> tuple[float, str]:
+        """Return the bytes of the sparse matrices of blocks and joints, or of a mesh along the shorter side."""
+        plane = scene.table(PlaneSection)
+        elements = scene.fem.per_side if solver.meshed else 0
+        blocks = len(plane.polygons)
+        if not elements:
+            unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
+            field = "plane.block" if plane.rectangle is None else "plane.subdivide"
+            return sparse(unknowns), field
+        sides = plane.rectangle or (1.0, 1.0)
+        cells = elements**2 * max(sides) / min(sides) * len(plane.outline_polygons)
+        unknowns = 8.0 * cells
+        return sparse(unknowns), "fem.elements"

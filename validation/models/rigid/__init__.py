@@ -1,0 +1,1 @@
+"""Rigid boxes on a plane, what contact engines simulate: the table `[rigid]`."""
