@@ -1,4 +1,4 @@
-"""Discontinuous deformation analysis of the two-block model, and of systems of glued blocks.
+"""Discontinuous deformation analysis of the two-block model, of systems of glued blocks, and of blocks in the plane.
 
 One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's
 scheme with kinetic damping, in a form that keeps its digits for stiff springs; the printed
@@ -13,13 +13,15 @@ from dda.model.material import Material
 from dda.model.polygon import Section
 from dda.one_block.contact_result import ContactResult
 from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
-from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes, one_step_operator
+from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes
 from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.response import response
 from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
+from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
@@ -42,7 +44,10 @@ __all__ = [
     "BlockSystem",
     "Contact",
     "ContactResult",
+    "ContactSprings",
+    "CornerOnEdge",
     "Diagnostics",
+    "EdgeBond",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -51,6 +56,11 @@ __all__ = [
     "ModalForm",
     "Mode",
     "OpeningSystem",
+    "PlaneBlock",
+    "PlaneContact",
+    "PlaneLoad",
+    "PlaneModel",
+    "PlaneResult",
     "Result",
     "Scheme",
     "Section",
@@ -67,7 +77,6 @@ __all__ = [
     "modal_form",
     "modes",
     "named_scheme",
-    "one_step_operator",
     "opening_subdivided",
     "response",
     "roots",
@@ -75,6 +84,7 @@ __all__ = [
     "solve",
     "solve_adaptive",
     "solve_opening_system",
+    "solve_plane",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

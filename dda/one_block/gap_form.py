@@ -19,8 +19,7 @@ through the inertia alone.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,6 +55,7 @@ class GapForm:
     R: Array  # (n, 2) rigid translation by the base's displacement in x and y
     Q: Array  # (6, n): D = Q (x + R y)
     observers: dict[str, Array]  # column -> (n,) row
+    corners: Array  # (2, n, 2) displacements along and away from the base, of its corners M and N
 
     def reduced(self) -> GapForm:
         """Return the form without the unknowns that the load cannot reach.
@@ -83,143 +83,91 @@ class GapForm:
             self.R[unknowns],
             self.Q[:, unknowns],
             {name: row[unknowns] for name, row in self.observers.items()},
+            self.corners[:, unknowns],
         )
 
 
 def gap_form(block: Block, contact: Contact, base: int, top: int, load: Load) -> GapForm:
     """Assemble the two-block model in contact-gap coordinates."""
-    tangent, _, a = base_directions(block, base)
-    start = block.edge(base)[0]
-    local = _base_frame(block, tangent, start, a)
-    integrals = _without_rounding(area_integrals(local))
-    c = block.material.contraction
-    weight = block.material.density * load.gravity
-    Q = _to_block_unknowns(integrals, c, tangent)
+    tangent, normal, a = base_directions(block, base)
+    axes = np.array([tangent, normal])
+    local = (block.corners - block.edge(base)[0]) @ axes.T - np.array([a / 2, 0.0])
+    moments = _moments(area_integrals(local))
+    moves = _moves(block.material.contraction)
+    rho = block.material.density
+    along, away = moves
+    weight = rho * load.gravity * (axes @ load.falling)
+    Q = _to_block_unknowns(moves, moments[0] / moments[0, 0], axes)
     return GapForm(
         UNKNOWNS,
-        block.material.density * _inertia(integrals, c),
-        _stiffness(block.material, contact, integrals.area, a),
-        _load(local, top, tangent, c, load) + _gravity(integrals, weight, load.falling, tangent, c),
-        _translation(tangent, load),
+        rho * (along @ moments @ along.T + away @ moments @ away.T),
+        _stiffness(block.material, contact, block.section.area, a),
+        _load(local, top, axes, moves, load) + weight @ (moves @ moments[0]) + 0.0,
+        _translation(axes, load),
         Q,
         _observers(Q, contact, a),
+        moves @ np.array([[1.0, 1.0], [-a / 2, a / 2], [0.0, 0.0]]),
     )
 
 
-def _base_frame(block: Block, tangent: Array, start: Array, a: float) -> Array:
-    """Return the corners in the frame of the base edge, from its middle [m]."""
-    tx, ty = tangent
-    x, y = (block.corners - start).T
-    return np.column_stack([(tx * x + ty * y) - a / 2, tx * y - ty * x])
+def _moves(c: float) -> Array:
+    """Return the displacements along and away from the base by the unknowns, (2, 6, 3): weights of 1, x' and y'."""
+    along = [[1, 0, 0], [0, 0, 0], [0, 0, -1], [0, 1, 0], [0, 0, 0], [0, 0, 1]]
+    away = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, -c], [0, 0, 1], [0, 0, 0]]
+    return np.array([along, away], dtype=float)
 
 
-def _without_rounding(i: AreaIntegrals) -> AreaIntegrals:
-    """Return the integrals with the zeros of a symmetric shape made exact."""
-    scales = np.sqrt([i.area * i.xx, i.xx * i.yy])
-    x, xy = without_rounding([i.x, i.xy], scales).tolist()
-    return replace(i, x=x, xy=xy)
+def _moments(i: AreaIntegrals) -> Array:
+    """Return the integrals of the products of 1, x' and y', (3, 3), with the zeros of a symmetric shape made exact."""
+    x, xy = without_rounding([i.x, i.xy], np.sqrt([i.area * i.xx, i.xx * i.yy])).tolist()
+    return np.array([[i.area, x, i.y], [x, i.xx, xy], [i.y, xy, i.yy]])
 
 
-def _inertia(i: AreaIntegrals, c: float) -> Array:
-    """Return the inertia matrix over density: integrals of the products of the base functions.
-
-    The base functions of (U, w, s, ex, e2, gxy) are (1, 0), (0, 1), (-y', x'), (x', -c y'),
-    (0, y') and (y', 0).
-    """
-    upper = np.array(
-        [
-            [i.area, 0.0, -i.y, i.x, 0.0, i.y],
-            [0.0, i.area, i.x, -c * i.y, i.y, 0.0],
-            [0.0, 0.0, i.xx + i.yy, -(1 + c) * i.xy, i.xy, -i.yy],
-            [0.0, 0.0, 0.0, i.xx + c * c * i.yy, -c * i.yy, i.xy],
-            [0.0, 0.0, 0.0, 0.0, i.yy, 0.0],
-            [0.0, 0.0, 0.0, 0.0, 0.0, i.yy],
-        ]
-    )
-    full: Array = upper + np.triu(upper, 1).T
-    return full
+def elastic_stiffness(material: Material, area: float) -> Array:
+    """Return the diagonal of a block's own stiffness in (U, w, s, ex, e2, gxy)."""
+    return area * np.array([0.0, 0.0, 0.0, material.free_modulus, material.constrained_modulus, material.shear_modulus])
 
 
 def _stiffness(material: Material, contact: Contact, area: float, a: float) -> Array:
     """Return the diagonal of the stiffness in (U, w, s, ex, e2, gxy)."""
     pn = contact.normal
     ps = contact.shear
-    return np.array(
-        [
-            2 * ps,
-            2 * pn,
-            pn * a * a / 2,
-            ps * a * a / 2 + area * material.free_modulus,
-            area * material.constrained_modulus,
-            area * material.shear_modulus,
-        ]
-    )
+    return np.array([2 * ps, 2 * pn, pn * a * a / 2, ps * a * a / 2, 0.0, 0.0]) + elastic_stiffness(material, area)
 
 
-def _load(local: Array, top: int, tangent: Array, c: float, load: Load) -> Array:
+def _load(local: Array, top: int, axes: Array, moves: Array, load: Load) -> Array:
     """Return the load on the top edge: pressure in global -y, traction in global +x."""
-    ends = local[top], local[(top + 1) % len(local)]
-    turned = np.array([[tangent[0], -tangent[1]], [tangent[1], tangent[0]]])  # global from local
-    start, end = (turned @ point for point in ends)
-    pressed = pressed_part(start, end, load.eccentricity)
-    part = ends if load.eccentricity == 0 else tuple(turned.T @ point for point in pressed)
+    ends = np.array([local[top], local[(top + 1) % len(local)]])
+    pressed = ends
+    if load.eccentricity != 0:
+        start, end = ends @ axes
+        pressed = np.array(pressed_part(start, end, load.eccentricity)) @ axes.T
     extent = np.max(np.abs(local), axis=0)
-    down = -turned[1]
-    right = turned[0]
-    return _edge(part, extent, load.pressure * down, c) + _edge(ends, extent, load.traction * right, c)
+    right, up = axes.T
+    return _edge(pressed, extent, -load.pressure * up, moves) + _edge(ends, extent, load.traction * right, moves)
 
 
-def _edge(ends: tuple[Array, ...], extent: Array, traction: Array, c: float) -> Array:
+def _edge(ends: Array, extent: Array, traction: Array, moves: Array) -> Array:
     """Return the load of a uniform traction (local directions) on a straight part of the outline."""
-    x, y = without_rounding((ends[0] + ends[1]) / 2, extent)
+    middle = without_rounding((ends[0] + ends[1]) / 2, extent)
     force = float(np.hypot(*(ends[1] - ends[0]))) * traction
-    return _loads(1.0, x, y, force, c)
+    return np.asarray(force @ (moves @ np.array([1.0, *middle])))
 
 
-def _gravity(i: AreaIntegrals, weight: float, falling: tuple[float, float], tangent: Array, c: float) -> Array:
-    """Return the load of a weight per area [N/m^3] in the direction `falling`."""
-    right, up = falling
-    along = weight * (right * tangent[0] + up * tangent[1])
-    across = weight * (up * tangent[0] - right * tangent[1])
-    return _loads(i.area, i.x, i.y, (along, across), c)
-
-
-def _loads(size: float, x: float, y: float, force: Sequence[float] | Array, c: float) -> Array:
-    """Return the load of a force by the integrals of 1, x' and y' over what it acts on."""
-    fx, fy = force
-    return np.array([size * fx, size * fy, x * fy - y * fx, x * fx - c * y * fy, y * fy, y * fx]) + 0.0
-
-
-def _translation(tangent: Array, load: Load) -> Array:
+def _translation(axes: Array, load: Load) -> Array:
     """Return x of the rigid translation by 1 m in x and in y, zero where the base does not move so."""
     R = np.zeros((6, 2))
     if load.motion is not None:
-        tx, ty = tangent
-        R[:2] = np.array([[tx, ty], [-ty, tx]]) * np.any(np.asarray(load.motion.displacement) != 0, axis=0)
+        R[:2] = axes * np.any(np.asarray(load.motion.displacement) != 0, axis=0)
     return R
 
 
-def _to_block_unknowns(i: AreaIntegrals, c: float, tangent: Array) -> Array:
-    """Return the 6 x 6 matrix Q of D = Q x, D in global directions about the centroid."""
-    X = i.x / i.area
-    Y = i.y / i.area
-    tx, ty = tangent
-    u = np.array([1.0, 0.0, -Y, X, 0.0, Y])
-    v = np.array([0.0, 1.0, X, -c * Y, Y, 0.0])
-    ex = np.array([0.0, 0.0, 0.0, 1.0, 0.0, 0.0])
-    ey = np.array([0.0, 0.0, 0.0, -c, 1.0, 0.0])
-    g = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
-    r = np.array([0.0, 0.0, 1.0, 0.0, 0.0, -0.5])
-    return np.array(
-        [
-            tx * u - ty * v,
-            ty * u + tx * v,
-            r,
-            tx * tx * ex + ty * ty * ey - tx * ty * g,
-            ty * ty * ex + tx * tx * ey + tx * ty * g,
-            2 * tx * ty * (ex - ey) + (tx - ty) * (tx + ty) * g,
-        ]
-    )
+def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
+    """Return the 6 x 6 matrix Q of D = Q x, D in global directions about the centroid (1, x', y')."""
+    slope = moves[:, :, 1:]
+    rotation = (slope[1, :, 0] - slope[0, :, 1]) / 2
+    strain = np.einsum("ka,kil,lb->abi", axes, (slope + slope.transpose(2, 1, 0)) / 2, axes)
+    return np.array([*(axes.T @ (moves @ centroid)), rotation, strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
 
 
 def _observers(Q: Array, contact: Contact, a: float) -> dict[str, Array]:

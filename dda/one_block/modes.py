@@ -1,4 +1,4 @@
-"""Natural modes of the two-block model and the one-step operator of the assembled scheme."""
+"""Natural modes of the two-block model, and conditioning and stability of its step."""
 
 from __future__ import annotations
 
@@ -13,7 +13,6 @@ from dda.one_block.natural_modes import modal_form
 from dda.one_block.two_block import TwoBlockModel
 from dda.scheme import roots, spectral
 from dda.scheme.newmark import Scheme, staged_step, step_matrices, viscosity
-from dda.scheme.stage import inertia_force, predictor, velocity_corrector
 
 
 @dataclass(frozen=True)
@@ -79,37 +78,6 @@ def scalar_eigenvalues(scheme: Scheme, frequency: float) -> tuple[complex, compl
     return complex(pair[0]), complex(pair[1])
 
 
-def one_step_operator(model: TwoBlockModel, scheme: Scheme, full: bool = False) -> Array:
-    """Return the (3n, 3n) matrix of one unloaded step on (D, dt V, dt^2 A).
-
-    D holds the reduced unknowns (all six if `full`), each scaled by a power of two; the matrix
-    is similar to the one on (D, V, A) and has the same eigenvalues. It is (6) and (7) with M A1 + C V1 + K D1 = 0.
-    """
-    form = model.gap_form if full else model.gap_form.reduced()
-    M, k, _ = _scaled(form, scheme)
-    K = np.diag(k)
-    C = scheme.mass_damping * scheme.step * M + scheme.stiffness_damping / scheme.step * K  # dt C
-    return _operator(scheme, M, C, K)
-
-
-def _operator(scheme: Scheme, M: Array, C: Array, K: Array) -> Array:
-    """Return the matrix of a step on (D, dt V, dt^2 A) by M, dt C and dt^2 K."""
-    n = len(M)
-    D, V, A = np.eye(3 * n).reshape(3, n, 3 * n)
-    D1 = D
-    V1 = V
-    A1 = A
-    for stage, S in zip(scheme.stages, step_matrices(scheme, M, K), strict=True):
-        A_g = A1
-        displacement = D1 + predictor(stage, V, A, V1, A_g)
-        velocity = velocity_corrector(stage, V, A, A_g, 0 * A)
-        force = inertia_force(stage, -K @ displacement, -K @ D, M @ A) - C @ velocity
-        A1 = np.asarray(np.linalg.solve(S, force), float)
-        D1 = displacement + stage.alpha * A1
-        V1 = velocity_corrector(stage, V, A, A_g, A1)
-    return np.vstack([D1, V1, A1])
-
-
 def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
     """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
     k = scheme.step**2 * form.K
@@ -143,12 +111,17 @@ def _stepped_radius(scheme: Scheme, reached: tuple[Mode, ...]) -> float:
     """Return the largest |lambda| of the steps of the modes."""
     if scheme.table is None:
         return max(abs(mode.eigenvalues[0]) for mode in reached)
-    unit = np.ones((1, 1))
-    largest = 0.0
-    for mode in reached:
-        operator = _operator(scheme, unit, 0 * unit, (mode.frequency * scheme.step) ** 2 * unit)
-        largest = max(largest, float(np.max(np.abs(np.linalg.eigvals(operator)))))
-    return largest
+    steps = [step_of_mode(scheme, mode.frequency * scheme.step) for mode in reached]
+    return float(np.max(np.abs(np.linalg.eigvals(steps))))
+
+
+def step_of_mode(scheme: Scheme, omega: float) -> Array:
+    """Return the (3, 3) matrix of one unloaded step of a mode of w dt = omega on (D, dt V, dt^2 A), undamped."""
+    k = omega * omega
+    S = step_matrices(scheme, 1.0, k)
+    still = [0.0 for _ in S]
+    units = ((1.0, 0.0, 0.0, -k), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0))
+    return np.array([staged_step(scheme, S, k, still, still, unit)[:3] for unit in units]).T
 
 
 def _predicted(scheme: Scheme, omegas: Array) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -67,40 +68,32 @@ def free_modes(M: Array, K: Array) -> tuple[Array, Array]:
 
 
 def _jacobi(matrix: Array) -> tuple[Array, Array]:
-    """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations.
-
-    A handful of numbers: Python's own are faster here than arrays.
-    """
-    A = matrix.tolist()
-    n = len(A)
-    V = np.eye(n).tolist()
-    pairs = [(i, j) for i in range(n) for j in range(i + 1, n)]
+    """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations."""
+    A = matrix.copy()
+    V = np.eye(len(A))
+    pairs = list(combinations(range(len(A)), 2))
     for _ in range(_SWEEPS):
-        off = [(i, j) for i, j in pairs if abs(A[i][j]) > 1e-17 * math.sqrt(A[i][i] * A[j][j])]
+        off = [(i, j) for i, j in pairs if abs(A[i, j]) > 1e-17 * math.sqrt(A[i, i] * A[j, j])]
         for i, j in off:
             _rotate(A, V, i, j)
         if not off:
             break
-    return np.array([A[i][i] for i in range(n)]), np.array(V).T
+    return np.diag(A), V
 
 
-def _rotate(A: list[list[float]], V: list[list[float]], i: int, j: int) -> None:
-    """Annihilate A[i][j] by a plane rotation in place and gather it in the rows of V."""
-    if A[i][j] == 0:
+def _rotate(A: Array, V: Array, i: int, j: int) -> None:
+    """Annihilate A[i, j] by a plane rotation in place and gather it in the columns of V."""
+    across = A[i, j]
+    if across == 0:
         return
-    theta = (A[j][j] - A[i][i]) / (2 * A[i][j])
+    theta = (A[j, j] - A[i, i]) / (2 * across)
     t = math.copysign(1.0, theta) / (abs(theta) + math.hypot(1.0, theta))
     c = 1 / math.hypot(1.0, t)
     s = t * c
-    a_ii = A[i][i] - t * A[i][j]
-    a_jj = A[j][j] + t * A[i][j]
-    for row in A:
-        row[i], row[j] = c * row[i] - s * row[j], s * row[i] + c * row[j]
-    for B in (A, V):
-        B[i], B[j] = (
-            [c * x - s * y for x, y in zip(B[i], B[j], strict=True)],
-            [s * x + c * y for x, y in zip(B[i], B[j], strict=True)],
-        )
-    A[i][i] = a_ii
-    A[j][j] = a_jj
-    A[i][j] = A[j][i] = 0.0
+    diagonal = A[i, i] - t * across, A[j, j] + t * across
+    for B in (A, A.T, V):
+        first = B[:, i].copy()
+        B[:, i] = c * first - s * B[:, j]
+        B[:, j] = s * first + c * B[:, j]
+    A[i, i], A[j, j] = diagonal
+    A[i, j] = A[j, i] = 0.0

@@ -21,11 +21,12 @@ from dda.contact.springs import Contact, base_directions
 from dda.march.step import Body, History, State, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, load_share
-from dda.one_block.gap_form import UNKNOWNS, gap_form
+from dda.one_block.gap_form import elastic_stiffness, gap_form
 from dda.one_block.natural_modes import free_modes
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 
-SYMMETRIC = ("ex", "e2", "w")  # of a symmetric motion
+U, W, S, EX, E2, GXY = range(6)  # numbers of the unknowns
+SYMMETRIC = (EX, E2, W)  # of a symmetric motion
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,73 +55,64 @@ class OpeningBlock:
 def opening_block(model: LoadedBlock, velocity: float = 0.0, full: bool = False) -> OpeningBlock:
     """Return one block over corners that open; `velocity` only tells what moves, `full` keeps all unknowns."""
     block = model.block
-    material = block.material
     load = model.load
-    law = model.contact
     tangent, normal, a = base_directions(block, model.base)
     axes = np.array([tangent, normal])
     form = gap_form(block, Contact(1.0), model.base, model.top, load)  # of its springs nothing is used below
     pushed = form.F + velocity * (form.M[:, :2] @ axes[:, 1])
     if load.motion is not None:
         pushed = np.abs(pushed) + np.sum(np.abs(form.M @ form.R), axis=1)
-    reached = dict(zip(UNKNOWNS, form.reached_from(pushed != 0), strict=True))
-    names: tuple[str, ...] = UNKNOWNS
-    if not full and not (reached["U"] or reached["s"] or reached["gxy"]):
-        names = SYMMETRIC if reached["ex"] else SYMMETRIC[1:]
-    kept = form.restricted(np.array([UNKNOWNS.index(name) for name in names]))
-    moduli = {"ex": material.free_modulus, "e2": material.constrained_modulus, "gxy": material.shear_modulus}
-    K = np.array([block.section.area * moduli.get(name, 0.0) for name in names])
-    unit = {name: np.array([float(name == other) for other in names]) for name in UNKNOWNS}
-    sides = (-a / 2, a / 2)
-    slide = np.array([unit["U"] + side * unit["ex"] for side in sides])
-    translation = np.column_stack([unit["U"], unit["w"]])
-    if names == UNKNOWNS:
-        gaps = [unit["w"] + side * unit["s"] for side in sides]
-        ways = [unit["U"], a * unit["ex"]]
-        read = np.outer(unit["w"], [0.5, 0.5]) + np.outer(unit["s"], [-1 / a, 1 / a])
-    else:
-        gaps = [unit["w"]]
-        ways = [slide[1]] if "ex" in names else []  # else the corners do not slide
-        read = unit["w"][:, None]
-    if not law.shear:
-        ways = []
-    elif names == UNKNOWNS:
-        read = np.hstack([read, np.outer(unit["U"], [0.5, 0.5])])
-    else:
-        read = np.hstack([read, np.zeros((len(names), len(ways)))])
-    B = np.array([*gaps, *ways])
-    k, shapes = free_modes(kept.M, K)
-    ground = np.zeros((len(B), 2))
-    ground[: len(gaps), 1] = 1.0
-    ground[len(gaps) :, 0] = 1.0
+    moving = form.reached_from(pushed != 0)
+    both = full or bool(np.any(moving[[U, S, GXY]]))
+    symmetric = SYMMETRIC if moving[EX] else SYMMETRIC[1:]
+    kept = np.arange(6) if both else np.array(symmetric)
+    form = form.restricted(kept)
+    slide, gaps = form.corners.transpose(0, 2, 1)
+    ways = np.array([(slide[0] + slide[1]) / 2, slide[1] - slide[0]])
+    if not both:
+        gaps = gaps[1:]
+        ways = slide[1:]
+    if not (model.contact.shear and EX in kept):  # without that strain the corners do not slide
+        ways = ways[:0]
+    c = len(gaps)
+    B = np.vstack([gaps, ways])
+    read = np.zeros((6, len(B)))
+    read[W, :c] = 1 / c
+    if both:
+        read[S, :c] = -1 / a, 1 / a
+        read[U, c:] = 0.5
+    read = read[kept]
+    K = elastic_stiffness(block.material, block.section.area)[kept]
+    k, shapes = free_modes(form.M, K)
+    across = np.arange(len(B)) < c
+    translation = np.eye(6, 2)[kept]
     body = Body(
         k=k,
-        loads=(shapes.T @ kept.F)[None],
+        loads=(shapes.T @ form.F)[None],
         stored=np.ones(1),
         first=np.zeros(len(B), dtype=np.int64),
         weight=B @ shapes,
-        ground=ground,
+        ground=np.column_stack([~across, across]).astype(float),
         mobility=np.ones(len(k)),
     )
-    seen = np.any(read != 0, axis=1)
     return OpeningBlock(
-        unknowns=names,
-        M=kept.M,
+        unknowns=form.unknowns,
+        M=form.M,
         K=K,
-        F=kept.F,
+        F=form.F,
         B=B,
         ramp=load.ramp,
         axes=axes,
-        contacts=len(gaps),
-        multiplicity=2.0 / len(gaps),
-        start=law.gap * unit["w"],
-        observers={name: row for name, row in kept.observers.items() if name != "contact_pressure"},
+        contacts=c,
+        multiplicity=2.0 / c,
+        start=model.contact.gap * translation[:, 1],
+        observers={name: row for name, row in form.observers.items() if name != "contact_pressure"},
         slide=slide,
         translation=translation,
         body=body,
-        shapes=np.where(seen[:, None], 0.0, shapes),
+        shapes=np.where(np.any(read != 0, axis=1)[:, None], 0.0, shapes),
         read=read,
-        momentum=translation.T @ kept.M @ shapes,
+        momentum=translation.T @ form.M @ shapes,
     )
 
 
@@ -153,11 +145,8 @@ def observed(block: OpeningBlock, row: Array, history: History, motion: BaseMoti
     """Return what a row over the unknowns observes from t = 0 on, measured from the base, (steps + 1,)."""
     c = block.contacts
     read = row @ block.read
-    parts = [(history.motion, row @ block.shapes), (history.opening, read), (history.path, read[c:])]
-    total = np.zeros(len(history.solves))
-    for values, weights in parts:
-        for j in np.flatnonzero(weights):
-            total += weights[j] * values[:, j]
+    total = history.motion[:, : len(block.shapes)] @ (row @ block.shapes) + history.opening @ read
+    total += history.path @ read[c:]
     if motion is not None and "U" in block.unknowns and len(block.B) == c:  # which no row of contact measures
         moved = motion.along(block.axes).at(step * np.arange(float(len(total))))
         total -= row[block.unknowns.index("U")] * moved[:, 0]

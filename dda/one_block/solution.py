@@ -20,7 +20,7 @@ from dda.one_block.natural_modes import ModalForm, modal_form
 from dda.one_block.two_block import TwoBlockModel, carried
 from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
-from dda.scheme.newmark import Scheme, carried_histories, stepped_modes
+from dda.scheme.newmark import Scheme, stepped_modes
 
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")  # of self-adaptive damping, further columns [-, J]
 
@@ -81,7 +81,7 @@ def solve(
         stepped = _why_stepped(model, scheme, modal, full)
         ready = perf_counter()
         if model.load.ramp:
-            shares = [load_share(model.load.ramp, instant) for instant in scheme.instants(steps).tolist()]
+            shares = np.array([load_share(model.load.ramp, instant) for instant in scheme.instants(steps).tolist()])
             observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
@@ -89,12 +89,12 @@ def solve(
         size = model.load_size
         motion = model.load.motion
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
-            instants = scheme.instants(steps)
-            histories = carried_histories(scheme, modal.frequencies, modal.translation, motion.at(instants))
+            moved = modal.translation, motion.at(scheme.instants(steps))
+            histories = stepped_modes(scheme, modal.frequencies, 0 * modal.load, steps, moved=moved)
             base_columns = carried(motion, step_times(scheme, steps))
             own = np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
             bound_overflow(observed, size)
-            observed += rows @ histories.T + own
+            observed += rows @ histories + own
             size = 1.0
     return linear_result(
         scheme,

@@ -33,6 +33,7 @@ from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
+from dda.one_block.gap_form import elastic_stiffness
 from dda.one_block.natural_modes import free_modes
 
 EXACT = "exact"
@@ -191,9 +192,7 @@ def modes_of(M: Array, block: Block) -> FreeModes:
 
     In ex, e2 = ey + c ex and gxy, c the free lateral contraction, its stiffness is a diagonal.
     """
-    material = block.material
     own = np.eye(6)
-    own[4, 3] = -material.contraction
-    moduli = [0.0, 0.0, 0.0, material.free_modulus, material.constrained_modulus, material.shear_modulus]
-    k, shapes = free_modes(own.T @ M @ own, block.section.area * np.array(moduli))
+    own[4, 3] = -block.material.contraction
+    k, shapes = free_modes(own.T @ M @ own, elastic_stiffness(block.material, block.section.area))
     return FreeModes(k, own @ shapes)

@@ -20,9 +20,8 @@ These formulas stand in `dda.scheme.stage`; every scheme is rows of numbers for 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from itertools import islice, repeat
 from typing import Literal
 
 import numpy as np
@@ -197,66 +196,46 @@ def viscosity(scheme: Scheme, k: Real) -> Real:
     return scheme.mass_damping * scheme.step + scheme.stiffness_damping / scheme.step * k
 
 
-def modal_displacements(
-    scheme: Scheme, omega: float, F: float, shares: Iterable[float] = repeat(1.0)
-) -> Iterator[float]:
-    """Yield D of step 1, 2, ... of one mode from rest under a load.
-
-    Parameters
-    ----------
-    omega : float
-        w dt [-].
-    F : float
-        dt^2 times the modal load.
-    shares
-        Of the load that act at t = 0 and at the end of each stage, `Scheme.instants`.
-    """
-    k = omega * omega
-    coming = iter(shares)
-    matrices = step_matrices(scheme, 1.0, k)
-    still = [0.0] * len(matrices)
-    state = rest(scheme, next(coming) * F, 0.0, k)
-    while len(loads := [share * F for share in islice(coming, len(matrices))]) == len(matrices):
-        state = staged_step(scheme, matrices, k, loads, still, state)
-        yield state[0]
-
-
 def stepped_modes(
-    scheme: Scheme, frequencies: Array, load: Array, steps: int, shares: Iterable[float] = repeat(1.0)
+    scheme: Scheme,
+    frequencies: Array,
+    load: Array,
+    steps: int,
+    shares: Array | None = None,
+    moved: tuple[Array, Array] | None = None,
 ) -> Array:
-    """Return D of every mode and step, (n, steps), from rest under a modal load; see `modal_displacements`."""
-    dt = scheme.step
-    histories = np.empty((len(load), steps))
-    for row, w, F in zip(histories, frequencies.tolist(), load.tolist(), strict=True):
-        row[:] = np.fromiter(islice(modal_displacements(scheme, dt * w, dt * dt * F, shares), steps), float, steps)
-    return histories
-
-
-def carried_histories(scheme: Scheme, frequencies: Array, translation: Array, moved: Array) -> Array:
-    """Return D of every step and mode, (steps, n), measured from a moving base, without other loads.
+    """Return D of every mode and step from rest, (n, steps), measured from the base where that moves.
 
     With x = D + R y the spring forces are those of D alone, and the scheme for x becomes
 
-        S (D1 - D) = gg P + (1/2 - alpha) f - alpha k D - R (y1 - y),
+        S (D1 - D) = gg P + (1/2 - alpha) f + alpha (F - k D) - R (y1 - y),
 
     with the momentum P and the inertia force f of x; no spring force is a difference of
     large numbers.
 
     Parameters
     ----------
-    translation : (n, 2) array
-        Modal R of unit displacements of the base.
-    moved : (1 + stages * steps, 2) array
-        Displacement y of the base at t = 0 and at the end of each stage, `Scheme.instants` [m]; the block starts
+    frequencies, load : (n,) arrays
+        w [rad/s], and the modal load.
+    shares : (1 + stages * steps,) array
+        Of the load that act at t = 0 and at the end of each stage, `Scheme.instants`; all of it without them.
+    moved : (n, 2) and (1 + stages * steps, 2) arrays
+        Modal R of unit displacements of the base, and its displacement y at these instants [m]; the block starts
         undisplaced.
     """
-    k = (scheme.step * frequencies) ** 2
+    dt = scheme.step
+    k = (dt * frequencies) ** 2
+    F = dt * dt * load
     matrices = step_matrices(scheme, np.ones_like(k), k)
-    loads = [0.0 * k for _ in matrices]
-    pushes = (np.diff(moved, axis=0) @ translation.T).reshape(-1, len(matrices), len(k))
-    state = rest(scheme, loads[0], -(translation @ moved[0]), k)
-    histories = np.empty((len(pushes), len(k)))
-    for row, push in zip(histories, pushes, strict=True):
-        state = staged_step(scheme, matrices, k, loads, list(push), state)
-        row[:] = state[0]
+    count = len(matrices)
+    coming = np.ones(1 + count * steps) if shares is None else shares
+    translation, base = (np.zeros((len(k), 1)), np.zeros((len(coming), 1))) if moved is None else moved
+    pushes = np.diff(base, axis=0) @ translation.T
+    state = rest(scheme, coming[0] * F, -(translation @ base[0]), k)
+    histories = np.empty((len(k), steps))
+    for n in range(steps):
+        stages = range(count * n, count * (n + 1))
+        loads = [coming[i + 1] * F for i in stages]
+        state = staged_step(scheme, matrices, k, loads, [pushes[i] for i in stages], state)
+        histories[:, n] = state[0]
     return histories

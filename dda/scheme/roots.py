@@ -1,4 +1,4 @@
-r"""Roots of one step of a mode, and stability limits, of any scheme.
+r"""Roots of one step of a mode, of any scheme.
 
 For z = 1 + y a scheme of one stage has, with Omega = w dt,
 
@@ -16,14 +16,11 @@ Nothing is subtracted from one, so that slow modes keep their digits.
 
 from __future__ import annotations
 
-import cmath
-import math
-
 import numpy as np
 
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, step_matrices, viscosity
-from dda.scheme.spectral import ComplexArray, critical_omega
+from dda.scheme.spectral import ComplexArray, damping_of, largest_first, pair
 from dda.scheme.stage import effective_matrix, predictor, velocity_corrector
 
 
@@ -67,19 +64,14 @@ def polynomial(scheme: Scheme, omega: float) -> Array:
 
 def roots(scheme: Scheme, omega: float) -> ComplexArray:
     """Return the roots z of a step of a mode with w dt = omega, two or three, the largest modulus first."""
-    z = 1 + increments(scheme, omega)
-    return np.asarray(z[np.argsort(-np.abs(z), kind="stable")])
+    return largest_first(1 + increments(scheme, omega))
 
 
 def increments(scheme: Scheme, omega: float) -> ComplexArray:
     """Return y = z - 1 of the roots."""
     coefficients = polynomial(scheme, omega)
     if len(coefficients) == 3:
-        _, b, c = coefficients
-        root = cmath.sqrt(b * b / 4 - c)
-        first = -b / 2 - root if b > 0 else -b / 2 + root
-        second = c / first if first else 0j
-        return np.array([first, second]) if first.imag == 0 else np.array([first, first.conjugate()])
+        return pair(*coefficients[1:])
     y = np.roots(coefficients).astype(complex)
     slope = np.polyder(coefficients)
     for _ in range(2):  # Newton's method takes back what the eigenvalues of a companion matrix lose
@@ -88,53 +80,22 @@ def increments(scheme: Scheme, omega: float) -> ComplexArray:
     return np.asarray(y)
 
 
-def principal_pair(scheme: Scheme, omega: float) -> tuple[complex, complex]:
+def principal_pair(scheme: Scheme, omega: float) -> ComplexArray:
     """Return y of the pair that stands for the mode: the complex one, else the two largest z."""
     y = increments(scheme, omega)
-    complex_pair = y[np.abs(y.imag) > 0]
-    if len(complex_pair) == 2:
-        first = complex(complex_pair[np.argmax(complex_pair.imag)])
-        return first, first.conjugate()
-    ordered = y[np.argsort(-np.abs(1 + y), kind="stable")]
-    return complex(ordered[0]), complex(ordered[1])
+    rising = y[y.imag > 0]
+    if len(rising) == 1:
+        return np.array([rising[0], rising[0].conjugate()])
+    return largest_first(1 + y)[:2] - 1 if len(y) > 2 else y
 
 
 def eigenvalues(scheme: Scheme, omega: float) -> tuple[complex, complex]:
     """Return z of the principal pair, the larger modulus first."""
-    first, second = principal_pair(scheme, omega)
-    return 1 + first, 1 + second
+    first, second = largest_first(1 + principal_pair(scheme, omega)).tolist()
+    return first, second
 
 
 def damping_ratio(scheme: Scheme, omega: float) -> float:
     """Return xi = -Re(ln z)/|ln z|; at least one where overdamped, NaN where the dominant root is not positive."""
-    logs = _logarithms(scheme, omega)
-    if logs is None:
-        return math.nan
-    size = cmath.sqrt(logs[0] * logs[1]).real
-    return -(logs[0] + logs[1]).real / (2 * size) if size > 0 else math.nan
-
-
-def period_elongation(scheme: Scheme, omega: float) -> float:
-    """Return w / w' - 1, w' dt = |ln z|; NaN where the dominant root is not positive."""
-    logs = _logarithms(scheme, omega)
-    if logs is None:
-        return math.nan
-    return omega / cmath.sqrt(logs[0] * logs[1]).real - 1
-
-
-def _logarithms(scheme: Scheme, omega: float) -> tuple[complex, complex] | None:
-    """Return ln z of the principal pair, None where a root is real and not positive."""
-    pair = principal_pair(scheme, omega)
-    if pair[0].imag == 0 and not (pair[0].real > -1 and pair[1].real > -1):
-        return None
-    first, second = (complex(0.5 * math.log1p(2 * y.real + abs(y) ** 2), math.atan2(y.imag, 1 + y.real)) for y in pair)
-    return first, second
-
-
-def stability_limit(scheme: Scheme) -> float:
-    """Return w dt beyond which a step grows; inf of a scheme that never does."""
-    if scheme.table is None:
-        return critical_omega(scheme.alpha, scheme.delta, scheme.gg)
-    if not scheme.explicit:  # by their numbers, whatever rho_inf, split and gg
-        return math.inf
-    return math.sqrt(2 * (1 + scheme.gg))
+    y = principal_pair(scheme, omega)
+    return float(damping_of(float(-np.sum(y).real), float(np.prod(y).real)))

@@ -1,13 +1,14 @@
 r"""Closed forms of the Newmark scheme with kinetic damping for one mode.
 
 For a mode of frequency w, Omega = w dt, beta = 1 + alpha Omega^2 and X = Omega^2 / beta, every
-step but the first maps the mode's state with the eigenvalues of
+step but the first maps the mode's state with two eigenvalues lambda = 1 + y (the third one is zero),
 
-    lambda^2 - trace lambda + det = 0,
-    trace = 1 + gg - (1/2 + gg delta) X,        det = gg (1 + (1/2 - delta) X)
+    y^2 + b y + c = 0,    b = 1 - gg + (1/2 + gg delta) X,    c = (1 + gg)/2 X,
 
-(the third eigenvalue is zero). At gg = 1 this is eq. (11), (12). A complex pair is written
-lambda = exp((-xi + i sqrt(1 - xi^2)) w' dt). All functions take arrays of Omega [-].
+and the product 1 - b + c = gg (1 + (1/2 - delta) X).
+
+At gg = 1 this is eq. (11), (12). Nothing is subtracted from one, so that slow modes keep their digits. A complex pair
+is written lambda = exp((-xi + i sqrt(1 - xi^2)) w' dt). All functions take arrays of Omega [-].
 """
 
 from __future__ import annotations
@@ -31,91 +32,70 @@ def _x(omega: ArrayLike, alpha: Number) -> Array:
     return x
 
 
-def trace(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
-    """Return the sum of the two eigenvalues."""
-    return (1 + gg) - (0.5 + gg * delta) * _x(omega, alpha)
-
-
-def determinant(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
-    """Return the product of the two eigenvalues, gg (1 + h) with h of eq. (12)."""
-    return gg * (1 + (0.5 - delta) * _x(omega, alpha))
-
-
-def _discriminant(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> Array:
-    """Return trace^2 - 4 det, arranged so that small Omega keeps its digits."""
+def coefficients(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> tuple[Array, Array]:
+    """Return b and c of y^2 + b y + c = 0; the product of the eigenvalues is 1 - b + c."""
     X = _x(omega, alpha)
-    p = 0.5 + gg * delta
-    b = 2 * (1 + gg) * p + 4 * gg * (0.5 - delta)
-    return (1 - gg) ** 2 - X * (b - p * p * X)
+    return 1 - gg + (0.5 + gg * delta) * X, (1 + gg) / 2 * X
+
+
+def pair(b: Number, c: Number) -> ComplexArray:
+    """Return both y of y^2 + b y + c = 0, last axis of length two."""
+    middle = -np.asarray(b) / 2
+    discriminant = middle * middle - c
+    root = np.sqrt(np.abs(discriminant))
+    first = middle + np.copysign(root, middle)
+    second = np.divide(c, first, out=np.zeros_like(first), where=first != 0)
+    real = np.stack([first, second], axis=-1).astype(complex)
+    conjugate = np.stack([middle + 1j * root, middle - 1j * root], axis=-1)
+    return np.asarray(np.where((discriminant < 0)[..., None], conjugate, real))
+
+
+def largest_first(eigenvalues: ComplexArray) -> ComplexArray:
+    """Return eigenvalues by their moduli, along the last axis."""
+    order = np.argsort(-np.abs(eigenvalues), axis=-1, kind="stable")
+    return np.asarray(np.take_along_axis(eigenvalues, order, axis=-1))
 
 
 def eigenvalues(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> ComplexArray:
     """Return the two eigenvalues, last axis of length two, the larger modulus first."""
-    t = trace(omega, alpha, delta, gg)
-    d = determinant(omega, alpha, delta, gg)
-    disc = _discriminant(omega, alpha, delta, gg)
-    root = np.sqrt(np.abs(disc))
-    first = (t + np.where(t < 0, -root, root)) / 2
-    second = np.divide(d, first, out=np.zeros_like(t), where=first != 0)
-    pair = np.stack([first, second], axis=-1).astype(complex)
-    conjugate = np.stack([t + 1j * root, t - 1j * root], axis=-1) / 2
-    result: ComplexArray = np.where((disc < 0)[..., None], conjugate, pair)
-    return result
+    return largest_first(1 + pair(*coefficients(omega, alpha, delta, gg)))
 
 
 def spectral_radius(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return max |lambda|; sqrt(det), the paper's (13), holds for a complex pair only."""
-    det = determinant(omega, alpha, delta, gg)
-    complex_pair = _discriminant(omega, alpha, delta, gg) < 0
-    real = np.abs(eigenvalues(omega, alpha, delta, gg)[..., 0])
-    radius: Array = np.where(complex_pair, np.sqrt(np.abs(det)), real)
-    return radius
+    b, c = coefficients(omega, alpha, delta, gg)
+    largest = largest_first(1 + pair(b, c))[..., 0]
+    return np.asarray(np.where(largest.imag != 0, np.sqrt(np.abs(1 + (c - b))), np.abs(largest)))
 
 
-def _logarithms(omega: ArrayLike, alpha: Number, delta: Number, gg: Number) -> tuple[Array, Array, Array]:
-    """Return the real part sum/2 and the half difference of the two logarithms, and the kind.
-
-    For a complex pair ln lambda = re +- i half; for positive real roots ln lambda = re +- half.
-    The kind is -1 for a complex pair, +1 for positive real roots, NaN where a root is not positive.
-    """
-    X = _x(omega, alpha)
-    t = trace(omega, alpha, delta, gg)
-    disc = _discriminant(omega, alpha, delta, gg)
+def logarithms(b: Number, c: Number) -> ComplexArray:
+    """Return ln lambda of both eigenvalues, last axis of length two, NaN where one is real and not positive."""
+    y = pair(b, c)
+    product = np.asarray(np.subtract(c, b))[..., None]  # of the eigenvalues, less one
     with np.errstate(all="ignore"):
-        re = (np.log(gg) + np.log1p((0.5 - delta) * X)) / 2
-        angle = np.arctan2(np.sqrt(-disc), t)
-        second = (1 + gg) * X / (1 - t / 2 + np.sqrt(disc) / 2) / 2
-        half = np.log1p(-second) - re
-    positive = (disc >= 0) & (t > 0) & (determinant(omega, alpha, delta, gg) > 0)
-    kind = np.where(disc < 0, -1.0, np.where(positive, 1.0, np.nan))
-    return re, np.where(disc < 0, angle, half), kind
+        size = np.where(y.imag == 0, np.log1p(y.real), np.log1p(product) / 2)
+        logs = size + 1j * np.arctan2(y.imag, 1 + y.real)
+    positive = np.all((y.imag != 0) | (y.real > -1), axis=-1, keepdims=True)
+    return np.asarray(np.where(positive, logs, np.nan))
+
+
+def damping_of(b: Number, c: Number) -> Array:
+    """Return xi = -Re(ln lambda) / |ln lambda|, of real eigenvalues -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2))."""
+    logs = logarithms(b, c)
+    with np.errstate(all="ignore"):
+        return np.asarray(-np.sum(logs, axis=-1).real / (2 * np.sqrt(np.prod(logs, axis=-1)).real))
 
 
 def damping_ratio(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
-    """Return xi; at least one where overdamped, NaN where a root is not positive.
-
-    Complex pair: -Re(ln lambda) / |ln lambda|; positive real roots:
-    -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2)).
-    """
-    re, half, kind = _logarithms(omega, alpha, delta, gg)
-    with np.errstate(all="ignore"):
-        xi: Array = -re / np.sqrt(re**2 - kind * half**2)
-    return xi
-
-
-def numerical_omega(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
-    """Return w' dt, the undamped frequency of the stepped mode: |ln lambda|, or sqrt(ln l1 ln l2)."""
-    re, half, kind = _logarithms(omega, alpha, delta, gg)
-    with np.errstate(all="ignore"):
-        value: Array = np.sqrt(re**2 - kind * half**2)
-    return value
+    """Return xi; at least one where overdamped, NaN where an eigenvalue is not positive."""
+    return damping_of(*coefficients(omega, alpha, delta, gg))
 
 
 def period_elongation(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
-    """Return w / w' - 1."""
+    """Return w / w' - 1, w' dt = |ln lambda|, or sqrt(ln l1 ln l2)."""
+    logs = logarithms(*coefficients(omega, alpha, delta, gg))
     with np.errstate(all="ignore"):
-        elongation: Array = np.asarray(omega, dtype=float) / numerical_omega(omega, alpha, delta, gg) - 1
-    return elongation
+        return np.asarray(np.asarray(omega, dtype=float) / np.sqrt(np.prod(logs, axis=-1)).real - 1)
 
 
 def critical_omega(alpha: float, delta: float, gg: float = 1.0) -> float:

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb, arb_mat
-from oracles.block_oracle import random_problem
-from oracles.contact_laws import IntegratedDashpots
+from oracles.block_by_integration import Integrated, random_problem
 
 from fem_reference.events.block_events import BlockHistory, BlockMotion, solve
 from fem_reference.events.block_impacts import Hops
@@ -88,11 +87,11 @@ def test_rocking_on_dashpots_agrees_with_an_integration(seed: int, zeta: float) 
     problem = dashpot(replace(random_problem(seed), shear_stiffness=0.0), zeta)
     end = 8 * transit(problem)
     motion = solve(problem, end)
-    states = ["pressed" if closed else "open" for closed in motion.closed_at_start]
-    events, y = IntegratedDashpots(problem).run_laws(states, end)
-    assert events
-    assert [f"{switch.corner} {switch.kind}" for switch in motion.switches] == [kind for _, kind in events]
-    assert [switch.time for switch in motion.switches] == pytest.approx([time for time, _ in events], rel=1e-8)
+    switches, y = Integrated(problem).run(list(map(int, motion.closed_at_start)), end)
+    assert switches
+    kinds = [(corner, "closes" if state == STICKS else "opens") for _, corner, state in switches]
+    assert [(switch.corner, switch.kind) for switch in motion.switches] == kinds
+    assert [switch.time for switch in motion.switches] == pytest.approx([time for time, _, _ in switches], rel=1e-8)
     history = motion.at([end])
     assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-7 * np.abs(y[:6]).max())
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb, arb_mat, arb_poly
-from oracles.friction_oracle import slipping_problem
+from oracles.block_by_integration import slipping_problem
 
 from fem_reference.events import block_events, block_march, series, watching
 from fem_reference.events.axes import Axes

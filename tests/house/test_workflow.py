@@ -1,11 +1,15 @@
 """Workflows, hooks, pages and CONTRIBUTING.md name targets, files, commands and things that exist; versions agree."""
 
 import functools
+import json
 import os
 import re
 import shlex
+import subprocess
+import sys
 import tomllib
 from fnmatch import fnmatch
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -18,7 +22,8 @@ from validation.solvers.registry import BUILT_IN
 from validation.suite.folders import study_names
 
 WORKFLOWS = ROOT / ".github/workflows"
-PAGES = ["README.md", "CONTRIBUTING.md", *(f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md")))]
+DOCS = [f"docs/{path.name}" for path in sorted((ROOT / "docs").glob("*.md"))]
+PAGES = ["README.md", "CONTRIBUTING.md", "AGENTS.md", "SECURITY.md", *DOCS]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 GUIDE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -29,6 +34,16 @@ WRITTEN = {  # by commands
     "reports/field.pdf",
     "before/verdicts.json",
 }
+OWN_SOLVER = """
+from validation import solve as solve_scene
+
+def solve(scene):
+    columns = solve_scene(scene, "dda").history.columns
+    return {{name: {factor} * values for name, values in columns.items()}}
+
+solve.handles = frozenset({{"unilateral contact", "friction", "slope", "own weight"}})
+"""
+SOLVERS = [*(pytest.param(*case, marks=pytest.mark.long) for case in (("right", 0), ("wrong", 1))), ("absent", 2)]
 
 
 @functools.cache
@@ -70,6 +85,40 @@ def test_hooks_are_local_and_run_the_tools_of_the_environment() -> None:
     tools = ("ruff check", "ruff format", "lint-imports", "mypy")
     assert [hook["entry"] for hook in repository["hooks"]] == [f".venv/bin/{tool}" for tool in tools]
     assert {hook["language"] for hook in repository["hooks"]} == {"system"}
+
+
+def options_of(command: str) -> set[str]:
+    """Return the options of a command of `dda-validate`."""
+    return {option for parameter in commands()[command].params for option in parameter.opts}
+
+
+def test_hooks_of_other_repositories_call_commands_that_exist() -> None:
+    hooks = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
+    for hook in hooks:
+        command, *words = re.findall(r"[\w-]+", hook["entry"].partition("dda-validate ")[2])
+        assert {word for word in words if word.startswith("--") and word != "--"} <= options_of(command)
+        assert hook["language"] == "python"
+
+
+@pytest.mark.parametrize(("solver", "status"), SOLVERS)
+def test_the_action_s_last_step_judges_a_solver(tmp_path: Path, solver: str, status: int) -> None:
+    action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
+    step = action["runs"]["steps"][-1]
+    inputs = {"solver": "mine:solve", "problems": "sliding", "study": "", "out": ""}
+    assert set(action["inputs"]) == set(inputs)
+    values = {name: inputs[word.split(".")[1].split()[0]] for name, word in step["env"].items()}
+    if solver != "absent":
+        factor = "1.0" if solver == "right" else "1.5"
+        (tmp_path / "mine.py").write_text(OWN_SOLVER.format(factor=factor), encoding="utf-8")
+    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    done = subprocess.run(
+        ["bash", "-e", "-o", "pipefail", "-c", step["run"]],
+        cwd=tmp_path,
+        env={**os.environ, **values, "PATH": path},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == status, done.stdout + done.stderr
 
 
 # ---- what pages name ------------------------------------------------------------------------------------------------
@@ -159,7 +208,8 @@ def test_versions_of_projects_citation_and_changelog_agree() -> None:
     number, _, date = releases[0].partition(" - ")
     citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
     peers = tomllib.loads((ROOT / "examples/peers/pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert PROJECT["project"]["version"] == peers["version"] == citation["version"] == number
+    deposit = json.loads((ROOT / ".zenodo.json").read_text(encoding="utf-8"))
+    assert PROJECT["project"]["version"] == peers["version"] == citation["version"] == deposit["version"] == number
     assert str(citation["date-released"]) == date
 
 

@@ -198,7 +198,7 @@ COLUMNS = {
         0.02,
         "1O 0.004060065864752, 2O 0.006300859180211, 3O 0.008139563797189, 4O 0.00898524933539",
         4,
-        values=((0.02, "velocity", CRADLE_END),),
+        values=((0.01, "velocity", CRADLE_END),),
     ),
     "A8": KnownColumn(
         ColumnProblem(

@@ -1,6 +1,6 @@
 """The time schemes of candidate changes, each by its family and one number: names, tables and other names.
 
-The tables are those of `validation.theory.stages`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
+The stages are those of `dda.scheme`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
 Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
 """
 
@@ -9,9 +9,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from dda.scheme.composite import composite, same_matrix
+from dda.scheme.generalised_alpha import chung_hulbert, generalised_alpha, wood_bossak_zienkiewicz
+from dda.scheme.leapfrog import leapfrog
+from dda.scheme.stage import Stage, newmark_stage
 from validation.diagnosis.variant import Family, Variant
-from validation.theory import stages as tables
-from validation.theory.stages import Stage, Stages
 
 LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
 EXPLICIT: tuple[Family, ...] = ("leapfrog", "symplectic-euler")
@@ -32,28 +34,28 @@ FAMILIES: dict[str, str] = {
 }
 
 
-def stages(v: Variant) -> Stages:
-    """Return the stages of a step of a variant."""
+def stages(v: Variant) -> tuple[Stage, ...]:
+    """Return the stages of a step of a variant, those of `dda`."""
     r = v.spectral
     match v.family:
         case "newmark":
-            return tables.newmark(v.alpha, v.delta)
+            return (newmark_stage(v.alpha, v.delta),)
         case "hht":
-            return tables.generalised_alpha(0.0, r)
+            return generalised_alpha(0.0, r).stages
         case "wbz":
-            return tables.wbz(r)
+            return wood_bossak_zienkiewicz(r).stages
         case "chung-hulbert":
-            return tables.chung_hulbert(r)
+            return chung_hulbert(r).stages
         case "theta":
-            return (Stage(e_0=r * (1 - r), beta=r**2, g_0=1 - r, gamma=r),)
+            return (Stage(alpha=r**2, delta=r, e_0=r * (1 - r), g_0=1 - r),)
         case "composite":
-            return tables.composite(r, split_of(v))
-    return tables.LEAPFROG  # whose U is that of the half step before
+            return composite(r, split_of(v)).stages
+    return leapfrog().stages  # whose U is that of the half step before
 
 
 def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
-    return v.split or tables.equal_split(v.spectral)
+    return v.split or same_matrix(v.spectral)
 
 
 def scheme_numbers(v: Variant) -> dict[str, Any]:

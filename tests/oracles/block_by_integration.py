@@ -1,17 +1,44 @@
-"""Blocks with friction on a base that may move, integrated by DOP853 with events: a program of its own in floats."""
+"""Random blocks on corners that open, slip or have dashpots, on a base that may move, integrated by DOP853 with events.
+
+A program of its own in floats, in (u, v, r, ex, ey, gxy): it shares nothing with the exact motion but the problem.
+"""
 
 import math
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from oracles.block_oracle import Integrated, random_problem
+from scipy.integrate import solve_ivp
 
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.problem.motion import Motion
 
-OPEN, STICKS, RIGHT, LEFT = 0, 1, 2, -2
+OPEN, STICKS, RIGHT, LEFT, RELEASED = 0, 1, 2, -2, 3
 Array = NDArray[np.float64]
+
+
+def random_problem(seed: int) -> BlockProblem:
+    rng = np.random.default_rng(seed)
+    young = 1e9 * 10 ** rng.uniform(-1, 1)
+    width = rng.uniform(0.5, 3.0)
+    p = young * 10 ** rng.uniform(-1, 1.5)
+    strain = bool(rng.integers(2))
+    return BlockProblem(
+        width=width,
+        height=width * rng.uniform(0.6, 1.8),
+        density=rng.uniform(2000, 3000),
+        young=young,
+        stiffness=p,
+        pressure=young * rng.uniform(0.001, 0.01),
+        shear_stiffness=p * rng.uniform(0.2, 1.0) * int(rng.integers(2)),
+        poisson=rng.uniform(-0.2, 0.4),
+        hypothesis="plane strain" if strain else "plane stress",
+        eccentricity=width * rng.uniform(-0.2, 0.2),
+        traction=young * rng.uniform(-5e-4, 5e-4),
+        gravity=rng.uniform(0, 20),
+        gap=width * rng.uniform(0, 1e-3) * int(rng.integers(2)),
+        velocity=rng.uniform(-2, 2),
+    )
 
 
 def slipping_problem(seed: int, moved: bool = False) -> BlockProblem:
@@ -32,19 +59,34 @@ def slipping_problem(seed: int, moved: bool = False) -> BlockProblem:
     )
 
 
-class Slipping(Integrated):
-    """The block of `Integrated` with Coulomb's friction in its corners."""
+class Integrated:
+    """A block from given states of its corners; without an angle of friction they never slip."""
 
-    def __init__(self, problem: BlockProblem, longest: float = math.inf) -> None:
-        super().__init__(problem)
-        q = self.problem
+    def __init__(self, problem: BlockProblem) -> None:
+        self.problem = q = problem
+        x, weight = np.polynomial.legendre.leggauss(3)
+        X, Y = (z.ravel() * side / 2 for z, side in zip(np.meshgrid(x, x), (q.width, q.height), strict=True))
+        area = np.outer(weight, weight).ravel() * q.width * q.height / 4
+        self.M = sum(q.density * w * T.T @ T for w, T in zip(area, map(self.T, X, Y), strict=True))
+        E, mu = q.young, q.poisson
+        lame = E * mu / ((1 + mu) * (1 - 2 * mu)) if q.hypothesis == "plane strain" else E * mu / (1 - mu**2)
+        G = E / (2 * (1 + mu))
+        self.K0 = np.zeros((6, 6))
+        elastic = np.array([[lame + 2 * G, lame, 0], [lame, lame + 2 * G, 0], [0, 0, G]])
+        self.K0[3:, 3:] = q.width * q.height * elastic
+        self.corners = [self.T(s * q.width / 2, -q.height / 2) for s in (-1, 1)]
+        middle = self.T(q.eccentricity, q.height / 2)[1] * (q.width - 2 * abs(q.eccentricity))
+        self.F = -q.pressure * middle + q.traction * q.width * self.T(0, q.height / 2)[0]
+        slope = math.radians(q.slope)
+        weight = q.density * q.width * q.height * q.gravity
+        self.F += weight * np.array([math.sin(slope), -math.cos(slope)]) @ self.T(0, 0)
         self.tan = math.tan(math.radians(q.friction or 0.0))
         self.C = q.cohesion * q.width / 2
-        turn = math.radians(q.slope)
-        weight = q.density * q.width * q.height * q.gravity
-        self.F += weight * (math.sin(turn) * self.T(0, 0)[0] + (1 - math.cos(turn)) * self.T(0, 0)[1])
         self.states, self.references = [OPEN, OPEN], [0.0, 0.0]
-        self.longest = longest  # a step that is longer may jump over two events
+
+    @staticmethod
+    def T(x: float, y: float) -> Array:
+        return np.array([[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]])
 
     def base(self, t: float) -> tuple[Array, Array]:
         if self.problem.base is None:
@@ -55,16 +97,20 @@ class Slipping(Integrated):
         return rows[1:, i] + speed * (t - rows[0, i]), speed
 
     def corner(self, c: int, t: float, y: Array) -> dict[str, float]:
-        """Gap, slide, forces, reserves and the rate of dissipation of a corner."""
+        """Gap, slide, forces, reserves and the rate of dissipation of a corner; `P` is N as if it were closed."""
         q, (at, speed) = self.problem, self.base(t)
         s, w = self.corners[c] @ y[:6] - at + [0, q.gap]
         ds, dw = self.corners[c] @ y[6:] - speed
         state, sign = self.states[c], -np.sign(self.states[c])
-        N = -q.stiffness * w if state else 0.0
+        P = -q.stiffness * w - q.damping * dw
+        N = 0.0 if state in (OPEN, RELEASED) else P
         limit = self.tan * N + self.C
-        T = {OPEN: 0.0, STICKS: -q.shear_stiffness * (s - self.references[c])}.get(state, sign * limit)
-        moved = ds - sign * self.tan * q.stiffness * dw / q.shear_stiffness
-        return {"w": w, "s": s, "dw": dw, "ds": ds, "N": N, "T": T, "limit": limit, "d": -sign * moved}
+        resting = {OPEN: 0.0, RELEASED: 0.0, STICKS: -q.shear_stiffness * (s - self.references[c])}
+        T = resting.get(state, sign * limit)
+        here = {"w": w, "s": s, "dw": dw, "ds": ds, "P": P, "N": N, "T": T, "limit": limit}
+        if q.friction is not None:
+            here["d"] = -sign * (ds - sign * self.tan * q.stiffness * dw / q.shear_stiffness)
+        return here
 
     def run(self, states: list[int], end: float) -> tuple[list[tuple[float, str, int]], Array]:
         """Times, corners and new states of the switches, and the state vector at the end."""
@@ -80,27 +126,27 @@ class Slipping(Integrated):
         return found, y
 
     def until(self, t: float, y: Array, end: float) -> tuple[float, Array, list[tuple[float, str, int]]]:
-        from scipy.integrate import solve_ivp
-
         found = []
         for c in (0, 1):
             if abs(self.states[c]) == RIGHT and self.corner(c, t, y)["d"] < -1e-9:  # the base turned round
                 found.append(self.switch(c, STICKS, t, y))
         events = [(c, *event) for c in (0, 1) for event in self.events(c)]
-        options = {"rtol": 1e-13, "atol": 1e-16, "max_step": self.longest, "events": [event for _, _, event in events]}
+        options = {"rtol": 1e-13, "atol": 1e-16, "events": [event for _, _, event in events]}
         done = solve_ivp(self.motion, (t, end), y, "DOP853", **options)
         t, y = float(done.t[-1]), done.y[:, -1]
         for (c, state, _), times in zip(events, done.t_events, strict=True):
             if len(times):
-                found.append(self.switch(c, state, t, y))
+                released = self.states[c] == RELEASED and state == OPEN  # which changes no force
+                switch = self.switch(c, state, t, y)
+                found += [] if released else [switch]
         return t, y, found
 
     def switch(self, c: int, state: int, t: float, y: Array) -> tuple[float, str, int]:
         here = self.corner(c, t, y)
         q = self.problem
-        self.references[c] = here["s"] + here["T"] / q.shear_stiffness
+        self.references[c] = here["s"] + (here["T"] / q.shear_stiffness if here["T"] else 0.0)
         fast = q.shear_stiffness * abs(here["ds"]) > self.tan * q.stiffness * abs(here["dw"])
-        if state == STICKS and self.states[c] == OPEN and fast and not self.C:
+        if q.friction is not None and state == STICKS and self.states[c] == OPEN and fast and not self.C:
             state = RIGHT if here["ds"] > 0 else LEFT
         self.states[c] = state
         return t, "MN"[c], state
@@ -115,7 +161,11 @@ class Slipping(Integrated):
 
         if self.states[c] == OPEN:
             return [falls(STICKS, lambda here: here["w"])]
-        opens = falls(OPEN, lambda here: here["N"])
+        if self.states[c] == RELEASED:
+            return [falls(OPEN, lambda here: -here["w"]), falls(STICKS, lambda here: -here["P"])]
+        opens = falls(RELEASED if self.problem.damping else OPEN, lambda here: here["N"])
+        if self.problem.friction is None:
+            return [opens]
         if self.states[c] != STICKS:
             return [opens, falls(STICKS, lambda here: here["d"])]
         return [

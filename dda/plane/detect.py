@@ -1,0 +1,469 @@
+r"""Which corners may touch which edges in a step, and from which contacts of the step before they go on.
+
+Two convex parts are apart while one edge of either has the other part in front of it. Of all their edges one is taken,
+by the first of these rules that holds:
+
+a. the edge through which they are really pressed, however deep, as long as its corner lies over it;
+b. of the edges at which they touch, that which the step without contact leaves farthest in front, unless nothing of the
+   other part lies over it and another edge is crossed in this step;
+c. of the edges that have the other part in front, that which this step crosses last: through it they come to touch;
+d. where none has, the one with the least penetration.
+
+(The least penetration alone pushes a corner that came in beside a corner out through the wrong edge, with energy from
+nowhere. The edge crossed last alone stops a corner that slides over a seam at the side of the next block.)
+
+At that edge the other part's lowest corner is a contact if it lies over the edge; and, where the edge that this corner
+belongs to is nearly parallel, the other end of it and those ends of the first edge that lie strictly inside. So of
+corners that coincide one is taken. Cuts of a polygon that is not convex, and corners into which it turns, carry none.
+
+Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
+`dda.march.compiled` takes them.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dda.contact.dense import Matrix, Vector
+from dda.model.arrays import Array
+from dda.model.polygon import section
+from dda.plane.polygons import Corners, Parts, Sides, outlines
+
+REACH = 0.02  # of the size of the smallest block, within which contacts are kept
+SAME = 1e-9  # of that size: what rounding leaves of a touch
+SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give
+NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
+DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
+PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
+NONE = -1
+TOO_MANY = -2  # contacts, for the records that were given
+TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
+
+
+class FoundContacts(NamedTuple):
+    """Contacts of a step, (most,) each."""
+
+    corner: Any  # numbers among all corners
+    edge: Any
+    share: Vector  # of the edge, at which the corner's foot is
+    gap: Vector  # at the start of the step, along the edge's outward normal [m]
+    law: Any
+    origin: Any  # contact of the step before from which it goes on, -1: none
+    same: Any  # 1 where that is the same corner at the same edge
+    normal: Vector  # force, as the step leaves it [N]
+    closed: Any  # 1 where it is, as the step leaves it
+    chain: Any  # work: next contact of a list
+    heir: Any  # work: contact of the next step that goes on from it; one only, lest forces double
+
+
+class Detection(NamedTuple):
+    """What contacts are found among, and where they are written."""
+
+    corners: Corners
+    sides: Sides
+    parts: Parts
+    moves: Any  # (b,) 0 of blocks that cannot
+    head: Any  # (b,) work: first contact of the step before of a block
+    law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
+    contacts: FoundContacts
+    previous: FoundContacts
+    count: Any  # (2,) how many contacts and previous ones there are
+    size: float  # of the smallest block that moves [m]
+
+
+def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, most: int) -> Detection:
+    """Return what finds contacts of blocks with the corners (n, 2) [m], at most so many.
+
+    Parameters
+    ----------
+    law : (b, b) array of int
+        Number of the law of two blocks, -1 where they are not looked at; blocks of which neither moves are not.
+    """
+    movable = np.array(moves, dtype=np.int64)
+    looked_at = np.array(law, dtype=np.int64)
+    looked_at[~np.logical_or.outer(movable, movable)] = NONE
+    np.fill_diagonal(looked_at, NONE)
+    areas = [section(vertices).area for vertices, moving in zip(polygons, moves, strict=True) if moving]
+    found = [
+        np.zeros(most, dtype) for dtype in (np.int64,) * 2 + (float,) * 2 + (np.int64,) * 3 + (float,) + (np.int64,) * 3
+    ]
+    return Detection(
+        *outlines(polygons),
+        moves=movable,
+        head=np.full(len(polygons), NONE),
+        law=looked_at.ravel(),
+        contacts=FoundContacts(*found),
+        previous=FoundContacts(*(array.copy() for array in found)),
+        count=np.zeros(2, np.int64),
+        size=float(np.sqrt(min(areas))),
+    )
+
+
+def keep_contacts(detection: Detection) -> None:
+    """Take the contacts of a step that was accepted for those of the step before."""
+    contacts = detection.contacts
+    previous = detection.previous
+    detection.count[1] = detection.count[0]
+    for number in range(detection.count[0]):
+        previous.corner[number] = contacts.corner[number]
+        previous.edge[number] = contacts.edge[number]
+        previous.normal[number] = contacts.normal[number]
+        previous.closed[number] = contacts.closed[number]
+
+
+def find_contacts(detection: Detection) -> int:
+    """Write the contacts of a step; return how many there are, or TOO_MANY or TOO_DEEP.
+
+    The corners are where the step begins, `now`, and where it would end without contact, `then`.
+    """
+    corners = detection.corners
+    parts = detection.parts
+    previous = detection.previous
+    head = detection.head
+    blocks = len(head)
+    along = place_parts(detection)
+    for block in range(blocks):
+        head[block] = NONE
+    for number in range(detection.count[1] - 1, -1, -1):
+        keeper = keeper_of(detection, corners.block[previous.corner[number]], corners.block[previous.edge[number]])
+        previous.heir[number] = NONE
+        previous.chain[number] = head[keeper]
+        head[keeper] = number
+    detection.count[0] = 0
+    for place in range(len(parts.order)):
+        p = parts.order[place]
+        box = parts.box[p]
+        for later in range(place + 1, len(parts.order)):
+            r = parts.order[later]
+            other = parts.box[r]
+            if other[2 * along] > box[2 * along + 1]:
+                break
+            across = 2 - 2 * along
+            apart = other[across] > box[across + 1] or box[across] > other[across + 1]
+            if apart or detection.law[parts.block[p] * blocks + parts.block[r]] == NONE:
+                continue
+            count = touch_parts(detection, min(p, r), max(p, r))
+            if count < 0:
+                return count
+            detection.count[0] = count
+    inherit(detection)
+    return int(detection.count[0])
+
+
+def keeper_of(detection: Detection, i: int, j: int) -> int:
+    """Return that of two blocks whose list holds their contacts: one that moves, as a floor has very many."""
+    if detection.moves[i] == 0:
+        return j
+    if detection.moves[j] == 0:
+        return i
+    return min(i, j)
+
+
+def place_parts(detection: Detection) -> int:
+    """Write the boxes that hold the parts at both ends of the step, and sort them; return along which axis.
+
+    It is that along which the parts that move are spread more.
+    """
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    margin = REACH * detection.size / 2
+    for number in range(len(parts.order)):
+        box = parts.box[number]
+        for axis in range(2):
+            least = math.inf
+            greatest = -math.inf
+            for side in range(parts.first[number], parts.last[number]):
+                corner = sides.corner[side]
+                least = min(least, corners.now[corner][axis], corners.then[corner][axis])
+                greatest = max(greatest, corners.now[corner][axis], corners.then[corner][axis])
+            box[2 * axis] = least - margin
+            box[2 * axis + 1] = greatest + margin
+    along = 0
+    widest = -math.inf
+    for axis in range(2):
+        least = math.inf
+        greatest = -math.inf
+        for number in range(len(parts.order)):
+            if detection.moves[parts.block[number]] != 0:
+                least = min(least, parts.box[number][2 * axis])
+                greatest = max(greatest, parts.box[number][2 * axis])
+        if greatest - least > widest:
+            widest = greatest - least
+            along = axis
+    for number in range(1, len(parts.order)):  # nearly sorted from the step before
+        p = parts.order[number]
+        place = number - 1
+        while place >= 0 and parts.box[parts.order[place]][2 * along] > parts.box[p][2 * along]:
+            parts.order[place + 1] = parts.order[place]
+            place -= 1
+        parts.order[place + 1] = p
+    return along
+
+
+def touch_parts(detection: Detection, p: int, r: int) -> int:
+    """Add the contacts of two convex parts; return how many contacts there are then, or TOO_MANY or TOO_DEEP."""
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    previous = detection.previous
+    size = detection.size
+    same = SAME * size
+    margin = REACH * size
+    i = parts.block[p]
+    j = parts.block[r]
+    # a. the edge through which they are pressed; of several that with the greatest force
+    kept = NONE
+    greatest = 0.0
+    deepest = margin
+    old = detection.head[keeper_of(detection, i, j)]
+    while old >= 0:
+        number = previous.corner[old]
+        start = previous.edge[old]
+        on = corners.block[start]
+        if (
+            previous.closed[old] != 0
+            and min(corners.block[number], on) == min(i, j)
+            and max(corners.block[number], on) == max(i, j)
+        ):
+            deepest = DEEP * size  # they touched: how deep they are, they were pressed
+            edge = side_from(sides, parts, p if on == i else r, start)
+            if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
+                end = sides.end[edge]
+                length, along, gap = foot(corners.now, number, start, end)
+                over = is_over(corners, start, end, length, along, same, margin)
+                if previous.normal[old] >= greatest and gap < -same and over:
+                    kept = edge
+                    greatest = previous.normal[old]
+        old = previous.chain[old]
+    edge = NONE
+    point = NONE
+    best = -math.inf
+    touching = NONE
+    touching_point = NONE
+    farthest = -math.inf
+    for turn in range(2):
+        own = p if turn == 0 else r
+        opposite = r if turn == 0 else p
+        for side in range(parts.first[own], parts.last[own]):
+            if kept >= 0 and side != kept:
+                continue
+            before, lowest = front(corners.now, sides, parts, side, opposite)
+            if kept >= 0:
+                edge = side
+                point = lowest
+                break
+            after, lowest_then = front(corners.then, sides, parts, side, opposite)
+            if min(before, after) >= margin:
+                return int(detection.count[0])
+            if before <= same:
+                key = before / size
+            elif after < 0:
+                key = 1 + before / (before - after)
+            else:
+                key = 2 + min(before, after) / size
+            nearest = lowest_then if after < before else lowest
+            if sides.real[side] == 0 or corners.convex[sides.corner[nearest]] == 0:
+                continue  # what lies there is another part of one of the two blocks
+            if -SOFT * size < before <= same and after > farthest + same:
+                touching = side
+                touching_point = nearest
+                farthest = after
+            if key > best + SAME:
+                best = key
+                edge = side
+                point = nearest
+    count = int(detection.count[0])
+    for choice in range(2):
+        chosen = touching if choice == 0 else edge
+        # a corner that has left the edge at which they touch may cross another one in this very step
+        if chosen < 0 or (choice == 1 and touching >= 0 and not 1 < best < 2):
+            continue
+        found = add_points(detection, p, r, chosen, touching_point if choice == 0 else point, deepest)
+        if found != count:
+            return found
+    return count
+
+
+def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deepest: float) -> int:
+    """Add the contacts of two parts at an edge; return how many contacts there are then, or TOO_MANY or TOO_DEEP.
+
+    Parameters
+    ----------
+    edge, point
+        Sides: that of the edge, and that which starts from the other part's lowest corner.
+    deepest
+        How deep a corner may be [m].
+    """
+    corners = detection.corners
+    sides = detection.sides
+    parts = detection.parts
+    contacts = detection.contacts
+    same = SAME * detection.size
+    margin = REACH * detection.size
+    # the other part's edge that is most opposite to this one
+    prior = sides.prior[point]
+    cosine = cosine_between(corners.now, sides, edge, point)
+    cosine_prior = cosine_between(corners.now, sides, edge, prior)
+    opposite_edge = point if cosine < cosine_prior else prior
+    other_end = sides.after[point] if opposite_edge == point else prior
+    parallel = min(cosine, cosine_prior) < PARALLEL and sides.real[opposite_edge] != 0
+    count = int(detection.count[0])
+    found = count
+    for late in range(2):  # over the edge at the start of the step, or else at its end
+        for attempt in range(4 if parallel else 1):  # the corner, its edge's other end, the ends of the edge it meets
+            corner = sides.corner[point]
+            against = edge
+            slack = same
+            if attempt == 1:
+                corner = sides.corner[other_end]
+            elif attempt > 1:
+                corner = sides.corner[edge] if attempt == 2 else sides.end[edge]
+                against = opposite_edge
+                slack = -same
+            start = sides.corner[against]
+            end = sides.end[against]
+            length, along, gap = foot(corners.now, corner, start, end)
+            share = along / length
+            length_then, along_then, gap_then = foot(corners.then, corner, start, end)
+            if late == 1:
+                length = length_then
+                along = along_then
+            over = is_over(corners, start, end, length, along, slack, margin)
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not over:
+                continue
+            if gap < -deepest:
+                if attempt == 0 and late == 0:
+                    return TOO_DEEP
+                continue
+            if (parts.alone[p] == 0 or parts.alone[r] == 0) and is_known(detection, found, corner, start):
+                continue
+            if found >= len(contacts.corner):
+                return TOO_MANY
+            contacts.corner[found] = corner
+            contacts.edge[found] = start
+            contacts.share[found] = share
+            contacts.gap[found] = gap
+            contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
+            found += 1
+        if found > count:
+            break
+    return found
+
+
+def is_over(corners: Corners, start: int, end: int, length: float, along: float, slack: float, margin: float) -> bool:
+    """Tell whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
+
+    A corner in a notch that is pressed into one of its edges has left the other by as much, and is still held by it.
+    """
+    before = slack if corners.convex[start] != 0 else margin
+    beyond = slack if corners.convex[end] != 0 else margin
+    return -before <= along <= length + beyond
+
+
+def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
+    """Tell whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
+    corners = detection.corners
+    contacts = detection.contacts
+    place = corners.now[corner]
+    near = 2 * SAME * detection.size
+    for number in range(found):
+        known = contacts.corner[number]
+        against = contacts.edge[number]
+        if known == corner and against == edge:
+            return True
+        if corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]:
+            other = corners.now[known]
+            if math.hypot(place[0] - other[0], place[1] - other[1]) <= near:
+                return True
+    return False
+
+
+def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
+    """Return the side of a part that starts from a corner, -1 where there is none."""
+    for side in range(parts.first[part], parts.last[part]):
+        if sides.corner[side] == corner:
+            return side
+    return NONE
+
+
+def front(places: Matrix, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
+    """Return how far a part is in front of the edge of a side [m], and from which of its sides' corners."""
+    a = places[sides.corner[side]]
+    b = places[sides.end[side]]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    least = math.inf
+    lowest = NONE
+    for number in range(parts.first[part], parts.last[part]):
+        c = places[sides.corner[number]]
+        gap = ty * (c[0] - a[0]) - tx * (c[1] - a[1])
+        if gap < least:
+            least = gap
+            lowest = number
+    return least / math.sqrt(tx * tx + ty * ty), lowest
+
+
+def foot(places: Matrix, corner: int, start: int, end: int) -> tuple[float, float, float]:
+    """Return the length of an edge, how far along it a corner is, and its gap [m]."""
+    a = places[start]
+    b = places[end]
+    c = places[corner]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    x = c[0] - a[0]
+    y = c[1] - a[1]
+    length = math.sqrt(tx * tx + ty * ty)
+    return length, (tx * x + ty * y) / length, (ty * x - tx * y) / length
+
+
+def cosine_between(places: Matrix, sides: Sides, first: int, second: int) -> float:
+    """Return the cosine between two sides."""
+    a = places[sides.corner[first]]
+    b = places[sides.end[first]]
+    c = places[sides.corner[second]]
+    d = places[sides.end[second]]
+    tx = b[0] - a[0]
+    ty = b[1] - a[1]
+    ux = d[0] - c[0]
+    uy = d[1] - c[1]
+    return float((tx * ux + ty * uy) / math.sqrt((tx * tx + ty * ty) * (ux * ux + uy * uy)))
+
+
+def inherit(detection: Detection) -> None:
+    """Write from which contact of the step before each goes on: the same corner and edge, or else the same place."""
+    corners = detection.corners
+    contacts = detection.contacts
+    previous = detection.previous
+    for number in range(detection.count[0]):
+        contacts.origin[number] = NONE
+        contacts.same[number] = 0
+    for attempt in range(2):
+        for number in range(detection.count[0]):
+            if contacts.same[number] != 0:
+                continue
+            corner = contacts.corner[number]
+            i = corners.block[corner]
+            j = corners.block[contacts.edge[number]]
+            nearest = NEAR * detection.size
+            old = detection.head[keeper_of(detection, i, j)]
+            while old >= 0:
+                if attempt == 0:
+                    if previous.corner[old] == corner and previous.edge[old] == contacts.edge[number]:
+                        contacts.origin[number] = old
+                        contacts.same[number] = 1
+                elif previous.closed[old] != 0 and previous.heir[old] == NONE:
+                    block = corners.block[previous.corner[old]]
+                    on = corners.block[previous.edge[old]]
+                    place = corners.now[previous.corner[old]]
+                    distance = math.hypot(place[0] - corners.now[corner][0], place[1] - corners.now[corner][1])
+                    if min(block, on) == min(i, j) and max(block, on) == max(i, j) and distance < nearest:
+                        nearest = distance
+                        contacts.origin[number] = old
+                old = previous.chain[old]
+            if contacts.origin[number] >= 0:
+                previous.heir[contacts.origin[number]] = number

@@ -1,0 +1,224 @@
+"""The first contact of two polygons: closed and independent instants, pairs, places and normals."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from dda.model.polygon import section
+from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_contact
+
+SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
+PENTAGON = np.array([(-1.0, -0.8), (0.7, -1.0), (1.3, 0.2), (0.2, 1.1), (-0.9, 0.7)])
+LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
+TRIANGLE_CENTRED = TRIANGLE - TRIANGLE.mean(axis=0)
+PENTAGON_CENTRED = PENTAGON - section(PENTAGON).centroid
+BAR = np.array([(-2.0, -0.1), (2.0, -0.1), (2.0, 0.1), (-2.0, 0.1)])
+AT_REST = (0.0,) * 6
+
+# of each: A and its motion (angles in degrees), B and its motion, time, touch (block, corner, edge, foot); by roots of
+# 30 digits and by conservative advancement
+INSTANTS = {
+    "square turns onto a square": (
+        *(SQUARE, (0.3, 3, 30, 0.2, -2, 1), SQUARE, AT_REST),
+        *(0.29324274279782854, (0, 0, 2, 0.298445579700372)),
+    ),
+    "both turn": (
+        *(TRIANGLE, (3, 0.4, 15, -2.5, 0.1, 1.5), PENTAGON, (0, 0, 70, 0.3, 0, -2)),
+        *(0.43965517294981746, (1, 2, 2, 0.296189119249715)),
+    ),
+    "both turn about their centroids": (
+        *(TRIANGLE_CENTRED, (3, 0.4, 15, -2.5, 0.1, 1.5), PENTAGON_CENTRED, (0, 0, 70, 0.3, 0, -2)),
+        *(0.42995110874143777, (1, 2, 2, 0.25033421768386)),
+    ),
+    "a corner is clipped": (
+        *(SQUARE, (2.413213562373095, 2, 45, 0, -1.5, 0), SQUARE, AT_REST),
+        *(0.666, (1, 2, 3, 0.000707106781186)),
+    ),
+    "clipped, turning": (
+        *(SQUARE, (2.415213562373095, 1.9, 45, -0.1, -1.5, 0.4), SQUARE, AT_REST),
+        *(0.42906001317402766, (1, 2, 3, 0.0129234864785704)),
+    ),
+    "fast": (
+        *(TRIANGLE, (2.2, 2.6, 200, -3, -4, 5), SQUARE, (0, 0, 20, 0, 0, 0.5)),
+        *(0.35209341530483573, (1, 2, 0, 0.204441020560777)),
+    ),
+    "fast, about its centroid": (
+        *(TRIANGLE_CENTRED, (2.2, 2.6, 200, -3, -4, 5), SQUARE, (0, 0, 20, 0, 0, 0.5)),
+        *(0.3527302571494969, (1, 2, 0, 0.248366804045104)),
+    ),
+    "a bar swings onto a corner": (  # which lies 0.1 beside its middle line
+        *(BAR, (0, 0, 135, 0, 0, -3), SQUARE, (2.2, 0, 0, 0, 0, 0)),
+        *((math.radians(135) - math.atan2(1, 1.2) - math.asin(0.1 / math.hypot(1, 1.2))) / 3,),
+        *((1, 3, 0, (2 + math.sqrt(2.43)) / 4),),
+    ),
+    "a bar swings onto a wall": (
+        *(BAR * (0.5, 1) + (1, 0), (0, 0, 135, 0, 0, -3), 2 * SQUARE, (3.2, 0, 0, 0, 0, 0)),
+        *((math.radians(135) - math.atan(0.05) - math.acos(1.2 / math.sqrt(4.01))) / 3,),
+        *((0, 1, 3, (2 - math.sqrt(4.01 - 1.44)) / 4),),
+    ),
+    "nearly parallel": (
+        *(SQUARE, (0.5, 3, 5.729577951308232e-5, 0, -1, 0), SQUARE, AT_REST),
+        *(0.9999990000005, (0, 0, 2, 0.74999949999975)),
+    ),
+}
+
+
+def in_radians(motion):
+    return (*motion[:2], math.radians(motion[2]), *motion[3:])
+
+
+def contact_of(A, motion_A, B, motion_B, until=3.0, size=1.0):
+    """Return the first contact of a scene that is drawn larger or smaller by a factor."""
+    grown = np.array([size, size, 1.0, size, size, 1.0])
+    return first_contact(size * A, size * B, grown * in_radians(motion_A), grown * in_radians(motion_B), until)
+
+
+@pytest.mark.parametrize("size", [1.0, 1e6, 1e-6])
+@pytest.mark.parametrize("name", INSTANTS)
+def test_instant_edge_and_foot_of_a_corner_on_an_edge(name, size):
+    *scene, time, point = INSTANTS[name]
+    contact = contact_of(*scene, size=size)
+    assert contact.time == pytest.approx(time, abs=1e-13)
+    (touch,) = contact.touches
+    assert touch.kind == CORNER_EDGE
+    assert touch.points[0][:3] == point[:3]
+    assert touch.points[0].foot == pytest.approx(point[3], abs=1e-12)
+
+
+@pytest.mark.parametrize("name", INSTANTS)
+def test_the_other_one_first_and_a_moving_frame_change_nothing(name):
+    A, motion_A, B, motion_B, time, point = INSTANTS[name]
+    ahead = np.array([0.7, -1.3, 0.0, 4.0, 2.5, 0.0])
+    contact = contact_of(B, motion_B + ahead, A, motion_A + ahead)
+    assert contact.time == pytest.approx(time, abs=1e-13)
+    assert contact.touches[0].points[0][:3] == (1 - point[0], *point[1:3])
+
+
+# A comes down on the square B: kind, every point (block, corner, edge, foot), normals in degrees
+PLACES = {
+    "corner on corner": (
+        *(SQUARE, (4, 4, 0, -1, -1, 0), 2.0, CORNER_CORNER),
+        *([(0, 0, 1, 1.0), (1, 2, 0, 0.0)], (0.0, 90.0)),
+    ),
+    "turned corner on corner": (
+        *(SQUARE, (1, 4, 45, 0, -1, 0), 3 - math.sqrt(2), CORNER_CORNER),
+        *([(0, 0, 1, 1.0), (1, 2, 0, 0.0)], (45.0, 90.0)),
+    ),
+    "edge on edge": (
+        *(SQUARE, (0.5, 3, 0, 0, -1, 0), 1.0, EDGE_EDGE),
+        *([(0, 0, 2, 0.75), (1, 2, 0, 0.75)], (90.0, 90.0)),
+    ),
+    "parallel at the instant of the touch": (
+        *(SQUARE, (0.5, 3, math.degrees(-0.5), 0, -1, 0.5), 1.0, EDGE_EDGE),
+        *([(0, 0, 2, 0.75), (1, 2, 0, 0.75)], (90.0, 90.0)),
+    ),
+    "equal edges": (
+        *(SQUARE, (0, 3, 0, 0, -1, 0), 1.0, EDGE_EDGE),
+        *([(0, 0, 2, 1.0), (0, 1, 2, 0.0)], (90.0, 90.0)),
+    ),
+    "in touch from the start": (
+        *(SQUARE, (-0.5, 2, 0, 0, 1, 0), 0.0, EDGE_EDGE),
+        *([(0, 1, 2, 0.25), (1, 3, 0, 0.25)], (90.0, 90.0)),
+    ),
+}
+
+
+@pytest.mark.parametrize("size", [1.0, 1e6, 1e-6])
+@pytest.mark.parametrize("name", PLACES)
+def test_corners_on_corners_and_edges_on_edges(name, size):
+    A, motion, time, kind, points, normals = PLACES[name]
+    contact = contact_of(A, motion, SQUARE, AT_REST, size=size)
+    assert contact.time == pytest.approx(time, abs=1e-13)
+    (touch,) = contact.touches
+    assert touch.kind == kind
+    assert [tuple(point[:3]) for point in touch.points] == [point[:3] for point in points]
+    assert [point.foot for point in touch.points] == pytest.approx([point[3] for point in points], abs=1e-9)
+    assert np.degrees(touch.normals) == pytest.approx(normals, abs=1e-9)
+
+
+# A goes into the notch of the L: what touches there at once
+NOTCHES = {
+    "a square": (SQUARE / 4, (1.75, 1.75, 0, -1, -1, 0), 0.5, [(EDGE_EDGE, 0.0), (EDGE_EDGE, 90.0)]),
+    "a corner": (SQUARE / 4, (2.25, 2.25, 45, -1, -1, 0), None, [(CORNER_EDGE, 0.0), (CORNER_EDGE, 90.0)]),
+    "a flat side": (SQUARE * (1.5, 0.25), (3, 3, -45, -1, -1, 0), None, [(CORNER_EDGE, 45.0), (CORNER_EDGE, 45.0)]),
+}
+
+
+@pytest.mark.parametrize("name", NOTCHES)
+def test_all_that_touches_at_once_is_named(name):
+    A, motion, time, touches = NOTCHES[name]
+    contact = contact_of(A, motion, LEDGE, AT_REST)
+    if time is not None:
+        assert contact.time == pytest.approx(time, abs=1e-13)
+    found = sorted((touch.kind, round(math.degrees(touch.normals[0]), 9)) for touch in contact.touches)
+    assert found == touches
+
+
+@pytest.mark.parametrize(
+    ("motion", "until"),
+    [((3, 3, 45, 0, -1.5, 0), 2.0), ((0.5, 3, 0, 0, -1, 0), 0.999), ((0, 3, 10, 0, 0, 7), 100.0)],
+    ids=["past", "too early", "turns beside"],
+)
+def test_no_contact_until_then(motion, until):
+    assert contact_of(SQUARE, motion, SQUARE, AT_REST, until=until) is None
+
+
+@pytest.mark.parametrize("place", [(0.0, 0.0), (1.9, 1.9), (0.0, 1.999999)])
+def test_polygons_that_overlap_are_refused(place):
+    with pytest.raises(ValueError, match=r"^polygons: must not overlap"):
+        contact_of(SQUARE, (*place, 0, 0, 0, 0), SQUARE, AT_REST)
+
+
+def star(random, corners):
+    """Return a polygon, mostly not convex."""
+    angles = 2 * np.pi * (np.arange(corners) + random.uniform(0.1, 0.9, corners)) / corners
+    return random.uniform(0.4, 1.0, corners)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+def sampled_first_crossing(A, motion_A, B, motion_B, times):
+    """Return when a corner first crosses an edge between two samples, and corner and edge."""
+
+    def places(polygon, motion, t):
+        a = motion[2] + motion[5] * t
+        x = motion[0] + motion[3] * t + np.cos(a) * polygon[:, :1] - np.sin(a) * polygon[:, 1:]
+        y = motion[1] + motion[4] * t + np.sin(a) * polygon[:, :1] + np.cos(a) * polygon[:, 1:]
+        return x + 1j * y
+
+    crossings = []
+    for block, (P, p, Q, q) in enumerate([(A, motion_A, B, motion_B), (B, motion_B, A, motion_A)]):
+
+        def in_axes_of_edge(t, P=P, p=p, Q=Q, q=q):
+            corners = places(P, p, t)
+            starts = places(Q, q, t)
+            sides = np.roll(starts, -1, axis=0) - starts
+            return (corners[:, None] - starts[None]) / sides[None]  # along 0 to 1, and the gap's negative
+
+        w = in_axes_of_edge(times)
+        for corner, edge, k in np.argwhere(w.imag[..., :-1] * w.imag[..., 1:] <= 0):
+            t = brentq(
+                lambda t, c=corner, e=edge: in_axes_of_edge(np.array([t]))[c, e, 0].imag, *times[k : k + 2], xtol=1e-15
+            )
+            if 0 <= in_axes_of_edge(np.array([t]))[corner, edge, 0].real <= 1:
+                crossings.append((t, block, corner, edge))
+    return min(crossings, default=None)
+
+
+@pytest.mark.parametrize("seed", range(24))
+def test_first_crossing_of_samples_with_brent_agrees(seed):
+    random = np.random.default_rng(seed)
+    A = star(random, 3 + seed % 5)
+    B = star(random, 3 + seed % 4)
+    side = random.uniform(0, 2 * np.pi)
+    aim = random.normal(0, 0.6, 2) - 2.2 * np.array([np.cos(side), np.sin(side)])
+    motion_A = (2.2 * np.cos(side), 2.2 * np.sin(side), random.uniform(0, 6), *aim, random.normal(0, 2))
+    motion_B = (0, 0, random.uniform(0, 6), *random.normal(0, 0.2, 2), random.normal(0, 2))
+    crossing = sampled_first_crossing(A, motion_A, B, motion_B, np.linspace(0, 2, 4001))
+    contact = first_contact(A, B, motion_A, motion_B, 2.0)
+    if crossing is None:
+        assert contact is None
+        return
+    assert contact.time == pytest.approx(crossing[0], abs=1e-12)
+    assert crossing[1:] in [point[:3] for touch in contact.touches for point in touch.points]

@@ -1,0 +1,266 @@
+"""Contacts that are found in a step: which corner on which edge, what they go on from, and the parts of outlines."""
+
+import numpy as np
+import pytest
+
+from dda.march.compiled import as_lists, as_record, compiled
+from dda.model.polygon import section
+from dda.plane.detect import TOO_DEEP, TOO_MANY, detection_of, find_contacts, keep_contacts
+from dda.plane.polygons import convex_parts, turns_of
+
+SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
+DIAMOND = np.array([(0.0, 0.0), (0.5, 0.5), (0.0, 1.0), (-0.5, 0.5)])
+LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
+COMB = np.array([(0, 0), (5, 0), (5, 2), (4, 2), (4, 1), (3, 1), (3, 2), (2, 2), (2, 1), (1, 1), (1, 2), (0, 2)], float)
+SPIRAL = np.array([(0, 0), (4, 0), (4, 3), (1, 3), (1, 2), (3, 2), (3, 1), (0, 1)], float)
+BOTTOM, RIGHT, TOP, LEFT = range(4)
+
+
+def at(polygon, x, y):
+    """Return a polygon moved."""
+    return polygon + np.array([x, y])
+
+
+def places(polygons, pairs):
+    """Return the places of all corners, sorted."""
+    return sorted(tuple(polygons[block][corner]) for block, corner, _, _ in pairs)
+
+
+class Scene:
+    """Blocks of which the first is fixed, and all others move alike in a step."""
+
+    def __init__(self, polygons, most=100):
+        self.polygons = [np.array(polygon, dtype=float) for polygon in polygons]
+        moves = [number > 0 for number in range(len(polygons))]
+        law = np.zeros((len(polygons), len(polygons)), dtype=int)
+        self.detection = detection_of(self.polygons, moves, law, most)
+
+    def step(self, way=(0.0, 0.0), now=None):
+        """Return the contacts (block, corner, on, edge) of a step from `now`, without contact by `way`."""
+        detection = self.detection
+        detection.corners.now[:] = np.vstack(self.polygons if now is None else now)
+        detection.corners.then[:] = detection.corners.now
+        detection.corners.then[detection.moves[detection.corners.block] != 0] += way
+        self.count = find_contacts(detection)
+        return self.named(detection.contacts, self.count)
+
+    def named(self, contacts, count):
+        corners = self.detection.corners
+        pairs = []
+        for corner, edge in zip(contacts.corner[:count], contacts.edge[:count], strict=True):
+            own = int(corners.block[corner]), int(corner - corners.start[corner])
+            pairs.append((*own, int(corners.block[edge]), int(edge - corners.start[edge])))
+        return pairs
+
+    def press(self, *forces):
+        """Accept the step, with a force of each contact; those without one are open."""
+        contacts = self.detection.contacts
+        contacts.normal[: self.count] = forces
+        contacts.closed[: self.count] = np.array(forces) > 0
+        keep_contacts(self.detection)
+
+
+NARROW = np.array([(0.0, 0.0), (0.94, 0.34), (0.34, 0.94)])
+STEEP = np.array([(0.0, 0.0), (1.0, 0.2), (0.6, 1.1), (-0.4, 0.9)])
+
+# of each: polygons, way of the step without contact, and contacts (block, corner, on, edge)
+SITUATIONS = {
+    "a square above a floor": ([SQUARE * 4 - (1, 4), SQUARE], (0, -0.01), [(1, 0, 0, TOP), (1, 1, 0, TOP)]),
+    "too far above it": ([SQUARE * 4 - (1, 4), at(SQUARE, 0, 0.03)], (0, -0.005), []),
+    "a step from too far": ([SQUARE * 4 - (1, 4), at(SQUARE, 0, 0.03)], (0, -0.02), [(1, 0, 0, TOP), (1, 1, 0, TOP)]),
+    "a corner alone": ([SQUARE * 4 - (1, 4), STEEP], (0, -0.01), [(1, 0, 0, TOP)]),
+    "half over an edge": ([SQUARE - (0.5, 1), SQUARE], (0, -0.01), [(1, 0, 0, TOP), (0, 2, 1, BOTTOM)]),
+    "equal squares": ([SQUARE - (0, 1), SQUARE], (0, -0.01), [(1, 0, 0, TOP), (1, 1, 0, TOP)]),
+    "a diamond within a corner": ([SQUARE - (1, 1), at(DIAMOND, -0.001, 5e-4)], (0, -1e-3), [(1, 0, 0, TOP)]),
+    "a diamond outside of a corner": ([SQUARE - (1, 1), at(DIAMOND, 0.001, 2e-3)], (0, -6e-3), [(0, 2, 1, 3)]),
+    "beside a corner, from the right": ([SQUARE - (1, 1), at(DIAMOND, 0.502, -0.6)], (-4e-3, 0), [(1, 3, 0, RIGHT)]),
+    "into a notch": (
+        [LEDGE, at(SQUARE, 1.01, 1.01)],
+        (-0.02, -0.02),
+        [(1, 0, 0, 2), (0, 2, 1, BOTTOM), (1, 0, 0, 3), (0, 4, 1, LEFT)],
+    ),
+    "on the step of an L": ([LEDGE, at(SQUARE, 1.5, 1)], (0, -0.01), [(0, 2, 1, BOTTOM), (1, 0, 0, 2)]),
+    "on the foot of an L": ([LEDGE, SQUARE / 2 - (0, 0.5)], (0, 0.01), [(1, 2, 0, 0), (1, 3, 0, 0)]),
+    "an L on a floor": ([SQUARE * 4 - (1, 4), LEDGE], (0, -0.01), [(1, 0, 0, TOP), (1, 1, 0, TOP)]),
+    "an L upside down": (
+        *([SQUARE * 4 - (1, 4), LEDGE[::-1] * (1, -1) + (0, 2)], (0, -0.01)),
+        *([(1, 0, 0, TOP), (1, 1, 0, TOP)],),
+    ),
+    "a tip into a notch": (
+        *([LEDGE, at(NARROW, 1.0003, 1.0003)], (-7e-4, -7e-4)),
+        *([(1, 0, 0, 2), (1, 0, 0, 3)],),
+    ),
+    "pressed into a notch": (
+        *([LEDGE, at(SQUARE / 4, 1 - 1e-6, 1 - 1e-6)], (-1e-5, -1e-5)),
+        *([(1, 0, 0, 2), (1, 1, 0, 2), (1, 0, 0, 3), (1, 3, 0, 3)],),
+    ),
+    "past a wall into a notch": (
+        *([LEDGE, at(NARROW, 1.001, 1.003)], (-2e-3, -4.5e-3)),
+        *([(1, 0, 0, 2), (1, 0, 0, 3)],),
+    ),
+    "straight corners are none": (
+        *([np.array([(-1, -1), (0.5, -1), (2, -1), (2, 0), (0.5, 0), (-1, 0)]), SQUARE], (0, -0.01)),
+        *([(1, 0, 0, 3), (1, 1, 0, 3)],),
+    ),
+}
+
+
+@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_corners_and_edges_of_a_step(name, size):
+    polygons, way, pairs = SITUATIONS[name]
+    scene = Scene([size * np.array(polygon) for polygon in polygons])
+    assert sorted(scene.step(size * np.array(way))) == sorted(pairs)
+
+
+@pytest.mark.parametrize("name", SITUATIONS)
+def test_mirrored_and_far_away_the_same_touch(name):
+    polygons, way, pairs = SITUATIONS[name]
+    far = [at(np.array(polygon), 2.0**13, -(2.0**12)) for polygon in polygons]
+    assert sorted(Scene(far).step(way)) == sorted(pairs)
+    mirrored = [np.array(polygon)[::-1] * (-1, 1) for polygon in polygons]
+    sizes = [len(polygon) for polygon in polygons]
+    swapped = [
+        (block, sizes[block] - 1 - corner, on, (sizes[on] - 2 - edge) % sizes[on]) for block, corner, on, edge in pairs
+    ]
+    found = Scene(mirrored).step(np.array(way) * (-1, 1))
+    # of corners that coincide either may be the one: they are compared by their places
+    assert np.array(places(mirrored, found)) == pytest.approx(np.array(places(mirrored, swapped)))
+
+
+def test_a_pressed_edge_stays_however_near_another_one_is():
+    floor = SQUARE - (1, 1)
+    scene = Scene([floor, at(DIAMOND, -1e-3, 5e-4)])
+    assert scene.step((0, -1e-3)) == [(1, 0, 0, TOP)]
+    scene.press(1.0)
+    deep = [floor, at(DIAMOND, -1e-3, -5e-3)]  # five times as deep under the top as it lies within the side
+    assert scene.step((0, -1e-3), deep) == [(1, 0, 0, TOP)]
+    assert scene.detection.contacts.same[0] == 1
+    scene.press(0.0)
+    assert scene.step((0, -1e-3), deep) == [(0, 2, 1, 3)]  # the least way out, through which it did not come
+
+
+@pytest.mark.parametrize("ahead", [-1e-3, -1e-12, 0.0, 1e-12, 1e-3])
+@pytest.mark.parametrize("sunk", [1e-12, 1e-6])
+def test_a_block_slides_over_a_flush_seam(ahead, sunk):
+    floors = [SQUARE * 2 - (2, 2), SQUARE * 2 - (0, 2)]
+    scene = Scene([*floors, SQUARE - (1 - ahead, sunk)])
+    scene.detection.moves[1] = 0
+    scene.detection.law[:] = [-1, -1, 0, -1, -1, 0, 0, 0, -1]
+    found = scene.step((2e-3, 0.0))
+    scene.press(*[1e-9 if sunk < 1e-9 else 1e3] * len(found))
+    found = scene.step((2e-3, 0.0), [*floors, SQUARE - (1 - ahead - 2e-3, sunk)])
+    assert {pair[2:] for pair in found} <= {(0, TOP), (1, TOP), (2, BOTTOM)}
+    assert {pair[:2] for pair in found} >= {(2, 0), (2, 1)}
+
+
+def test_a_wall_without_gaps_touches_once_at_every_corner():
+    bricks = [SQUARE * (10, 1) - (1, 1)]
+    for row in range(4):
+        offset = 0.5 * (row % 2)
+        bricks += [at(SQUARE, column + offset, row) for column in range(4)]
+    scene = Scene(bricks)
+    found = scene.step((0.0, -1e-5))
+    joined = [(min(pair[0], pair[2]), max(pair[0], pair[2]), *places(bricks, [pair])) for pair in found]
+    assert len(set(joined)) == len(joined)
+    joints = 4 * 3 + 3 * 7  # upright ones of each row, and of halves of bricks that lie on each other
+    assert len(found) == 2 * (4 + joints)
+    scene.press(*[1.0] * len(found))
+    assert scene.step((0.0, -1e-5)) == found
+    assert np.all(scene.detection.contacts.same[: scene.count] == 1)
+    assert scene.detection.contacts.origin[: scene.count].tolist() == list(range(scene.count))
+
+
+def test_a_force_has_one_heir():
+    scene = Scene([LEDGE, at(SQUARE / 4, 1.03, 1.0)])
+    assert scene.step((0, -1e-3)) == [(1, 0, 0, 2), (1, 1, 0, 2)]
+    scene.press(1.0, 1.0)
+    found = scene.step((0, -1e-3), [LEDGE, at(SQUARE / 4, 1.001, 1.0)])
+    origins = dict(zip(found, scene.detection.contacts.origin[: scene.count].tolist(), strict=True))
+    assert origins == {(1, 0, 0, 2): 0, (1, 1, 0, 2): 1, (1, 0, 0, 3): -1, (1, 3, 0, 3): -1}
+
+
+def test_what_a_contact_knew_goes_on_at_its_place_under_another_name():
+    floor = SQUARE - (1, 1)
+    scene = Scene([floor, at(DIAMOND, -1e-4, -1e-5)])
+    assert scene.step((2e-4, -1e-4)) == [(1, 0, 0, TOP)]
+    scene.press(1.0)
+    # past the corner of the floor, that is now on the diamond's edge, and deeper in this step
+    assert scene.step((2e-4, -1e-3), [floor, at(DIAMOND, 1e-4, -1e-5)]) == [(0, 2, 1, 3)]
+    assert (scene.detection.contacts.origin[0], scene.detection.contacts.same[0]) == (0, 0)
+
+
+def test_more_contacts_than_there_is_room_for():
+    Scene([SQUARE * 4 - (1, 4), SQUARE], most=2).step((0, -0.01))
+    few = Scene([SQUARE * 4 - (1, 4), SQUARE], most=1)
+    few.step((0, -0.01))
+    assert few.count == TOO_MANY
+
+
+@pytest.mark.parametrize(("sunk", "pressed", "deep"), [(0.019, 0, 0), (0.021, 0, 1), (0.2, 1, 0), (0.3, 1, 1)])
+def test_a_corner_deeper_than_a_step_can_bring_it(sunk, pressed, deep):
+    scene = Scene([SQUARE * 4 - (1, 4), STEEP])
+    found = scene.step((0, -0.01))
+    scene.press(*[float(pressed)] * len(found))
+    scene.step((0, -0.01), [SQUARE * 4 - (1, 4), STEEP - (0, sunk)])
+    assert (scene.count == TOO_DEEP) == bool(deep)
+
+
+def random_scene(seed):
+    random = np.random.default_rng(seed)
+    box = np.array([(-1, -1), (7, -1), (7, 6), (6, 6), (6, 0), (0, 0), (0, 6), (-1, 6)], float)
+    polygons = [box]
+    for row in range(5):
+        for column in range(6):
+            angles = np.sort(random.uniform(0, 2 * np.pi / 6, 6)) + np.arange(6) * 2 * np.pi / 6
+            ring = 0.505 * np.column_stack([np.cos(angles), np.sin(angles)])
+            polygons.append(at(ring, column + 0.5, row + 0.5))
+    return Scene(polygons, most=1000)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_sweep_misses_no_pair(seed):
+    scene = random_scene(seed)
+    found = set(scene.step((0.003, -0.004)))
+    by_pairs = set()
+    for i, own in enumerate(scene.polygons):
+        for j, other in enumerate(scene.polygons[i + 1 :], i + 1):
+            two = detection_of([own, other], [i > 0, True], np.zeros((2, 2), dtype=int), 40)
+            two = two._replace(size=scene.detection.size)
+            for corners, start in ((slice(0, len(own)), i), (slice(len(own), None), j)):
+                two.corners.then[corners] += np.array((0.003, -0.004)) * (start > 0)
+            count = find_contacts(two)
+            part = Scene.__new__(Scene)
+            part.detection = two
+            by_pairs |= {((i, j)[a], b, (i, j)[c], d) for a, b, c, d in part.named(two.contacts, count)}
+    assert found == by_pairs
+    assert len(found) > 10
+
+
+def test_compiled_and_plain_find_the_same():
+    pytest.importorskip("numba")
+    scene = random_scene(7)
+    found = scene.step((0.003, -0.004))
+    scene.press(*np.arange(len(found)) % 3)
+    scene.detection.count[0] = 0
+    record = as_record(scene.detection)
+    lists = as_lists(scene.detection)
+    count = find_contacts(lists)
+    assert compiled(find_contacts, (record,))(record) == count == len(found)
+    for name in ("corner", "edge", "share", "gap", "origin", "same"):
+        assert getattr(lists.contacts, name)[:count] == getattr(record.contacts, name)[:count].tolist()
+
+
+# least number of convex parts with cuts between corners only
+@pytest.mark.parametrize(("outline", "least"), [(SQUARE, 1), (LEDGE, 2), (COMB, 5), (SPIRAL, 3)])
+@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
+def test_convex_parts_of_an_outline(outline, least, size):
+    parts = convex_parts(size * outline)
+    assert least <= len(parts) <= 2 * least
+    assert sum(section(size * outline[part]).area for part in parts) == pytest.approx(
+        section(size * outline).area, rel=1e-14
+    )
+    assert min(min(turns_of(outline, part)) for part in parts) > 0
+    edges = [(part[number - 1], part[number]) for part in parts for number in range(len(part))]
+    assert len(set(edges)) == len(edges)
+    assert all(edge in edges for edge in zip(range(len(outline)), [*range(1, len(outline)), 0], strict=True))
