@@ -168,11 +168,12 @@ class SlopeSection(GeneratorSection):
     ] = ()
     gaps: Annotated[tuple[NonNegative, ...], Key("m", "before each block, the first from the upper end")] = ()
     sinks: Annotated[tuple[Real, ...], Key("m", "how deep each block stands in the slope at t = 0")] = ()
+    speeds: Annotated[tuple[Real, ...], Key("m/s", "of each block at t = 0, down the slope")] = ()
     base: Annotated[Positive, Key("m", "thickness of the fixed ground")] = 1.0
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for name in ("noses", "gaps", "sinks"):
+        for name in ("noses", "gaps", "sinks", "speeds"):
             if (values := getattr(self, name)) and len(values) != len(self.rectangles):
                 raise ValueError(f"{name} must be one for each rectangle, {len(self.rectangles)}, got {len(values)}")
         return self
@@ -190,6 +191,13 @@ class SlopeSection(GeneratorSection):
             yield f"{number}", rotated((*body, *tip), turn), False
             place = left + width
         yield "ground", rotated(upright(0.0, -self.base, self.length, self.base), turn), True
+
+    def blocks(self) -> Iterator[PlaneBlockSection]:
+        """Yield the blocks with their speeds."""
+        direction = math.radians(self.turned - self.angle)
+        for block, speed in zip(super().blocks(), (*(self.speeds or (0.0,) * len(self.rectangles)), 0.0), strict=True):
+            velocity = speed * math.cos(direction), speed * math.sin(direction)
+            yield block.model_copy(update={"velocity": velocity})
 
 
 class RandomSection(GeneratorSection):

@@ -25,7 +25,7 @@ OF_BLOCK: Mapping[str, tuple[str, str]] = {
 }
 OF_CONTACT: Mapping[str, tuple[str, str]] = {
     "normal": ("N", "normal force, compression positive"),
-    "shear": ("N", "force along the edge"),
+    "shear": ("N", "force against the direction of the edge, which runs counter-clockwise about its block"),
     "gap": ("m", "distance of the corner from the edge, negative where the spring is compressed"),
     "slip": ("m", "sliding of the corner along the edge"),
 }
@@ -38,9 +38,10 @@ OF_ENERGY: Mapping[str, tuple[str, str]] = {
     "kinetic": ("J", "kinetic energy"),
     "strain": ("J", "energy of the blocks' strains"),
     "springs": ("J", "energy of contact springs and glue"),
-    "load": ("J", "work of weight and loads since t = 0"),
+    "load": ("J", "what weight and loads have given since t = 0, negative"),
     "friction": ("J", "work that friction has taken since t = 0"),
-    "algorithm": ("J", "energy that the scheme has taken since t = 0"),
+    "algorithmic": ("J", "energy that the scheme has taken since t = 0"),
+    "kinetic_damping": ("J", "energy that gg has taken since t = 0"),
     "switching": ("J", "energy that closing and opening have taken since t = 0"),
     "balance": ("J", "what the account leaves: rounding"),
 }

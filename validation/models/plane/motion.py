@@ -46,7 +46,8 @@ def contacts_of(history: History) -> list[Contact]:
 def force_on_corner(contact: Contact, outlines: Mapping[str, Array], history: History, step: int) -> Array:
     """Return the force of a contact on the block whose corner it is [N].
 
-    The normal force acts along the outward normal of the edge, the shear force along the edge.
+    The normal force acts along the outward normal of the edge, the shear force against the edge, which runs
+    counter-clockwise.
     """
     block, corner, on, edge = contact
     outline = outlines[on]
@@ -55,7 +56,7 @@ def force_on_corner(contact: Contact, outlines: Mapping[str, Array], history: Hi
     normal = float(history.columns[contact_column(block, corner, on, edge, "normal")][step])
     sheared = history.columns.get(contact_column(block, corner, on, edge, "shear"))
     force: Array = normal * np.array([along[1], -along[0]])
-    return force if sheared is None else force + float(sheared[step]) * along
+    return force if sheared is None else force - float(sheared[step]) * along
 
 
 def forces_at(assembly: Assembly, history: History, step: int) -> Iterator[tuple[Array, Array]]:

@@ -16,14 +16,22 @@ STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, an
 class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
+    def refusal(self, scene: Scene, solver: str) -> str | None:
+        """Return why contacts that are found as blocks move are not stepped: none but stated ones are."""
+        plane = scene.table(PlaneSection)
+        if plane.moves and plane.contact is not None and not plane.touch:
+            return "contacts must be stated by [[plane.touch]]"
+        return None
+
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
         """Return blocks for `dda`, a mesh for `fem`."""
         plane = scene.table(PlaneSection)
         if solver == "dda":
+            from validation.models.plane.moving import MovingBlocks
             from validation.solvers.dda import scheme_of as dda_scheme
             from validation.solvers.plane.blocks import PlaneBlocks
 
-            return PlaneBlocks(scene, plane, dda_scheme(scene))
+            return (PlaneBlocks if plane.is_glued else MovingBlocks)(scene, plane, dda_scheme(scene))
         from validation.solvers.fem import scheme_of
         from validation.solvers.plane.mesh import PlaneMesh
 
