@@ -26,6 +26,7 @@ def sliding(columns=(), **changes):
         "density": MASS,
         "gravity": [0.0, -9.81],
         "contact": {"stiffness": STIFFNESS, "shear_stiffness": 1e3 * STIFFNESS, "friction": 10.0},
+        "block": [{"name": "wall", "rectangle": [1.0, 1.0], "at": [-5.0, 0.0], "fixed": True}],
         "slope": [slope | {"speeds": [1.0]}],
         "touch": [TOUCH | {"corner": 0}, TOUCH | {"corner": 1}],
     }
@@ -62,10 +63,10 @@ def test_fields_hold_where_the_corners_are_and_the_forces_on_them(tmp_path):
     mesh = meshio.read(path)
     outlines = np.vstack(outlines_at(scene.plane.assembly, history, 199))
     points = mesh.points + mesh.point_data["displacement"]
-    assert points[:, :2] == pytest.approx(outlines, abs=1e-12) and len(mesh.cells_dict["triangle"]) == 4
+    assert points[:, :2] == pytest.approx(outlines, abs=1e-12) and len(mesh.cells_dict["triangle"]) == 6
     places, forces = zip(*forces_at(scene.plane.assembly, history, 199), strict=True)
-    assert mesh.point_data["contact force"][:2, :2] == pytest.approx(np.array(forces))
-    assert outlines[:2] == pytest.approx(np.array(places))
+    assert mesh.point_data["contact force"][4:6, :2] == pytest.approx(np.array(forces))
+    assert outlines[4:6] == pytest.approx(np.array(places))
 
 
 def test_frames_show_each_contact_force_by_an_arrow_at_one_scale():

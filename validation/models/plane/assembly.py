@@ -72,6 +72,11 @@ class Assembly:
         return self.springs_of_pairs.get((min(first, second), max(first, second)), self.springs)
 
     @property
+    def thinnest(self) -> float:
+        """Return the least thickness of a block that moves [m]."""
+        return min(thickness(block.vertices) for block in self.blocks if not block.fixed)
+
+    @property
     def pose_columns(self) -> tuple[str, ...]:
         """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
         return tuple(f"{block.name}.{part}" for block in self.blocks if not block.fixed for part in POSE)

@@ -38,6 +38,11 @@ class HOOKS(FigureHooks):
         """Draw the blocks of a scene, what joins them and what drives them."""
         draw_plane(axes, scene.table(PlaneSection))
 
+    def frames(self, scene: Scene, history: History, steps: Sequence[int], solver: str, height: float) -> Any:
+        """Draw moving blocks at some steps, with contact forces as arrows."""
+        plane = scene.table(PlaneSection)
+        return frames_figure(plane, history, steps, solver, height) if plane.moves else None
+
 
 def draw_plane(axes: Any, plane: PlaneSection) -> None:
     """Draw blocks, what joins them and what drives them."""

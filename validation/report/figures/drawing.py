@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from validation.report.figures.curves import GREY, engineering
 from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
-from validation.runs.history import Array
+from validation.runs.history import Array, History
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
@@ -126,6 +126,10 @@ class FigureHooks(Hooks):
     def draw(self, axes: Axes, scene: Scene) -> None:
         """Draw a scene on a `Sketch` of these axes, and set their limits."""
         axes.set_axis_off()
+
+    def frames(self, scene: Scene, history: History, steps: Sequence[int], solver: str, height: float) -> Figure | None:
+        """Draw the bodies at some steps of a motion side by side, so many mm high; None where a kind does not."""
+        return None
 
 
 def scene_figure(scene: Scene) -> Figure:
