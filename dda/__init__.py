@@ -1,4 +1,4 @@
-"""Discontinuous deformation analysis of the two-block model, and of systems of glued blocks.
+"""Discontinuous deformation analysis of the two-block model, of systems of glued blocks, and of blocks in the plane.
 
 One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's
 scheme with kinetic damping, in a form that keeps its digits for stiff springs; the printed
@@ -20,6 +20,8 @@ from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adapti
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
+from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
@@ -42,7 +44,10 @@ __all__ = [
     "BlockSystem",
     "Contact",
     "ContactResult",
+    "ContactSprings",
+    "CornerOnEdge",
     "Diagnostics",
+    "EdgeBond",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -51,6 +56,11 @@ __all__ = [
     "ModalForm",
     "Mode",
     "OpeningSystem",
+    "PlaneBlock",
+    "PlaneContact",
+    "PlaneLoad",
+    "PlaneModel",
+    "PlaneResult",
     "Result",
     "Scheme",
     "Section",
@@ -74,6 +84,7 @@ __all__ = [
     "solve",
     "solve_adaptive",
     "solve_opening_system",
+    "solve_plane",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

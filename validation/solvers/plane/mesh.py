@@ -43,7 +43,7 @@ def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:
         hypothesis=plane.hypothesis,
         rectangle=plane.rectangle is not None,
         clamps=tuple(clamp.edge for clamp in plane.clamp),
-        tractions=tuple((load.edge, load.traction) for load in plane.load),
+        tractions=plane.tractions,
         stress=plane.stress,
         gravity=plane.gravity,
         elements=ELEMENTS if scene.fem.elements is None else scene.fem.elements,
