@@ -1,4 +1,4 @@
-"""Discontinuous deformation analysis of the two-block model, and of systems of glued blocks.
+"""Discontinuous deformation analysis of the two-block model, of systems of glued blocks, and of blocks in the plane.
 
 One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's
 scheme with kinetic damping, in a form that keeps its digits for stiff springs; the printed
@@ -23,6 +23,8 @@ from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
+from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
+from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.result.contact_result import ContactResult
 from dda.result.result import COLUMNS, Result
 from dda.scheme import roots, spectral
@@ -41,7 +43,10 @@ __all__ = [
     "BlockSystem",
     "Contact",
     "ContactResult",
+    "ContactSprings",
+    "CornerOnEdge",
     "Diagnostics",
+    "EdgeBond",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -50,6 +55,11 @@ __all__ = [
     "ModalForm",
     "Mode",
     "OpeningSystem",
+    "PlaneBlock",
+    "PlaneContact",
+    "PlaneLoad",
+    "PlaneModel",
+    "PlaneResult",
     "Result",
     "Scheme",
     "Section",
@@ -73,6 +83,7 @@ __all__ = [
     "solve",
     "solve_adaptive",
     "solve_opening_system",
+    "solve_plane",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

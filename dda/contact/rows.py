@@ -13,6 +13,7 @@ contact is c = 0. One law serves all contacts:
     bonded       no bounds
     strength     -s <= T <= s                  z is the slip
     friction     |T| <= tan(phi) N + c         z is the slip; T = 0 where N is at its bound, of an open contact
+    smooth       T = 0                         a way of rigid spring (c = 0) and no bounds: nothing is solved for
 
 A row inside of its bounds is at y = -c lambda, which is set and no sum of increments. Rows 0 .. n-1 are those of n
 contacts; where contacts have friction, or are bonded along the base too, row n + i is the way of contact i along it.
@@ -79,8 +80,8 @@ class Laws(NamedTuple):
     lower: Vector  # least force of a row inside of its bounds [N]
     upper: Vector  # greatest one; of a row with friction its cohesion [N]
     opens: States  # 1 of a unilateral row, which carries nothing at its lower bound
-    friction: float  # tan(phi) of all contacts along the base [-]
-    slips: bool  # whether the way along the base has a limit
+    friction: Vector  # (n,) tan(phi) of the contacts along the base [-]; of a bonded one zero, with infinite bounds
+    slips: bool  # whether any way along the base has a limit
     lagged: bool  # whether that limit is that of the solve before
     paired: bool  # whether rows 2 and 3 are also known as the mean and the difference of two ways
     banded: bool  # whether W has one diagonal beside the main one, the two in the rows of (2, m)
@@ -169,7 +170,7 @@ def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float 
         lower=np.where(across, -law.pull, -cohesion) * share,
         upper=np.where(across, math.inf, cohesion) * share,
         opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
+        friction=np.full(contacts, law.friction or 0.0),
         slips=law.friction is not None,
         lagged=law.rules == LAGGED and rows > contacts,
         paired=rows == 4 and contacts == 2,
@@ -320,7 +321,14 @@ def shear_limit(laws: Laws, i: int, N: float) -> float:
     """Return the greatest force tan(phi) N + c along the base under the normal force N [N]; a bonded one has none."""
     if not laws.slips:
         return math.inf
-    return float(laws.friction * max(N, 0.0) + laws.upper[laws.contacts + i])
+    least = 0.0 if laws.lagged else laws.lower[i]  # of a contact with a strength, a tension lowers the limit
+    return float(laws.friction[i] * max(N, least) + laws.upper[laws.contacts + i])
+
+
+def is_smooth(laws: Laws, i: int) -> bool:
+    """Tell whether the way of a contact carries nothing: no spring, no bound."""
+    r = laws.contacts + i
+    return bool(laws.upper[r] == 0 and laws.friction[i] == 0 and laws.compliance[r] == 0)
 
 
 def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
@@ -501,7 +509,9 @@ def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wo
         closing = 0
         for i in range(m - n):
             work.beta[i] = 1.0
-            if before.state[i] != INSIDE and work.tried[i] == INSIDE and work.tried[n + i] == INSIDE:
+            if before.state[i] == INSIDE or work.tried[i] != INSIDE or work.tried[n + i] != INSIDE:
+                continue
+            if not is_smooth(laws, i):
                 work.closing[closing] = i
                 closing += 1
         solve_dense(laws, flexible, after, work, closing)
@@ -593,7 +603,7 @@ def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, clos
     for i in range(m - n):
         r = n + i
         if work.tried[r] != INSIDE and work.tried[i] == INSIDE:
-            after.force[r] = work.tried[r] * (friction_of(laws) * after.force[i] + work.held[i])
+            after.force[r] = work.tried[r] * (friction_of(laws, i) * after.force[i] + work.held[i])
     for k in range(closing):
         i = work.closing[k]
         beta = work.beta[i]
@@ -609,13 +619,18 @@ def list_unknown(laws: Laws, after: Rows, work: Work) -> int:
     for r in range(len(after.force)):
         after.force[r] = 0.0
         state = work.tried[r]
-        if state == INSIDE and (r < n or (work.tried[r - n] == INSIDE and work.beta[r - n] > 0)):
+        if state == INSIDE and (r < n or holds_along(laws, work, r - n)):
             work.unknown[size] = r
             work.place[r] = size
             size += 1
         elif state != INSIDE and r < n and laws.opens[r] == 0:
             after.force[r] = laws.lower[r] if state == LOWER else laws.upper[r]
     return size
+
+
+def holds_along(laws: Laws, work: Work, i: int) -> bool:
+    """Tell whether the force along the base of a contact that does not slip is unknown."""
+    return bool(work.tried[i] == INSIDE and work.beta[i] > 0 and not is_smooth(laws, i))
 
 
 def add_bound(laws: Laws, flexible: Flexibility, after: Rows, work: Work, size: int, r: int) -> None:
@@ -628,16 +643,16 @@ def add_bound(laws: Laws, flexible: Flexibility, after: Rows, work: Work, size: 
     if work.tried[i] != INSIDE:
         return
     normal = work.place[i]
-    friction = friction_of(laws)
+    friction = friction_of(laws, i)
     for a in range(size):
         flexibility = work.tried[r] * flexible.W[work.unknown[a]][r]
         work.A[a][normal] += friction * flexibility
         work.right[a][0] -= work.held[i] * flexibility
 
 
-def friction_of(laws: Laws) -> float:
+def friction_of(laws: Laws, i: int) -> float:
     """Return tan(phi) by which T of a slipping contact follows its N beside `work.held`, which may hold the limit."""
-    return 0.0 if laws.lagged else laws.friction
+    return 0.0 if laws.lagged else float(laws.friction[i])
 
 
 def keeps_pair(laws: Laws, flexible: Flexibility, work: Work) -> bool:

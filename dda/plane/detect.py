@@ -14,8 +14,7 @@ nowhere. The edge crossed last alone stops a corner that slides over a seam at t
 
 At that edge the other part's lowest corner is a contact if it lies over the edge; and, where the edge that this corner
 belongs to is nearly parallel, the other end of it and those ends of the first edge that lie strictly inside. So of
-corners that coincide one is taken. Cuts of a polygon that is not convex carry no contact, but tell when the other
-part came in through another part of the block.
+corners that coincide one is taken. Cuts of a polygon that is not convex, and corners into which it turns, carry none.
 
 Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
 `dda.march.compiled` takes them.
@@ -40,7 +39,6 @@ SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may
 NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
 DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
-CROSSED_EARLIER = 1e-6  # of a step, by which a cut must be crossed later than every edge
 NONE = -1
 TOO_MANY = -2  # contacts, for the records that were given
 TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
@@ -235,15 +233,16 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             deepest = DEEP * size  # they touched: how deep they are, they were pressed
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
-                length, along, gap = foot(corners.now, number, start, sides.end[edge])
-                if previous.normal[old] >= greatest and gap < -same and -same <= along <= length + same:
+                end = sides.end[edge]
+                length, along, gap = foot(corners.now, number, start, end)
+                over = is_over(corners, start, end, length, along, same, margin)
+                if previous.normal[old] >= greatest and gap < -same and over:
                     kept = edge
                     greatest = previous.normal[old]
         old = previous.chain[old]
     edge = NONE
     point = NONE
     best = -math.inf
-    best_cut = -math.inf
     touching = NONE
     touching_point = NONE
     farthest = -math.inf
@@ -268,9 +267,8 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             else:
                 key = 2 + min(before, after) / size
             nearest = lowest_then if after < before else lowest
-            if sides.real[side] == 0:
-                best_cut = max(best_cut, key)
-                continue
+            if sides.real[side] == 0 or corners.convex[sides.corner[nearest]] == 0:
+                continue  # what lies there is another part of one of the two blocks
             if -SOFT * size < before <= same and after > farthest + same:
                 touching = side
                 touching_point = nearest
@@ -279,8 +277,6 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
                 best = key
                 edge = side
                 point = nearest
-    if edge >= 0 and best_cut > best + CROSSED_EARLIER:
-        edge = NONE
     count = int(detection.count[0])
     for choice in range(2):
         chosen = touching if choice == 0 else edge
@@ -308,6 +304,7 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
     parts = detection.parts
     contacts = detection.contacts
     same = SAME * detection.size
+    margin = REACH * detection.size
     # the other part's edge that is most opposite to this one
     prior = sides.prior[point]
     cosine = cosine_between(corners.now, sides, edge, point)
@@ -329,14 +326,15 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 against = opposite_edge
                 slack = -same
             start = sides.corner[against]
-            length, along, gap = foot(corners.now, corner, start, sides.end[against])
+            end = sides.end[against]
+            length, along, gap = foot(corners.now, corner, start, end)
             share = along / length
-            length_then, along_then, gap_then = foot(corners.then, corner, start, sides.end[against])
+            length_then, along_then, gap_then = foot(corners.then, corner, start, end)
             if late == 1:
                 length = length_then
                 along = along_then
-            is_over = -slack <= along <= length + slack
-            if corners.convex[corner] == 0 or min(gap, gap_then) >= REACH * detection.size or not is_over:
+            over = is_over(corners, start, end, length, along, slack, margin)
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not over:
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
@@ -348,13 +346,23 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 return TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
-            contacts.share[found] = min(max(share, 0.0), 1.0)
+            contacts.share[found] = share
             contacts.gap[found] = gap
             contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
     return found
+
+
+def is_over(corners: Corners, start: int, end: int, length: float, along: float, slack: float, margin: float) -> bool:
+    """Tell whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
+
+    A corner in a notch that is pressed into one of its edges has left the other by as much, and is still held by it.
+    """
+    before = slack if corners.convex[start] != 0 else margin
+    beyond = slack if corners.convex[end] != 0 else margin
+    return -before <= along <= length + beyond
 
 
 def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:

@@ -120,8 +120,6 @@ def first_contact(
     for _ in range(ADVANCES):
         safe = min(pairs.safe_time(time, window, tolerance) for pairs in (A_on_B, B_on_A))
         if safe == 0.0:
-            if time > 0.0:  # what rounding was allowed for is a distance still, however slowly it closes
-                time += min(pairs.remaining_time(time, tolerance) for pairs in (A_on_B, B_on_A))
             return FirstContact(time, touches_at(time, A_on_B, B_on_A, near))
         if time >= until:
             return None
@@ -206,22 +204,6 @@ class Pairs:
 
     def safe_time(self, time: float, window: float, tolerance: float) -> float:
         """Return for how long no corner touches an edge, at most the window; 0 where one touches [s]."""
-        apart, _, bounds = self._bounds(time, window)
-        bounds = np.where(apart > tolerance, bounds, 0.0)
-        return float(min(np.min(np.max(bounds, axis=0)), window))
-
-    def remaining_time(self, time: float, tolerance: float) -> float:
-        """Return when a pair closes that touches up to the tolerance for rounding, infinity where none does [s]."""
-        apart, rate, bounds = self._bounds(time, 0.0)
-        touches = np.all(apart <= tolerance, axis=0)
-        bounds = np.where((apart > 0) & (rate < 0), bounds, 0.0)
-        return float(np.min(np.max(bounds, axis=0)[touches], initial=math.inf))
-
-    def _bounds(self, time: float, window: float) -> tuple[Array, Array, Array]:
-        """Return g, -g, -s, s - L, their rates, and how long the positive ones surely stay positive.
-
-        All have the shape (4, corners, edges).
-        """
         along, gap = self.distances(time)
         _, velocities = self._in_axes_of_edges(time)
         speed_along = velocities @ self.tangents.T
@@ -237,7 +219,9 @@ class Pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
             # the root of w + w' tau - M tau^2 / 2, without cancellation for either sign of w'
             bounds = np.where(rate < 0, 2 * w / (root - rate), (root + rate) / bends)
-        return apart, rate, np.where((rate >= 0) & (bends == 0), math.inf, bounds)
+        bounds = np.where((rate >= 0) & (bends == 0), window, bounds)
+        bounds = np.where(apart > tolerance, bounds, 0.0)
+        return float(min(np.min(np.max(bounds, axis=0)), window))
 
     def touching(self, time: float, near: float) -> list[tuple[int, int]]:
         """Return numbers of corners and edges that touch, in `corners` and `edges`."""

@@ -16,7 +16,17 @@ def laws_of(contacts, m, compliance, cohesion=math.inf, **changes):
     lower = np.where(across, 0.0, -cohesion)
     upper = np.where(across, math.inf, cohesion)
     slips = math.isfinite(cohesion)
-    numbers = (np.broadcast_to(compliance, m), lower, upper, across.astype(int), 0.0, slips, False, False, False)
+    numbers = (
+        np.broadcast_to(compliance, m),
+        lower,
+        upper,
+        across.astype(int),
+        np.zeros(contacts),
+        slips,
+        False,
+        False,
+        False,
+    )
     return Laws(contacts, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
 
 
@@ -115,7 +125,11 @@ def three(**changes):
     pressed = np.array([1e5] * 3 + [0.0] * 3)
     before = Rows(np.full(6, INSIDE), -pressed / 1e9, pressed, np.zeros(6))
     compliance = np.repeat([1e-9, 2.5e-9], 3)
-    return laws_of(3, 6, compliance, 0.0, friction=0.5)._replace(**changes), before, 1e-9 * (np.eye(6) + 0.1)
+    return (
+        laws_of(3, 6, compliance, 0.0, friction=np.full(3, 0.5))._replace(**changes),
+        before,
+        1e-9 * (np.eye(6) + 0.1),
+    )
 
 
 GAPS = [-1e-4, -2e-4, 5e-4]

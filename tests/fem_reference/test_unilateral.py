@@ -110,14 +110,10 @@ def test_bad_requests_are_refused_by_name():
             Friction(angle, cohesion)
 
 
-@pytest.mark.parametrize(("velocity", "turns"), [(1e3, True), (0.1, False)])
-def test_what_rounding_turns_a_block_by_in_a_long_flight_is_noted(velocity, turns):
+def test_rounding_does_not_turn_a_block_in_a_long_flight():
+    """K of the displacement itself would leave eps E u in each element and turn the block by 10 rad: it is rigid."""
     scheme = replace(AVERAGE, step=0.25)
     block = replace(make(elements=2), poisson=0.2, young=4e10, pressure=0.0, gravity=0.0)
-    run = solve_unilateral(block, scheme, 400, Unilateral(velocity=velocity), columns=("displacement", "rotation"))
-    noted = [
-        float(note.split(" by about ")[1].split()[0]) for note in run.notes if note.startswith("rounding may turn")
-    ]
-    assert len(noted) == turns
-    if turns:
-        assert np.abs(run.columns["rotation"]).max() < 10 * noted[0]
+    run = solve_unilateral(block, scheme, 400, Unilateral(velocity=1e3), columns=("displacement", "rotation"))
+    assert run.columns["displacement"][-1] == pytest.approx(1e5, rel=1e-13)
+    assert np.abs(run.columns["rotation"]).max() < 1e-7

@@ -34,7 +34,7 @@ COLUMN = "column"
 UNILATERAL_COLUMN, FRICTIONAL_COLUMN = "column that opens", "column that slips"
 RIGID_BLOCKS, RIGID_JOINTS = "rigid blocks", "rigid joints"
 RIGID_BOXES = "rigid boxes"
-PLANE = "blocks in the plane"
+PLANE, MOVING_BLOCKS = "blocks in the plane", "blocks that move"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
 DASHPOTS, IMPACT, AUGMENTED = "contact dashpots", "impact law", "augmented Lagrangian"
@@ -62,6 +62,7 @@ FEATURES = (
     Feature(FRICTIONAL_COLUMN, 'column.law = "frictional"', linear=False),
     Feature(RIGID_BLOCKS, "column.has_rigid_blocks", linear=False),
     Feature(RIGID_JOINTS, "column.has_rigid_joints", linear=False),
+    Feature(MOVING_BLOCKS, "plane.moves", linear=False),
     Feature(DAMPING, "damping.present"),
     Feature(ADAPTIVE, 'damping.kinetic = "adaptive"', linear=False),
     Feature(IMPLICIT, 'contact.rule = "implicit"', linear=False),

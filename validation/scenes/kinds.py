@@ -90,6 +90,10 @@ class Kind:
         """Return the tables of this kind that a scene may leave out."""
         return ()
 
+    def has_column(self, scene: Any, column: str) -> bool:
+        """Whether a history of a scene may hold a column, beside those that solvers have of every scene."""
+        return False
+
     def motion_unread(self, scene: Any) -> str | None:
         """Return None, or in words what of a scene keeps the motion of another program from being explained."""
         return None
