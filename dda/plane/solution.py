@@ -19,6 +19,7 @@ from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
+from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
 from dda.plane.places import Places, gap_of, place_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_contacts, push_loads
@@ -151,12 +152,12 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     springs, pairs = springs_of(model)
     c = len(places.block)
     m = 2 * c
+    dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
     detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
     edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
     real = detection.sides.real == 1
     edge_end[detection.sides.corner[real]] = detection.sides.end[real]
     memories = [Memory(rows_of(np.zeros(m), np.zeros(m)), np.zeros(m), np.zeros(c)) for _ in range(2)]
-    dense = c if model.found is None else min(c, DENSE)  # contacts whose flexibility there is room for
     body = Body(
         k=k,
         loads=loads,
@@ -188,6 +189,8 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         first=memories[0],
         second=memories[1],
         dropped=np.zeros(1),
+        dense=dense,
+        many=many_of(blocks, c),
         finds=int(model.found is not None),
         detection=detection,
         edge_end=edge_end,

@@ -13,7 +13,7 @@ import math
 from typing import Any, NamedTuple
 
 from dda.contact.dense import Matrix, Vector, copy
-from dda.contact.rows import FOUND, INSIDE, NONE, Laws, Rows, find, flexed
+from dda.contact.rows import FOUND, INSIDE, NONE, Rows, find
 from dda.march.account import add_bulk_loss, add_contact_losses, add_damping, half_square, over_stages
 from dda.march.energy import ALGORITHMIC, GIVEN, SWITCHING
 from dda.march.step import (
@@ -45,6 +45,7 @@ from dda.plane.bodies import (
     set_poses,
 )
 from dda.plane.detect import Detection
+from dda.plane.many import Many, contact_way, find_many
 from dda.plane.places import Places, place_contacts, write_rows
 from dda.plane.taken import (
     Memory,
@@ -111,6 +112,8 @@ class Plane(NamedTuple):
     first: Memory  # of a step, or of the first of two stages
     second: Memory
     dropped: Vector  # (1,) energy of contacts that are no more [J]
+    dense: int  # contacts up to which the equations are those of their forces
+    many: Many
     finds: int  # whether contacts are found
     detection: Detection
     edge_end: Any  # (corners,) corner at which the edge from a corner ends
@@ -164,9 +167,14 @@ def make_stage(
             room.pushed[i] = plane.loaded[i]
         if places.count[0] > 0:
             write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
-            write_contact_flexibility(march, length)
             free_contacts(march, memory)
-            outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
+            if places.count[0] > plane.dense:
+                outcome, spent = find_many(
+                    plane.many, blocks, places, laws, memory.rows, length, after.rows, march.work, plane.size, turn > 0
+                )
+            else:
+                write_contact_flexibility(march, length)
+                outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
@@ -178,7 +186,7 @@ def make_stage(
         if forces_change > 0 and (turn == 0 or forces_change > SETTLED_FORCE):
             continue
         if largest_change(plane) <= SETTLED * plane.size:
-            accept(march, laws, length, memory, before, after)
+            accept(march, memory, before, after)
             return FOUND, solves
     return NONE, solves
 
@@ -325,26 +333,11 @@ def free_contacts(march: March, memory: Memory) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + moved_contact(plane, r, plane.x)
+        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
             q[k] = FAR
-
-
-def moved_contact(plane: Plane, r: int, x: Vector) -> float:
-    """Return what the modes move a row by."""
-    places = plane.places
-    first = plane.blocks.first
-    n = places.count[0]
-    k = r if r < n else r - n
-    total = 0.0
-    for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
-        B = places.B[r][side]
-        for e in range(first[i + 1] - first[i]):
-            total += B[e] * x[first[i] + e]
-    return total
 
 
 def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
@@ -363,12 +356,11 @@ def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
                 out[first[i] + e] += F[e] * force[r]
 
 
-def accept(march: March, laws: Laws, length: Length, memory: Memory, before: PlaneState, after: PlaneState) -> None:
+def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) -> None:
     """Write where the stage ends."""
     plane = march.method
     places = plane.places
     rows = after.rows
-    free = march.room.free
     n = places.count[0]
     for i in range(len(plane.new)):
         for k in range(6):
@@ -379,9 +371,10 @@ def accept(march: March, laws: Laws, length: Length, memory: Memory, before: Pla
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            rows.opening[k] = memory.rows.opening[k] + free[k] + flexed(laws, length.flexible, k, rows.force)
+            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, n, k)
+            rows.opening[k] = memory.rows.opening[k] + way
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            way = free[r] + flexed(laws, length.flexible, r, rows.force)
+            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
             after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
