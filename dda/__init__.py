@@ -20,6 +20,7 @@ from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adapti
 from dda.one_block.textbook import solve_textbook, textbook_applicable
 from dda.one_block.two_block import TwoBlockModel
 from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
 from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
 from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.scheme import roots, spectral
@@ -48,6 +49,7 @@ __all__ = [
     "CornerOnEdge",
     "Diagnostics",
     "EdgeBond",
+    "FirstContact",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -72,6 +74,8 @@ __all__ = [
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
+    "first_block_contact",
+    "first_contact",
     "glued_blocks",
     "highest_frequency",
     "modal_form",
