@@ -28,6 +28,8 @@ AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
 class Places(NamedTuple):
     """Which points are in contact, and where they are when a stage begins."""
 
+    count: Any  # (2,) how many there are, and how many of these are stated
+    law: Any  # (c,) number of its springs
     block: Any  # (c,) that of the corner
     on: Any  # (c,) that of the edge
     bonded: Any  # (c,) 1 of two points that are glued
@@ -44,7 +46,7 @@ class Places(NamedTuple):
 
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
     """Write feet and normals of contacts for where the blocks are."""
-    for k in range(len(places.block)):
+    for k in range(places.count[0]):
         i = places.block[k]
         j = places.on[k]
         edge = places.edge[k]
@@ -85,7 +87,7 @@ def write_rows(
     late
         Weight of the directions at the end of a step in those of the forces.
     """
-    n = len(places.block)
+    n = places.count[0]
     chord_i = places.row[0]
     chord_j = places.row[1]
     force_i = places.row[2]

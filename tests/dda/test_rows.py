@@ -27,7 +27,7 @@ def laws_of(contacts, m, compliance, cohesion=math.inf, **changes):
         False,
         False,
     )
-    return Laws(contacts, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
+    return Laws(contacts, m, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
 
 
 def solved(laws, W, q, before=None, paired=None, pair=None):
