@@ -23,6 +23,7 @@ from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
+from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
 from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
 from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.result.contact_result import ContactResult
@@ -47,6 +48,7 @@ __all__ = [
     "CornerOnEdge",
     "Diagnostics",
     "EdgeBond",
+    "FirstContact",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -71,6 +73,8 @@ __all__ = [
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
+    "first_block_contact",
+    "first_contact",
     "glued_blocks",
     "highest_frequency",
     "modal_form",
