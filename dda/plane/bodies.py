@@ -92,8 +92,8 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
         k.append(np.zeros(RIGID))
         if modes == RIGID:
             continue
-        natural, modes = free_block(inertia, block)  # strains come first there
-        shapes[i] = modes[3:, :3]
+        natural, unknowns = free_block(inertia, block)  # strains come first there
+        shapes[i] = unknowns[3:, :3]
         k.append(natural[:3])
         section = block.section
         S = block.material.density * np.array([[section.s1, section.s3], [section.s3, section.s2]])

@@ -484,7 +484,7 @@ def own_flexibility(blocks: Blocks, places: Places, length: Length, k: int, r: i
         first = blocks.first[i]
         for e in range(blocks.first[i + 1] - first):
             total += places.B[r][side][e] * length.inverse[first + e] * places.F[r][side][e]
-    return length.numbers[3] * total
+    return float(length.numbers[3] * total)
 
 
 def push(many: Many, blocks: Blocks, places: Places, length: Length, n: int, r: int, force: float, after: Rows) -> None:
