@@ -1,4 +1,4 @@
-"""Discontinuous deformation analysis of the two-block model, and of systems of glued blocks.
+"""Discontinuous deformation analysis of the two-block model, of systems of glued blocks, and of blocks in the plane.
 
 One elastic polygonal block on locked contact springs, pressed from above, stepped by Newmark's
 scheme with kinetic damping, in a form that keeps its digits for stiff springs; the printed
@@ -23,6 +23,9 @@ from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
+from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
+from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
+from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
 from dda.result.contact_result import ContactResult
 from dda.result.result import COLUMNS, Result
 from dda.scheme import roots, spectral
@@ -41,7 +44,11 @@ __all__ = [
     "BlockSystem",
     "Contact",
     "ContactResult",
+    "ContactSprings",
+    "CornerOnEdge",
     "Diagnostics",
+    "EdgeBond",
+    "FirstContact",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -50,6 +57,11 @@ __all__ = [
     "ModalForm",
     "Mode",
     "OpeningSystem",
+    "PlaneBlock",
+    "PlaneContact",
+    "PlaneLoad",
+    "PlaneModel",
+    "PlaneResult",
     "Result",
     "Scheme",
     "Section",
@@ -61,6 +73,8 @@ __all__ = [
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
+    "first_block_contact",
+    "first_contact",
     "glued_blocks",
     "highest_frequency",
     "modal_form",
@@ -73,6 +87,7 @@ __all__ = [
     "solve",
     "solve_adaptive",
     "solve_opening_system",
+    "solve_plane",
     "solve_system",
     "solve_textbook",
     "solve_unilateral",

@@ -70,6 +70,7 @@ def laws_of(column: Column, solve_limit: int | None, bonded: bool) -> Laws:
         compliance[0] = 1.0  # of a row that feels nothing
     return Laws(
         contacts=n,
+        rows=n,
         compliance=compliance,
         lower=np.where(opens == 1, 0.0, -strength),
         upper=strength,

@@ -13,6 +13,7 @@ contact is c = 0. One law serves all contacts:
     bonded       no bounds
     strength     -s <= T <= s                  z is the slip
     friction     |T| <= tan(phi) N + c         z is the slip; T = 0 where N is at its bound, of an open contact
+    smooth       T = 0                         a way of rigid spring (c = 0) and no bounds: nothing is solved for
 
 A row inside of its bounds is at y = -c lambda, which is set and no sum of increments. Rows 0 .. n-1 are those of n
 contacts; where contacts have friction, or are bonded along the base too, row n + i is the way of contact i along it.
@@ -55,7 +56,9 @@ NONE = 1
 SEVERAL = 2
 OVERFLOW = 3
 LIMIT = 4  # the limit of solves
-UNREACHED = 5  # no shorter step helps
+UNREACHED = 5  # no shorter step helps, here and below
+TOO_MANY = 6
+TOO_DEEP = 7
 OUTCOMES = {
     FOUND: "completed",
     NONE: "no consistent contact state",
@@ -63,6 +66,8 @@ OUTCOMES = {
     OVERFLOW: "overflow",
     LIMIT: "solve limit exceeded",
     UNREACHED: "pass limit exceeded",
+    TOO_MANY: "more contacts than there is room for",
+    TOO_DEEP: "a corner deeper in a block than a step can bring it",
 }
 
 ROUNDING = 1e-12  # of a bound, by which the force of a sticking row may exceed it
@@ -75,12 +80,13 @@ class Laws(NamedTuple):
     """The laws of all rows, (m,) each unless said."""
 
     contacts: int  # n
+    rows: int  # m, n or 2n; records may be longer
     compliance: Vector  # c [m/N]; 0: rigid
     lower: Vector  # least force of a row inside of its bounds [N]
     upper: Vector  # greatest one; of a row with friction its cohesion [N]
     opens: States  # 1 of a unilateral row, which carries nothing at its lower bound
-    friction: float  # tan(phi) of all contacts along the base [-]
-    slips: bool  # whether the way along the base has a limit
+    friction: Vector  # (n,) tan(phi) of the contacts along the base [-]; of a bonded one zero, with infinite bounds
+    slips: bool  # whether any way along the base has a limit
     lagged: bool  # whether that limit is that of the solve before
     paired: bool  # whether rows 2 and 3 are also known as the mean and the difference of two ways
     banded: bool  # whether W has one diagonal beside the main one, the two in the rows of (2, m)
@@ -165,11 +171,12 @@ def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float 
     cohesion = law.cohesion if law.friction is not None else math.inf
     return Laws(
         contacts=contacts,
+        rows=rows,
         compliance=np.where(across, law.compliance, law.softness) / share,
         lower=np.where(across, -law.pull, -cohesion) * share,
         upper=np.where(across, math.inf, cohesion) * share,
         opens=across.astype(np.int64),
-        friction=law.friction or 0.0,
+        friction=np.full(contacts, law.friction or 0.0),
         slips=law.friction is not None,
         lagged=law.rules == LAGGED and rows > contacts,
         paired=rows == 4 and contacts == 2,
@@ -205,7 +212,7 @@ def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wor
         Room for the equations, with the openings `work.q` of a step without contact forces.
     """
     n = laws.contacts
-    m = len(before.force)
+    m = laws.rows
     copy(before.state, work.tried)
     if laws.lagged:
         return lagged(laws, before, flexible, after, work)
@@ -230,7 +237,7 @@ def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int
     lower = laws.lower
     upper = laws.upper
     damped = laws.retardation > 0
-    rows = len(force)
+    rows = laws.rows
     friction = rows > n and laws.slips
     wrong = 0
     for i in range(n):
@@ -320,12 +327,19 @@ def shear_limit(laws: Laws, i: int, N: float) -> float:
     """Return the greatest force tan(phi) N + c along the base under the normal force N [N]; a bonded one has none."""
     if not laws.slips:
         return math.inf
-    return float(laws.friction * max(N, 0.0) + laws.upper[laws.contacts + i])
+    least = 0.0 if laws.lagged else laws.lower[i]  # of a contact with a strength, a tension lowers the limit
+    return float(laws.friction[i] * max(N, least) + laws.upper[laws.contacts + i])
+
+
+def is_smooth(laws: Laws, i: int) -> bool:
+    """Tell whether the way of a contact carries nothing: no spring, no bound."""
+    r = laws.contacts + i
+    return bool(laws.upper[r] == 0 and laws.friction[i] == 0 and laws.compliance[r] == 0)
 
 
 def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
     """Set the first row that disagrees, alone, until all agree or states come back."""
-    m = len(before.force)
+    m = laws.rows
     copy(work.tried, work.saved)
     solves = laws.together
     changes = 0
@@ -358,7 +372,7 @@ def every_state(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, wo
 
     Of contacts with dashpots, which may have several (`with_dashpot`), the first ones.
     """
-    m = len(before.force)
+    m = laws.rows
     choices = choices_of(laws, m)
     count = choices**laws.contacts
     solves = laws.together
@@ -491,7 +505,7 @@ def begin_anew(before: Rows, after: Rows, r: int, state: int) -> None:
 def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> None:
     """Write the rows at the end of the step in the states `work.tried`, whether their forces agree or not."""
     n = laws.contacts
-    m = len(after.force)
+    m = laws.rows
     copy(work.tried, after.state)
     if m == 1:
         after.force[0] = 0.0
@@ -501,7 +515,9 @@ def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wo
         closing = 0
         for i in range(m - n):
             work.beta[i] = 1.0
-            if before.state[i] != INSIDE and work.tried[i] == INSIDE and work.tried[n + i] == INSIDE:
+            if before.state[i] == INSIDE or work.tried[i] != INSIDE or work.tried[n + i] != INSIDE:
+                continue
+            if not is_smooth(laws, i):
                 work.closing[closing] = i
                 closing += 1
         solve_dense(laws, flexible, after, work, closing)
@@ -549,7 +565,7 @@ def unretarded(laws: Laws, flexible: Flexibility, after: Rows, work: Work, r: in
 
 def flexed(laws: Laws, flexible: Flexibility, r: int, force: Vector) -> float:
     """Return W_r lambda [m]."""
-    m = len(force)
+    m = laws.rows
     W = flexible.W
     total = 0.0
     for s in range(m):
@@ -560,7 +576,7 @@ def flexed(laws: Laws, flexible: Flexibility, r: int, force: Vector) -> float:
 def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, closing: int) -> None:
     """Write the forces for given `work.beta`, and dN/dbeta of the contacts that close."""
     n = laws.contacts
-    m = len(after.force)
+    m = laws.rows
     A = work.A
     right = work.right
     unknown = work.unknown
@@ -593,7 +609,7 @@ def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, clos
     for i in range(m - n):
         r = n + i
         if work.tried[r] != INSIDE and work.tried[i] == INSIDE:
-            after.force[r] = work.tried[r] * (friction_of(laws) * after.force[i] + work.held[i])
+            after.force[r] = work.tried[r] * (friction_of(laws, i) * after.force[i] + work.held[i])
     for k in range(closing):
         i = work.closing[k]
         beta = work.beta[i]
@@ -606,16 +622,21 @@ def list_unknown(laws: Laws, after: Rows, work: Work) -> int:
     """List the rows whose forces are unknown, write those of the others that follow no friction; return how many."""
     n = laws.contacts
     size = 0
-    for r in range(len(after.force)):
+    for r in range(laws.rows):
         after.force[r] = 0.0
         state = work.tried[r]
-        if state == INSIDE and (r < n or (work.tried[r - n] == INSIDE and work.beta[r - n] > 0)):
+        if state == INSIDE and (r < n or holds_along(laws, work, r - n)):
             work.unknown[size] = r
             work.place[r] = size
             size += 1
         elif state != INSIDE and r < n and laws.opens[r] == 0:
             after.force[r] = laws.lower[r] if state == LOWER else laws.upper[r]
     return size
+
+
+def holds_along(laws: Laws, work: Work, i: int) -> bool:
+    """Tell whether the force along the base of a contact that does not slip is unknown."""
+    return bool(work.tried[i] == INSIDE and work.beta[i] > 0 and not is_smooth(laws, i))
 
 
 def add_bound(laws: Laws, flexible: Flexibility, after: Rows, work: Work, size: int, r: int) -> None:
@@ -628,16 +649,16 @@ def add_bound(laws: Laws, flexible: Flexibility, after: Rows, work: Work, size: 
     if work.tried[i] != INSIDE:
         return
     normal = work.place[i]
-    friction = friction_of(laws)
+    friction = friction_of(laws, i)
     for a in range(size):
         flexibility = work.tried[r] * flexible.W[work.unknown[a]][r]
         work.A[a][normal] += friction * flexibility
         work.right[a][0] -= work.held[i] * flexibility
 
 
-def friction_of(laws: Laws) -> float:
+def friction_of(laws: Laws, i: int) -> float:
     """Return tan(phi) by which T of a slipping contact follows its N beside `work.held`, which may hold the limit."""
-    return 0.0 if laws.lagged else laws.friction
+    return 0.0 if laws.lagged else float(laws.friction[i])
 
 
 def keeps_pair(laws: Laws, flexible: Flexibility, work: Work) -> bool:

@@ -58,7 +58,7 @@ def account_with(
     return account
 
 
-def add_bulk_loss(march: March, state: State, after: State, part: Part, sums: Vector) -> None:
+def add_bulk_loss(march: March, state: AnyState, after: AnyState, part: Part, sums: Vector) -> None:
     """Add what Newmark's step loses beside the contacts [J]."""
     dt2 = march.scheme.step * march.scheme.step
     alpha = march.last.numbers.alpha

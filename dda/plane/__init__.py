@@ -1,1 +1,1 @@
-"""Blocks in the plane that touch, slide and turn."""
+"""Blocks in the plane: polygons that move, turn and deform by one strain, and what joins and drives them."""

@@ -4,8 +4,8 @@ Two convex parts are apart while one edge of either has the other part in front 
 by the first of these rules that holds:
 
 a. the edge through which they are really pressed, however deep, as long as its corner lies over it;
-b. of the edges at which they touch, that which the step without contact leaves farthest in front, unless nothing of the
-   other part lies over it and another edge is crossed in this step;
+b. of the edges at which they touch, that which the step without contact presses least, as they slide along it, unless
+   nothing of the other part lies over it and another edge is crossed in this step;
 c. of the edges that have the other part in front, that which this step crosses last: through it they come to touch;
 d. where none has, the one with the least penetration.
 
@@ -14,8 +14,7 @@ nowhere. The edge crossed last alone stops a corner that slides over a seam at t
 
 At that edge the other part's lowest corner is a contact if it lies over the edge; and, where the edge that this corner
 belongs to is nearly parallel, the other end of it and those ends of the first edge that lie strictly inside. So of
-corners that coincide one is taken. Cuts of a polygon that is not convex carry no contact, but tell when the other
-part came in through another part of the block.
+corners that coincide one is taken. Cuts of a polygon that is not convex, and corners into which it turns, carry none.
 
 Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
 `dda.march.compiled` takes them.
@@ -36,11 +35,11 @@ from dda.plane.polygons import Corners, Parts, Sides, outlines
 
 REACH = 0.02  # of the size of the smallest block, within which contacts are kept
 SAME = 1e-9  # of that size: what rounding leaves of a touch
-SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give
+SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give, where they give no more now
+PRESSED = 2.0  # times as deep as a block is pressed now it may be pressed where it comes to the next one
 NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
 DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
-CROSSED_EARLIER = 1e-6  # of a step, by which a cut must be crossed later than every edge
 NONE = -1
 TOO_MANY = -2  # contacts, for the records that were given
 TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
@@ -70,6 +69,7 @@ class Detection(NamedTuple):
     parts: Parts
     moves: Any  # (b,) 0 of blocks that cannot
     head: Any  # (b,) work: first contact of the step before of a block
+    depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
     previous: FoundContacts
@@ -97,6 +97,7 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         *outlines(polygons),
         moves=movable,
         head=np.full(len(polygons), NONE),
+        depth=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=FoundContacts(*found),
         previous=FoundContacts(*(array.copy() for array in found)),
@@ -130,8 +131,16 @@ def find_contacts(detection: Detection) -> int:
     along = place_parts(detection)
     for block in range(blocks):
         head[block] = NONE
+        detection.depth[block] = 0.0
     for number in range(detection.count[1] - 1, -1, -1):
-        keeper = keeper_of(detection, corners.block[previous.corner[number]], corners.block[previous.edge[number]])
+        corner = previous.corner[number]
+        start = previous.edge[number]
+        keeper = keeper_of(detection, corners.block[corner], corners.block[start])
+        if previous.closed[number] != 0:
+            _, _, gap = foot(corners.now, corner, start, corners.after[start])
+            for block in (corners.block[corner], corners.block[start]):
+                if detection.moves[block] != 0:
+                    detection.depth[block] = max(detection.depth[block], 0.0 - gap)
         previous.heir[number] = NONE
         previous.chain[number] = head[keeper]
         head[keeper] = number
@@ -218,6 +227,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     margin = REACH * size
     i = parts.block[p]
     j = parts.block[r]
+    soft = min(max(SOFT * size, PRESSED * max(detection.depth[i], detection.depth[j])), margin)
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
@@ -235,18 +245,19 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             deepest = DEEP * size  # they touched: how deep they are, they were pressed
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
-                length, along, gap = foot(corners.now, number, start, sides.end[edge])
-                if previous.normal[old] >= greatest and gap < -same and -same <= along <= length + same:
+                end = sides.end[edge]
+                length, along, gap = foot(corners.now, number, start, end)
+                over = is_over(corners, start, end, length, along, same, margin)
+                if previous.normal[old] >= greatest and gap < -same and over:
                     kept = edge
                     greatest = previous.normal[old]
         old = previous.chain[old]
     edge = NONE
     point = NONE
     best = -math.inf
-    best_cut = -math.inf
     touching = NONE
     touching_point = NONE
-    farthest = -math.inf
+    slowest = -math.inf
     for turn in range(2):
         own = p if turn == 0 else r
         opposite = r if turn == 0 else p
@@ -268,19 +279,16 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             else:
                 key = 2 + min(before, after) / size
             nearest = lowest_then if after < before else lowest
-            if sides.real[side] == 0:
-                best_cut = max(best_cut, key)
-                continue
-            if -SOFT * size < before <= same and after > farthest + same:
+            if sides.real[side] == 0 or corners.convex[sides.corner[nearest]] == 0:
+                continue  # what lies there is another part of one of the two blocks
+            if -soft < before <= same and after - before > slowest + same:
                 touching = side
                 touching_point = nearest
-                farthest = after
+                slowest = after - before
             if key > best + SAME:
                 best = key
                 edge = side
                 point = nearest
-    if edge >= 0 and best_cut > best + CROSSED_EARLIER:
-        edge = NONE
     count = int(detection.count[0])
     for choice in range(2):
         chosen = touching if choice == 0 else edge
@@ -308,6 +316,7 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
     parts = detection.parts
     contacts = detection.contacts
     same = SAME * detection.size
+    margin = REACH * detection.size
     # the other part's edge that is most opposite to this one
     prior = sides.prior[point]
     cosine = cosine_between(corners.now, sides, edge, point)
@@ -329,14 +338,15 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 against = opposite_edge
                 slack = -same
             start = sides.corner[against]
-            length, along, gap = foot(corners.now, corner, start, sides.end[against])
+            end = sides.end[against]
+            length, along, gap = foot(corners.now, corner, start, end)
             share = along / length
-            length_then, along_then, gap_then = foot(corners.then, corner, start, sides.end[against])
+            length_then, along_then, gap_then = foot(corners.then, corner, start, end)
             if late == 1:
                 length = length_then
                 along = along_then
-            is_over = -slack <= along <= length + slack
-            if corners.convex[corner] == 0 or min(gap, gap_then) >= REACH * detection.size or not is_over:
+            over = is_over(corners, start, end, length, along, slack, margin)
+            if corners.convex[corner] == 0 or min(gap, gap_then) >= margin or not over:
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
@@ -348,13 +358,23 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 return TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
-            contacts.share[found] = min(max(share, 0.0), 1.0)
+            contacts.share[found] = share
             contacts.gap[found] = gap
             contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
     return found
+
+
+def is_over(corners: Corners, start: int, end: int, length: float, along: float, slack: float, margin: float) -> bool:
+    """Tell whether a corner lies over an edge, also over what goes on from it where its outline turns inwards.
+
+    A corner in a notch that is pressed into one of its edges has left the other by as much, and is still held by it.
+    """
+    before = slack if corners.convex[start] != 0 else margin
+    beyond = slack if corners.convex[end] != 0 else margin
+    return -before <= along <= length + beyond
 
 
 def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 from dda.model.arrays import Array
 from dda.model.checks import check_finite, check_positive
 from dda.model.polygon import checked_polygon
+from dda.plane.model import PlaneModel
 from dda.plane.polygons import convex_parts, turns_of, without_straight_corners
 
 CORNER_EDGE = "corner-edge"
@@ -120,8 +121,6 @@ def first_contact(
     for _ in range(ADVANCES):
         safe = min(pairs.safe_time(time, window, tolerance) for pairs in (A_on_B, B_on_A))
         if safe == 0.0:
-            if time > 0.0:  # what rounding was allowed for is a distance still, however slowly it closes
-                time += min(pairs.remaining_time(time, tolerance) for pairs in (A_on_B, B_on_A))
             return FirstContact(time, touches_at(time, A_on_B, B_on_A, near))
         if time >= until:
             return None
@@ -129,6 +128,30 @@ def first_contact(
         window = max(4 * safe, 1e-9 * until)
         tolerance = rounding
     raise RuntimeError(f"first contact: no decision after {ADVANCES} advances, at t = {time!r} s")
+
+
+def first_block_contact(model: PlaneModel, first: int, second: int, until: float) -> FirstContact | None:
+    """Return the first contact of two blocks of a model, as they move from t = 0 on without loads and other blocks.
+
+    A block turns about its centroid; a fixed one rests. Block 0 of the contact is the first one, 1 the second.
+
+    Raises
+    ------
+    ValueError
+        If a block is driven, or the two overlap at t = 0.
+    """
+    outlines = []
+    motions = []
+    for number in (first, second):
+        part = model.blocks[number]
+        if part.motion is not None:
+            raise ValueError(
+                f"motion: must be uniform for a first contact, got {model.name_of(number)}, which is driven"
+            )
+        centroid = part.block.section.centroid
+        outlines.append(part.block.corners - np.array(centroid))
+        motions.append(UniformMotion(*centroid, 0.0, *part.velocity, part.spin))
+    return first_contact(outlines[0], outlines[1], motions[0], motions[1], until)
 
 
 def rotation(angle: float) -> Array:
@@ -206,22 +229,6 @@ class Pairs:
 
     def safe_time(self, time: float, window: float, tolerance: float) -> float:
         """Return for how long no corner touches an edge, at most the window; 0 where one touches [s]."""
-        apart, _, bounds = self._bounds(time, window)
-        bounds = np.where(apart > tolerance, bounds, 0.0)
-        return float(min(np.min(np.max(bounds, axis=0)), window))
-
-    def remaining_time(self, time: float, tolerance: float) -> float:
-        """Return when a pair closes that touches up to the tolerance for rounding, infinity where none does [s]."""
-        apart, rate, bounds = self._bounds(time, 0.0)
-        touches = np.all(apart <= tolerance, axis=0)
-        bounds = np.where((apart > 0) & (rate < 0), bounds, 0.0)
-        return float(np.min(np.max(bounds, axis=0)[touches], initial=math.inf))
-
-    def _bounds(self, time: float, window: float) -> tuple[Array, Array, Array]:
-        """Return g, -g, -s, s - L, their rates, and how long the positive ones surely stay positive.
-
-        All have the shape (4, corners, edges).
-        """
         along, gap = self.distances(time)
         _, velocities = self._in_axes_of_edges(time)
         speed_along = velocities @ self.tangents.T
@@ -237,7 +244,9 @@ class Pairs:
         with np.errstate(divide="ignore", invalid="ignore"):
             # the root of w + w' tau - M tau^2 / 2, without cancellation for either sign of w'
             bounds = np.where(rate < 0, 2 * w / (root - rate), (root + rate) / bends)
-        return apart, rate, np.where((rate >= 0) & (bends == 0), math.inf, bounds)
+        bounds = np.where((rate >= 0) & (bends == 0), window, bounds)
+        bounds = np.where(apart > tolerance, bounds, 0.0)
+        return float(min(np.min(np.max(bounds, axis=0)), window))
 
     def touching(self, time: float, near: float) -> list[tuple[int, int]]:
         """Return numbers of corners and edges that touch, in `corners` and `edges`."""

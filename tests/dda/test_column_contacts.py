@@ -20,7 +20,7 @@ from dda.bodies.column_equations import equations
 from dda.bodies.contact_column import ColumnOptions, observed_columns, solve_contact_column
 from dda.bodies.open_column import blocks_of, body_of, laws_of
 from dda.contact.band import find_in_band
-from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, UPPER, Laws, flexibility_for, rows_of, work_for
+from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, Laws, flexibility_for, rows_of, work_for
 from dda.contact.unilateral import OPEN
 from dda.march import compiled
 from dda.march.step import march_of
@@ -60,19 +60,6 @@ def test_average_acceleration_tends_to_the_exact_motion_with_order_two(
     coarse, fine = (error_of(CASES[name], AVERAGE, steps) for steps in (2000, 4000))
     assert fine < 2e-3
     assert 1.7 < math.log2(coarse / fine) < 2.4
-
-
-def test_a_start_without_acceleration_leaves_average_acceleration_order_one() -> None:
-    """A block in flight: exact from a consistent start, g dt / 2 too slow from A0 = 0."""
-    column = unilateral(layers([1.0], [2500.0], [RIGID], [0.0]), [1e9], [1.0])
-    for step in (1e-2, 5e-3):
-        steps = round(0.2 / step)
-        consistent, zero = (
-            solve_contact_column(column, Scheme(*AVERAGE, 1.0, step, start), still(steps), ["velocity_1"], [0.5])
-            for start in ("consistent", "zero")
-        )
-        assert consistent.columns["velocity_1"][-1] == pytest.approx(-9.81 * 0.2, rel=1e-12)
-        assert zero.columns["velocity_1"][-1] == pytest.approx(-9.81 * (0.2 - step / 2), rel=1e-12)
 
 
 # ---- one solution ----------------------------------------------------------------------------------------------------
@@ -163,22 +150,6 @@ def test_changing_one_state_at_a_time_ends_in_the_same_solution() -> None:
     assert solves > together
 
 
-def test_sliders_have_one_solution_from_any_start() -> None:
-    for seed in range(40):
-        rng = np.random.default_rng(seed)
-        laws, W, q = problem(rng, rigid=seed % 2 == 0, adversarial=seed % 3 == 0)
-        n = len(q)
-        strength = np.exp(rng.uniform(-6, 1, n)) * np.abs(q).max() / (W[0] + laws.compliance).max()
-        laws = laws._replace(lower=-strength, upper=strength, opens=0 * laws.opens)
-        forces = []
-        for _ in range(4):
-            force, _, solves = solved(laws, W, q, rng.choice([LOWER, INSIDE, UPPER], n))
-            check_solution(laws, W, q, force)
-            assert solves <= 2 * n + 1
-            forces.append(force)
-        np.testing.assert_allclose(forces[1:], [forces[0]] * 3, rtol=0, atol=1e-9 * np.abs(forces[0]).max())
-
-
 # ---- the domino ------------------------------------------------------------------------------------------------------
 
 
@@ -222,20 +193,6 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks() -> No
 
 
 # ---- contacts that hold, and rigid blocks ----------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("stiffness", [1e9, math.inf])
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-def test_a_contact_without_strength_leaves_its_block_alone(stiffness: float, start: Start) -> None:
-    blocks = layers([1.0, 1.0], [2500.0] * 2, [1e9, RIGID], [1.0, -0.5])
-    joints = [Spring(0.0, 1e9), Spring(1.0, stiffness, strength=0.0)]
-    column = Column(blocks, "shear", law="frictional", joints=joints)
-    scheme = Scheme(0.25, 0.5, 1.0, 1e-4, start)
-    result = solve_contact_column(column, scheme, still(500), ["force_1", "velocity_2", "slip_1"], [1.0, 1.5])
-    assert not result.columns["force_1"].any()
-    np.testing.assert_allclose(result.columns["velocity_2"], -0.5, rtol=1e-14)
-    assert np.abs(result.columns["slip_1"]).max() > 0.01
-    assert result.step_solves.max() <= 3
 
 
 @pytest.mark.parametrize(

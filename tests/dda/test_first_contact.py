@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from dda import PlaneBlock, PlaneModel
 from dda.model.polygon import section
-from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_contact
+from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_block_contact, first_contact
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
@@ -15,6 +16,7 @@ PENTAGON = np.array([(-1.0, -0.8), (0.7, -1.0), (1.3, 0.2), (0.2, 1.1), (-0.9, 0
 LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
 TRIANGLE_CENTRED = TRIANGLE - TRIANGLE.mean(axis=0)
 PENTAGON_CENTRED = PENTAGON - section(PENTAGON).centroid
+BAR = np.array([(-2.0, -0.1), (2.0, -0.1), (2.0, 0.1), (-2.0, 0.1)])
 AT_REST = (0.0,) * 6
 
 # of each: A and its motion (angles in degrees), B and its motion, time, touch (block, corner, edge, foot); by roots of
@@ -48,6 +50,16 @@ INSTANTS = {
         *(TRIANGLE_CENTRED, (2.2, 2.6, 200, -3, -4, 5), SQUARE, (0, 0, 20, 0, 0, 0.5)),
         *(0.3527302571494969, (1, 2, 0, 0.248366804045104)),
     ),
+    "a bar swings onto a corner": (  # which lies 0.1 beside its middle line
+        *(BAR, (0, 0, 135, 0, 0, -3), SQUARE, (2.2, 0, 0, 0, 0, 0)),
+        *((math.radians(135) - math.atan2(1, 1.2) - math.asin(0.1 / math.hypot(1, 1.2))) / 3,),
+        *((1, 3, 0, (2 + math.sqrt(2.43)) / 4),),
+    ),
+    "a bar swings onto a wall": (
+        *(BAR * (0.5, 1) + (1, 0), (0, 0, 135, 0, 0, -3), 2 * SQUARE, (3.2, 0, 0, 0, 0, 0)),
+        *((math.radians(135) - math.atan(0.05) - math.acos(1.2 / math.sqrt(4.01))) / 3,),
+        *((0, 1, 3, (2 - math.sqrt(4.01 - 1.44)) / 4),),
+    ),
     "nearly parallel": (
         *(SQUARE, (0.5, 3, 5.729577951308232e-5, 0, -1, 0), SQUARE, AT_REST),
         *(0.9999990000005, (0, 0, 2, 0.74999949999975)),
@@ -65,7 +77,7 @@ def contact_of(A, motion_A, B, motion_B, until=3.0, size=1.0):
     return first_contact(size * A, size * B, grown * in_radians(motion_A), grown * in_radians(motion_B), until)
 
 
-@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
+@pytest.mark.parametrize("size", [1.0, 1e6, 1e-6])
 @pytest.mark.parametrize("name", INSTANTS)
 def test_instant_edge_and_foot_of_a_corner_on_an_edge(name, size):
     *scene, time, point = INSTANTS[name]
@@ -115,7 +127,7 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
+@pytest.mark.parametrize("size", [1.0, 1e6, 1e-6])
 @pytest.mark.parametrize("name", PLACES)
 def test_corners_on_corners_and_edges_on_edges(name, size):
     A, motion, time, kind, points, normals = PLACES[name]
@@ -211,3 +223,12 @@ def test_first_crossing_of_samples_with_brent_agrees(seed):
         return
     assert contact.time == pytest.approx(crossing[0], abs=1e-12)
     assert crossing[1:] in [point[:3] for touch in contact.touches for point in touch.points]
+
+
+def test_blocks_of_a_model_turn_about_their_centroids():
+    flying = PlaneBlock(TRIANGLE_CENTRED + np.array([2.2, 2.6]), 2000.0, velocity=(-3.0, -4.0), spin=5.0)
+    model = PlaneModel([PlaneBlock(SQUARE, 1000.0, fixed=True), flying])
+    expected = first_contact(TRIANGLE_CENTRED, SQUARE, (2.2, 2.6, 0, -3, -4, 5), AT_REST, 1.0)
+    contact = first_block_contact(model, 1, 0, 1.0)
+    assert contact.time == pytest.approx(expected.time, abs=1e-13)
+    assert contact.touches[0].points[0][:3] == expected.touches[0].points[0][:3]

@@ -60,6 +60,7 @@ class Scene:
         keep_contacts(self.detection)
 
 
+NARROW = np.array([(0.0, 0.0), (0.94, 0.34), (0.34, 0.94)])
 STEEP = np.array([(0.0, 0.0), (1.0, 0.2), (0.6, 1.1), (-0.4, 0.9)])
 
 # of each: polygons, way of the step without contact, and contacts (block, corner, on, edge)
@@ -84,6 +85,18 @@ SITUATIONS = {
     "an L upside down": (
         *([SQUARE * 4 - (1, 4), LEDGE[::-1] * (1, -1) + (0, 2)], (0, -0.01)),
         *([(1, 0, 0, TOP), (1, 1, 0, TOP)],),
+    ),
+    "a tip into a notch": (
+        *([LEDGE, at(NARROW, 1.0003, 1.0003)], (-7e-4, -7e-4)),
+        *([(1, 0, 0, 2), (1, 0, 0, 3)],),
+    ),
+    "pressed into a notch": (
+        *([LEDGE, at(SQUARE / 4, 1 - 1e-6, 1 - 1e-6)], (-1e-5, -1e-5)),
+        *([(1, 0, 0, 2), (1, 1, 0, 2), (1, 0, 0, 3), (1, 3, 0, 3)],),
+    ),
+    "past a wall into a notch": (
+        *([LEDGE, at(NARROW, 1.001, 1.003)], (-2e-3, -4.5e-3)),
+        *([(1, 0, 0, 2), (1, 0, 0, 3)],),
     ),
     "straight corners are none": (
         *([np.array([(-1, -1), (0.5, -1), (2, -1), (2, 0), (0.5, 0), (-1, 0)]), SQUARE], (0, -0.01)),
@@ -128,12 +141,14 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
 
 
 @pytest.mark.parametrize("ahead", [-1e-3, -1e-12, 0.0, 1e-12, 1e-3])
-@pytest.mark.parametrize("sunk", [1e-12, 1e-6])
+@pytest.mark.parametrize("sunk", [1e-12, 1e-6, 3e-4, 5e-3])
 def test_a_block_slides_over_a_flush_seam(ahead, sunk):
     floors = [SQUARE * 2 - (2, 2), SQUARE * 2 - (0, 2)]
     scene = Scene([*floors, SQUARE - (1 - ahead, sunk)])
     scene.detection.moves[1] = 0
     scene.detection.law[:] = [-1, -1, 0, -1, -1, 0, 0, 0, -1]
+    scene.step((0.0, -1e-3), [*floors, SQUARE - (1.1, -1e-12)])
+    scene.press(*[1.0] * scene.count)
     found = scene.step((2e-3, 0.0))
     scene.press(*[1e-9 if sunk < 1e-9 else 1e3] * len(found))
     found = scene.step((2e-3, 0.0), [*floors, SQUARE - (1 - ahead - 2e-3, sunk)])
@@ -156,6 +171,15 @@ def test_a_wall_without_gaps_touches_once_at_every_corner():
     assert scene.step((0.0, -1e-5)) == found
     assert np.all(scene.detection.contacts.same[: scene.count] == 1)
     assert scene.detection.contacts.origin[: scene.count].tolist() == list(range(scene.count))
+
+
+def test_a_force_has_one_heir():
+    scene = Scene([LEDGE, at(SQUARE / 4, 1.03, 1.0)])
+    assert scene.step((0, -1e-3)) == [(1, 0, 0, 2), (1, 1, 0, 2)]
+    scene.press(1.0, 1.0)
+    found = scene.step((0, -1e-3), [LEDGE, at(SQUARE / 4, 1.001, 1.0)])
+    origins = dict(zip(found, scene.detection.contacts.origin[: scene.count].tolist(), strict=True))
+    assert origins == {(1, 0, 0, 2): 0, (1, 1, 0, 2): 1, (1, 0, 0, 3): -1, (1, 3, 0, 3): -1}
 
 
 def test_what_a_contact_knew_goes_on_at_its_place_under_another_name():

@@ -16,8 +16,18 @@ def laws_of(contacts, m, compliance, cohesion=math.inf, **changes):
     lower = np.where(across, 0.0, -cohesion)
     upper = np.where(across, math.inf, cohesion)
     slips = math.isfinite(cohesion)
-    numbers = (np.broadcast_to(compliance, m), lower, upper, across.astype(int), 0.0, slips, False, False, False)
-    return Laws(contacts, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
+    numbers = (
+        np.broadcast_to(compliance, m),
+        lower,
+        upper,
+        across.astype(int),
+        np.zeros(contacts),
+        slips,
+        False,
+        False,
+        False,
+    )
+    return Laws(contacts, m, *numbers, closing=0.0, retardation=0.0, together=6, most=0)._replace(**changes)
 
 
 def solved(laws, W, q, before=None, paired=None, pair=None):
@@ -59,14 +69,6 @@ def test_frictionless_contact_always_finds_the_one_solution(n, together):
         more += solves > together
     assert more > 15 or together == 6
     assert n > 2 or together == 1 or more == 0
-
-
-@pytest.mark.parametrize(("gap", "force"), [(1.2, -0.8), (1.8, 0.0)])
-def test_a_dead_band_holds_up_to_its_tension(gap, force):
-    outcome, _, after = solved(laws_of(1, 1, 0.5, lower=np.array([-1.0])), [[1.0]], [gap])
-    assert (
-        outcome == FOUND and after.force[0] == pytest.approx(force) and after.state[0] == (INSIDE if force else LOWER)
-    )
 
 
 CYCLES = [
@@ -123,7 +125,11 @@ def three(**changes):
     pressed = np.array([1e5] * 3 + [0.0] * 3)
     before = Rows(np.full(6, INSIDE), -pressed / 1e9, pressed, np.zeros(6))
     compliance = np.repeat([1e-9, 2.5e-9], 3)
-    return laws_of(3, 6, compliance, 0.0, friction=0.5)._replace(**changes), before, 1e-9 * (np.eye(6) + 0.1)
+    return (
+        laws_of(3, 6, compliance, 0.0, friction=np.full(3, 0.5))._replace(**changes),
+        before,
+        1e-9 * (np.eye(6) + 0.1),
+    )
 
 
 GAPS = [-1e-4, -2e-4, 5e-4]

@@ -41,7 +41,7 @@ from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
-from fem_reference.plane import model as plane_model
+from fem_reference.plane import elements as plane_elements
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
@@ -125,7 +125,7 @@ SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 GLUED_EDGES = Seam(glued, glued.shared_edges)
 GLUED_LOAD = Seam(glued, glued._traction_of)
 PLANE_MATERIAL = Seam(dda, dda.Material)
-FEM_PLANE_STIFFNESS = Seam(plane_model.PlaneModel, plane_model.PlaneModel.elastic)
+FEM_PLANE_STIFFNESS = Seam(plane_elements.BodyElements, plane_elements.BodyElements.elastic)
 
 # Blocks that turn
 ROLLING_WEIGHT = Seam(rolling.RollingModel, rolling.RollingModel.weight)

@@ -125,7 +125,7 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES, features.PLANE}
+        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES, features.PLANE, features.MOVING_BLOCKS}
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.COURSES
@@ -143,10 +143,7 @@ class DDA(Solver):
         (features.ADAPTIVE, features.COURSES | {features.SUB_BLOCKS}),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (
-        *("block", "contact", "load", "damping", "column", "input", "rigid", "plane"),
-        *("time", "run"),
-    )
+    sections: tuple[str, ...] = ("damping", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role = Role.JUDGED
     rank = 0.0

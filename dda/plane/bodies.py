@@ -1,0 +1,304 @@
+r"""Blocks in the plane that turn by any angle: their modes, and where a step brings their points.
+
+With the centroid c, the angle r and the strain E = (ex, gxy/2; gxy/2, ey) in axes that turn with the block, the point
+xi of the unstrained outline (from its centroid) lies at x = c + Q U xi, Q = Q(r) the turn and U = I + E. With the
+second moments S of the outline, times the density, and W a quarter turn, the kinetic energy is
+
+    T = m |c'|^2 / 2 + J r'^2 / 2 + r' (gamma e') + e' M e' / 2,
+    J = tr(U S U),    gamma_i = tr(W U S E_i),    M_ij = tr(S E_i E_j),
+
+E_i the unit strains. So the angular momentum H = J r' + gamma e' changes by the moments of forces alone, and the
+strains obey, with j_i = tr(S E_i) and G_ki = tr(W E_k S E_i),
+
+    M e'' + K e + r'' gamma + 2 r' G' e' - r'^2 (j + M e) = forces.
+
+The last term is the centrifugal one. What carries a block is therefore not r' but H: its modes are those of the block
+at rest and unstrained (inertia one, k = 0 of the rigid motions), the third one of the velocity H / sqrt(J0), and what
+the strained block adds to the equations of the strain modes is a force, `inertia_forces`. A step moves
+
+    r by  (sqrt(J0) dz - gamma de) / J  in the strain of its middle,
+
+so that momentum and angular momentum are kept to rounding, and a block that spins has its exact mean strain.
+
+A point moves by exactly B D of the increments D = (c, r, ex, ey, gxy) of a step, with the chord B of the step,
+
+    B = ( I,  (Q1 - Q0)/dr U' xi,  (Q1 + Q0)/2 E_k xi ),     U' the mean of the ends.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from dda.bodies.gap_form import free_block
+from dda.contact.dense import Matrix, Vector
+from dda.model.arrays import Array
+from dda.model.block import Block
+
+STRAINS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]])  # E of unit strains
+QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
+RIGID = 3  # modes of a rigid block; a fixed one has none, a strained one three more
+
+
+class Blocks(NamedTuple):
+    """Constant numbers of all blocks."""
+
+    first: Any  # (b + 1,) first mode of each: the centroid's two, that of H, those of the strains
+    root_mass: Vector  # (b,) sqrt(m); of a fixed block one
+    root_inertia: Vector  # (b,) sqrt(J0)
+    j: Matrix  # (b, 3)
+    M: Any  # (b, 3, 3) inertia of the strains
+    gamma: Matrix  # (b, 3) gamma of the unstrained block
+    G: Any  # (b, 3, 3)
+    shapes: Any  # (b, 3, 3) strains by strain modes
+    centroid: Matrix  # (b, 2) at t = 0 [m]
+    motion: Any  # (b,) column of what is prescribed that has its displacement in x, -1 of one that is not driven
+    start: Any  # (b + 1,) first corner of each
+    xi: Matrix  # (corners, 2) from the centroid, unstrained [m]
+
+
+class Poses(NamedTuple):
+    """Of every block, what makes the directions in which its points move: of the chord of a step, or of its end."""
+
+    cos: Vector  # (b,) of the angle in the middle of the step, or at its end
+    sin: Vector
+    spin: Vector  # (b,) |dQ/dr|: sin(dr/2) / (dr/2) of the chord, one of the end
+    stretch: Vector  # (b,) cos(dr/2) of the chord, one of the end
+    e: Matrix  # (b, 3) strains
+    J: Vector  # (b,)
+    gamma: Matrix  # (b, 3)
+
+
+def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motion: list[int]) -> tuple[Blocks, Array]:
+    """Return the numbers of blocks, and the squares of the frequencies of all modes."""
+    b = len(outlines)
+    first = np.zeros(b + 1, dtype=np.int64)
+    start = np.zeros(b + 1, dtype=np.int64)
+    root_mass, root_inertia = np.ones((2, b))
+    j, gamma = np.zeros((2, b, 3))
+    M, G, shapes = np.zeros((3, b, 3, 3))
+    k: list[Array] = []
+    for i, block in enumerate(outlines):
+        start[i + 1] = start[i] + len(block.corners)
+        modes = 0 if fixed[i] else RIGID if rigid[i] else 2 * RIGID
+        first[i + 1] = first[i] + modes
+        if modes == 0:
+            continue
+        inertia = block.mass()
+        root_mass[i] = np.sqrt(inertia[0, 0])
+        root_inertia[i] = np.sqrt(inertia[2, 2])
+        k.append(np.zeros(RIGID))
+        if modes == RIGID:
+            continue
+        natural, unknowns = free_block(inertia, block)  # strains come first there
+        shapes[i] = unknowns[3:, :3]
+        k.append(natural[:3])
+        section = block.section
+        S = block.material.density * np.array([[section.s1, section.s3], [section.s3, section.s2]])
+        M[i] = inertia[3:, 3:]
+        gamma[i] = inertia[2, 3:]
+        j[i] = np.einsum("ab,iba->i", S, STRAINS)
+        G[i] = np.einsum("ab,kbc,cd,ida->ki", QUARTER_TURN, STRAINS, S, STRAINS)
+    return Blocks(
+        first=first,
+        root_mass=root_mass,
+        root_inertia=root_inertia,
+        j=j,
+        M=M,
+        gamma=gamma,
+        G=G,
+        shapes=shapes,
+        centroid=np.array([block.section.centroid for block in outlines]),
+        motion=np.array(motion, dtype=np.int64),
+        start=start,
+        xi=np.vstack([block.corners - block.section.centroid for block in outlines]),
+    ), np.concatenate([*k, np.zeros(0)])
+
+
+def poses_of(blocks: int) -> Poses:
+    """Return room for the poses of blocks."""
+    cos, sin, spin, stretch, J = np.ones((5, blocks))
+    return Poses(cos, sin, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
+
+
+# ---- inertia of a strained block -------------------------------------------------------------------------------------
+
+
+def inertia_of(blocks: Blocks, i: int, e: Vector, poses: Poses) -> None:
+    """Write J and gamma of a block with strains e."""
+    root = blocks.root_inertia[i]
+    J = root * root
+    for k in range(3):
+        of_strain = 0.0
+        turning = blocks.gamma[i][k]
+        for m in range(3):
+            of_strain += blocks.M[i][k][m] * e[m]
+            turning += e[m] * blocks.G[i][m][k]
+        J += (2 * blocks.j[i][k] + of_strain) * e[k]
+        poses.gamma[i][k] = turning
+    poses.J[i] = J
+
+
+def inertia_forces(
+    blocks: Blocks, i: int, p: Vector, a: Vector, step: float, poses: Poses, spin: Vector, out: Vector
+) -> None:
+    """Write what a strained block adds to the equations of its strain modes, and (r', e') into `spin`.
+
+    Parameters
+    ----------
+    p, a
+        dt v and dt^2 a of all modes.
+    poses
+        Strains, J and gamma of the instant.
+    """
+    first = blocks.first[i]
+    root = blocks.root_inertia[i]
+    J = poses.J[i]
+    turning = 0.0  # gamma e'' less what the modes have of it
+    carried = 0.0
+    moving = 0.0
+    for k in range(3):
+        rate = 0.0
+        faster = 0.0
+        for m in range(3):
+            shape = blocks.shapes[i][k][m]
+            rate += shape * p[first + 3 + m]
+            faster += shape * a[first + 3 + m]
+        spin[1 + k] = rate / step
+        faster /= step * step
+        turning += poses.gamma[i][k] * faster
+        carried += blocks.gamma[i][k] * faster
+        moving += poses.gamma[i][k] * spin[1 + k]
+    omega = (root * p[first + 2] / step - moving) / J
+    spin[0] = omega
+    growth = 0.0
+    for k in range(3):
+        growth += 2 * pull_of(blocks, i, k, poses.e[i]) * spin[1 + k]
+    for m in range(3):
+        out[first + 3 + m] = 0.0
+    for k in range(3):
+        force = poses.gamma[i][k] * (turning + growth * omega) / J - blocks.gamma[i][k] * carried / (root * root)
+        force += omega * omega * pull_of(blocks, i, k, poses.e[i])
+        for m in range(3):
+            force -= 2 * omega * blocks.G[i][m][k] * spin[1 + m]
+        for m in range(3):
+            out[first + 3 + m] += blocks.shapes[i][k][m] * force
+
+
+def pull_of(blocks: Blocks, i: int, k: int, e: Vector) -> float:
+    """Return j + M e, the centrifugal force on a strain over r'^2."""
+    total = blocks.j[i][k]
+    for m in range(3):
+        total += blocks.M[i][k][m] * e[m]
+    return float(total)
+
+
+# ---- where a step goes -----------------------------------------------------------------------------------------------
+
+
+def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix) -> None:
+    """Write the increments D of all blocks that move, for increments of the modes, and J and gamma of the middle."""
+    for i in range(len(blocks.root_mass)):
+        first = blocks.first[i]
+        modes = blocks.first[i + 1] - first
+        if modes == 0:
+            continue
+        D = out[i]
+        root = blocks.root_inertia[i]
+        for axis in range(2):
+            D[axis] = x[first + axis] / blocks.root_mass[i]
+        D[2] = x[first + 2] / root
+        if modes == RIGID:
+            continue
+        for k in range(3):
+            D[3 + k] = 0.0
+            for m in range(3):
+                D[3 + k] += blocks.shapes[i][k][m] * x[first + 3 + m]
+            chords.e[i][k] = q[i][3 + k] + D[3 + k] / 2
+        inertia_of(blocks, i, chords.e[i], chords)
+        turning = 0.0
+        for k in range(3):
+            turning += chords.gamma[i][k] * D[3 + k]
+        D[2] = (root * x[first + 2] - turning) / chords.J[i]
+
+
+def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) -> None:
+    """Write the poses of the chords and of the ends of a step by D; J and gamma of the chords are there."""
+    for i in range(len(blocks.root_mass)):
+        half = D[i][2] / 2
+        if not math.isfinite(half):
+            half = math.nan
+        middle = q[i][2] + half
+        end = q[i][2] + D[i][2] if math.isfinite(half) else half
+        chords.cos[i] = math.cos(middle)
+        chords.sin[i] = math.sin(middle)
+        chords.spin[i] = math.sin(half) / half if half != 0 else 1.0
+        chords.stretch[i] = math.cos(half)
+        ends.cos[i] = math.cos(end)
+        ends.sin[i] = math.sin(end)
+        ends.spin[i] = 1.0
+        ends.stretch[i] = 1.0
+        if blocks.first[i + 1] - blocks.first[i] > RIGID:
+            for k in range(3):
+                ends.e[i][k] = q[i][3 + k] + D[i][3 + k]
+            inertia_of(blocks, i, ends.e[i], ends)
+
+
+def point(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
+    """Return where a point of a block is from its centroid, for the poses of an end [m]."""
+    e = poses.e[i]
+    X = x + (e[0] * x + e[2] / 2 * y)
+    Y = y + (e[2] / 2 * x + e[1] * y)
+    c = poses.cos[i]
+    s = poses.sin[i]
+    return c * X - s * Y, s * X + c * Y
+
+
+def moved(poses: Poses, i: int, D: Vector, x: float, y: float) -> tuple[float, float]:
+    """Return how far a step by D moves a point, for the poses of its chord [m]."""
+    e = poses.e[i]
+    c = poses.cos[i]
+    s = poses.sin[i]
+    turn = poses.spin[i] * D[2]
+    X = -turn * (y + (e[2] / 2 * x + e[1] * y)) + poses.stretch[i] * (D[3] * x + D[5] / 2 * y)
+    Y = turn * (x + (e[0] * x + e[2] / 2 * y)) + poses.stretch[i] * (D[5] / 2 * x + D[4] * y)
+    return D[0] + (c * X - s * Y), D[1] + (s * X + c * Y)
+
+
+def direction(poses: Poses, i: int, ax: float, ay: float, x: float, y: float, out: Vector) -> None:
+    """Write a . dx/dD of a point, for a direction a in space."""
+    c = poses.cos[i]
+    s = poses.sin[i]
+    e = poses.e[i]
+    across = ax * c + ay * s
+    along = ay * c - ax * s
+    out[0] = ax
+    out[1] = ay
+    out[2] = poses.spin[i] * (along * (x + (e[0] * x + e[2] / 2 * y)) - across * (y + (e[2] / 2 * x + e[1] * y)))
+    stretch = poses.stretch[i]
+    out[3] = stretch * across * x
+    out[4] = stretch * along * y
+    out[5] = stretch * (across * y + along * x) / 2
+
+
+def by_modes(blocks: Blocks, i: int, poses: Poses, row: Vector, force: bool, out: Vector) -> None:
+    """Write a row over D as one over the modes of a block: of what its modes move, or as that of a force."""
+    first = blocks.first[i]
+    modes = blocks.first[i + 1] - first
+    if modes == 0:
+        return
+    root = blocks.root_inertia[i]
+    out[0] = row[0] / blocks.root_mass[i]
+    out[1] = row[1] / blocks.root_mass[i]
+    if modes == RIGID:
+        out[2] = row[2] / root
+        return
+    J = poses.J[i]
+    out[2] = row[2] / root if force else row[2] * root / J
+    for m in range(3):
+        total = 0.0
+        for k in range(3):
+            total += blocks.shapes[i][k][m] * (row[3 + k] - row[2] * poses.gamma[i][k] / J)
+        out[3 + m] = total

@@ -1,0 +1,181 @@
+r"""Where contacts are: a corner of one block on an edge of another, or two points of edges that are glued.
+
+The gap of a contact is y = n . (x_i - x_j), x_i the corner, x_j any point of the edge, n the outward normal of the edge
+as the block turned and strained it; its way along the edge is t . (x_i - x_j), t = (n_y, -n_x), of the point of the
+edge that lies under the corner when a step begins. Both change in a step by exactly B D (`dda.plane.bodies`): with the
+angle psi of the edge and means of start and end marked by a bar,
+
+    (n . d)1 - (n . d)0 = n' . (d1 - d0) + (n1 - n0) . d',       n1 - n0 = sin(dpsi/2)/(dpsi/2) W n(psi/2) dpsi.
+
+So openings are carried as increments, and no force is the small difference of two places.
+
+Forces act in the directions (2 delta - 1) B + (2 - 2 delta) B_1, B_1 the derivative at the end of the step, as in
+`dda.bodies.turning_step`: average acceleration stays of second order, and at delta = 1 contact does not gain energy.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from dda.contact.dense import Matrix, Vector
+from dda.contact.rows import Rows
+from dda.plane.bodies import Blocks, Poses, by_modes, direction, moved, point
+
+AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
+
+
+class Places(NamedTuple):
+    """Which points are in contact, and where they are when a stage begins."""
+
+    count: Any  # (2,) how many there are, and how many of these are stated
+    law: Any  # (c,) number of its springs
+    block: Any  # (c,) that of the corner
+    on: Any  # (c,) that of the edge
+    bonded: Any  # (c,) 1 of two points that are glued
+    at: Matrix  # (c, 2) the corner, from the centroid of its block, unstrained [m]
+    edge: Matrix  # (c, 4) both ends of the edge, from the centroid of its block [m]
+    foot: Matrix  # (c, 2) point of the edge under the corner [m]
+    normal: Matrix  # (c, 2) of the edge
+    over: Any  # (c,) whether the corner is over the edge
+    B: Any  # (2c, 2, 6) what the modes of either block add to a row
+    F: Any  # (2c, 2, 6) what a unit force of a row does to them
+    driven: Vector  # (2c,) what driven blocks add to a row [m]
+    row: Matrix  # (4, 6) room for a row over D: of either block, of the chord and of the force
+
+
+def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
+    """Write feet and normals of contacts for where the blocks are."""
+    for k in range(places.count[0]):
+        i = places.block[k]
+        j = places.on[k]
+        edge = places.edge[k]
+        tx, ty = point(ends, j, edge[2] - edge[0], edge[3] - edge[1])
+        length = math.hypot(tx, ty)
+        places.normal[k][0] = ty / length
+        places.normal[k][1] = -tx / length
+        if places.bonded[k] == 1:
+            continue
+        px, py = point(ends, i, places.at[k][0], places.at[k][1])
+        sx, sy = point(ends, j, edge[0], edge[1])
+        dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
+        dy = blocks.centroid[i][1] - blocks.centroid[j][1] + (q[i][1] - q[j][1]) + (py - sy)
+        share = (dx * tx + dy * ty) / (length * length)
+        places.foot[k][0] = edge[0] + share * (edge[2] - edge[0])
+        places.foot[k][1] = edge[1] + share * (edge[3] - edge[1])
+        places.over[k] = 1 if -AT_END <= share <= 1 + AT_END else 0
+
+
+def gap_of(blocks: Blocks, q: Matrix, ends: Poses, places: Places, k: int) -> float:
+    """Return the gap of a contact by the places of its blocks [m]."""
+    i = places.block[k]
+    j = places.on[k]
+    px, py = point(ends, i, places.at[k][0], places.at[k][1])
+    sx, sy = point(ends, j, places.foot[k][0], places.foot[k][1])
+    dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
+    dy = blocks.centroid[i][1] - blocks.centroid[j][1] + (q[i][1] - q[j][1]) + (py - sy)
+    return float(places.normal[k][0] * dx + places.normal[k][1] * dy)
+
+
+def write_rows(
+    blocks: Blocks, D: Matrix, chords: Poses, ends: Poses, before: Rows, late: float, places: Places
+) -> None:
+    """Write what the modes add to the rows of all contacts in a step by D, and what forces do to these.
+
+    Parameters
+    ----------
+    late
+        Weight of the directions at the end of a step in those of the forces.
+    """
+    n = places.count[0]
+    chord_i = places.row[0]
+    chord_j = places.row[1]
+    force_i = places.row[2]
+    force_j = places.row[3]
+    for k in range(n):
+        i = places.block[k]
+        j = places.on[k]
+        at = places.at[k]
+        foot = places.foot[k]
+        edge = places.edge[k]
+        strained = blocks.first[j + 1] - blocks.first[j] > 3
+        fixed_i = blocks.first[i + 1] == blocks.first[i]
+        fixed_j = blocks.first[j + 1] == blocks.first[j]
+        # the edge as it is strained, in the axes of its block, in the middle of the step and at its end
+        tx = edge[2] - edge[0]
+        ty = edge[3] - edge[1]
+        e = chords.e[j]
+        mx = tx + (e[0] * tx + e[2] / 2 * ty)
+        my = ty + (e[2] / 2 * tx + e[1] * ty)
+        psi = D[j][2]
+        across = 0.0
+        if strained:
+            d = D[j]
+            cx = d[3] * tx + d[5] / 2 * ty
+            cy = d[5] / 2 * tx + d[4] * ty
+            across = mx * mx + my * my  # |t0| |t1| but for the square of a strain's increment
+            psi += (mx * cy - my * cx) / across
+        half = psi / 2
+        cos = math.cos(half)
+        sin = math.sin(half)
+        spin = sin / half if half != 0 else 1.0
+        nx = cos * places.normal[k][0] - sin * places.normal[k][1]
+        ny = sin * places.normal[k][0] + cos * places.normal[k][1]
+        end_x = cos * nx - sin * ny
+        end_y = sin * nx + cos * ny
+        # the corner from its foot
+        gap = before.opening[k]
+        way = before.opening[n + k] if places.bonded[k] == 1 else 0.0
+        dx = gap * places.normal[k][0] + way * places.normal[k][1]
+        dy = gap * places.normal[k][1] - way * places.normal[k][0]
+        ux, uy = moved(chords, i, D[i], at[0], at[1])
+        vx, vy = moved(chords, j, D[j], foot[0], foot[1])
+        mean_x = dx + (ux - vx) / 2
+        mean_y = dy + (uy - vy) / 2
+        dx += ux - vx
+        dy += uy - vy
+        for axis in range(2):
+            r = k if axis == 0 else n + k
+            ax = cos * nx if axis == 0 else cos * ny
+            ay = cos * ny if axis == 0 else -cos * nx
+            turned = spin * (nx * mean_y - ny * mean_x) if axis == 0 else spin * (nx * mean_x + ny * mean_y)
+            if not fixed_i or blocks.motion[i] >= 0:
+                direction(chords, i, ax, ay, at[0], at[1], chord_i)
+            if not fixed_j or blocks.motion[j] >= 0:
+                direction(chords, j, -ax, -ay, foot[0], foot[1], chord_j)
+                turn_with(chord_j, turned, strained, mx, my, tx, ty, across)
+            places.driven[r] = 0.0
+            if blocks.motion[i] >= 0:
+                places.driven[r] += chord_i[0] * D[i][0] + chord_i[1] * D[i][1]
+            if blocks.motion[j] >= 0:
+                places.driven[r] += chord_j[0] * D[j][0] + chord_j[1] * D[j][1]
+            if late != 0:
+                bx = end_x if axis == 0 else end_y
+                by = end_y if axis == 0 else -end_x
+                if not fixed_i:
+                    direction(ends, i, bx, by, at[0], at[1], force_i)
+                if not fixed_j:
+                    e = ends.e[j]
+                    ex = tx + (e[0] * tx + e[2] / 2 * ty)
+                    ey = ty + (e[2] / 2 * tx + e[1] * ty)
+                    turned = end_x * dy - end_y * dx if axis == 0 else end_x * dx + end_y * dy
+                    direction(ends, j, -bx, -by, foot[0], foot[1], force_j)
+                    turn_with(force_j, turned, strained, ex, ey, tx, ty, ex * ex + ey * ey)
+            for m in range(6):
+                force_i[m] = (1 - late) * chord_i[m] + (late * force_i[m] if late != 0 else 0.0)
+                force_j[m] = (1 - late) * chord_j[m] + (late * force_j[m] if late != 0 else 0.0)
+            by_modes(blocks, i, chords, chord_i, False, places.B[r][0])
+            by_modes(blocks, j, chords, chord_j, False, places.B[r][1])
+            by_modes(blocks, i, chords, force_i, True, places.F[r][0])
+            by_modes(blocks, j, chords, force_j, True, places.F[r][1])
+
+
+def turn_with(
+    row: Vector, turned: float, strained: bool, mx: float, my: float, tx: float, ty: float, across: float
+) -> None:
+    """Add what the turn of the edge, by rotation and by strain, adds to a row."""
+    row[2] += turned
+    if strained:
+        row[3] -= turned * my * tx / across
+        row[4] += turned * mx * ty / across
+        row[5] += turned * (mx * tx - my * ty) / (2 * across)

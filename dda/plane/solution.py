@@ -1,0 +1,583 @@
+"""Histories of blocks in the plane: a model is put into numbers, the steps are made, what comes out is named."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from copy import deepcopy
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dda.contact.rows import FOUND, INSIDE, LOWER, OUTCOMES, Laws, rows_of
+from dda.march.compiled import ANEW, run_loop
+from dda.march.energy import SUMS, energies_of
+from dda.march.step import Body, Course, History, March, march_of
+from dda.model.arrays import Array
+from dda.model.checks import check_count
+from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
+from dda.plane.detect import detection_of
+from dda.plane.many import many_of
+from dda.plane.model import ContactSprings, PlaneModel
+from dda.plane.places import Places, gap_of, place_contacts, write_rows
+from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_contacts, push_loads
+from dda.plane.taken import Memory, Springs, write_laws
+from dda.scheme.newmark import Scheme, late_momentum
+
+TOGETHER = 6  # solves with all states updated at once
+ROOM = 8  # contacts found of a block for which there is room
+DENSE = 24  # contacts up to which the equations are those of their forces
+TOUCH = 1e-12  # of a block's size, by which a corner that lies on an edge at t = 0 may be beside it
+STICKS, SLIPS = 1, 2
+
+
+class PlaneContact(NamedTuple):
+    """A corner of a block and the edge of another that it may touch, by numbers."""
+
+    block: int
+    corner: int
+    on: int
+    edge: int
+
+
+@dataclass(frozen=True, eq=False)
+class PlaneResult:
+    """Histories of the steps that were kept and reached; row 0 is t = 0. Forces act on the block of the corner."""
+
+    time: Array  # (k,) [s]
+    centroid: Array  # (k, b, 2) [m]
+    displacement: Array  # (k, b, 2) of the centroid since t = 0, to all digits [m]
+    angle: Array  # (k, b) rotation since t = 0, counter-clockwise [rad]
+    strain: Array  # (k, b, 3) ex, ey, gxy in axes that turn with the block
+    velocity: Array  # (k, b, 6) rates of all these
+    contacts: tuple[PlaneContact, ...]
+    normal: Array  # (k, c) N [N], positive in compression
+    shear: Array  # (k, c) T along (n_y, -n_x), n the edge's outward normal [N]
+    gap: Array  # (k, c) [m]
+    slip: Array  # (k, c) way by which a contact slipped since t = 0 [m]
+    state: NDArray[np.int8]  # (k, c) 0 open, 1 sticks, 2 and -2 slips along and against T's direction
+    bond: Array  # (k, bonds, 2, 2) forces of glue: of either end of a bond N and T [N]
+    energy: Mapping[str, Array]  # [J], (k,) each: those of `dda.march.energy`, and the balance that their sum leaves
+    momentum: Array  # (k, 3) linear in x and y [N s], angular about the origin [N m s]
+    outcome: str  # "completed", or why the history ends early, in words
+    reached: int  # steps
+    solves: NDArray[np.int64]  # (k,) solves of the open-close iteration since the row before
+    cuts: NDArray[np.int64]  # (k,) cuts since the row before
+    note: str  # how the steps were made
+
+
+def solve_plane(
+    model: PlaneModel,
+    scheme: Scheme,
+    steps: int,
+    *,
+    every: int = 1,
+    compiled: bool | None = None,
+    cut: float = 0.3,
+) -> PlaneResult:
+    """Step blocks in the plane.
+
+    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached. A
+    step whose contacts have no single state is repeated, shorter.
+
+    Parameters
+    ----------
+    every
+        How many steps lie between two that are kept.
+    compiled
+        Whether the steps are compiled; None: where the history is long enough for it.
+    cut
+        Length of a cut step over that of the failed one.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of its range, or scheme and model exclude each other.
+    """
+    check_count(steps=steps, every=every)
+    if not 0 < cut < 1:
+        raise ValueError(f"cut: must be between 0 and 1, got {cut!r}")
+    check_scheme(model, scheme)
+    with np.errstate(all="ignore"):  # overflow is an outcome
+        march = plane_march(model, scheme, every)
+        course = course_of(model)
+        start = start_of(model, scheme, march, course)
+    kept = steps // every
+    c = len(march.method.places.block)
+    b = len(model.blocks)
+    history = History(
+        motion=np.zeros((kept + 1, STATE * b + 1 + 2 * c)),
+        force=np.zeros((kept + 1, 2 * c)),
+        opening=np.zeros((kept + 1, 2 * c)),
+        path=np.zeros((kept + 1, c)),
+        slip=np.zeros((steps + 1, 0)),
+        state=np.zeros((kept + 1, 2 * c), dtype=np.int8),
+        solves=np.zeros(steps + 1, dtype=np.int64),
+        cuts=np.zeros(steps + 1, dtype=np.int64),
+        sums=np.zeros((steps + 1, SUMS)),
+    )
+    weight = steps * (b + c * c) if compiled is None else compiled * ANEW
+    arguments = (march, start, deepcopy(start), course), (history, steps, cut)
+    (reached, outcome), _, how = run_loop(make_steps, (), *arguments, weight)
+    return result_of(model, scheme, march, history, every, reached, outcome, how)
+
+
+def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
+    """Raise ValueError where model and scheme exclude each other."""
+    if scheme.damped:
+        damping = f"{scheme.mass_damping:g}, {scheme.stiffness_damping:g}"
+        raise ValueError(f"mass_damping, stiffness_damping: must be 0 of blocks in the plane, got {damping}")
+    stiffness = [contact.springs.stiffness for contact in model.contacts]
+    stiffest = max(stiffness + [bond.stiffness for bond in model.bonds], default=0.0)
+    if scheme.explicit and math.isinf(stiffest):
+        raise ValueError("stiffness: must be finite in an explicit scheme (alpha = 0), got inf")
+
+
+# ---- a model in numbers ----------------------------------------------------------------------------------------------
+
+
+def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
+    """Return the march of a model."""
+    parts = model.blocks
+    ramps = ramps_of(model)
+    driven = [i for i, part in enumerate(parts) if part.motion is not None]
+    columns = [2 + len(ramps) + 2 * driven.index(i) if i in driven else -1 for i in range(len(parts))]
+    blocks, k = blocks_of([p.block for p in parts], [p.rigid for p in parts], [p.held for p in parts], columns)
+    loads, point_loads = loads_of(model, blocks.first, blocks.root_mass, ramps)
+    b = len(parts)
+    most = 0 if model.found is None else ROOM * b + ROOM
+    places = places_of(model, most)
+    springs, pairs = springs_of(model)
+    c = len(places.block)
+    m = 2 * c
+    dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
+    detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
+    edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
+    real = detection.sides.real == 1
+    edge_end[detection.sides.corner[real]] = detection.sides.end[real]
+    memories = [Memory(rows_of(np.zeros(m), np.zeros(m)), np.zeros(m), np.zeros(c)) for _ in range(2)]
+    body = Body(
+        k=k,
+        loads=loads,
+        stored=np.ones(len(loads)),
+        first=np.zeros(2 * dense, dtype=np.int64),
+        weight=np.zeros((2 * dense, 0)),
+        ground=np.zeros((2 * dense, 2)),
+        mobility=np.ones(len(k)),
+    )
+    moving = [part.block.section.area for part in parts if not part.held]
+    plane = Plane(
+        blocks=blocks,
+        places=places,
+        loads=point_loads,
+        late=2 - 2 * (scheme.delta if scheme.table is None else 0.5),
+        size=math.sqrt(min(moving)),
+        every=every,
+        chords=poses_of(b),
+        ends=poses_of(b),
+        D=np.zeros((b, 6)),
+        new=np.zeros((b, 6)),
+        loaded=np.zeros(len(k)),
+        last=np.zeros(len(k)),
+        x=np.zeros(len(k)),
+        row=np.zeros((3, 6)),
+        spin=np.zeros(4),
+        ground=np.zeros((m, 2)),
+        springs=springs,
+        first=memories[0],
+        second=memories[1],
+        dropped=np.zeros(1),
+        dense=dense,
+        many=many_of(blocks, c),
+        finds=int(model.found is not None),
+        detection=detection,
+        edge_end=edge_end,
+    )
+    march = march_of(body, laws_of(springs, dense, dense), scheme, np.zeros(2 * dense), plane)
+    laws = laws_of(springs, places.count[1], c)
+    write_laws(springs, places, laws)
+    columns_of_course = 2 + len(ramps) + 2 * len(driven)
+    room = march.room._replace(start=np.zeros(columns_of_course), end=np.zeros(columns_of_course), free=np.zeros(m))
+    work = march.work._replace(
+        **{name: np.zeros(m) for name in ("q", "late", "z", "scale", "first", "mean")},
+        **{name: np.zeros(m, dtype=np.int64) for name in ("tried", "saved", "unknown", "place")},
+        **{name: np.zeros(c) for name in ("beta", "rate", "held")},
+        closing=np.zeros(c, dtype=np.int64),
+    )
+    return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
+
+
+def state_of(modes: int, blocks: int, opening: Array) -> PlaneState:
+    """Return a state at rest."""
+    m = len(opening)
+    z, p, a, R = np.zeros((4, modes))
+    rows = rows_of(opening, np.where(opening > 0, LOWER, INSIDE))
+    return PlaneState(z, p, a, R, np.zeros(m), rows, np.zeros((blocks, 6)), np.zeros(m // 2), np.zeros(m))
+
+
+def ramps_of(model: PlaneModel) -> list[float]:
+    """Return the times in which loads rise, each once; weight does at once."""
+    return sorted({0.0, *(load.ramp for load in model.loads)})
+
+
+def loads_of(model: PlaneModel, first: Array, root_mass: Array, ramps: list[float]) -> tuple[Array, PointLoads]:
+    """Return the loads on centroids by their modes, a row a ramp, and those at other places."""
+    rows = np.zeros((len(ramps), int(first[-1])))
+    at: list[Array] = []
+    forces: list[Array] = []
+    where: list[int] = []
+    shares: list[int] = []
+    for i, part in enumerate(model.blocks):
+        if not part.held:
+            rows[0, first[i] : first[i] + 2] = root_mass[i] * np.array(model.gravity)
+    for load in model.loads:
+        force, place = load.resultant
+        row = ramps.index(load.ramp)
+        if place is None:
+            rows[row, first[load.block] : first[load.block] + 2] += force / root_mass[load.block]
+            continue
+        at.append(place - model.blocks[load.block].block.section.centroid)
+        forces.append(force)
+        where.append(load.block)
+        shares.append(2 + row)
+    points = PointLoads(
+        block=np.array(where, dtype=np.int64),
+        at=np.array(at).reshape(-1, 2),
+        force=np.array(forces).reshape(-1, 2),
+        share=np.array(shares, dtype=np.int64),
+    )
+    return rows, points
+
+
+def course_of(model: PlaneModel) -> Course:
+    """Return what is prescribed: no common base, the shares of the loads, the displacements of driven blocks."""
+    motions = [part.motion for part in model.blocks if part.motion is not None]
+    ramps = ramps_of(model)
+    instants = np.unique(np.concatenate([[0.0], ramps, *(np.asarray(motion.time, float) for motion in motions)]))
+    none = np.zeros((len(instants), 2))
+    shares = [np.clip(instants / ramp, 0.0, 1.0) if ramp else np.ones(len(instants)) for ramp in ramps]
+    value = np.column_stack([none, *shares, *(motion.at(instants) for motion in motions)])
+    return Course(instants, value, np.zeros(1, dtype=np.int64))
+
+
+def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
+    """Return the laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
+    rows = [law_of(contact.springs) for contact in model.contacts]
+    rows += [(1 / bond.stiffness, 1 / bond.shear, 0.0, math.inf, math.inf, 0.0) for bond in model.bonds]
+    blocks = len(model.blocks)
+    numbers = np.full((blocks, blocks), -1)
+    if model.found is not None:
+        known: dict[ContactSprings, int] = {}
+        stated = {(part.block, part.on) for part in model.contacts}
+        stated |= {(bond.first, bond.second) for bond in model.bonds}
+        for i in range(blocks):
+            for j in range(i):
+                springs = model.found(i, j) if callable(model.found) else model.found
+                if springs is None or (i, j) in stated or (j, i) in stated:
+                    continue
+                if springs not in known:
+                    known[springs] = len(rows)
+                    rows.append(law_of(springs))
+                numbers[i, j] = numbers[j, i] = known[springs]
+    across, along, friction, limit, tension, opens = np.array(rows, dtype=float).reshape(-1, 6).T.copy()
+    return Springs(across, along, friction, limit, tension, opens.astype(np.int64)), numbers
+
+
+def law_of(springs: ContactSprings) -> tuple[float, ...]:
+    """Return the numbers of a law, as `Springs` has them."""
+    slips = springs.shear == 0 or springs.friction is not None
+    limit = springs.cohesion if slips else math.inf
+    softness = 1 / springs.shear if springs.shear else 0.0
+    return 1 / springs.stiffness, softness, springs.friction or 0.0, limit, springs.tension, 1.0
+
+
+def laws_of(springs: Springs, contacts: int, capacity: int) -> Laws:
+    """Return room for the laws of the rows of so many contacts, of which some are there."""
+    return Laws(
+        contacts=contacts,
+        rows=2 * contacts,
+        compliance=np.ones(2 * capacity),
+        lower=np.zeros(2 * capacity),
+        upper=np.zeros(2 * capacity),
+        opens=np.zeros(2 * capacity, dtype=np.int64),
+        friction=np.zeros(capacity),
+        slips=bool(np.any(np.isfinite(springs.limit))),
+        lagged=False,
+        paired=False,
+        banded=False,
+        closing=0.0,
+        retardation=0.0,
+        together=TOGETHER,
+        most=0,
+    )
+
+
+def places_of(model: PlaneModel, most: int) -> Places:
+    """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
+    rows: list[tuple[int, int, int, int, Array, Array, Array]] = []
+
+    def outline(block: int) -> Array:
+        shape = model.blocks[block].block
+        return shape.corners - shape.section.centroid
+
+    def ends(block: int, edge: int) -> Array:
+        corners = outline(block)
+        return np.concatenate([corners[edge], corners[(edge + 1) % len(corners)]])
+
+    for contact in model.contacts:
+        at = outline(contact.block)[contact.corner]
+        rows.append((len(rows), contact.block, contact.on, 0, at, ends(contact.on, contact.edge), np.zeros(2)))
+    for number, bond in enumerate(model.bonds):
+        law = len(model.contacts) + number
+        edge = ends(bond.second, model.edge_of(bond.second, bond.start, bond.end))
+        for place in (bond.start, bond.end):
+            at, foot = (np.array(place) - model.blocks[i].block.section.centroid for i in (bond.first, bond.second))
+            rows.append((law, bond.first, bond.second, 1, at, edge, foot))
+    stated = len(rows)
+    rows += [(0, 0, 0, 0, np.zeros(2), np.zeros(4), np.zeros(2))] * most
+    n = len(rows)
+    law_numbers, block, on, bonded = (np.array([row[part] for row in rows], dtype=np.int64) for part in range(4))
+    at, edge, foot = (np.array([row[part] for row in rows], dtype=float) for part in range(4, 7))
+    return Places(
+        count=np.array([stated, stated]),
+        law=law_numbers,
+        block=block,
+        on=on,
+        bonded=bonded,
+        at=at.reshape(-1, 2),
+        edge=edge.reshape(-1, 4),
+        foot=foot.reshape(-1, 2),
+        normal=np.zeros((n, 2)),
+        over=np.ones(n, dtype=np.int64),
+        B=np.zeros((2 * n, 2, 6)),
+        F=np.zeros((2 * n, 2, 6)),
+        driven=np.zeros(2 * n),
+        row=np.zeros((4, 6)),
+    )
+
+
+def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
+    """Return the state at t = 0: unstrained; a corner that lies behind its edge is pressed by its spring.
+
+    Raises
+    ------
+    ValueError
+        If a corner lies behind an edge that is rigid.
+    """
+    plane = march.method
+    blocks = plane.blocks
+    places = plane.places
+    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.block)))
+    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    place_contacts(blocks, state.q, plane.ends, places)
+    for k, contact in enumerate(model.contacts):
+        gap = gap_of(blocks, state.q, plane.ends, places, k)
+        if abs(gap) <= TOUCH * plane.size or not places.over[k]:
+            gap = max(gap, 0.0) if not places.over[k] else 0.0
+        state.rows.opening[k] = gap
+        state.rows.state[k] = LOWER if gap > 0 else INSIDE
+        if gap >= 0:
+            continue
+        if math.isinf(contact.springs.stiffness):
+            where = f"{model.name_of(contact.block)}, corner {contact.corner}"
+            raise ValueError(f"contacts[{k}]: must not begin behind an edge that is rigid, got {gap!r} m of {where}")
+        state.rows.force[k] = -gap * contact.springs.stiffness
+    p = np.zeros(len(march.body.k))
+    for i, part in enumerate(model.blocks):
+        first = blocks.first[i]
+        if part.held:
+            continue
+        p[first : first + 2] = scheme.step * blocks.root_mass[i] * np.array(part.velocity)
+        p[first + 2] = scheme.step * blocks.root_inertia[i] * part.spin
+    state.p[:] = p
+    march.room.end[:] = course.value[0]
+    increments(blocks, state.q, 0 * p, plane.chords, plane.D)
+    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    write_rows(blocks, plane.D, plane.chords, plane.ends, state.rows, plane.late, places)
+    push_loads(march, state._replace(a=0 * p))
+    R = plane.loaded + course.value[0][2 : 2 + len(march.body.loads)] @ march.body.loads
+    push_contacts(plane, state.rows.force, R)
+    state.R[:] = scheme.step**2 * R
+    if scheme.start == "consistent":
+        state.a[:] = state.R
+    state.p[:] = late_momentum(scheme, p, state.a)
+    return state
+
+
+# ---- what comes out --------------------------------------------------------------------------------------------------
+
+
+def result_of(
+    model: PlaneModel, scheme: Scheme, march: March, history: History, every: int, reached: int, outcome: int, how: str
+) -> PlaneResult:
+    """Return the result of so many steps."""
+    kept = reached // every + 1
+    b = len(model.blocks)
+    stated = len(model.contacts)
+    table = contacts_of(model, march, history, kept)
+    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
+    q = motion[:, :, :6]
+    velocity = motion[:, :, 6:]
+    centroid = march.method.blocks.centroid + q[:, :, :2]
+    inertia = Inertia(march, q, velocity)
+    sums = history.sums[: reached + 1 : every]
+    stored = (
+        inertia.kinetic,
+        strain_energy(model, q),
+        (table.normal**2 @ table.across + table.shear**2 @ table.along) / 2,
+        load_energy(model, march, q),
+    )
+    repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
+    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
+    total = np.sum(list(energy.values()), axis=0)
+    early = "" if outcome == FOUND else f" at step {reached + 1}"
+    bonded = np.arange(len(table.contacts)) >= stated
+    bonded[stated + 2 * len(model.bonds) :] = False
+    bonds = np.stack([table.normal[:, bonded], table.shear[:, bonded]], axis=-1).reshape(kept, -1, 2, 2)
+    others = ~bonded
+    starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
+    return PlaneResult(
+        time=scheme.step * every * np.arange(float(kept)),
+        centroid=centroid,
+        displacement=q[:, :, :2],
+        angle=q[:, :, 2],
+        strain=q[:, :, 3:],
+        velocity=velocity,
+        contacts=tuple(contact for contact, other in zip(table.contacts, others, strict=True) if other),
+        normal=table.normal[:, others],
+        shear=table.shear[:, others],
+        gap=table.gap[:, others],
+        slip=table.slip[:, others],
+        state=table.state[:, others],
+        bond=bonds,
+        energy=energy | {"balance": total - total[0]},
+        momentum=inertia.momentum(centroid),
+        outcome=OUTCOMES[outcome] + early,
+        reached=reached,
+        solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
+        cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
+        note=f"stepped, {how}",
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class ContactTable:
+    """Histories of contacts, a column each: those that are stated, both ends of bonds, those that were found closed."""
+
+    contacts: list[PlaneContact]
+    across: Array  # (c,) 1/p [m/N]
+    along: Array  # (c,) 1/p_s
+    normal: Array  # (k, c)
+    shear: Array
+    gap: Array
+    slip: Array
+    state: NDArray[np.int8]
+
+
+def contacts_of(model: PlaneModel, march: March, history: History, kept: int) -> ContactTable:
+    """Return the histories of contacts that are stated, or were closed at an instant that is kept."""
+    plane = march.method
+    springs = plane.springs
+    stated = int(plane.places.count[1])
+    contacts = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
+    contacts += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
+    laws = list(plane.places.law[:stated])
+    columns: dict[tuple[int, int], int] = {}
+    places: list[tuple[int, int, int, int]] = []  # row, number in it, how many there are, column
+    corners = plane.detection.corners
+    identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
+    for row in range(kept):
+        n = int(identity[row, 0]) if plane.finds else stated
+        places += [(row, k, n, k) for k in range(min(stated, n))]
+        for k in range(stated, n):
+            corner, edge = identity[row, 1 + 2 * (k - stated) : 3 + 2 * (k - stated)].tolist()
+            if (corner, edge) not in columns:
+                if history.state[row, k] != INSIDE:
+                    continue
+                i = int(corners.block[corner])
+                j = int(corners.block[edge])
+                columns[corner, edge] = len(contacts)
+                contacts.append(
+                    PlaneContact(i, corner - int(corners.start[corner]), j, edge - int(corners.start[edge]))
+                )
+                laws.append(plane.detection.law[i * len(model.blocks) + j])
+            places.append((row, k, n, columns[corner, edge]))
+    normal, shear, slip = np.zeros((3, kept, len(contacts)))
+    gap = np.full((kept, len(contacts)), np.nan)
+    state = np.zeros((kept, len(contacts)), dtype=np.int8)
+    if places:
+        row, k, n, column = np.array(places).T
+        normal[row, column] = history.force[row, k]
+        shear[row, column] = history.force[row, n + k]
+        gap[row, column] = history.opening[row, k]
+        slip[row, column] = history.path[row, k]
+        way = history.state[row, n + k]
+        state[row, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[row, k] == INSIDE)
+    return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
+
+
+class Inertia:
+    """Kinetic energy and momentum of a history."""
+
+    def __init__(self, march: March, q: Array, velocity: Array) -> None:
+        """Form m, J0, and what strains add."""
+        blocks = march.method.blocks
+        moving = np.diff(blocks.first) > 0
+        self.mass = np.where(moving, blocks.root_mass**2, 0.0)
+        self.velocity = velocity
+        e = q[:, :, 3:]
+        rate = velocity[:, :, 3:]
+        omega = velocity[:, :, 2]
+        strained = np.einsum("bij,kbj->kbi", blocks.M, e)
+        J = np.where(moving, blocks.root_inertia**2, 0.0) + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
+        gamma = blocks.gamma + np.einsum("kbm,bmi->kbi", e, blocks.G)
+        turning = np.einsum("kbi,kbi->kb", gamma, rate)
+        self.spin = J * omega + turning
+        moved = self.mass * np.sum(velocity[:, :, :2] ** 2, axis=2)
+        deformed = np.einsum("kbi,bij,kbj->kb", rate, blocks.M, rate)
+        self.kinetic: Array = np.sum(moved + J * omega**2 + 2 * omega * turning + deformed, axis=1) / 2
+
+    def momentum(self, centroid: Array) -> Array:
+        """Return linear momentum and angular momentum about the origin, (k, 3)."""
+        linear = self.mass[:, None] * self.velocity[:, :, :2]
+        turned = centroid[:, :, 0] * linear[:, :, 1] - centroid[:, :, 1] * linear[:, :, 0]
+        return np.column_stack([linear.sum(axis=1), (turned + self.spin).sum(axis=1)])
+
+
+def strain_energy(model: PlaneModel, q: Array) -> Array:
+    """Return that of all blocks, (k,) [J]."""
+    total = np.zeros(len(q))
+    for i, part in enumerate(model.blocks):
+        if not (part.held or part.rigid):
+            total += np.einsum("ki,ij,kj->k", q[:, i, 3:], part.block.elastic()[3:, 3:], q[:, i, 3:]) / 2
+    return total
+
+
+def load_energy(model: PlaneModel, march: March, q: Array) -> Array:
+    """Return minus the work that the whole loads do by the ways since t = 0, (k,) [J]."""
+    blocks = march.method.blocks
+    total = np.zeros(len(q))
+    for load in march.body.loads:
+        for i in range(len(model.blocks)):
+            if blocks.first[i + 1] > blocks.first[i]:
+                first = blocks.first[i]
+                total -= q[:, i, :2] @ (load[first : first + 2] * blocks.root_mass[i])
+    points = march.method.loads
+    for i, at, force in zip(points.block, points.at, points.force, strict=True):
+        total -= way_of(q[:, i], at) @ force
+    return total
+
+
+def way_of(q: Array, at: Array) -> Array:
+    """Return the displacement of a material point of a block from t = 0, (k, 2) [m]."""
+    x, y = at
+    cos = -2 * np.sin(q[:, 2] / 2) ** 2  # less one
+    sin = np.sin(q[:, 2])
+    ex = x * q[:, 3] + y * q[:, 5] / 2
+    ey = x * q[:, 5] / 2 + y * q[:, 4]
+    moved: Array = q[:, :2] + np.column_stack(
+        [cos * (x + ex) - sin * (y + ey) + ex, sin * (x + ex) + cos * (y + ey) + ey]
+    )
+    return moved

@@ -1,0 +1,545 @@
+r"""One time step of blocks in the plane.
+
+Without contact the modes of every block move as those of any body (`dda.march.step`), whatever its angle. The rest of a
+stage depends on where it ends: the directions of contacts and of loads at a place, the inertia forces of blocks that
+spin and strain. So it is made again with the end that it found until nothing changes (`ROUNDS`), which takes two to
+four rounds; each finds the contacts anew by their rows (`dda.contact.rows`), from the bodies' own flexibility: bodies
+are eliminated before contacts, and neither a stiff spring nor a rigid block costs a digit.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from dda.contact.dense import Matrix, Vector, copy
+from dda.contact.rows import FOUND, INSIDE, NONE, Rows, find
+from dda.march.account import add_bulk_loss, add_contact_losses, add_damping, half_square, over_stages
+from dda.march.energy import ALGORITHMIC, GIVEN, SWITCHING
+from dda.march.step import (
+    AnyState,
+    Course,
+    History,
+    Length,
+    March,
+    Part,
+    StageRoom,
+    begin_step,
+    end_modes,
+    free_modes,
+    kept_discount,
+    prescribe,
+    set_modes,
+    steps_by,
+)
+from dda.model.arrays import Array
+from dda.plane.bodies import (
+    RIGID,
+    Blocks,
+    Poses,
+    by_modes,
+    direction,
+    increments,
+    inertia_forces,
+    moved,
+    set_poses,
+)
+from dda.plane.detect import Detection
+from dda.plane.many import Many, contact_way, find_many
+from dda.plane.places import Places, place_contacts, write_rows
+from dda.plane.taken import (
+    Memory,
+    Springs,
+    dropped_energy,
+    keep_found,
+    laws_for,
+    place_corners,
+    take_found,
+    take_memory,
+    write_laws,
+)
+
+ROUNDS = 40  # of a stage
+SETTLED = 1e-12  # last change of an increment over the size of a block; the next would be this times the step's turn
+SETTLED_FORCE = 1e-9  # last change of the inertia forces over the largest; that of short steps moves no increment
+FAR = 1e300  # m, gap of a corner that is not over its edge
+STATE = 12  # numbers that are kept of a block: D from t = 0, and its velocities
+
+
+class PlaneState(NamedTuple):
+    """Where the blocks are: what `dda.march.step.State` has, and their places."""
+
+    z: Vector
+    p: Vector
+    a: Vector
+    R: Vector
+    path: Vector
+    rows: Rows
+    q: Matrix  # (b, 6) increments from t = 0: of the centroid [m], rotation [rad], strains in axes that turn
+    slid: Vector  # (c,) way by which contacts slipped since t = 0 [m]
+    driven: Vector  # (2c,) what driven blocks added to the rows in the stage [m]
+
+
+class PointLoads(NamedTuple):
+    """Dead forces on material points."""
+
+    block: Any  # (l,)
+    at: Matrix  # (l, 2) from the centroid, unstrained [m]
+    force: Matrix  # (l, 2) [N]
+    share: Any  # (l,) column of what is prescribed that has its share
+
+
+class Plane(NamedTuple):
+    """What blocks in the plane have beside their march, and room for a stage."""
+
+    blocks: Blocks
+    places: Places
+    loads: PointLoads
+    late: float  # weight of the directions at the end of a step, beside those of its chord
+    size: float  # of the smallest block [m]
+    every: int  # how many steps lie between two that are kept
+    chords: Poses
+    ends: Poses
+    D: Matrix  # (b, 6) increments of the present round
+    new: Matrix  # (b, 6)
+    loaded: Vector  # (n,) forces on the modes but for those of contacts
+    last: Vector  # (n,) the same in the round before
+    x: Vector  # (n,) increments of the modes
+    row: Matrix  # (3, 6) room for a row over D
+    spin: Vector  # (4,) r', e'
+    ground: Matrix  # (2c, 2) zero: no base is common to all blocks
+    springs: Springs
+    first: Memory  # of a step, or of the first of two stages
+    second: Memory
+    dropped: Vector  # (1,) energy of contacts that are no more [J]
+    dense: int  # contacts up to which the equations are those of their forces
+    many: Many
+    finds: int  # whether contacts are found
+    detection: Detection
+    edge_end: Any  # (corners,) corner at which the edge from a corner ends
+
+
+# ---- one stage -------------------------------------------------------------------------------------------------------
+
+
+def make_stage(
+    march: March, stage: StageRoom, start: PlaneState, before: PlaneState, after: PlaneState, course: Course, part: Part
+) -> tuple[int, int]:
+    """Go from the end of the stage before, or the start of the step, to the end of a stage."""
+    plane = march.method
+    blocks = plane.blocks
+    room = march.room
+    places = plane.places
+    memory = memory_of(plane, stage)
+    length = length_in_plane(march, stage, part.ratio)
+    prescribe(march, course, stage, part)
+    begin_step(march, start, length)
+    free_modes(march, stage, length, before)
+    for i in range(len(plane.D)):
+        for k in range(6):
+            plane.D[i][k] = 0.0
+        column = blocks.motion[i]
+        if column >= 0:
+            for k in range(2):
+                plane.new[i][k] = room.end[column + k] - room.start[column + k]
+    if stage.numbers.begin == 0:
+        outcome = take_contacts(march, before)
+        if outcome != FOUND:
+            return outcome, 0
+    else:
+        copy_memory(before, plane.second)
+    laws = laws_for(march.laws, places.count[0])
+    set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+    place_contacts(blocks, before.q, plane.ends, places)
+    share = stage.numbers.end - stage.numbers.begin
+    for i in range(len(plane.x)):
+        plane.x[i] = share * room.p[i] + share * share * room.a[i] / 2
+    copy(before.p, after.p)
+    copy(before.a, after.a)
+    increments(blocks, before.q, plane.x, plane.chords, plane.new)
+    solves = 0
+    for turn in range(ROUNDS):
+        take_increments(plane)
+        set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+        forces_change = push_loads(march, after)
+        for i in range(len(plane.x)):
+            plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * plane.loaded[i]
+            room.pushed[i] = plane.loaded[i]
+        if places.count[0] > 0:
+            write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
+            free_contacts(march, memory)
+            if places.count[0] > plane.dense:
+                outcome, spent = find_many(
+                    plane.many, blocks, places, laws, memory.rows, length, after.rows, march.work, plane.size, turn > 0
+                )
+            else:
+                write_contact_flexibility(march, length)
+                outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
+            solves += spent
+            if outcome != FOUND:
+                return outcome, solves
+            push_contacts(plane, after.rows.force, room.pushed)
+        end_modes(march, stage, length, before, after)
+        for i in range(len(plane.x)):
+            plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
+        increments(blocks, before.q, plane.x, plane.chords, plane.new)
+        if forces_change > 0 and (turn == 0 or forces_change > SETTLED_FORCE):
+            continue
+        if largest_change(plane) <= SETTLED * plane.size:
+            accept(march, memory, before, after)
+            return FOUND, solves
+    return NONE, solves
+
+
+def length_in_plane(march: March, stage: StageRoom, ratio: float) -> Length:
+    """Return what belongs to a length, over dt; the flexibility of the contacts is written anew in each round."""
+    if ratio == 1.0:
+        return stage.whole
+    if stage.part.numbers[0] != ratio:
+        set_modes(march, stage, ratio, stage.part)
+    return stage.part
+
+
+def memory_of(plane: Plane, stage: StageRoom) -> Memory:
+    """Return what the contacts of a stage begin with."""
+    return plane.first if stage.numbers.begin == 0 else plane.second
+
+
+def take_contacts(march: March, before: AnyState) -> int:
+    """Find the contacts of a step and write what they begin with; return the outcome."""
+    plane = march.method
+    blocks = plane.blocks
+    detection = plane.detection
+    if plane.finds == 0:
+        copy_memory(before, plane.first)
+        return FOUND
+    set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+    place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
+    increments(blocks, before.q, march.room.x, plane.chords, plane.new)
+    set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
+    place_corners(blocks, before.q, plane.new, plane.ends, detection.corners.then)
+    outcome = take_found(detection, blocks, plane.edge_end, plane.places)
+    if outcome == FOUND:
+        plane.dropped[0] = dropped_energy(detection, plane.springs, plane.places, before.rows)
+        take_memory(detection, plane.places, before.rows, before.path, before.slid, plane.first)
+        write_laws(plane.springs, plane.places, march.laws)
+    return outcome
+
+
+def copy_memory(before: AnyState, memory: Memory) -> None:
+    """Take the contacts of a state for those that a stage begins with."""
+    copy(before.rows.state, memory.rows.state)
+    copy(before.rows.opening, memory.rows.opening)
+    copy(before.rows.force, memory.rows.force)
+    copy(before.path, memory.path)
+    copy(before.slid, memory.slid)
+
+
+def take_increments(plane: Plane) -> None:
+    """Take the increments that the last round found for those of the next one."""
+    for i in range(len(plane.D)):
+        copy(plane.new[i], plane.D[i])
+
+
+def largest_change(plane: Plane) -> float:
+    """Return how far the increments of a round are from those that it was made with [m]."""
+    largest = 0.0
+    for i in range(len(plane.D)):
+        for k in range(6):
+            change = abs(plane.new[i][k] - plane.D[i][k])
+            if k > 1:
+                change *= plane.size
+            if not change <= largest:
+                largest = change
+    return largest
+
+
+def push_loads(march: March, after: AnyState) -> float:
+    """Write the forces on the modes of loads at a place and of inertia, for the present end of the stage.
+
+    Returns their largest change since they were written last, over the largest of them.
+    """
+    plane = march.method
+    blocks = plane.blocks
+    loads = plane.loads
+    loaded = plane.loaded
+    lag = march.scheme.lag
+    for i in range(len(loaded)):
+        plane.last[i] = loaded[i]
+        loaded[i] = 0.0
+        plane.x[i] = after.p[i] + lag * after.a[i]
+    for i in range(len(blocks.root_mass)):
+        if blocks.first[i + 1] - blocks.first[i] > RIGID:
+            inertia_forces(blocks, i, plane.x, after.a, march.scheme.step, plane.ends, plane.spin, loaded)
+    chord = plane.row[0]
+    end = plane.row[1]
+    weights = plane.row[2]
+    for k in range(len(loads.block)):
+        i = loads.block[k]
+        force = loads.force[k]
+        at = loads.at[k]
+        share = march.room.end[loads.share[k]]
+        direction(plane.chords, i, share * force[0], share * force[1], at[0], at[1], chord)
+        direction(plane.ends, i, share * force[0], share * force[1], at[0], at[1], end)
+        for m in range(6):
+            chord[m] = (1 - plane.late) * chord[m] + plane.late * end[m]
+        by_modes(blocks, i, plane.chords, chord, True, weights)
+        first = blocks.first[i]
+        for m in range(blocks.first[i + 1] - first):
+            loaded[first + m] += weights[m]
+    largest = 0.0
+    change = 0.0
+    for i in range(len(loaded)):
+        largest = max(largest, abs(loaded[i]))
+        change = max(change, abs(loaded[i] - plane.last[i]))
+    return change / largest if largest > 0 else 0.0
+
+
+def write_contact_flexibility(march: March, length: Length) -> None:
+    """Write W = weight B s^-1 F', of all pairs of contacts that share a block."""
+    plane = march.method
+    places = plane.places
+    W = length.flexible.W
+    n = places.count[0]
+    first = plane.blocks.first
+    for k in range(n):
+        for m in range(n):
+            for axis in range(2):
+                for other in range(2):
+                    W[axis * n + k][other * n + m] = 0.0
+            for side in range(2):
+                i = places.block[k] if side == 0 else places.on[k]
+                if first[i + 1] == first[i]:
+                    continue
+                for opposite in range(2):
+                    if i != (places.block[m] if opposite == 0 else places.on[m]):
+                        continue
+                    for axis in range(2):
+                        B = places.B[axis * n + k][side]
+                        for other in range(2):
+                            F = places.F[other * n + m][opposite]
+                            total = 0.0
+                            for e in range(first[i + 1] - first[i]):
+                                total += B[e] * length.inverse[first[i] + e] * F[e]
+                            W[axis * n + k][other * n + m] += length.numbers[3] * total
+
+
+def free_contacts(march: March, memory: Memory) -> None:
+    """Write the openings at the end of a stage without contact forces, which end in the modes' increments `plane.x`."""
+    plane = march.method
+    places = plane.places
+    free = march.room.free
+    q = march.work.q
+    opening = memory.rows.opening
+    n = places.count[0]
+    for r in range(2 * n):
+        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
+        q[r] = opening[r] + free[r]
+    for k in range(n):
+        if places.over[k] == 0:
+            q[k] = FAR
+
+
+def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
+    """Add F' lambda to the forces on the modes."""
+    places = plane.places
+    first = plane.blocks.first
+    n = places.count[0]
+    for r in range(2 * n):
+        if force[r] == 0.0:
+            continue
+        k = r if r < n else r - n
+        for side in range(2):
+            i = places.block[k] if side == 0 else places.on[k]
+            F = places.F[r][side]
+            for e in range(first[i + 1] - first[i]):
+                out[first[i] + e] += F[e] * force[r]
+
+
+def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) -> None:
+    """Write where the stage ends."""
+    plane = march.method
+    places = plane.places
+    rows = after.rows
+    n = places.count[0]
+    for i in range(len(plane.new)):
+        for k in range(6):
+            after.q[i][k] = before.q[i][k] + plane.new[i][k]
+    for k in range(n):
+        r = n + k
+        after.slid[k] = memory.slid[k] + rows.slip[r]
+        after.path[k] = memory.path[k] + rows.slip[k]
+        after.path[r] = memory.path[r] + rows.slip[r]
+        if places.over[k] == 0:
+            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, n, k)
+            rows.opening[k] = memory.rows.opening[k] + way
+        if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
+            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
+    for r in range(2 * n, len(rows.force)):
+        rows.force[r] = 0.0
+        rows.slip[r] = 0.0
+    copy(places.driven, after.driven)
+
+
+# ---- what is kept ----------------------------------------------------------------------------------------------------
+
+
+def kinetic_excess(march: March, state: PlaneState) -> float:
+    """Return the kinetic energy less that of the modes alone, p' p / 2, which a strained block has [J]."""
+    plane = march.method
+    blocks = plane.blocks
+    lag = march.scheme.lag
+    total = 0.0
+    for i in range(len(plane.x)):
+        plane.x[i] = state.p[i] + lag * state.a[i]
+    for i in range(len(plane.D)):
+        for k in range(6):
+            plane.D[i][k] = 0.0
+    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    for i in range(len(blocks.root_mass)):
+        first = blocks.first[i]
+        if blocks.first[i + 1] - first == 2 * RIGID:
+            inertia_forces(blocks, i, plane.x, state.a, march.scheme.step, plane.ends, plane.spin, plane.loaded)
+            J = plane.ends.J[i]
+            root = blocks.root_inertia[i]
+            H = root * plane.x[first + 2] / march.scheme.step
+            turning = 0.0
+            carried = 0.0
+            for k in range(3):
+                turning += plane.ends.gamma[i][k] * plane.spin[1 + k]
+                carried += blocks.gamma[i][k] * plane.spin[1 + k]
+            total += ((H * H - turning * turning) / J - (H * H - carried * carried) / (root * root)) / 2
+    return total
+
+
+def account(march: March, state: PlaneState, after: PlaneState, course: Course, part: Part, sums: Vector) -> None:
+    """Add what an accepted part of a step loses and what loads and driven blocks give [J]."""
+    scheme = march.scheme
+    excess = kinetic_excess(march, state)
+    add_damping(march, part, half_square(state.p) / (scheme.step * scheme.step) + excess, sums)
+    account_stages(march, state, after, course, part, sums)
+    if scheme.newmark:
+        add_bulk_loss(march, state, after, part, sums)
+        discount = scheme.gg**part.ratio
+        sums[ALGORITHMIC] += discount * discount * excess - kinetic_excess(march, after)
+    if march.method.finds != 0:
+        sums[SWITCHING] += march.method.dropped[0]
+        keep_found(march.method.detection, march.method.places, after.rows)
+
+
+def account_stage(
+    march: March, stage: StageRoom, before: PlaneState, after: PlaneState, course: Course, part: Part, sums: Vector
+) -> None:
+    """Add what contacts lose in a stage, and what loads and driven blocks give.
+
+    Forces act in directions that change in a step: by how much their work on the modes differs from that on their own
+    ways, the algorithm takes.
+    """
+    plane = march.method
+    loads = plane.loads
+    room = march.room
+    dt2 = march.scheme.step * march.scheme.step
+    prescribe(march, course, stage, part)
+    late = stage.numbers.delta if march.scheme.newmark else 0.5
+    length = march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
+    memory = memory_of(plane, stage)
+    laws = laws_for(march.laws, plane.places.count[0])
+    add_contact_losses(march, laws, plane.ground, memory, after, late, length, sums)
+    rows = after.rows
+    old = memory.rows
+    own = 0.0  # work of forces on their own ways
+    for r in range(2 * plane.places.count[0]):
+        force = (1 - late) * old.force[r] + late * rows.force[r]
+        if force != 0.0:
+            sums[GIVEN] -= force * after.driven[r]
+            own += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
+    for j in range(len(march.body.loads)):
+        share = (1 - late) * room.start[2 + j] + late * room.end[2 + j]
+        work = 0.0
+        for i in range(len(after.z)):
+            work += march.body.loads[j][i] * (after.z[i] - before.z[i])
+        own += share * work
+        sums[GIVEN] += (share - march.body.stored[j]) * work
+    for i in range(len(plane.D)):
+        for k in range(6):
+            plane.D[i][k] = after.q[i][k] - before.q[i][k]
+            if k > 2:
+                plane.chords.e[i][k - 3] = (after.q[i][k] + before.q[i][k]) / 2
+    set_poses(plane.blocks, before.q, plane.D, plane.chords, plane.ends)
+    for k in range(len(loads.block)):
+        i = loads.block[k]
+        share = (1 - late) * room.start[loads.share[k]] + late * room.end[loads.share[k]]
+        x, y = moved(plane.chords, i, plane.D[i], loads.at[k][0], loads.at[k][1])
+        work = loads.force[k][0] * x + loads.force[k][1] * y
+        own += share * work
+        sums[GIVEN] += (share - 1) * work
+    if march.scheme.newmark:
+        for i in range(len(after.z)):
+            at_start = before.R[i] / dt2 + march.body.k[i] * before.z[i]
+            at_end = after.R[i] / dt2 + march.body.k[i] * after.z[i]
+            own -= ((1 - late) * at_start + late * at_end) * (after.z[i] - before.z[i])
+        sums[ALGORITHMIC] += own
+
+
+def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
+    """Write where the blocks are and how fast they move, at the steps that are kept; tell whether all is finite."""
+    plane = march.method
+    blocks = plane.blocks
+    scheme = march.scheme
+    discount = kept_discount(scheme, number)
+    total = 0.0
+    for i in range(len(plane.x)):
+        plane.x[i] = discount * state.p[i] + scheme.lag * state.a[i]
+        total += state.z[i] + plane.x[i]
+    if number % plane.every != 0:
+        return math.isfinite(total)
+    for i in range(len(plane.D)):
+        for k in range(6):
+            plane.D[i][k] = 0.0
+    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    for i in range(len(blocks.root_mass)):
+        first = blocks.first[i]
+        modes = blocks.first[i + 1] - first
+        place = STATE * i
+        for k in range(6):
+            rows[number // plane.every, place + k] = state.q[i][k]
+            rows[number // plane.every, place + 6 + k] = 0.0
+        if modes == 0:
+            continue
+        for axis in range(2):
+            rows[number // plane.every, place + 6 + axis] = plane.x[first + axis] / blocks.root_mass[i] / scheme.step
+        plane.spin[0] = plane.x[first + 2] / blocks.root_inertia[i] / scheme.step
+        if modes > RIGID:
+            inertia_forces(blocks, i, plane.x, state.a, scheme.step, plane.ends, plane.spin, plane.loaded)
+            for k in range(3):
+                rows[number // plane.every, place + 9 + k] = plane.spin[1 + k]
+        rows[number // plane.every, place + 8] = plane.spin[0]
+    return math.isfinite(total)
+
+
+def keep_contacts(march: March, state: PlaneState, history: History, number: int) -> None:
+    """Write the rows of contact at the steps that are kept."""
+    plane = march.method
+    if number % plane.every != 0:
+        return
+    row = number // plane.every
+    rows = state.rows
+    n = plane.places.count[1]
+    if plane.finds != 0:
+        n += plane.detection.count[1]
+        identity = STATE * len(plane.D)
+        history.motion[row, identity] = n
+        for k in range(plane.detection.count[1]):
+            history.motion[row, identity + 1 + 2 * k] = plane.detection.previous.corner[k]
+            history.motion[row, identity + 2 + 2 * k] = plane.detection.previous.edge[k]
+    for r in range(2 * n):
+        history.force[row, r] = rows.force[r]
+        history.opening[row, r] = rows.opening[r]
+        history.state[row, r] = rows.state[r]
+    for k in range(n):
+        history.path[row, k] = state.slid[k]
+
+
+account_stages = over_stages(account_stage)
+make_steps = steps_by(make_stage, account, keep, keep_contacts)

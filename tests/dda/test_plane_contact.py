@@ -1,0 +1,163 @@
+"""Blocks in the plane on contacts that a scene states: closed forms, invariants, accounts, bad input."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.plane_scenes import AVERAGE, CONSTANT, GRAVITY, SCHEMES, floor, moved, rectangle, scheme, slope
+
+from dda import (
+    BaseMotion,
+    ContactSprings,
+    CornerOnEdge,
+    EdgeBond,
+    PlaneBlock,
+    PlaneLoad,
+    PlaneModel,
+    solve_plane,
+)
+
+MASS = 5400.0
+
+
+def sliding(speed=5.0, friction=0.4, stiffness=1e8):
+    """A block 2 x 1 m that slides over a floor and starts at its resting penetration."""
+    depth = MASS * GRAVITY / 2 / stiffness
+    block = PlaneBlock(rectangle(0, -depth, 2, 1), 2700.0, velocity=(speed, 0.0))
+    springs = ContactSprings(stiffness, 100 * stiffness, friction)
+    return PlaneModel([floor(), block], [CornerOnEdge(1, k, 0, 2, springs) for k in (0, 1)], gravity=(0.0, -GRAVITY))
+
+
+def test_a_block_stops_by_friction_where_its_closed_form_says():
+    step = 1e-3
+    result = solve_plane(sliding(), scheme(CONSTANT, step), 1300, every=10, compiled=False)
+    # CANON d1: with exact rotation the centre comes to 3.1855223 m; the step stops within mu g dt^2 / 2 of it
+    assert result.displacement[-1, 1, 0] == pytest.approx(3.1855223, abs=0.4 * GRAVITY * step**2 + 1e-5)
+    moving = result.time[1:] < 1.2
+    exact = 5 - 0.4 * GRAVITY * result.time[1:]
+    assert result.velocity[1:, 1, 0][moving] == pytest.approx(exact[moving], rel=1e-3)
+    assert set(result.state[5]) == {2} and set(result.state[-1]) == {1}
+    assert result.energy["friction"][-1] == pytest.approx(MASS * 25 / 2, rel=1e-4)
+    assert np.abs(result.energy["balance"]).max() <= 1e-12 * MASS * 25 / 2
+
+
+@pytest.mark.parametrize(("friction", "speed"), [((0.3, 0.3), 2.95724), ((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)])
+def test_two_blocks_on_a_slope_slide_together(friction, speed):
+    result = solve_plane(slope(*friction), scheme(CONSTANT, 2e-3), 1000, every=50, compiled=False)
+    assert result.outcome == "completed"
+    # a = g (sin b - cos b mean tan(phi)) of equal masses, for 2 s; the first steps stress the springs
+    half = len(result.time) // 2
+    assert 2 * np.diff(result.velocity[[half, -1], 1:, 0], axis=0) == pytest.approx(speed, abs=1e-5)
+    assert np.abs(result.energy["balance"]).max() <= 1e-10 * max(result.energy["kinetic"].max(), 1.0)
+    assert np.abs(result.angle).max() < 1e-3
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+def test_mirrored_turned_and_shifted_scenes_move_alike(name):
+    step = SCHEMES[name]
+    model = slope(0.3, 0.6)
+    result = solve_plane(model, step, 60)
+    angle = 0.7
+    turned = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    for frame in (turned, np.diag([-1.0, 1.0]), turned @ np.diag([1.0, -1.0])):
+        other = solve_plane(moved(model, frame, np.array([3.0, -5.0])), step, 60)
+        size = np.abs(result.displacement).max()
+        assert other.displacement @ frame == pytest.approx(result.displacement, abs=1e-9 * size)
+        assert other.normal == pytest.approx(result.normal, abs=1e-9 * result.normal.max())
+        assert np.array_equal(np.abs(other.state), np.abs(result.state))
+
+
+def test_glue_closes_a_ring_of_blocks_and_carries_what_a_part_of_it_weighs():
+    """Two halves of a bar, glued at one end to a wall: the joint carries the weight of what hangs on it."""
+    wall = PlaneBlock(rectangle(-1, 0, 1, 1), 2000.0, fixed=True)
+    halves = [PlaneBlock(rectangle(x, 0, 1, 1), 2000.0) for x in (0, 1)]
+    bonds = [EdgeBond(i, i + 1, (i, 0.0), (i, 1.0), 1e10, 1e10) for i in (0, 1)]
+    damped = scheme((0.5, 1.0, 0.8), 1e-3)
+    result = solve_plane(PlaneModel([wall, *halves], bonds=bonds, gravity=(0.0, -GRAVITY)), damped, 300)
+    weight = 2000.0 * GRAVITY
+    forces = result.bond[-1].sum(axis=1)
+    assert forces[:, 0] == pytest.approx(0.0, abs=1e-4 * weight)  # the bar sags
+    assert np.abs(forces[:, 1]) == pytest.approx([2 * weight, weight], rel=1e-5)
+    moments = result.bond[-1, :, 1, 0] - result.bond[-1, :, 0, 0]  # of a couple of unit arm, by half of it
+    assert np.abs(moments / 2) == pytest.approx([2 * weight, weight / 2], rel=1e-4)
+
+
+def test_a_contact_with_a_strength_holds_up_to_it():
+    hung = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0)
+    ceiling = PlaneBlock(rectangle(-1, 0, 3, 1), 1000.0, fixed=True)
+    for strength, falls in ((0.4, True), (1.2, False)):
+        springs = ContactSprings(1e8, 1e8, 0.0, cohesion=1e5, tension=strength * 1000.0 * GRAVITY)
+        contacts = [CornerOnEdge(0, corner, 1, 0, springs) for corner in (2, 3)]
+        result = solve_plane(
+            PlaneModel([hung, ceiling], contacts, gravity=(0.0, -GRAVITY)), scheme(CONSTANT, 1e-3), 100
+        )
+        assert bool(result.displacement[-1, 0, 1] < -1e-2) is falls and bool(np.all(result.state[-1] == 0)) is falls
+
+
+def test_a_corner_that_leaves_its_edge_carries_nothing():
+    table = PlaneBlock(rectangle(-4, -1, 4, 1), 1000.0, fixed=True)
+    block = PlaneBlock(rectangle(-1.2, 0, 1, 1), 1000.0, velocity=(4.0, 0.0))
+    springs = ContactSprings(1e8)
+    result = solve_plane(
+        PlaneModel([table, block], [CornerOnEdge(1, k, 0, 2, springs) for k in (0, 1)], gravity=(0.0, -GRAVITY)),
+        scheme(CONSTANT, 1e-3),
+        400,
+        compiled=False,
+    )
+    outside = result.centroid[:, 1, 0] + 0.5 > 1e-2
+    assert outside.any() and not np.any(result.normal[outside, 1]) and result.angle[-1, 1] < -0.01
+
+
+def test_a_driven_floor_gives_its_work_to_what_stands_on_it():
+    time = np.linspace(0, 0.5, 51)
+    motion = BaseMotion(time, np.column_stack([0.02 * np.sin(12 * time), 0.005 * (1 - np.cos(20 * time))]))
+    base = PlaneBlock(rectangle(-5, -1, 10, 1), 2000.0, motion=motion)
+    block = PlaneBlock(rectangle(0, 0, 1, 0.5), 2000.0, 1e8, 0.2)
+    springs = ContactSprings(1e8, 4e7, 0.5)
+    model = PlaneModel([base, block], [CornerOnEdge(1, k, 0, 2, springs) for k in (0, 1)], gravity=(0.0, -GRAVITY))
+    for numbers in (AVERAGE, CONSTANT, (0.3025, 0.6, 0.999)):
+        result = solve_plane(model, scheme(numbers, 1e-3), 500)
+        assert result.outcome == "completed" and set(result.state.ravel()) >= {1, 2}
+        assert np.abs(result.energy["balance"]).max() <= 1e-10 * result.energy["kinetic"].max()
+        assert result.energy["friction"][-1] > 0
+
+
+BLOCK = PlaneBlock(rectangle(0, 0, 1, 1), 1000.0, name="upper")
+BASE = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0, fixed=True, name="base")
+SPRINGS = ContactSprings(1e8, 1e8, 0.5)
+BAD = {
+    "velocity: must be zero": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 1.0, fixed=True, velocity=(1.0, 0.0)),
+    "vertices: corners must run": lambda: PlaneBlock(rectangle(0, 0, 1, 1)[::-1], 1.0),
+    "density: must be": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 0.0),
+    "spin: must be": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 1.0, spin=math.nan),
+    "stiffness: must be positive": lambda: ContactSprings(0.0),
+    "shear: must be positive": lambda: ContactSprings(1e8, friction=0.5),
+    "friction: must be given": lambda: ContactSprings(1e8, 1e8, cohesion=1.0),
+    "tension: must not exceed": lambda: ContactSprings(1e8, 1e8, 0.5, cohesion=1.0, tension=3.0),
+    "blocks: at least one": lambda: PlaneModel([BASE]),
+    "contacts[0].corner": lambda: PlaneModel([BASE, BLOCK], [CornerOnEdge(1, 4, 0, 2, SPRINGS)]),
+    "contacts[0].on: must be another": lambda: PlaneModel([BASE, BLOCK], [CornerOnEdge(1, 0, 1, 2, SPRINGS)]),
+    "contacts[0].on: one of two": lambda: PlaneModel([BASE, BASE, BLOCK], [CornerOnEdge(0, 0, 1, 2, SPRINGS)]),
+    "bonds[0].second: must lie on one edge of base": lambda: PlaneModel(
+        [BLOCK, BASE], bonds=[EdgeBond(0, 1, (0.0, 1.0), (1.0, 1.0), 1e9, 1e9)]
+    ),
+    "end: must be finite and apart": lambda: EdgeBond(0, 1, (0.0, 1.0), (0.0, 1.0), 1e9, 1e9),
+    "loads[0].block: must move, got base": lambda: PlaneModel([BLOCK, BASE], loads=[PlaneLoad(1, (1.0, 0.0))]),
+    "edge: goes without": lambda: PlaneLoad(0, (1.0, 0.0), place=(0, 0), edge=((0, 0), (1, 0))),
+    "steps: must be": lambda: solve_plane(PlaneModel([BLOCK]), scheme(AVERAGE, 1e-3), 0),
+    "cut: must be": lambda: solve_plane(PlaneModel([BLOCK]), scheme(AVERAGE, 1e-3), 1, cut=1.0),
+    "contacts[0]: must not begin behind": lambda: solve_plane(
+        PlaneModel(
+            [PlaneBlock(rectangle(0, -0.1, 1, 1), 1.0), BASE], [CornerOnEdge(0, 0, 1, 2, ContactSprings(math.inf))]
+        ),
+        scheme(AVERAGE, 1e-3),
+        1,
+    ),
+}
+
+
+@pytest.mark.parametrize("message", BAD)
+def test_bad_input_is_refused_by_field_and_value(message):
+    with pytest.raises(ValueError) as error:
+        BAD[message]()
+    assert str(error.value).startswith(message) and ", got " in str(error.value)

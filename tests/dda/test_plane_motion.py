@@ -1,0 +1,125 @@
+"""Blocks in the plane that touch nothing: momentum, loads, and the strain of a block that spins."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.plane_scenes import AVERAGE, SCHEMES, rectangle, scheme
+from scipy.integrate import solve_ivp
+
+from dda import BaseMotion, PlaneBlock, PlaneLoad, PlaneModel, solve_plane
+
+SPIN = 20.0
+QUADRILATERAL = [(0, 0), (2, 0), (2.5, 1), (0.3, 1.7)]
+
+
+def swinging(time):
+    """Return s - 1, s' and the angle of a square of side 2 set spinning unstrained: s'' = w0^2/s^3 - wb^2 (s - 1)."""
+    frequency = 12 * 1e8 / (0.75 * 2700.0 * 4.0)
+
+    def rates(_, state):
+        s, rate, _ = state
+        return [rate, SPIN**2 / s**3 - frequency * (s - 1), SPIN / s**2]
+
+    s, rate, angle = solve_ivp(rates, (0, time), [1, 0, 0], method="DOP853", rtol=1e-12, atol=1e-14).y[:, -1]
+    return s - 1, rate, angle
+
+
+def test_a_square_that_spins_swings_about_its_centrifugal_strain_to_second_order():
+    model = PlaneModel([PlaneBlock(rectangle(3, 4, 2, 2), 2700.0, 1e8, 0.25, spin=SPIN)])
+    strain, rate, angle = swinging(0.05)
+    errors = []
+    for steps in (250, 500, 1000):
+        result = solve_plane(model, scheme(AVERAGE, 0.05 / steps), steps)
+        ends = result.strain[-1, 0, 0], result.velocity[-1, 0, 3] / 400, result.angle[-1, 0]
+        errors.append(np.abs(np.subtract(ends, (strain, rate / 400, angle))))
+        spin = result.momentum[:, 2]
+        assert np.ptp(spin) <= 1e-12 * 144000 and spin[0] == pytest.approx(144000, rel=1e-14)
+        assert result.strain[-1, 0, 1] == pytest.approx(result.strain[-1, 0, 0], rel=1e-9)
+        assert abs(result.strain[:, 0, 2]).max() <= 1e-12
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert np.all(np.abs(orders - 2) < 0.1) and np.all(errors[-1] < (1e-5, 1e-5, 2e-6))
+
+
+def test_a_rectangle_that_spins_has_the_motion_of_its_deformation_gradient():
+    a, b, nu = 2.0, 1.0, 0.25
+    moments = 2700.0 * a * b / 12 * np.diag([a * a, b * b])
+    turn = np.array([[0.0, -1.0], [1.0, 0.0]])
+    elastic = a * b * 1e8 / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+
+    def polar(F):
+        angle = math.atan2(F[1, 0] - F[0, 1], F[0, 0] + F[1, 1])
+        Q = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+        return angle, Q, Q.T @ F
+
+    def rates(_, state):
+        F, V = state.reshape(2, 2, 2)
+        _, Q, U = polar(F)
+        sx, sy, sxy = elastic @ (U[0, 0] - 1, U[1, 1] - 1, 2 * U[0, 1])
+        T = np.array([[sx, sxy], [sxy, sy]])
+        T = T - np.trace(T.T @ turn @ U) / np.trace(turn.T @ turn @ U) * turn  # Biot's stress does no work in a turn
+        return np.concatenate([V.ravel(), (-Q @ T @ np.linalg.inv(moments)).ravel()])
+
+    start = np.concatenate([np.eye(2).ravel(), (SPIN * turn).ravel()])
+    end = solve_ivp(rates, (0, 0.05), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:4, -1]
+    angle, _, U = polar(end.reshape(2, 2))
+    exact = np.array([U[0, 0] - 1, U[1, 1] - 1, 2 * U[0, 1], angle])
+    errors = []
+    for steps in (400, 800):
+        block = PlaneBlock(rectangle(-a / 2, -b / 2, a, b), 2700.0, 1e8, nu, spin=SPIN)
+        result = solve_plane(PlaneModel([block]), scheme(AVERAGE, 0.05 / steps), steps)
+        errors.append(np.abs([*result.strain[-1, 0], result.angle[-1, 0]] - exact))
+    assert np.all(np.abs(np.log2(errors[0] / errors[1]) - 2) < 0.15) and errors[1].max() < 1e-4
+
+
+@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("young", [math.inf, 1e8])
+def test_a_free_block_keeps_its_momentum(name, young):
+    block = PlaneBlock(QUADRILATERAL, 2700.0, young, 0.2, velocity=(1.0, 2.0), spin=7.0)
+    result = solve_plane(PlaneModel([block]), SCHEMES[name], 200)
+    assert result.outcome == "completed" and result.reached == 200
+    size = np.abs(result.momentum[0]).max()
+    assert np.ptp(result.momentum, axis=0).max() <= 1e-12 * size
+    if name in ("average", "constant"):
+        assert np.abs(result.energy["balance"]).max() <= 1e-12 * result.energy["kinetic"][0]
+
+
+@pytest.mark.parametrize("young", [math.inf, 1e8])
+def test_dead_loads_do_their_work_however_far_the_block_turns(young):
+    block = PlaneBlock(rectangle(-1, -0.5, 2, 1), 1000.0, young, 0.2, spin=3.0)
+    loads = [
+        PlaneLoad(0, (300.0, 200.0), place=(1.0, 0.5)),
+        PlaneLoad(0, (0.0, -400.0), edge=((0.0, 0.5), (-1.0, 0.5)), ramp=0.3),
+        PlaneLoad(0, (50.0, 0.0), ramp=0.1),
+    ]
+    model = PlaneModel([block], loads=loads, gravity=(0.0, -9.81))
+    errors = []
+    for steps in (100, 200):
+        result = solve_plane(model, scheme(AVERAGE, 1.0 / steps), steps)
+        total = result.energy["kinetic"] + result.energy["strain"]
+        size = total.max()
+        assert np.abs(result.energy["balance"]).max() <= 1e-12 * size
+        errors.append(abs(result.energy["algorithmic"][-1]) / size)
+    assert errors[1] < 1e-4 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
+
+
+def test_a_load_in_the_plane_moves_a_block_as_its_closed_form_says():
+    block = PlaneBlock(rectangle(0, 0, 2, 1), 1000.0)
+    loads = [PlaneLoad(0, (4000.0, 0.0), ramp=1.0), PlaneLoad(0, (0.0, 1000.0), edge=((0, 0), (1.0, 0)))]
+    result = solve_plane(PlaneModel([block], loads=loads), scheme(AVERAGE, 1e-3), 1000)
+    assert result.displacement[-1, 0, 0] == pytest.approx(1 / 3, rel=1e-5)  # t^3/6 of the ramp to 2 m/s^2
+    inertia = 2000.0 * 5 / 12
+    assert result.velocity[1, 0, 2] == pytest.approx(-1000.0 * 0.5 / inertia * 1e-3, rel=1e-6)
+
+
+def test_a_driven_block_follows_its_record():
+    time = np.linspace(0, 1, 21)
+    motion = BaseMotion(time, np.column_stack([np.sin(3 * time), 0.1 * time]))
+    blocks = [
+        PlaneBlock(rectangle(0, 0, 1, 1), 1.0, motion=motion),
+        PlaneBlock(rectangle(5, 0, 1, 1), 1.0),
+        PlaneBlock(rectangle(9, 0, 1, 1), 1.0, fixed=True),
+    ]
+    result = solve_plane(PlaneModel(blocks), scheme(AVERAGE, 0.05), 20, every=2)
+    assert result.displacement[:, 0] == pytest.approx(motion.at(result.time), abs=1e-15)
+    assert not np.any(result.displacement[:, 1:]) and len(result.time) == 11
