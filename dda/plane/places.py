@@ -10,7 +10,7 @@ angle psi of the edge and means of start and end marked by a bar,
 So openings are carried as increments, and no force is the small difference of two places.
 
 Forces act in the directions (2 delta - 1) B + (2 - 2 delta) B_1, B_1 the derivative at the end of the step, as in
-`dda.rotation.step`: average acceleration stays of second order, and at delta = 1 contact does not gain energy.
+`dda.bodies.turning_step`: average acceleration stays of second order, and at delta = 1 contact does not gain energy.
 """
 
 from __future__ import annotations

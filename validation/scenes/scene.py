@@ -28,6 +28,7 @@ from validation.scenes.tables import GateSection, RunSection, TimeSection
 from validation.scenes.unknown import clip, refuse_unknown_keys
 
 LARGEST_FILE, MOST_CASES = 1_000_000, 100_000  # bytes; cases of one sweep
+DID_YOU_MEAN = "; did you mean "  # between a value and what was probably meant, in a rule of a table
 NEARLY_A_NUMBER = re.compile(r"[-+]?\d+([.,]\d+)?([eE][-+]?\d+)? ?%|[-+]?\d+,\d+([eE][-+]?\d+)?")
 DECIMAL_COMMA = re.compile(r"^[^#\n\"'\[]*=\s*([-+]?\d+,\d+)", re.MULTILINE)
 LONGEST_VALUE = 4000  # characters that --set takes
@@ -207,7 +208,11 @@ def _sweepable() -> set[str]:
 
 
 OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
-FILES = ("fem.mesh", "load.base_motion", "input.record")
+FILES = {  # keys that name files, and what these are
+    "fem.mesh": "mesh file",
+    "load.base_motion": "record of the base's motion",
+    "input.record": "record of the input",
+}
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
     "time.gg_rate": ("time.gg",),
@@ -247,12 +252,12 @@ def first_defect(error: ValidationError, source: str) -> InputError:
     errors = error.errors(include_url=False)
     first = errors[0]
     rule, value = rule_and_value(dict(first))
+    value, _, known = value.partition(DID_YOU_MEAN)
     field = ".".join(str(part) for part in first["loc"])
-    if not field:  # a rule on the whole scene begins with its field
-        first_word, _, remainder = rule.partition(": ")
-        if remainder and " " not in first_word:
-            field = first_word
-            rule = remainder
+    first_word, _, remainder = rule.partition(": ")
+    if remainder and " " not in first_word:  # a rule on a whole table begins with its field
+        field = f"{field}.{first_word}" if field else first_word
+        rule = remainder
     if first["type"] == "missing":  # all that is missing at once, which is one thing to do
         missing = [".".join(map(str, entry["loc"])) for entry in errors if entry["type"] == "missing"]
         more = len(errors) - len(missing)
@@ -265,7 +270,7 @@ def first_defect(error: ValidationError, source: str) -> InputError:
         source=source,
         field=field or None,
         value=(value or clip(first["input"])) + (f" (and {more} more)" if more else ""),
-        advice=_number_meant(first["input"]),
+        advice=f"{DID_YOU_MEAN[2:]}{known}" if known else _number_meant(first["input"]),
     )
 
 

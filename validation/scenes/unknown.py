@@ -47,9 +47,9 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
         if other is not kind:
             absent += other.tables
     known_keys = []
-    for place, table in tables.items():
+    for place, _table in tables.items():
         if place and place.partition(".")[0] not in absent:
-            known_keys += [f"{place}.{key}" for key in _names(table)]
+            known_keys += [f"{place}.{key}" for key in _names(place, tables)]
     suggestions = {}
     for place, stated_at, name, value in unknown:
         # What stands in a table of an unknown name is not looked up: the table's name comes first.
@@ -72,23 +72,24 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     )
 
 
-def _names(table: type[Section]) -> list[str]:
+def _names(place: str, tables: Mapping[str, type[Section]]) -> list[str]:
     """Return the names of a table's keys as a file states them; the name of a scene is that of its file."""
-    return [field.alias or name for name, field in table.model_fields.items() if name != "name"]
+    fields = tables[place].model_fields.items()
+    return [field.alias or name for name, field in fields if place or name != "name"]
 
 
 def _unknown_keys(
     data: Mapping[str, Any], place: str, stated_at: str, tables: Mapping[str, type[Section]]
 ) -> Iterator[tuple[str, str, str, Any]]:
     """Yield table, its place in the file, name and value of the unknown keys of a table and of those in it."""
-    names = _names(tables[place])
+    names = _names(place, tables)
     for name, value in data.items():
         inside = f"{place}.{name}" if place else name
         if name not in names:
             yield place, stated_at, name, value
         elif inside == "sweep" and isinstance(value, dict):
-            keys = {"mode", "name", *tables, *_names(tables[""])}  # what is no key of a table is refused elsewhere
-            keys |= {f"{table}.{key}" for table, model in tables.items() for key in _names(model)}
+            keys = {"mode", "name", *tables, *_names("", tables)}  # what is no key of a table is refused elsewhere
+            keys |= {f"{table}.{key}" for table in tables for key in _names(table, tables)}
             unknown = (field for field in value if field not in keys)
             yield from (("sweep", "sweep.", field, value[field]) for field in unknown)
         elif inside in tables and isinstance(value, dict):
@@ -110,7 +111,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
         if place not in tables:
             return None
     prefix = f"{place}." if place else ""
-    here = [f"{prefix}{key}" for key in _names(tables[place])]
+    here = [f"{prefix}{key}" for key in _names(place, tables)]
     named_here = _fields_by_name(here, tables)
     named_elsewhere = _fields_by_name(elsewhere, tables)
     plain = _plain(name)

@@ -29,7 +29,7 @@ def check_names(scene: Scene, source: str) -> None:
             adapter.check_module()
         solver_columns |= dict.fromkeys(adapter.columns() or scene.run.columns)
     for column in scene.run.columns:
-        if column not in solver_columns:
+        if column not in solver_columns and not scene.kind.has_column(scene, column):
             raise InputError(
                 f"must be among {', '.join(solver_columns)}", source=source, field="run.columns", value=repr(column)
             )

@@ -1,15 +1,20 @@
-"""The kind of blocks in the plane: its table, and what runs it."""
+"""The kind of blocks in the plane: its table, what runs it and what a history of it may hold."""
 
 from __future__ import annotations
 
+import difflib
 from typing import Any, ClassVar
 
+from pydantic import ValidationError
+
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.history import place_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.kinds import Kind
 
 
 class BlocksInThePlane(Kind):
-    """Blocks in the plane, glued along the edges they share."""
+    """Blocks in the plane, glued along the edges they share, or moving and touching each other."""
 
     name = "plane"
     words = "blocks in the plane"
@@ -19,8 +24,41 @@ class BlocksInThePlane(Kind):
     fem_keys = ("elements", "degree")
 
     def run(self, table: object) -> dict[str, Any]:
-        """Return both packages as solvers, and the displacement that the scene observes."""
-        return {"solvers": ["dda", "fem"], "columns": ["displacement"]}
+        """Return both packages for glued blocks and what they observe; of moving ones the poses, by `dda`."""
+        if isinstance(table, dict) and "observe" in table:
+            return {"solvers": ["dda", "fem"], "columns": ["displacement"]}
+        try:
+            poses = PlaneSection.model_validate(table).assembly.pose_columns
+        except ValidationError:  # the table itself is refused, with its defect
+            poses = ()
+        return {"solvers": ["dda"], **({"columns": list(poses)} if poses else {})}
+
+    def has_column(self, scene: Any, column: str) -> bool:
+        """Whether a column is of moving blocks, corners and edges that there are."""
+        plane: PlaneSection = scene.plane
+        return plane.moves and _is_column(column, plane.assembly)
+
+    def check(self, scene: Any) -> None:
+        """Check the columns of moving blocks."""
+        plane: PlaneSection = scene.plane
+        for column in scene.run.columns if plane.moves else ():
+            if not self.has_column(scene, column):
+                near = difflib.get_close_matches(column, plane.assembly.pose_columns, n=1)
+                meant = f"; did you mean {near[0]}?" if near else ""
+                rule = "columns must be BLOCK.x, BLOCK.0-BLOCK.0.normal, energy.kinetic, momentum.x or their like"
+                raise ValueError(f"run: {rule}, got {column!r}{meant}")
+
+
+def _is_column(column: str, assembly: Assembly) -> bool:
+    """Whether a column is of blocks, corners and edges that there are."""
+    place = place_of(column)
+    if place is None:
+        return False
+    corners = {block.name: len(block.vertices) for block in assembly.blocks}
+    if place.contact is not None:
+        block, corner, on, edge = place.contact
+        return corner < corners.get(block, 0) and edge < corners.get(on, 0) and block != on
+    return bool(place.whole) or place.block in corners
 
 
 KIND = BlocksInThePlane

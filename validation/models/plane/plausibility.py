@@ -16,7 +16,8 @@ class HOOKS(PlausibilityHooks):
     def values(self, scene: Scene) -> Iterator[Implausible]:
         """Yield what the material under the greatest stress says, and the steps."""
         plane = scene.table(PlaneSection)
-        largest = max([*map(abs, plane.stress), *(math.hypot(*load.traction) for load in plane.load)])
-        speed = math.sqrt(plane.young / plane.density)
-        yield from material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
+        largest = max([*map(abs, plane.stress), *(math.hypot(*traction) for _, traction in plane.tractions)])
+        if math.isfinite(plane.young):
+            speed = math.sqrt(plane.young / plane.density)
+            yield from material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
         yield from stepping(scene)

@@ -1,25 +1,33 @@
-"""Blocks in the plane before anything runs: their number and mass, and the wave along the larger side."""
+"""Blocks in the plane before anything runs: drawn in text, masses, waves of glued ones, contacts of moving ones."""
 
 from __future__ import annotations
 
+import itertools
 import math
+import string
 from collections.abc import Collection, Iterator, Sequence
 
 import numpy as np
 
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.geometry import inside
 from validation.models.plane.tables import PlaneSection, Segment
 from validation.report.scene.drawing import body_height, body_width, box_rows
 from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
 from validation.runs.numbers import short
-from validation.scenes import outline
+from validation.scenes.keys import described, stated
+from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 
 TEXTS = Texts(__file__)
+ACROSS, MOST_ROWS = 30, 16  # characters and lines of the drawing; a line is as high as two characters are wide
+FIXED = "/"
+LETTERS = string.ascii_letters
 
 
 class HOOKS(ShowingHooks):
-    """The outline of blocks in the plane."""
+    """What is said of blocks in the plane."""
 
     no_data = frozenset({"fem.foundation"})
 
@@ -29,42 +37,126 @@ class HOOKS(ShowingHooks):
             yield f"{len(scene.table(PlaneSection).polygons)} blocks"
 
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
-        """Return the outline with what the blocks are beside it."""
+        """Return the blocks in text, with what they are beside them."""
         plane = scene.table(PlaneSection)
-        corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-        wide, high = np.ptp(corners, axis=0)
-        slenderness = wide / high
-        across = body_width(slenderness)
-        cut = TEXTS.text("plane-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
-        beside = [TEXTS.text("size", wide, high, cut), TEXTS.text("material", plane), TEXTS.text("glue", plane)]
-        if plane.clamp:
-            beside.append(f"clamped along {', '.join(_segment(clamp.edge) for clamp in plane.clamp)}")
-        if any(plane.stress):
-            beside.append(TEXTS.text("stress", plane))
-        if any(plane.gravity):
-            beside.append(TEXTS.text("gravity", plane))
-        beside += [TEXTS.text("traction", load, _segment(load.edge)) for load in plane.load]
-        return across, box_rows(across, body_height(across, slenderness), beside)
+        return glued_rows(plane) if plane.is_glued else moving_rows(plane)
 
     def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
         """Return the glue."""
-        return f"Glue of {short(scenes[0].table(PlaneSection).glue)} E at each end of a shared edge."
+        plane = scenes[0].table(PlaneSection)
+        return f"Glue of {short(plane.glue)} E at each end of a shared edge." if plane.is_glued else ""
 
     def first_frequency(self, scene: Scene, of_run: float | None) -> None:
-        """Return none: glued blocks are read at rest."""
+        """Return none: glued blocks are read at rest, and moving ones have no modes."""
 
     def numbers(self, scene: Scene) -> Iterator[Number]:
-        """Yield number and mass of the blocks, and the wave."""
+        """Yield the numbers of one case."""
         plane = scene.table(PlaneSection)
-        corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-        size = float(np.max(np.ptp(corners, axis=0)))
-        speed = math.sqrt(plane.young / plane.density)
-        area = sum(outline.area(polygon) for polygon in plane.polygons)
-        yield Number("blocks", len(plane.polygons), "", "blocks of one strain")
-        yield Number("m", plane.density * area, "kg", "mass of all blocks")
-        yield Number("c", speed, "m/s", "speed of a wave along a bar, sqrt(E/rho)")
-        yield Number("L/c", size / speed, "s", "travel time of the wave along the larger side")
+        return glued_numbers(plane) if plane.is_glued else moving_numbers(plane, scene.time.step)
+
+
+def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
+    """Return the outline of blocks in the plane with what they are beside it."""
+    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
+    wide, high = np.ptp(corners, axis=0)
+    slenderness = wide / high
+    across = body_width(slenderness)
+    cut = TEXTS.text("stated-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
+    beside = [TEXTS.text("size", wide, high, cut), TEXTS.text("material", plane), TEXTS.text("glue", plane)]
+    if plane.clamp:
+        beside.append(f"clamped along {', '.join(_segment(clamp.edge) for clamp in plane.clamp)}")
+    if any(plane.stress):
+        beside.append(TEXTS.text("stress", plane))
+    if any(plane.gravity):
+        beside.append(TEXTS.text("gravity", *plane.gravity))
+    beside += [TEXTS.text("traction", *traction, _segment(edge)) for edge, traction in plane.tractions]
+    return across, box_rows(across, body_height(across, slenderness), beside)
 
 
 def _segment(edge: Segment) -> str:
     return " to ".join(f"({x:g}, {y:g})" for x, y in edge)
+
+
+def moving_rows(plane: PlaneSection) -> tuple[int, Rows]:
+    """Return how many characters the drawing is wide, and its lines with words beside them."""
+    assembly = plane.assembly
+    art = _raster(assembly)
+    rows = itertools.zip_longest(art, _words(plane, assembly), fillvalue="")
+    return ACROSS, [(f"  {line}", text) for line, text in rows]
+
+
+def _raster(assembly: Assembly) -> list[str]:
+    """Return lines in which each character is a block: that at the middle of its cell."""
+    corners = np.vstack([np.array(block.vertices) for block in assembly.blocks])
+    low, size = corners.min(axis=0), np.ptp(corners, axis=0)
+    cell = max(size[0] / ACROSS, size[1] / (2 * MOST_ROWS))
+    columns, lines = max(1, round(size[0] / cell)), max(1, round(size[1] / (2 * cell)))
+    x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(lines) + 0.5)
+    places = low + size * np.column_stack([x.ravel() / columns, y.ravel() / lines])
+    cells = np.full(len(places), " ")
+    for block, letter in zip(assembly.blocks, letters(assembly), strict=True):
+        cells[inside(places, block.vertices)] = letter
+    return ["".join(line) for line in cells.reshape(lines, columns)[::-1]]
+
+
+def letters(assembly: Assembly) -> list[str]:
+    """Return the character that each block is drawn by; after fifty-two of them they repeat."""
+    moving = itertools.cycle(LETTERS)
+    return [FIXED if block.fixed else next(moving) for block in assembly.blocks]
+
+
+def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
+    """Return what the blocks are, what joins them and what drives them, a line each."""
+    moving = [block for block in assembly.blocks if not block.fixed]
+    legend = zip(assembly.blocks, letters(assembly), strict=True)
+    names = ", ".join(f"{letter} {block.name}" for block, letter in legend) if len(moving) <= MOST_ROWS // 2 else ""
+    material = "rigid" if math.isinf(plane.young) else TEXTS.text("elastic", plane)
+    lines = [names, TEXTS.text("blocks", len(moving), len(assembly.blocks) - len(moving), plane.density, material)]
+    if plane.contact is not None:
+        keys = ", ".join(described(name, value, key) for name, value, key in stated(plane.contact))
+        lines += [TEXTS.text("stated" if plane.touch else "found", len(plane.touch)), f"  {keys}"]
+    for pair in plane.pair:
+        keys = ", ".join(described(name, value, key) for name, value, key in stated(pair) if name != "blocks")
+        lines.append(f"  {' and '.join(pair.blocks)}: {keys}")
+    if assembly.bonds:
+        lines.append(TEXTS.text("bonds", len(assembly.bonds)))
+    if any(plane.gravity):
+        lines.append(TEXTS.text("gravity", *plane.gravity) + (TEXTS.text("ramp", plane.ramp) if plane.ramp else ""))
+    for load in plane.load:
+        where = load.block or "the outline"
+        vector = load.traction if load.force is None else load.force
+        lines.append(TEXTS.text("force" if load.force else "traction", *(vector or (0.0, 0.0)), where))
+    for block in moving[: MOST_ROWS // 2]:
+        if block.spin or any(block.velocity):
+            lines.append(TEXTS.text("velocity", block.name, *block.velocity, block.spin))
+    return [line for line in lines if line]
+
+
+def glued_numbers(plane: PlaneSection) -> Iterator[Number]:
+    """Yield the numbers of glued blocks."""
+    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
+    size = float(np.max(np.ptp(corners, axis=0)))
+    speed = math.sqrt(plane.young / plane.density)
+    yield Number("blocks", len(plane.polygons), "", "blocks of one strain")
+    yield Number("m", plane.density * sum(map(area, plane.polygons)), "kg", "mass of all blocks")
+    yield Number("c", speed, "m/s", "speed of a wave along a bar, sqrt(E/rho)")
+    yield Number("L/c", size / speed, "s", "travel time of the wave along the larger side")
+
+
+def moving_numbers(plane: PlaneSection, step: float) -> Iterator[Number]:
+    """Yield the numbers of moving blocks: a corner of the lightest one on the stiffest spring is the fastest motion."""
+    assembly = plane.assembly
+    moving = [block for block in assembly.blocks if not block.fixed]
+    masses = [block.density * area(block.vertices) for block in moving]
+    yield Number("blocks", len(moving), "", "blocks that move")
+    yield Number("m", sum(masses), "kg", "mass of all that move")
+    springs = [*assembly.springs_of_pairs.values(), *([assembly.springs] if assembly.springs else [])]
+    if not springs or not masses:
+        return
+    stiffest = max(contact.stiffness for contact in springs)
+    if weight := sum(masses) * math.hypot(*plane.gravity):
+        softest = min(contact.stiffness for contact in springs)
+        yield Number("W/p", weight / softest, "m", "compression of one spring under the weight of all that moves")
+    frequency = math.sqrt(stiffest / min(masses))
+    yield Number("wc", frequency, "rad/s", "lightest block on the stiffest spring, sqrt(p/m)")
+    yield Number("wc dt", frequency * step, "", "times the step; a period takes 2 pi over this many steps")

@@ -8,20 +8,30 @@ from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared, Solver
 from validation.solvers.hooks import SolvingHooks
-from validation.solvers.memory import sparse
+from validation.solvers.memory import NUMBER, sparse
+
+STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, and as many of its contacts
 
 
 class HOOKS(SolvingHooks):
-    """Glued blocks by `dda`, the elastic body of their outline by elements."""
+    """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
+
+    def refusal(self, scene: Scene, solver: str) -> str | None:
+        """Return why contacts that are found as blocks move are not stepped: none but stated ones are."""
+        plane = scene.table(PlaneSection)
+        if plane.moves and plane.contact is not None and not plane.touch:
+            return "contacts must be stated by [[plane.touch]]"
+        return None
 
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
         """Return blocks for `dda`, a mesh for `fem`."""
         plane = scene.table(PlaneSection)
         if solver == "dda":
+            from validation.models.plane.moving import MovingBlocks
             from validation.solvers.dda import scheme_of as dda_scheme
             from validation.solvers.plane.blocks import PlaneBlocks
 
-            return PlaneBlocks(scene, plane, dda_scheme(scene))
+            return (PlaneBlocks if plane.is_glued else MovingBlocks)(scene, plane, dda_scheme(scene))
         from validation.solvers.fem import scheme_of
         from validation.solvers.plane.mesh import PlaneMesh
 
@@ -35,7 +45,7 @@ class HOOKS(SolvingHooks):
         body = body_of(scene, plane)
         points, cells = points_and_cells(body)
         names = ("density", "young", "poisson", "hypothesis", "clamps", "tractions", "stress", "gravity", "degree")
-        observe = plane.observe
+        observe = plane.observed
         return {
             **{name: getattr(body, name) for name in names},
             "points": points,
@@ -45,14 +55,15 @@ class HOOKS(SolvingHooks):
         }
 
     def memory(self, scene: Scene, solver: Solver) -> tuple[float, str]:
-        """Return the bytes of the sparse matrices of blocks and joints, or of a mesh along the shorter side."""
+        """Return the bytes of sparse matrices and of states of moving blocks, or of a mesh along the shorter side."""
         plane = scene.table(PlaneSection)
         elements = scene.fem.per_side if solver.meshed else 0
         blocks = len(plane.polygons)
         if not elements:
             unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
             field = "plane.block" if plane.rectangle is None else "plane.subdivide"
-            return sparse(unknowns), field
+            states = float(STATE * NUMBER) * blocks * scene.time.steps if plane.moves else 0.0
+            return states + sparse(unknowns), field
         sides = plane.rectangle or (1.0, 1.0)
         cells = elements**2 * max(sides) / min(sides) * len(plane.outline_polygons)
         unknowns = 8.0 * cells

@@ -1,47 +1,36 @@
-"""The table of blocks in the plane that are glued along the edges they share, `[plane]`, in the place of a block."""
+"""The table of blocks in the plane, `[plane]`: what they are, what joins them and what drives them.
+
+With `[plane.observe]` the blocks are glued along all edges that they share and displacements are small; without it they
+move, turn and touch each other.
+"""
 
 from __future__ import annotations
 
-import itertools
 import math
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
+from validation.models.plane import assembly
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.blocks import Point as Point
+from validation.models.plane.blocks import Vertices, cells
+from validation.models.plane.contents import GENERATORS, PlaneContents
+from validation.models.plane.generators import MOST_BLOCKS
+from validation.models.plane.joints import Segment as Segment
 from validation.scenes.keys import Key, Section
-from validation.scenes.outline import check_polygon
 from validation.scenes.tables import Count, Positive, Real
 
-MOST_BLOCKS = 20_000  # polygons are lists, made before memory is predicted
-Point = tuple[Real, Real]
-Segment = tuple[Point, Point]
-PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
-Polygon = tuple[tuple[float, float], ...]
-
-
-class PlaneBlockSection(Section):
-    """A block by its corners."""
-
-    vertices: Annotated[tuple[Point, ...], Field(min_length=3), Key("m", "corners, counter-clockwise")]
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        check_polygon(self.vertices, 0, 1)
-        return self
+OF_MOTION = ("contact", "pair", "touch", "bond", "ramp", *GENERATORS)  # keys that go with moving blocks only
+OF_GLUED = ("stress", "clamp", "clamp_glue", "width", "height", "subdivide", "pattern")  # with glued ones only
+OF_MOVING_BLOCK = ("velocity", "spin", "fixed", "density", "young", "poisson", "subdivide")
 
 
 class ClampSection(Section):
     """A straight part of the outline that does not move."""
 
     edge: Annotated[Segment, Key("m", "from a point to a point of the outline")]
-
-
-class EdgeLoadSection(Section):
-    """A uniform traction on a straight part of the outline."""
-
-    edge: Annotated[Segment, Key("m", "from a point to a point of the outline")]
-    traction: Annotated[tuple[Real, Real], Key("Pa", "in x and y")]
 
 
 class ObserveSection(Section):
@@ -68,24 +57,24 @@ class ObserveSection(Section):
         return (self.point, self.point)  # type: ignore[return-value]  # one of the two is stated
 
 
-class PlaneSection(Section):
-    """Blocks of one strain in the plane, glued along all edges that they share, and the elastic body of their outline.
+class PlaneSection(PlaneContents):
+    """Blocks in the plane, of unit thickness: rigid, or of one strain each.
 
-    The blocks are stated one by one (`[[plane.block]]`), or as an upright rectangle with its lower left corner at the
-    origin that is cut into equal blocks (`width`, `height`, `subdivide`). At each end of a shared edge stand a
-    normal and a shear spring of `glue` times Young's modulus, for unit thickness.
+    Glued (with `[plane.observe]`): blocks of one strain, glued along all edges that they share, and the elastic body of
+    their outline. They are stated one by one, or as an upright rectangle with its lower left corner at the origin that
+    is cut into equal blocks (`width`, `height`, `subdivide`). At each end of a shared edge stand a normal and a shear
+    spring of `glue` times Young's modulus.
+
+    Moving: blocks stated one by one (`[[plane.block]]`) or generated (`[[plane.wall]]` and others), which touch by
+    `[plane.contact]` where they meet, or by the corners of `[[plane.touch]]` alone. A history holds ``NAME.x``,
+    ``NAME.y`` of a block's centroid, ``NAME.angle`` (`turned`, and the rotation since t = 0), and of contacts
+    ``A.2-B.0.normal``, the normal force of corner 2 of A on edge 0 of B.
     """
 
-    young: Annotated[Positive, Key("Pa", "Young's modulus", "E")]
-    density: Annotated[Positive, Key("kg/m3", "mass of a volume", "ρ")]
-    poisson: Annotated[PoissonRatio, Key("", "Poisson's ratio", "μ")] = 0.0
-    hypothesis: Annotated[Literal["plane stress", "plane strain"], Key("", "of the plane problem", "")] = "plane stress"
-    glue: Annotated[Positive, Key("m", "end spring of a shared edge over young", "g")] = 1.0e6
     clamp_glue: Annotated[Positive, Key("m", "the same of a clamped edge")] = 1.0e6
     stress: Annotated[
         tuple[Real, Real, Real], Key("Pa", "s_xx, s_yy, s_xy, whose tractions act on all of the outline", "σ")
     ] = (0.0, 0.0, 0.0)
-    gravity: Annotated[tuple[Real, Real], Key("m/s2", "acceleration in x and y")] = (0.0, 0.0)
     width: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "W")] = None
     height: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "H")] = None
     subdivide: Annotated[tuple[Count, Count] | None, Key("blocks", "of it in x and in y", "")] = None
@@ -93,24 +82,56 @@ class PlaneSection(Section):
         Literal["squares", "triangles"],
         Key("", "of its blocks; triangles: each cell cut from lower left to upper right", "", ("subdivide",)),
     ] = "squares"
-    block: Annotated[tuple[PlaneBlockSection, ...], Field(max_length=MOST_BLOCKS)] = ()
     clamp: tuple[ClampSection, ...] = ()
-    load: tuple[EdgeLoadSection, ...] = ()
-    observe: ObserveSection
+    observe: ObserveSection | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         stated = [name for name in ("width", "height", "subdivide") if getattr(self, name) is not None]
         if self.block and stated:
             raise ValueError(f"block and {stated[0]} exclude each other, got both")
+        if self.is_glued:
+            self._check_glued(stated)
+        else:
+            if apart := [name for name in OF_GLUED if name in self.model_fields_set]:
+                raise ValueError(f"observe: is required with {apart[0]}, got none")
+            if self.contact is None and self.touch:
+                raise ValueError("contact: is required with touch, got none")
+            if not self.block and not self.generators:
+                raise ValueError(f"needs blocks, [[plane.block]] or one of {', '.join(GENERATORS)}, got none")
+            assembly.check(self, self.assembly)
+        return self
+
+    def _check_glued(self, stated: list[str]) -> None:
+        if apart := [name for name in OF_MOTION if name in self.model_fields_set]:
+            raise ValueError(f"{apart[0]} does not go with observe, got it of blocks that are glued")
         if not self.block and len(stated) < 3:
             raise ValueError(f"needs blocks, or width, height and subdivide, got {' and '.join(stated) or 'none'}")
+        for number, block in enumerate(self.block):
+            if apart := sorted({*OF_MOVING_BLOCK} & block.model_fields_set):
+                raise ValueError(f"block.{number}: {apart[0]} does not go with observe, got it of a glued block")
         count = math.prod(self.subdivide or (1,)) * (2 if self.pattern == "triangles" else 1)
         if count > MOST_BLOCKS:
             raise ValueError(f"subdivide must make at most {MOST_BLOCKS} blocks, got {count}")
+        if math.isinf(self.young):
+            raise ValueError("young must be finite with observe, got inf")
+        for number, load in enumerate(self.load):
+            if load.traction is None or load.edge is None or load.ramp or load.block is not None:
+                raise ValueError(f"load.{number}: must be a traction on an edge at once with observe, got another load")
         if not self.load and not any(self.stress) and not any(self.gravity):
             raise ValueError("needs a load: stress, gravity or [[plane.load]], got none")
-        return self
+
+    @property
+    def observed(self) -> ObserveSection:
+        """What is observed of glued blocks."""
+        if self.observe is None:
+            raise ValueError("observe: is needed for what is asked, got blocks that move")
+        return self.observe
+
+    @property
+    def tractions(self) -> tuple[tuple[Segment, tuple[float, float]], ...]:
+        """The loads of glued blocks: edge [m] and traction [Pa]."""
+        return tuple((load.edge, load.traction) for load in self.load if load.edge and load.traction)
 
     @property
     def present(self) -> bool:
@@ -118,27 +139,34 @@ class PlaneSection(Section):
         return True
 
     @property
+    def is_glued(self) -> bool:
+        """Whether the blocks are glued along all edges that they share, and observed as they deform."""
+        return self.observe is not None
+
+    @property
+    def moves(self) -> bool:
+        """Whether the blocks move, turn and touch each other."""
+        return not self.is_glued
+
+    @cached_property
+    def assembly(self) -> Assembly:
+        """Moving blocks with their names resolved."""
+        return assembly.assembled(self)
+
+    @property
     def rectangle(self) -> tuple[float, float] | None:
         """Width and height of the rectangle that is cut [m], None where blocks are stated one by one."""
         return None if self.width is None or self.height is None else (self.width, self.height)
 
     @cached_property
-    def polygons(self) -> tuple[Polygon, ...]:
+    def polygons(self) -> tuple[Vertices, ...]:
         """Corners of every block, of a rectangle row by row from below."""
         if self.rectangle is None or self.subdivide is None:
-            return tuple(block.vertices for block in self.block)
-        width, height = self.rectangle
-        along, up = self.subdivide
-        xs = [width * i / along for i in range(along + 1)]
-        ys = [height * j / up for j in range(up + 1)]
-        polygons: list[Polygon] = []
-        for (low, high), (left, right) in itertools.product(itertools.pairwise(ys), itertools.pairwise(xs)):
-            a, b, c, d = (left, low), (right, low), (right, high), (left, high)
-            polygons += [(a, b, c, d)] if self.pattern == "squares" else [(a, b, c), (a, c, d)]
-        return tuple(polygons)
+            return tuple(block.vertices for block in assembly.placed_blocks(self)[0])
+        return tuple(outline for _, outline in cells(*self.rectangle, self.subdivide, self.pattern))
 
     @property
-    def outline_polygons(self) -> tuple[Polygon, ...]:
+    def outline_polygons(self) -> tuple[Vertices, ...]:
         """Polygons that tile the body, as few as there are: the rectangle, or the blocks."""
         if self.rectangle is None:
             return self.polygons

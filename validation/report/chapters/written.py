@@ -12,7 +12,8 @@ and is left out where a table or figure that it names shows nothing:
     { ledger = true }                                      where the energy of each scene went
     { history = "long-run", columns = ["displacement"] }   the histories of a scene
     { outcomes = 3 }                                       as many callouts on runs that did not complete
-    { picture = "cuts" }                                   blocks in the plane as they are cut
+    { picture = "cuts" }                                   scenes as they are drawn
+    { frames = "push" }                                    a motion at some instants, with contact forces
     { call = "f" }                                         what the function f(table, directory) of chapter.py returns
 
 and ``when``, a list of scenes that must be there. `validation.report.chapters.queries` has queries and expressions:
@@ -25,6 +26,7 @@ and ``when``, a list of scenes that must be there. `validation.report.chapters.q
     [panel.NAME]    of `ChartPanel`, and lines, each a query, x and y
     [looks.NAME]    how lines look by the value of ``each``, for lines whose ``looks`` is this name
     [picture.NAME]  file, caption, height in mm; ``scenes``, the title of each
+    [frames.NAME]   file, caption, height in mm; ``scene``, whose last case is drawn, ``solver``, ``times`` in s
     [maps.NAME]     file, caption; ``of`` a list, a line of maps each; rows, columns and maps are ``of`` something
 """
 
@@ -48,7 +50,7 @@ from validation.report.chapters.queries import Line, Query, StudyTable
 from validation.report.chapters.scene import gate_count, history_block, opening, outcomes, scene_section
 from validation.report.chapters.text import capital
 from validation.report.figures.charts import ChartLine
-from validation.report.figures.drawing import scenes_figure
+from validation.report.figures.drawing import FigureHooks, scenes_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.runs.history import Array
@@ -127,7 +129,9 @@ class WrittenChapter:
             shown += self._table(part["table"], query)
         if "picture" in part:
             shown += self._picture(part["picture"])
-        if {"figure", "maps", "table", "picture"} & set(part) and not shown:
+        if "frames" in part:
+            shown += self._frames(part["frames"])
+        if {"figure", "maps", "table", "picture", "frames"} & set(part) and not shown:
             return []
         if "history" in part:
             shown.append(history_block(self.table.groups[part["history"]], part["columns"], self.directory))
@@ -293,6 +297,20 @@ class WrittenChapter:
             return []
         figure = scenes_figure(cut, described["height"])
         return [saved(figure, self.directory, described["file"], described["caption"])]
+
+    def _frames(self, name: str) -> Blocks:
+        """Return a motion at some instants, of the last case of a scene."""
+        described = self.page.described("frames", name)
+        for line in self.table.lines({"of": described["scene"]})[-1:]:
+            history = None if line.case is None else line.case.histories.get(described["solver"])
+            if line.case is None or history is None:
+                continue
+            steps = [int(np.argmin(np.abs(history.time - instant))) for instant in described["times"]]
+            hooks = FigureHooks.of(line.case.scene)
+            figure = hooks.frames(line.case.scene, history, steps, described["solver"], described["height"])
+            if figure is not None:
+                return [saved(figure, self.directory, described["file"], described["caption"])]
+        return []
 
     def _lines(self, line: Query) -> Iterator[ChartLine]:
         """Yield the lines of one entry of a panel: one, or one for each value of ``each``, or for each history."""

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 
 from validation.report.figures.curves import GREY, engineering
 from validation.report.figures.histories import Margins, axes_grid, house_style, size_of
-from validation.runs.history import Array
+from validation.runs.history import Array, History
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
@@ -70,6 +70,10 @@ class Sketch:
         if words:
             self.axes.annotate(words, start, (2.5, 1.0), textcoords="offset points", fontsize=6.5, va="bottom")
 
+    def dot(self, point: Sequence[float]) -> None:
+        """Draw a dot at a point."""
+        self.axes.plot(*self._placed([point]).T, color="black", marker="o", ms=1.6, lw=0)
+
     def spring(self, foot: Sequence[float]) -> None:
         """Draw a spring between the ground and a corner above it."""
         length = SPRING * self.size
@@ -122,6 +126,10 @@ class FigureHooks(Hooks):
     def draw(self, axes: Axes, scene: Scene) -> None:
         """Draw a scene on a `Sketch` of these axes, and set their limits."""
         axes.set_axis_off()
+
+    def frames(self, scene: Scene, history: History, steps: Sequence[int], solver: str, height: float) -> Figure | None:
+        """Draw the bodies at some steps of a motion side by side, so many mm high; None where a kind does not."""
+        return None
 
 
 def scene_figure(scene: Scene) -> Figure:

@@ -21,7 +21,7 @@ class PlaneBlocks(PlaneModelled):
                 plane.glue * plane.young,
                 [clamp.edge for clamp in plane.clamp],
                 plane.clamp_glue * plane.young,
-                [dda.Traction(*load.edge, load.traction) for load in plane.load],
+                [dda.Traction(*edge, traction) for edge, traction in plane.tractions],
                 plane.stress,
                 plane.gravity,
             )

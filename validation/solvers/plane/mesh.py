@@ -43,7 +43,7 @@ def body_of(scene: Scene, plane: PlaneSection) -> PlaneBody:
         hypothesis=plane.hypothesis,
         rectangle=plane.rectangle is not None,
         clamps=tuple(clamp.edge for clamp in plane.clamp),
-        tractions=tuple((load.edge, load.traction) for load in plane.load),
+        tractions=plane.tractions,
         stress=plane.stress,
         gravity=plane.gravity,
         elements=ELEMENTS if scene.fem.elements is None else scene.fem.elements,
@@ -55,7 +55,7 @@ def elastic_model(scene: Scene, plane: PlaneSection) -> PlaneModel:
     """Return the elements of a scene's body."""
     from fem_reference.plane.model import PlaneModel
 
-    return PlaneModel(body_of(scene, plane))
+    return PlaneModel((body_of(scene, plane),))
 
 
 def points_and_cells(body: PlaneBody) -> tuple[list[list[float]], list[list[int]]]:

@@ -14,7 +14,7 @@ MODES = 4  # that are reported
 
 def observed_row(plane: PlaneSection, observer: Callable[[Point, Point], Array]) -> Array:
     """Return the row of the displacement that a scene observes."""
-    observe = plane.observe
+    observe = plane.observed
     rows = observer(*observe.place)
     for edge in observe.less:
         rows = rows - observer(*edge) / len(observe.less)

@@ -121,7 +121,7 @@ def _parts(case: Scene) -> tuple[float, float, int]:
     plane = case.table(PlaneSection)
     across, rows = plane.subdivide or (1, 1)
     width, length = plane.rectangle or (1.0, 1.0)
-    force = plane.load[0].traction[0] * width
+    force = plane.tractions[0][1][0] * width
     stiffness = plane.young * width**3 / 12 * bending_ratio(across, plane.glue)
     compliance = 2 * (1 + plane.poisson) / plane.young + 1 / (plane.glue * plane.young)
     return force * length * compliance / width, force * length**3 / (3 * stiffness), rows

@@ -1,0 +1,197 @@
+"""Scenes of blocks that move: what is refused by field and value before anything runs, and what generators draw."""
+
+import copy
+import math
+
+import numpy as np
+import pytest
+
+from validation.errors import InputError
+from validation.models.plane.geometry import inside, overlap, shared_edges, triangles_of
+from validation.scenes import features
+from validation.scenes.outline import area
+from validation.scenes.scene import parse_scene
+from validation.solvers.registry import get_solver
+
+AIR = [[0.0, 0.6], [1.0, 0.6]]
+FLOOR = {"name": "floor", "rectangle": [6.0, 1.0], "at": [0.0, -0.5], "fixed": True}
+SQUARE = {"name": "square", "rectangle": [1.0, 1.0], "at": [0.0, 0.5]}
+TOUCH = {"block": "square", "corner": 0, "on": "floor", "edge": 2}
+PLANE = {
+    "young": "inf",
+    "density": 2500.0,
+    "gravity": [0.0, -9.81],
+    "contact": {"stiffness": 1e9, "friction": 30.0},
+    "block": [FLOOR, SQUARE],
+}
+L_SHAPE = ((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0))
+
+
+def scene(changes=None, **run):
+    """Return the scene of a block on a floor with other values in its table."""
+    tables = {"plane": copy.deepcopy(PLANE) | (changes or {}), "time": {"step": 1e-3, "steps": 5}}
+    return parse_scene(tables | ({"run": run} if run else {}), "plane")
+
+
+def square(**changes):
+    """Return the blocks with changes of the upper one."""
+    return {"block": [FLOOR, SQUARE | changes]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "field", "value"),
+    [
+        (square(at=[0.0, 0.4]), "plane.block", "0.1 m"),
+        (square(at=[0.0, -0.5]), "plane.block", "0.5 m"),
+        (square(name="floor"), "plane.block", "'floor' twice"),
+        (square(rectangle=None, vertices=[[0.0, 0.0], [0.0, 1.0], [1.0, 0.0]]), "plane.block.1", "a clockwise outline"),
+        (
+            square(rectangle=None, vertices=[[0.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]),
+            "plane.block.1",
+            "edges 0 and 2 that do",
+        ),
+        (square(sides=6), "plane.block.1", "rectangle and sides"),
+        (square(subdivide=[2, 2]), "plane.block.1", "inf"),
+        (square(name="energy"), "plane.block", "'energy'"),
+        (square(at=[0.0, 2.0]) | {"gravity": [0.0, 0.0]}, "plane.block", "no load and no velocity"),
+        ({"contact": {"stiffness": 1e3}}, "plane.contact.stiffness", "24.5 m"),
+        (square(velocity=[0.0, -1e3]), "plane.contact.stiffness", "1.58 m"),
+        ({"contact": {"stiffness": 1e9, "cohesion": 1.0}}, "plane.contact", "1 without it"),
+        ({"pair": [{"blocks": ["square", "flor"], "friction": 1.0}]}, "plane.pair.0.blocks", "'flor'"),
+        ({"touch": [TOUCH | {"on": "florr"}]}, "plane.touch.0.on", "'florr'"),
+        ({"touch": [TOUCH | {"corner": 4}]}, "plane.touch.0.corner", "4"),
+        ({"touch": [TOUCH | {"edge": 0}]}, "plane.touch.0", "-1 m"),
+        ({"touch": [TOUCH, TOUCH | {"edge": 3}]}, "plane.touch.1", "-2.5 m"),
+        (
+            {"touch": [TOUCH], "block": [FLOOR, SQUARE, SQUARE | {"name": "alone", "at": [2.0, 0.5]}]},
+            "plane.block",
+            "neither",
+        ),
+        ({"touch": [TOUCH], "contact": None}, "plane.contact", "none"),
+        ({"bond": [{"blocks": ["square", "floor"], "stiffness": -1.0}]}, "plane.bond.0.stiffness", "-1.0"),
+        (
+            square(at=[0.0, 0.51]) | {"bond": [{"blocks": ["square", "floor"], "stiffness": 1e9}]},
+            "plane.bond.0",
+            "square and floor",
+        ),
+        ({"load": [{"force": [1.0, 0.0]}]}, "plane.load.0", "no block"),
+        (
+            {"load": [{"edge": [[0.0, 0.6], [1.0, 0.6]], "traction": [1.0, 0.0]}]},
+            "plane.load.0.edge",
+            "[[0.0, 0.6], [1.0, 0.6]]",
+        ),
+        ({"stress": [1.0, 0.0, 0.0]}, "plane.observe", "none"),
+        ({"block": []}, "plane", "none"),
+        (
+            {"block": [], "stack": [{"name": "s", "count": 2, "rectangle": [1.0, 1.0], "offsets": [0.0]}]},
+            "plane.stack.0",
+            "1",
+        ),
+        ({"observe": {"point": [0.0, 0.0], "direction": [1.0, 0.0]}}, "plane", "it of blocks that are glued"),
+    ],
+)
+def test_a_bad_scene_is_refused_by_field_and_value(changes, field, value):
+    scene()
+    with pytest.raises(InputError) as caught:
+        scene(changes)
+    assert (caught.value.field, caught.value.value) == (field, value)
+
+
+@pytest.mark.parametrize(
+    "column", ["sqare.x", "square.z", "square.4-floor.2.normal", "square.0-square.2.normal", "energy.heat"]
+)
+def test_a_column_of_nothing_is_refused(column):
+    scene(columns=["square.x", "square.0-floor.2.normal", "energy.kinetic", "momentum.angular"])
+    with pytest.raises(InputError) as caught:
+        scene(columns=[column])
+    assert caught.value.field == "run"
+
+
+def test_a_scene_keeps_the_poses_of_what_moves_and_no_other_solver_takes_it():
+    assert scene().run.columns == ("square.x", "square.y", "square.angle")
+    assert features.MOVING_BLOCKS in features.of(scene()) and not features.linear(scene())
+    assert features.MOVING_BLOCKS in (get_solver("fem").refusal(scene()) or "")
+
+
+def shared(first, second):
+    """Return the parts of edges that two outlines share."""
+    return list(shared_edges(first, second, 1e-9))
+
+
+GENERATED = {
+    "stack": ({"count": 3, "rectangle": [2.0, 0.5], "offsets": [0.0, 0.3, 0.2]}, 3, 3.0),
+    "wall": ({"rows": 4, "bricks": 5, "rectangle": [0.4, 0.2]}, 22, 1.6),
+    "arch": (
+        {"radius": 1.0, "thickness": 0.1, "voussoirs": 7},
+        9,
+        14 * math.sin(math.pi / 14) * math.cos(math.pi / 14) * 0.1 + 0.02,
+    ),
+    "columns": ({"width": 1.0, "heights": [2.0, 4.0, 4.0], "dip": 14.0, "rise": 1.0}, 4, 10.0 + 8.0),
+    "slope": (
+        {"angle": 30.0, "length": 8.0, "rectangles": [[4.0, 0.5], [1.9, 0.5]], "noses": [0.0, 0.2]},
+        3,
+        3.0 + 8.0,
+    ),
+}
+
+
+@pytest.mark.parametrize("generator", GENERATED)
+def test_generators_draw_blocks_that_touch_and_do_not_overlap(generator):
+    keys, count, total = GENERATED[generator]
+    table = {"name": "made", "turned": 3.0, "at": [1.0, 2.0]} | keys
+    assembly = scene({"block": [], generator: [table]}).plane.assembly
+    outlines = [block.vertices for block in assembly.blocks]
+    assert len(outlines) == len(assembly.members["made"]) == count
+    assert sum(map(area, outlines)) == pytest.approx(total, rel=1e-12)
+    touching = {
+        k for i in range(count) for j in range(i) if list(shared_edges(outlines[i], outlines[j], 1e-9)) for k in (i, j)
+    }
+    assert len(touching) == count or (generator == "slope" and count - len(touching) == 0)
+
+
+def test_random_polygons_are_the_same_by_the_same_seed():
+    table = {"name": "made", "count": 20, "seed": 7, "radii": [0.1, 0.3], "across": 5}
+
+    def outlines(**changes):
+        return [block.vertices for block in scene({"block": [], "random": [table | changes]}).plane.assembly.blocks]
+
+    assert outlines() == outlines() != outlines(seed=8)
+
+
+def test_parts_of_a_block_that_turns_move_as_one_body_and_are_glued_along_all_edges():
+    changes = {"subdivide": [2, 2], "young": 1e9, "spin": 2.0, "velocity": [1.0, 0.0], "at": [0.0, 5.0], "turned": 20.0}
+    assembly = scene(square(**changes)).plane.assembly
+    parts = [assembly.blocks[number] for number in assembly.members["square"]]
+    middle = np.mean([np.mean(part.vertices, axis=0) for part in parts], axis=0)
+    for part in parts:
+        arm = np.mean(part.vertices, axis=0) - middle
+        assert part.velocity == pytest.approx((1.0 - 2.0 * arm[1], 2.0 * arm[0]), abs=1e-12)
+    assert [bond.stiffness for bond in assembly.bonds] == [1e15] * 4
+
+
+def test_a_pair_replaces_what_it_states_of_the_springs_of_all_its_blocks():
+    stack = [{"name": "pile", "count": 2, "rectangle": [1.0, 1.0]}]
+    assembly = scene(
+        {"block": [FLOOR], "stack": stack, "pair": [{"blocks": ["pile", "floor"], "friction": 10.0}]}
+    ).plane.assembly
+    floor, low, high = (assembly.members[name][0] for name in ("floor", "pile_1", "pile_2"))
+    assert [assembly.springs_between(*pair).friction for pair in ((low, floor), (floor, high), (low, high))] == [
+        10,
+        10,
+        30,
+    ]
+
+
+@pytest.mark.parametrize(
+    ("shift", "depth"), [((2.0, 0.0), 0.0), ((1.0, 1.0), 0.0), ((0.9, 1.0), 0.1), ((0.0, 0.0), 0.5)]
+)
+def test_outlines_that_are_not_convex_overlap_by_what_lies_inside(shift, depth):
+    other = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
+    moved = tuple((x + shift[0], y + shift[1]) for x, y in other)
+    assert overlap(L_SHAPE, moved) == pytest.approx(depth, abs=1e-12) == overlap(moved, L_SHAPE)
+
+
+def test_triangles_tile_an_outline():
+    triangles = [tuple(L_SHAPE[corner] for corner in corners) for corners in triangles_of(L_SHAPE)]
+    assert sum(map(area, triangles)) == area(L_SHAPE) and min(map(area, triangles)) > 0
+    assert inside(np.array([[1.5, 1.5], [0.5, 1.5]]), L_SHAPE).tolist() == [False, True]

@@ -1,0 +1,86 @@
+"""Moving blocks by `dda`: columns of blocks and contacts, refusals, fields, and where contact forces are drawn."""
+
+import math
+
+import meshio
+import numpy as np
+import pytest
+
+from validation.models.plane.figure import frames_figure
+from validation.models.plane.motion import forces_at, outlines_at
+from validation.scenes.scene import parse_scene
+from validation.solvers.registry import get_solver, solve
+
+STIFFNESS = 1e8
+MASS = 2500.0
+SLOPE = 20.0
+SINK = MASS * 9.81 * math.cos(math.radians(SLOPE)) / (2 * STIFFNESS)
+TOUCH = {"block": "slope_1", "on": "slope_ground", "edge": 2}
+
+
+def sliding(columns=(), **changes):
+    """Return a square that slides down a slope at mu = tan(10 deg), standing on its springs from t = 0 on."""
+    slope = {"name": "slope", "angle": SLOPE, "length": 9.0, "rectangles": [[1.0, 1.0]], "sinks": [SINK]}
+    plane = {
+        "young": "inf",
+        "density": MASS,
+        "gravity": [0.0, -9.81],
+        "contact": {"stiffness": STIFFNESS, "shear_stiffness": 1e3 * STIFFNESS, "friction": 10.0},
+        "block": [{"name": "wall", "rectangle": [1.0, 1.0], "at": [-5.0, 0.0], "fixed": True}],
+        "slope": [slope | {"speeds": [1.0]}],
+        "touch": [TOUCH | {"corner": 0}, TOUCH | {"corner": 1}],
+    }
+    kept = [f"slope_1.{part}" for part in ("x", "y", "angle", "vx")]
+    kept += [f"slope_1.{corner}-slope_ground.2.{part}" for corner in (0, 1) for part in ("normal", "shear")]
+    time = {"step": 1e-3, "steps": 200, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
+    run = {"columns": columns or [*kept, "energy.balance", "energy.friction", "momentum.x"]}
+    return parse_scene({"plane": plane | changes, "time": time, "run": run}, "sliding")
+
+
+def test_a_block_slides_by_its_friction_and_the_forces_are_those_of_its_columns():
+    scene = sliding()
+    history = solve(scene, "dda").history
+    mu, slope = math.tan(math.radians(10)), math.radians(SLOPE)
+    acceleration = 9.81 * (math.sin(slope) - mu * math.cos(slope))
+    columns = history.columns
+    # The speed is that of a rigid block but for the pitch that friction excites, which is bounded.
+    speed = columns["slope_1.vx"] / math.cos(slope)
+    assert np.max(np.abs(speed - 1 - acceleration * history.time)) < 2e-3
+    assert np.max(np.abs(columns["energy.balance"])) < 1e-8 * MASS
+    assert columns["momentum.x"] == pytest.approx(MASS * columns["slope_1.vx"])
+    weight = MASS * 9.81 * math.cos(slope)
+    total = sum(force for _, force in forces_at(scene.plane.assembly, history, 199))
+    normal = sum(columns[f"slope_1.{corner}-slope_ground.2.normal"][199] for corner in (0, 1))
+    uphill, outward = (-math.cos(slope), math.sin(slope)), (math.sin(slope), math.cos(slope))
+    assert total @ outward == pytest.approx(normal) == pytest.approx(weight, rel=1e-3)
+    assert total @ uphill == pytest.approx(mu * normal)
+
+
+def test_fields_hold_where_the_corners_are_and_the_forces_on_them(tmp_path):
+    scene = sliding()
+    path = tmp_path / "fields.vtu"
+    history = get_solver("dda").prepare(scene).run(path).history
+    mesh = meshio.read(path)
+    outlines = np.vstack(outlines_at(scene.plane.assembly, history, 199))
+    points = mesh.points + mesh.point_data["displacement"]
+    assert points[:, :2] == pytest.approx(outlines, abs=1e-12) and len(mesh.cells_dict["triangle"]) == 6
+    places, forces = zip(*forces_at(scene.plane.assembly, history, 199), strict=True)
+    assert mesh.point_data["contact force"][4:6, :2] == pytest.approx(np.array(forces))
+    assert outlines[4:6] == pytest.approx(np.array(places))
+
+
+def test_frames_show_each_contact_force_by_an_arrow_at_one_scale():
+    scene = sliding()
+    history = solve(scene, "dda").history
+    figure = frames_figure(scene.plane, history, [0, 100, 199], "dda")
+    assert [len(axes.texts) for axes in figure.axes] == [2, 2, 2]
+    assert len({(axes.get_xlim(), axes.get_ylim()) for axes in figure.axes}) == 1
+
+
+def test_a_free_block_turns_from_where_it_was_put():
+    block = {"name": "free", "sides": 5, "radius": 1.0, "turned": 30.0, "spin": 2.0, "velocity": [1.0, 0.0]}
+    names = ["free.angle", "free.x", "momentum.angular"]
+    run = solve(sliding(names, slope=[], touch=[], contact=None, block=[block], gravity=[0.0, 0.0]), "dda")
+    angle, x, momentum = (run.history.columns[name] for name in names)
+    assert angle == pytest.approx(math.radians(30) + 2 * run.history.time)
+    assert x == pytest.approx(run.history.time) and momentum == pytest.approx(momentum[0])

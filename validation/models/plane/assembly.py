@@ -1,0 +1,308 @@
+"""A scene of blocks in the plane with all names resolved, checked before anything runs."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.models.plane import geometry
+from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, thickness
+from validation.models.plane.contents import PlaneContents
+from validation.models.plane.geometry import Segment
+from validation.models.plane.history import POSE, RESERVED
+from validation.models.plane.joints import PlaneContactSection
+from validation.scenes.outline import area
+from validation.scenes.unknown import did_you_mean
+
+OVERLAP = 0.01  # of the thinner block: deeper, and no compression of springs at the start explains it
+TOUCHING = 1e-6  # of the thinner block: nearer blocks touch, and edges that are so near are one
+
+
+@dataclass(frozen=True)
+class StatedContact:
+    """A corner of a block that may press on an edge of another one, by their numbers."""
+
+    block: int
+    corner: int
+    on: int
+    edge: int
+    springs: PlaneContactSection
+
+
+@dataclass(frozen=True)
+class Bond:
+    """Glue at both ends of a part of an edge that two blocks share."""
+
+    first: int
+    second: int
+    edge: Segment  # [m]
+    stiffness: float  # N/m, of the normal spring at an end
+    shear: float  # N/m
+
+
+@dataclass(frozen=True)
+class BlockLoad:
+    """A force on a block [N], or a traction on a part of its edge [Pa]."""
+
+    block: int
+    vector: tuple[float, float]
+    place: tuple[float, float] | None  # [m]; None: at the centroid, or along the edge
+    edge: Segment | None  # [m]
+    ramp: float  # s
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """Blocks, what joins them and what drives them, by the numbers of the blocks."""
+
+    blocks: tuple[PlacedBlock, ...]
+    members: Mapping[str, tuple[int, ...]]  # the blocks of each name: its own, those it is cut into, or generates
+    contacts: tuple[StatedContact, ...]
+    bonds: tuple[Bond, ...]
+    loads: tuple[BlockLoad, ...]
+    springs: PlaneContactSection | None  # of pairs that state none
+    springs_of_pairs: Mapping[tuple[int, int], PlaneContactSection]
+
+    def springs_between(self, first: int, second: int) -> PlaneContactSection | None:
+        """Return the springs of corners between two blocks, None where nothing touches."""
+        return self.springs_of_pairs.get((min(first, second), max(first, second)), self.springs)
+
+    @property
+    def thinnest(self) -> float:
+        """Return the least thickness of a block that moves [m]."""
+        return min(thickness(block.vertices) for block in self.blocks if not block.fixed)
+
+    @property
+    def pose_columns(self) -> tuple[str, ...]:
+        """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
+        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.fixed for part in POSE)
+
+
+def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], dict[str, tuple[int, ...]]]:
+    """Return the blocks where they are at t = 0, and the numbers of those that each name means.
+
+    Raises
+    ------
+    ValueError
+        Two blocks have one name.
+    """
+    blocks: list[PlacedBlock] = []
+    members: dict[str, list[int]] = {}
+    for name, group, section in _sections(plane):
+        for block in section.placed(plane, name):
+            for meant in {block.name, name, group}:
+                members.setdefault(meant, []).append(len(blocks))
+            blocks.append(block)
+    names = [block.name for block in blocks]
+    if reserved := {*RESERVED} & {*members}:
+        raise ValueError(f"block: must not be called {' or '.join(RESERVED)}, as columns are, got {min(reserved)!r}")
+    if len(set(names)) < len(names):
+        repeated = next(name for name in names if names.count(name) > 1)
+        raise ValueError(f"block: names must differ, got {repeated!r} twice")
+    return tuple(blocks), {name: tuple(numbers) for name, numbers in members.items()}
+
+
+def _sections(plane: PlaneContents) -> Iterator[tuple[str, str, PlaneBlockSection]]:
+    """Yield the name of each block, that of its generator or its own, and its table."""
+    for number, block in enumerate(plane.block, start=1):
+        name = block.name or f"block_{number}"
+        yield name, name, block
+    for generator in plane.generators:
+        for block in generator.blocks():
+            yield block.name, generator.name, block
+
+
+def assembled(plane: PlaneContents) -> Assembly:
+    """Return a scene of moving blocks with its names resolved.
+
+    Raises
+    ------
+    ValueError
+        "field: rule, got value": a name is no block's, blocks overlap, a bond joins what does not touch, a corner is
+        not in front of the edge that it may press on, a block touches nothing and nothing moves it, or springs are
+        so soft that a block falls through another one.
+    """
+    blocks, members = placed_blocks(plane)
+    springs_of_pairs = {}
+    for number, pair in enumerate(plane.pair):
+        if plane.contact is None:
+            raise ValueError("contact: is required with pair, got none")
+        springs = pair.over(plane.contact)
+        first, second = (_named(members, name, f"pair.{number}.blocks") for name in pair.blocks)
+        for i, j in itertools.product(first, second):
+            springs_of_pairs[min(i, j), max(i, j)] = springs
+    assembly = Assembly(
+        blocks=blocks,
+        members=members,
+        contacts=(),
+        bonds=tuple(_bonds(plane, blocks, members)),
+        loads=tuple(_loads(plane, blocks, members)),
+        springs=plane.contact,
+        springs_of_pairs=springs_of_pairs,
+    )
+    contacts = tuple(_contacts(plane, assembly))
+    return Assembly(**{**vars(assembly), "contacts": contacts})
+
+
+def _named(members: Mapping[str, tuple[int, ...]], name: str, field: str) -> tuple[int, ...]:
+    if name not in members:
+        question = did_you_mean(name, members)
+        raise ValueError(f"{field}: must name a block, got {name!r}{f'; {question}' if question else ''}")
+    return members[name]
+
+
+def _one(members: Mapping[str, tuple[int, ...]], name: str, field: str) -> int:
+    """Return the number of the one block that a name means."""
+    numbers = _named(members, name, field)
+    if len(numbers) > 1:
+        raise ValueError(f"{field}: must name one block, got {name!r} of {len(numbers)}")
+    return numbers[0]
+
+
+def _bonds(
+    plane: PlaneContents, blocks: Sequence[PlacedBlock], members: Mapping[str, tuple[int, ...]]
+) -> Iterator[Bond]:
+    """Yield the bonds that a scene states, and the glue of blocks that are cut."""
+    for number, bond in enumerate(plane.bond):
+        firsts, seconds = (_named(members, name, f"bond.{number}.blocks") for name in bond.blocks)
+        bonds = [
+            Bond(i, j, edge, bond.stiffness, bond.shear)
+            for i, j in itertools.product(firsts, seconds)
+            for edge in _shared_edges(blocks, i, j)
+        ]
+        if not bonds:
+            raise ValueError(f"bond.{number}: must join blocks that share an edge, got {' and '.join(bond.blocks)}")
+        yield from bonds
+    for number, section in enumerate(plane.block):
+        if section.subdivide is None:
+            continue
+        parts = members[section.name or f"block_{number + 1}"]
+        young = blocks[parts[0]].young
+        if math.isinf(young):
+            raise ValueError(f"block.{number}: subdivide goes with a finite young, got inf")
+        outlines = [blocks[part].vertices for part in parts]
+        reach = np.full(len(parts), TOUCHING * min(map(thickness, outlines)))
+        for i, j in geometry.near_pairs(outlines, reach):
+            for edge in _shared_edges(blocks, parts[i], parts[j]):
+                yield Bond(parts[i], parts[j], edge, plane.glue * young, plane.glue * young)
+
+
+def _shared_edges(blocks: Sequence[PlacedBlock], first: int, second: int) -> list[Segment]:
+    one, other = blocks[first].vertices, blocks[second].vertices
+    return list(geometry.shared_edges(one, other, TOUCHING * min(thickness(one), thickness(other))))
+
+
+def _loads(
+    plane: PlaneContents, blocks: Sequence[PlacedBlock], members: Mapping[str, tuple[int, ...]]
+) -> Iterator[BlockLoad]:
+    for number, load in enumerate(plane.load):
+        field = f"load.{number}"
+        named = range(len(blocks)) if load.block is None else _named(members, load.block, f"{field}.block")
+        if load.force is not None:
+            yield BlockLoad(_one(members, str(load.block), f"{field}.block"), load.force, load.at, None, load.ramp)
+            continue
+        edge, vector = load.edge or ((0.0, 0.0), (0.0, 0.0)), load.traction or (0.0, 0.0)
+        parts = [
+            BlockLoad(block, vector, None, part, load.ramp)
+            for block in named
+            for part in _edge_parts(blocks[block], edge)
+        ]
+        if not parts:
+            raise ValueError(f"{field}.edge: must lie on the outline of a block, got {list(map(list, edge))}")
+        yield from parts
+
+
+def _edge_parts(block: PlacedBlock, edge: Segment) -> Iterator[Segment]:
+    """Yield the parts of a line that are edges of a block: of either direction along it."""
+    tolerance = TOUCHING * thickness(block.vertices)
+    start, end = np.array(edge)
+    across = tolerance * np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
+    for side in (across, -across):  # a strip whose long side is the line, on one side of it and on the other
+        strip = (start, end, end + side, start + side) if side is across else (end, start, start + side, end + side)
+        corners = tuple((float(x), float(y)) for x, y in strip)
+        yield from geometry.shared_edges(block.vertices, corners, tolerance / 2)
+
+
+def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContact]:
+    for number, touch in enumerate(plane.touch):
+        field = f"touch.{number}"
+        block = _one(assembly.members, touch.block, f"{field}.block")
+        on = _one(assembly.members, touch.on, f"{field}.on")
+        outline, other = assembly.blocks[block].vertices, assembly.blocks[on].vertices
+        for key, index, corners, name in (
+            ("corner", touch.corner, outline, touch.block),
+            ("edge", touch.edge, other, touch.on),
+        ):
+            if index >= len(corners):
+                raise ValueError(f"{field}.{key}: must be from 0 to {len(corners) - 1} of {name}, got {index}")
+        if block == on:
+            raise ValueError(f"{field}.on: must be another block, got {touch.on!r}")
+        share, outside = geometry.corner_on_edge(outline[touch.corner], other, touch.edge)
+        size = min(thickness(outline), thickness(other))
+        place = f"corner {touch.corner} of {touch.block}"
+        if not -TOUCHING <= share <= 1 + TOUCHING:
+            raise ValueError(
+                f"{field}: {place} must be in front of edge {touch.edge} of {touch.on}, got {share:.3g} of its length"
+            )
+        if not -OVERLAP * size <= outside <= size:
+            bounds = f"between {-OVERLAP * size:.3g} and {size:.3g} m outside of {touch.on}"
+            raise ValueError(f"{field}: {place} must be {bounds}, got {outside:.3g} m")
+        springs = assembly.springs_between(block, on)
+        if springs is not None:
+            yield StatedContact(block, touch.corner, on, touch.edge, springs)
+
+
+def check(plane: PlaneContents, assembly: Assembly) -> None:
+    """Check that blocks lie apart, that nothing rests for ever on nothing, and that springs hold what comes.
+
+    Raises
+    ------
+    ValueError
+        "field: rule, got value".
+    """
+    blocks = assembly.blocks
+    sizes = np.array([thickness(block.vertices) for block in blocks])
+    joined = {number for bond in assembly.bonds for number in (bond.first, bond.second)}
+    joined |= {number for contact in assembly.contacts for number in (contact.block, contact.on)}
+    if not assembly.contacts:
+        outlines = [block.vertices for block in blocks]
+        for i, j in geometry.near_pairs(outlines, TOUCHING * sizes):
+            size = min(sizes[i], sizes[j])
+            depth = geometry.overlap(outlines[i], outlines[j])
+            if depth > OVERLAP * size and not (blocks[i].fixed and blocks[j].fixed):
+                raise ValueError(f"block: {blocks[i].name} and {blocks[j].name} must not overlap, got {depth:.3g} m")
+            if depth > 0 or geometry.gap(outlines[i], outlines[j]) <= TOUCHING * size:
+                joined |= {i, j}
+    loaded = {load.block for load in assembly.loads}
+    weighty = any(plane.gravity)
+    for number, block in enumerate(blocks):
+        if block.fixed or number in joined:
+            continue
+        if assembly.contacts or (assembly.bonds and assembly.springs is None):
+            raise ValueError(f"block: {block.name} must be in a touch or a bond as others are, got neither")
+        if not (weighty or number in loaded or block.spin or any(block.velocity)):
+            raise ValueError(f"block: {block.name} touches nothing and nothing moves it, got no load and no velocity")
+    for number, block in enumerate(blocks):
+        if not block.fixed and assembly.springs is not None:
+            _check_springs(plane, assembly, number, float(sizes[number]))
+
+
+def _check_springs(plane: PlaneContents, assembly: Assembly, number: int, size: float) -> None:
+    """Refuse springs that a block's weight, or the energy of its velocity, presses through."""
+    block = assembly.blocks[number]
+    pairs = [springs for pair, springs in assembly.springs_of_pairs.items() if number in pair]
+    stiffness = min(springs.stiffness for springs in (*pairs, assembly.springs) if springs is not None)
+    mass = block.density * area(block.vertices)
+    for cause, depth in (
+        ("weight", mass * math.hypot(*plane.gravity) / stiffness),
+        ("velocity", math.hypot(*block.velocity) * math.sqrt(mass / stiffness)),
+    ):
+        if depth > size:
+            raise ValueError(
+                f"contact.stiffness: must stop {block.name}, which is {size:.3g} m thick, and {stiffness:g} N/m lets "
+                f"its {cause} through, got {depth:.3g} m"
+            )

@@ -1,0 +1,188 @@
+"""Blocks in the plane as a scene states them, by corners or by a shape, and where they are at t = 0."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Literal, Self
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from validation.scenes.keys import Key, Section
+from validation.scenes.outline import check_polygon
+from validation.scenes.tables import Count, Flag, Positive, Real, Stiffness
+
+Point = tuple[Real, Real]
+Vertices = tuple[tuple[float, float], ...]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
+PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
+Hypothesis = Literal["plane stress", "plane strain"]
+Sides = Annotated[Count, Field(ge=3, le=1000)]
+
+
+@dataclass(frozen=True)
+class PlacedBlock:
+    """A block where it is at t = 0."""
+
+    name: str
+    vertices: Vertices  # [m], counter-clockwise
+    density: float  # kg/m3
+    young: float  # Pa; infinite: rigid
+    poisson: float
+    hypothesis: Hypothesis
+    fixed: bool
+    velocity: tuple[float, float]  # of the centroid [m/s]
+    spin: float  # rad/s
+    angle: float  # from the outline as it is stated [rad]
+
+
+class PlaneMaterialSection(Section):
+    """What blocks are made of where they say nothing themselves."""
+
+    young: Annotated[Stiffness, Key("Pa", "Young's modulus; inf: rigid", "E")]
+    density: Annotated[Positive, Key("kg/m3", "mass of a volume", "ρ")]
+    poisson: Annotated[PoissonRatio, Key("", "Poisson's ratio", "μ")] = 0.0
+    hypothesis: Annotated[Hypothesis, Key("", "of the plane problem", "")] = "plane stress"
+
+
+class PlaneBlockSection(Section):
+    """A block by its corners, as a rectangle or as a regular polygon; moved to `at` when it has been turned."""
+
+    name: Annotated[Name | Literal[""], Key("", "letters, digits and _; block_1, block_2, ... if absent")] = ""
+    vertices: Annotated[
+        Annotated[tuple[Point, ...], Field(min_length=3)] | None, Key("m", "corners, counter-clockwise")
+    ] = None
+    rectangle: Annotated[tuple[Positive, Positive] | None, Key("m", "width and height, about its centre")] = None
+    sides: Annotated[Sides | None, Key("", "of a regular polygon about its centre")] = None
+    radius: Annotated[Positive | None, Key("m", "from its centre to its corners")] = None
+    at: Annotated[Point, Key("m", "where the origin of the corners is, the centre of a shape")] = (0.0, 0.0)
+    turned: Annotated[Real, Key("deg", "about that origin, counter-clockwise")] = 0.0
+    velocity: Annotated[tuple[Real, Real], Key("m/s", "of the centroid at t = 0")] = (0.0, 0.0)
+    spin: Annotated[Real, Key("rad/s", "at t = 0, counter-clockwise")] = 0.0
+    fixed: Annotated[Flag, Key("", "whether it does not move")] = False
+    density: Annotated[Positive | None, Key("kg/m3", "that of plane if absent", "ρ")] = None
+    young: Annotated[Stiffness | None, Key("Pa", "that of plane if absent; inf: rigid", "E")] = None
+    poisson: Annotated[PoissonRatio | None, Key("", "that of plane if absent", "μ")] = None
+    subdivide: Annotated[
+        tuple[Count, Count] | None, Key("blocks", "of a rectangle in x and in y, glued by plane.glue", "")
+    ] = None
+    pattern: Annotated[
+        Literal["squares", "triangles"],
+        Key("", "of these; triangles: each cell cut from lower left to upper right"),
+    ] = "squares"
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        shapes = [name for name in ("vertices", "rectangle", "sides") if getattr(self, name) is not None]
+        if len(shapes) != 1:
+            rule = "needs vertices, a rectangle or sides with radius"
+            raise ValueError(f"{self.label}{rule}, got {' and '.join(shapes) or 'none'}")
+        if (self.sides is None) != (self.radius is None):
+            raise ValueError(f"{self.label}sides and radius go together, got one of them")
+        if self.subdivide is not None and self.rectangle is None:
+            raise ValueError(f"{self.label}subdivide goes with rectangle only, got {shapes[0]}")
+        if self.fixed and (self.spin or any(self.velocity)):
+            raise ValueError(f"{self.label}must not move where it is fixed, got a velocity")
+        try:
+            check_polygon(self.outline, 0, 1)
+        except ValueError as error:
+            raise ValueError(f"{self.label}{error}") from None
+        return self
+
+    @property
+    def label(self) -> str:
+        """What a message begins with: the name, where there is one."""
+        return f"of {self.name}: " if self.name else ""
+
+    @property
+    def outline(self) -> Vertices:
+        """Corners about the outline's own origin [m]."""
+        if self.vertices is not None:
+            return self.vertices
+        if self.rectangle is not None:
+            x, y = self.rectangle[0] / 2, self.rectangle[1] / 2
+            return ((-x, -y), (x, -y), (x, y), (-x, y))
+        turns = [2 * math.pi * k / (self.sides or 1) for k in range(self.sides or 1)]
+        radius = self.radius or 1.0
+        return tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
+
+    def placed(self, material: PlaneMaterialSection, name: str) -> Iterator[PlacedBlock]:
+        """Yield the block where it is at t = 0, or the blocks that it is cut into, row by row from below.
+
+        Parts of a block that turns have the velocities of one rigid body.
+        """
+        centre = np.array(centroid(moved(self.outline, self.at, self.turned)))
+        for suffix, outline in self._parts():
+            vertices = moved(outline, self.at, self.turned)
+            arm = np.array(centroid(vertices)) - centre
+            yield PlacedBlock(
+                name=f"{name}{suffix}",
+                vertices=vertices,
+                density=material.density if self.density is None else self.density,
+                young=material.young if self.young is None else self.young,
+                poisson=material.poisson if self.poisson is None else self.poisson,
+                hypothesis=material.hypothesis,
+                fixed=self.fixed,
+                velocity=(self.velocity[0] - self.spin * float(arm[1]), self.velocity[1] + self.spin * float(arm[0])),
+                spin=self.spin,
+                angle=math.radians(self.turned),
+            )
+
+    def _parts(self) -> Iterator[tuple[str, Vertices]]:
+        """Yield what each part is called behind the block's name, and its outline."""
+        if self.rectangle is None or self.subdivide is None:
+            yield "", self.outline
+            return
+        width, height = self.rectangle
+        for suffix, outline in cells(width, height, self.subdivide, self.pattern):
+            yield suffix, tuple((x - width / 2, y - height / 2) for x, y in outline)
+
+
+def cells(
+    width: float, height: float, subdivide: tuple[int, int], pattern: Literal["squares", "triangles"]
+) -> Iterator[tuple[str, Vertices]]:
+    """Yield the parts of an upright rectangle from the origin, row by row from below: ``_2_1`` is second in the first.
+
+    Triangles of a cell are ``_2_1a``, below its diagonal, and ``_2_1b``.
+    """
+    along, up = subdivide
+    xs = [width * i / along for i in range(along + 1)]
+    ys = [height * j / up for j in range(up + 1)]
+    rows, columns = enumerate(itertools.pairwise(ys), start=1), enumerate(itertools.pairwise(xs), start=1)
+    for (row, (low, high)), (column, (left, right)) in itertools.product(rows, list(columns)):
+        a, b, c, d = (left, low), (right, low), (right, high), (left, high)
+        if pattern == "squares":
+            yield f"_{column}_{row}", (a, b, c, d)
+        else:
+            yield f"_{column}_{row}a", (a, b, c)
+            yield f"_{column}_{row}b", (a, c, d)
+
+
+def moved(outline: Vertices, at: tuple[float, float], turned: float) -> Vertices:
+    """Return an outline turned about its origin [deg] and then moved [m]; what does not turn keeps its digits."""
+    x, y = at
+    if not turned:
+        return tuple((px + x, py + y) for px, py in outline)
+    cosine, sine = math.cos(math.radians(turned)), math.sin(math.radians(turned))
+    return tuple((x + cosine * px - sine * py, y + sine * px + cosine * py) for px, py in outline)
+
+
+def centroid(vertices: Vertices) -> tuple[float, float]:
+    """Return the centroid of an outline [m]."""
+    points = np.array(vertices)
+    local = points - points[0]
+    following = np.roll(local, -1, axis=0)
+    crosses = local[:, 0] * following[:, 1] - following[:, 0] * local[:, 1]
+    x, y = points[0] + crosses @ (local + following) / (3 * np.sum(crosses))
+    return float(x), float(y)
+
+
+def thickness(vertices: Vertices) -> float:
+    """Return the least extent of an outline normal to one of its edges [m]."""
+    points = np.array(vertices)
+    edges = np.roll(points, -1, axis=0) - points
+    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
+    return float(np.min(np.ptp(points @ normals.T, axis=0)))

@@ -1,0 +1,87 @@
+"""Columns of a history of moving blocks: of a block, of a contact, of all; their units and what they mean.
+
+``A.x`` is of block A, ``A.2-B.0.normal`` of corner 2 of A on edge 0 of B, ``momentum.x`` and ``energy.kinetic`` of all.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+POSE = ("x", "y", "angle")
+MOMENTUM, ENERGY = "momentum", "energy"
+RESERVED = (MOMENTUM, ENERGY)  # no block is called so
+OF_BLOCK: Mapping[str, tuple[str, str]] = {
+    "x": ("m", "position of the centroid"),
+    "y": ("m", "position of the centroid, upwards"),
+    "angle": ("rad", "angle to the outline as it is stated, counter-clockwise, not folded"),
+    "vx": ("m/s", "velocity of the centroid"),
+    "vy": ("m/s", "velocity of the centroid, upwards"),
+    "spin": ("rad/s", "rate of the angle"),
+    "ex": ("", "strain along x of the block's own axes, which turn with it"),
+    "ey": ("", "strain along y of the block's own axes, which turn with it"),
+    "gxy": ("", "shear strain in the block's own axes"),
+}
+OF_CONTACT: Mapping[str, tuple[str, str]] = {
+    "normal": ("N", "normal force, compression positive"),
+    "shear": ("N", "force against the direction of the edge, which runs counter-clockwise about its block"),
+    "gap": ("m", "distance of the corner from the edge, negative where the spring is compressed"),
+    "slip": ("m", "sliding of the corner along the edge"),
+}
+OF_MOMENTUM: Mapping[str, tuple[str, str]] = {
+    "x": ("kg m/s", "momentum of all blocks that move"),
+    "y": ("kg m/s", "momentum of all blocks that move, upwards"),
+    "angular": ("kg m2/s", "angular momentum of all blocks that move, about the origin"),
+}
+OF_ENERGY: Mapping[str, tuple[str, str]] = {
+    "kinetic": ("J", "kinetic energy"),
+    "strain": ("J", "energy of the blocks' strains"),
+    "springs": ("J", "energy of contact springs and glue"),
+    "load": ("J", "what weight and loads have given since t = 0, negative"),
+    "friction": ("J", "work that friction has taken since t = 0"),
+    "algorithmic": ("J", "energy that the scheme has taken since t = 0"),
+    "kinetic_damping": ("J", "energy that gg has taken since t = 0"),
+    "switching": ("J", "energy that closing and opening have taken since t = 0"),
+    "balance": ("J", "what the account leaves: rounding"),
+}
+_OF_CONTACT = re.compile(r"(\w+)\.(\d+)-(\w+)\.(\d+)\.(\w+)")
+_OF_BLOCK = re.compile(r"(\w+)\.(\w+)")
+
+
+@dataclass(frozen=True)
+class ColumnPlace:
+    """What a column is of: a block, a contact (block, corner, other block, edge), or all blocks."""
+
+    part: str  # "x", "normal", "kinetic"
+    block: str = ""
+    contact: tuple[str, int, str, int] | None = None
+    whole: str = ""  # "momentum" or "energy"
+
+
+def place_of(column: str) -> ColumnPlace | None:
+    """Return what a column is of by its name, None where no column is called so."""
+    if match := _OF_CONTACT.fullmatch(column):
+        contact = match[1], int(match[2]), match[3], int(match[4])
+        return ColumnPlace(match[5], contact=contact) if match[5] in OF_CONTACT else None
+    match = _OF_BLOCK.fullmatch(column)
+    if match is None:
+        return None
+    whole = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY}.get(match[1])
+    if whole is not None:
+        return ColumnPlace(match[2], whole=match[1]) if match[2] in whole else None
+    return ColumnPlace(match[2], block=match[1]) if match[2] in OF_BLOCK else None
+
+
+def unit_and_meaning(column: str) -> tuple[str, str]:
+    """Return unit and meaning of a column; nothing of one that is of no kind."""
+    place = place_of(column)
+    if place is None:
+        return "", ""
+    parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_CONTACT if place.contact else OF_BLOCK}
+    return parts[place.whole][place.part]
+
+
+def contact_column(block: str, corner: int, on: str, edge: int, part: str) -> str:
+    """Return the name of a contact's column."""
+    return f"{block}.{corner}-{on}.{edge}.{part}"

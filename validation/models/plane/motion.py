@@ -1,0 +1,67 @@
+"""A motion of blocks, as a history tells it: outlines and contact forces at its steps, for drawings and fields."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.history import contact_column, place_of
+from validation.runs.history import Array, History
+
+Contact = tuple[str, int, str, int]  # a corner of a block on an edge of another one
+
+
+def outlines_at(assembly: Assembly, history: History, step: int) -> list[Array]:
+    """Return the corners of every block at a step [m], with its strains where they are kept, shape (n, 2) each."""
+    return [_outline(block, history, step) for block in assembly.blocks]
+
+
+def _outline(block: PlacedBlock, history: History, step: int) -> Array:
+    """X + R(turn) (I + strain) (corner - centroid); a block whose pose is not kept stays where it was."""
+    corners = np.array(block.vertices)
+    columns = history.columns
+    if f"{block.name}.x" not in columns:
+        return corners
+    x, y, angle = (float(columns[f"{block.name}.{part}"][step]) for part in ("x", "y", "angle"))
+    ex, ey, gxy = (
+        float(columns[name][step]) if (name := f"{block.name}.{part}") in columns else 0.0
+        for part in ("ex", "ey", "gxy")
+    )
+    turn = angle - block.angle
+    rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    stretch = np.array([[1 + ex, gxy / 2], [gxy / 2, 1 + ey]])
+    outline: Array = np.array([x, y]) + (corners - centroid(block.vertices)) @ (rotation @ stretch).T
+    return outline
+
+
+def contacts_of(history: History) -> list[Contact]:
+    """Return the contacts whose normal force a history has."""
+    places = (place_of(column) for column in history.columns)
+    return [place.contact for place in places if place is not None and place.contact and place.part == "normal"]
+
+
+def force_on_corner(contact: Contact, outlines: Mapping[str, Array], history: History, step: int) -> Array:
+    """Return the force of a contact on the block whose corner it is [N].
+
+    The normal force acts along the outward normal of the edge, the shear force against the edge, which runs
+    counter-clockwise.
+    """
+    block, corner, on, edge = contact
+    outline = outlines[on]
+    along = outline[(edge + 1) % len(outline)] - outline[edge]
+    along = along / np.hypot(*along)
+    normal = float(history.columns[contact_column(block, corner, on, edge, "normal")][step])
+    sheared = history.columns.get(contact_column(block, corner, on, edge, "shear"))
+    force: Array = normal * np.array([along[1], -along[0]])
+    return force if sheared is None else force - float(sheared[step]) * along
+
+
+def forces_at(assembly: Assembly, history: History, step: int) -> Iterator[tuple[Array, Array]]:
+    """Yield where each contact that a history has is [m] and the force on the block whose corner it is [N]."""
+    names = (block.name for block in assembly.blocks)
+    outlines = dict(zip(names, outlines_at(assembly, history, step), strict=True))
+    for contact in contacts_of(history):
+        yield outlines[contact[0]][contact[1]], force_on_corner(contact, outlines, history, step)

@@ -1,0 +1,160 @@
+"""Moving blocks in the plane by `dda`: the scene as its model, the columns of its result."""
+
+from __future__ import annotations
+
+import time
+
+import numpy as np
+
+import dda
+from validation.errors import InputError
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.history import ENERGY, OF_BLOCK, OF_MOMENTUM, contact_column, place_of
+from validation.models.plane.joints import PlaneContactSection
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import Array, History
+from validation.runs.run import Outcome, Run
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Prepared
+from validation.solvers.translation import naming
+
+AFTER_START = slice(1, None)  # rows of a history: one a step, without that of t = 0
+
+
+def springs_of(contact: PlaneContactSection) -> dda.ContactSprings:
+    """Return the springs of a corner as `dda` takes them."""
+    return dda.ContactSprings(
+        stiffness=contact.stiffness,
+        shear=contact.shear,
+        friction=contact.friction_coefficient if contact.shear else None,
+        cohesion=contact.cohesion,
+        tension=contact.tension,
+    )
+
+
+def model_of(plane: PlaneSection) -> dda.PlaneModel:
+    """Return the model of a scene; weight that grows is a load of each block."""
+    assembly = plane.assembly
+    blocks = [
+        dda.PlaneBlock(
+            block.vertices,
+            block.density,
+            young=block.young,
+            poisson=block.poisson,
+            hypothesis=block.hypothesis,
+            fixed=block.fixed,
+            velocity=block.velocity,
+            spin=block.spin,
+            name=block.name,
+        )
+        for block in assembly.blocks
+    ]
+    loads = [
+        dda.PlaneLoad(load.block, load.vector, place=load.place, edge=load.edge, ramp=load.ramp)
+        for load in assembly.loads
+    ]
+    if plane.ramp:
+        for number, block in enumerate(assembly.blocks):
+            mass = block.density * area(block.vertices)
+            weight = mass * plane.gravity[0], mass * plane.gravity[1]
+            loads += [] if block.fixed else [dda.PlaneLoad(number, weight, ramp=plane.ramp)]
+    return dda.PlaneModel(
+        blocks,
+        contacts=[
+            dda.CornerOnEdge(contact.block, contact.corner, contact.on, contact.edge, springs_of(contact.springs))
+            for contact in assembly.contacts
+        ],
+        bonds=[
+            dda.EdgeBond(bond.first, bond.second, *bond.edge, bond.stiffness, bond.shear) for bond in assembly.bonds
+        ],
+        loads=loads,
+        gravity=(0.0, 0.0) if plane.ramp else plane.gravity,
+        found=None if plane.touch else _found(assembly),
+    )
+
+
+def _found(assembly: Assembly) -> object:
+    """Return the springs of contacts that are found, by pair of blocks where pairs have their own."""
+    if assembly.springs is None:
+        return None
+    common = springs_of(assembly.springs)
+    own = {pair: springs_of(springs) for pair, springs in assembly.springs_of_pairs.items()}
+    if not own:
+        return common
+    return lambda first, second: own.get((min(first, second), max(first, second)), common)
+
+
+class MovingBlocks(Prepared):
+    """Blocks that move, turn and touch each other."""
+
+    has_fields = True
+
+    def __init__(self, scene: Scene, plane: PlaneSection, scheme: dda.Scheme) -> None:
+        self.scene = scene
+        self.plane = plane
+        self.scheme = scheme
+        with naming(scene):
+            self.model = model_of(plane)
+
+    def history_run(self) -> Run:
+        """Run the scene."""
+        began = time.perf_counter()
+        result = dda.solve_plane(self.model, self.scheme, self.scene.time.steps)
+        seconds = {"stepping": time.perf_counter() - began}
+        names = [block.name for block in self.plane.assembly.blocks]
+        columns = {name: self._column(result, names, name) for name in self.scene.run.columns}
+        outcome, _, step = result.outcome.partition(" at ")
+        if self.fields is not None and outcome == Outcome.COMPLETED:
+            self._write_fields(result, names)
+        work = {"steps": result.reached, "solves": int(np.sum(result.solves)), "cuts": int(np.sum(result.cuts))}
+        notes = (result.note, *([f"ended at {step}"] if step else []))
+        return Run(Outcome(outcome), History(result.time[AFTER_START], columns), work, seconds, notes)
+
+    def _column(self, result: dda.PlaneResult, names: list[str], column: str) -> Array:
+        """Return a column of a result by its name; a contact that never carried a force has carried none."""
+        place = place_of(column)
+        if place is None:
+            raise InputError("must be a column", source=self.scene.name, field="run.columns", value=repr(column))
+        if place.whole == ENERGY:
+            values = result.energy[place.part.replace("_", " ")]
+        elif place.whole:
+            values = result.momentum[:, [*OF_MOMENTUM].index(place.part)]
+        elif place.contact is None:
+            values = self._of_block(result, names.index(place.block), place.part)
+        else:
+            block, corner, on, edge = place.contact
+            key = names.index(block), corner, names.index(on), edge
+            contacts = [tuple(contact) for contact in result.contacts]
+            if key not in contacts:
+                return np.zeros(len(result.time) - 1)
+            values = getattr(result, place.part)[:, contacts.index(key)]
+        return np.asarray(values)[AFTER_START]
+
+    def _of_block(self, result: dda.PlaneResult, block: int, part: str) -> Array:
+        start = self.plane.assembly.blocks[block].angle
+        values = {
+            "x": result.centroid[:, block, 0],
+            "y": result.centroid[:, block, 1],
+            "angle": start + result.angle[:, block],
+            "vx": result.velocity[:, block, 0],
+            "vy": result.velocity[:, block, 1],
+            "spin": result.velocity[:, block, 2],
+            "ex": result.strain[:, block, 0],
+            "ey": result.strain[:, block, 1],
+            "gxy": result.strain[:, block, 2],
+        }
+        return np.asarray(values[part])
+
+    def _write_fields(self, result: dda.PlaneResult, names: list[str]) -> None:
+        """Write outlines, strains and contact forces of all blocks."""
+        from validation.models.plane.fields import write_fields
+
+        parts = [(f"{name}.{part}", k, part) for k, name in enumerate(names) for part in OF_BLOCK]
+        columns = {name: self._of_block(result, k, part)[AFTER_START] for name, k, part in parts}
+        for block, corner, on, edge in result.contacts:
+            for part in ("normal", "shear"):
+                name = contact_column(names[block], corner, names[on], edge, part)
+                columns[name] = self._column(result, names, name)
+        if self.fields is not None:
+            write_fields(self.fields, self.plane.assembly, History(result.time[AFTER_START], columns))

@@ -1,0 +1,1 @@
+"""Blocks that push each other down a slope."""

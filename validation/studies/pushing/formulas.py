@@ -1,0 +1,206 @@
+"""The study `pushing`: two blocks on a slope, and two wedges, against motions in closed form.
+
+Blocks are rigid, contacts are stated, and what the springs add to a rigid base falls with their stiffness p: a corner
+gives way by W/p at most, so that angles and arms change by its share of the thinnest block, W/(p l). That first
+correction is the band of what is exact for rigid blocks.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+from scipy.optimize import brentq
+
+from validation.engine.finished import Derived, Finished
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import Array, History
+from validation.runs.row import Value
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.studies.pushing.exact import Pushing, at
+from validation.suite.bands import Band, cases
+
+PUSHING = ("pushing-both", "pushing-held")
+EXACT = "exact motion"
+PASSIVE, ACTIVE = math.radians(10), math.radians(50)  # dips of the planes that the wedges slide on
+SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
+LIMIT = 1.16335645885845  # factor of safety at 35 degrees, 20 between the wedges
+STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
+
+
+# ---- two blocks on a slope ----------------------------------------------------------------------------------------
+
+
+def problem_of(scene: Scene) -> Pushing:
+    """Return the exact problem of a scene of two blocks on a slope."""
+    plane = scene.table(PlaneSection)
+    slope = plane.slope[0]
+    assembly = plane.assembly
+    upper, lower, ground = (assembly.members[f"slope_{name}"][0] for name in ("1", "2", "ground"))
+    masses = [plane.density * area(assembly.blocks[block].vertices) for block in (upper, lower)]
+    springs = [assembly.springs_between(block, ground) for block in (upper, lower)]
+    friction = [(contact.friction_coefficient if contact else None) or 0.0 for contact in springs]
+    between = assembly.springs_between(upper, lower)
+    return Pushing(
+        (masses[0], masses[1]),
+        (friction[0], friction[1]),
+        math.radians(slope.angle),
+        between.stiffness if between else 0.0,
+        slope.gaps[1],
+        (slope.speeds[0], slope.speeds[1]),
+    )
+
+
+def down(history: History, block: str, angle: float) -> Array:
+    """Return the way of a block down a slope since the first row [m]."""
+    x, y = (history.columns[f"{block}.{part}"] for part in ("x", "y"))
+    way: Array = (x - x[0]) * math.cos(angle) - (y - y[0]) * math.sin(angle)
+    return way
+
+
+def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
+    """Return how far both blocks are from the exact motion at the end [m]."""
+    problem = problem_of(scene)
+    start, end = at(problem, float(history.time[0])), at(problem, float(history.time[-1]))
+    upper, lower = (
+        float(down(history, f"slope_{block + 1}", problem.slope)[-1]) - (end[block] - start[block]) for block in (0, 1)
+    )
+    return upper, lower
+
+
+def against_exact(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return how far both blocks and their centre of mass are from the exact motion at the end [m]."""
+    upper, lower = errors_at_end(scene, history)
+    first, second = problem_of(scene).masses
+    push = history.columns["slope_2.4-slope_1.1.normal"]
+    energy = history.columns["energy.kinetic"]
+    return {
+        "upper": upper,
+        "lower": lower,
+        "centre": (first * upper + second * lower) / (first + second),
+        "largest push": float(np.max(push)),
+        "balance": float(np.max(np.abs(history.columns["energy.balance"])) / np.max(energy)),
+    }
+
+
+def orders(name: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the error of each block over twice that of half the step."""
+    coarse, fine = (errors_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(name))
+    return {block: coarse[number] / (2 * fine[number]) for number, block in enumerate(("upper", "lower"))}
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that compare two steps, and two stiffnesses."""
+    rows = []
+    for name in PUSHING:
+        needs = tuple((case.name, "dda") for case in cases(name))
+        rows.append(Derived(name, "order", needs, partial(orders, name)))
+    return tuple(rows)
+
+
+def first_correction(case: Scene) -> float:
+    """Return W/(p l): all weight on one corner spring over the thinnest block that moves."""
+    plane = case.table(PlaneSection)
+    moving = [block for block in plane.assembly.blocks if not block.fixed]
+    weight = sum(block.density * area(block.vertices) for block in moving) * math.hypot(*plane.gravity)
+    stiffness = plane.contact.stiffness if plane.contact else math.inf
+    return weight / (stiffness * plane.assembly.thinnest)
+
+
+def centre(case: Scene) -> Band:
+    """Return the error of the centre of mass [m]: the first correction of its way."""
+    problem = problem_of(case)
+    end = at(problem, case.time.duration)
+    first, second = problem.masses
+    way = (first * end[0] + second * end[1]) / (first + second)
+    half = first_correction(case) * way
+    return -half, half
+
+
+def first_order() -> Band:
+    """Return 1 -/+ w h: the share by which the error of the larger step h departs from a straight line in it.
+
+    Both scenes have the same blocks, spring and steps.
+    """
+    case = next(iter(cases(PUSHING[0])))
+    problem = problem_of(case)
+    frequency = math.sqrt(problem.stiffness * sum(1 / mass for mass in problem.masses))
+    return 1 - frequency * case.time.step, 1 + frequency * case.time.step
+
+
+# ---- two wedges ---------------------------------------------------------------------------------------------------
+
+
+def wedge_motion(scene: Scene) -> dict[str, float]:
+    """Return accelerations [m/s2] and normal forces [N] of rigid wedges that slide."""
+    plane = scene.table(PlaneSection)
+    assembly = plane.assembly
+    rock, passive, active = (assembly.members[name][0] for name in ("rock", "passive", "active"))
+    W2, W1 = (plane.density * area(assembly.blocks[block].vertices) * -plane.gravity[1] for block in (passive, active))
+    p, q = (
+        math.atan((contact.friction_coefficient if contact else None) or 0.0)
+        for contact in (assembly.springs_between(passive, rock), assembly.springs_between(passive, active))
+    )
+    a1, a2, g = ACTIVE, PASSIVE, -plane.gravity[1]
+
+    def left_over(P: float) -> float:
+        A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
+        A2 = (P * math.cos(p - a2 + q) - W2 * math.sin(p - a2)) / (W2 / g * math.cos(p))
+        return A2 * math.cos(a2) - A1 * math.cos(a1)
+
+    P = float(brentq(left_over, 0.0, W1 + W2, xtol=1e-6, rtol=1e-14))
+    A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
+    normal = P * math.cos(q)
+    return {
+        "active": A1,
+        "passive": A1 * math.cos(a1) / math.cos(a2),
+        "interface": normal,
+        "active base": W1 * math.cos(a1) + P * math.sin(a1 - q),
+        "passive base": W2 * math.cos(a2) - P * math.sin(a2 - q),
+    }
+
+
+def up_dip(history: History, block: str, dip: float) -> Array:
+    """Return the way of a wedge down its plane [m]."""
+    x, y = (history.columns[f"{block}.{part}"] for part in ("x", "y"))
+    way: Array = -(x - x[0]) * math.cos(dip) - (y - y[0]) * math.sin(dip)
+    return way
+
+
+def against_wedges(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return accelerations and mean forces over those of rigid wedges, less one, and the larger speed at the end."""
+    late = history.time > SETTLED
+    ways = {"active": up_dip(history, "active", ACTIVE), "passive": up_dip(history, "passive", PASSIVE)}
+    measured = {name: 2 * float(np.polyfit(history.time[late], way[late], 2)[0]) for name, way in ways.items()}
+    corners = {
+        "interface": [f"passive.{corner}-active.2.normal" for corner in (2, 3)],
+        "active base": [f"active.{corner}-rock.3.normal" for corner in (0, 1)],
+        "passive base": [f"passive.{corner}-rock.4.normal" for corner in (0, 1)],
+    }
+    for name, columns in corners.items():
+        measured[name] = float(np.mean(sum(history.columns[column][late] for column in columns)))
+    exact = wedge_motion(scene)
+    speed = max(float(way[-1] - way[-2]) for way in ways.values()) / scene.time.step
+    return {name: value / exact[name] - 1 for name, value in measured.items()} | {"speed": speed}
+
+
+def rigid_wedges(case: Scene) -> Band:
+    """Return the first correction in 1/p."""
+    half = first_correction(case)
+    return -half, half
+
+
+def at_the_limit(case: Scene) -> Band:
+    """Return the speed at the end [m/s]: none above the limit; below it at least what half the excess drives.
+
+    Of tan(phi) 1 % too low, the weight along the planes exceeds the friction by a hundredth of it.
+    """
+    plane = case.table(PlaneSection)
+    tangent = plane.contact.friction_coefficient if plane.contact else 0.0
+    stands = (tangent or 0.0) > math.tan(math.radians(35)) / LIMIT
+    if stands:
+        return -STANDS, STANDS
+    return 0.01 / 2 * -plane.gravity[1] * math.sin(PASSIVE) * (case.time.duration - plane.ramp), math.inf
