@@ -24,7 +24,6 @@ from validation.studies.pushing.exact import Pushing, at
 from validation.suite.bands import Band, cases
 
 PUSHING = ("pushing-both", "pushing-held")
-EXACT = "exact motion"
 PASSIVE, ACTIVE = math.radians(10), math.radians(50)  # dips of the planes that the wedges slide on
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 LIMIT = 1.16335645885845  # factor of safety at 35 degrees, 20 between the wedges
