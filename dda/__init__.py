@@ -5,33 +5,33 @@ scheme with kinetic damping, in a form that keeps its digits for stiff springs; 
 recursion beside it; the scheme's spectral formulas. Importing the package costs numpy only.
 """
 
+from dda.bodies.block_system import BlockSystem, SurfaceLoad
+from dda.bodies.diagnostics import Diagnostics, diagnostics
+from dda.bodies.gap_form import UNKNOWNS, GapForm, ModalForm, modal_form
+from dda.bodies.glued_blocks import GluedBlocks, Traction, glued_blocks
+from dda.bodies.joints import FIXED, Joint, shared_edges
+from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve, solve_adaptive
+from dda.bodies.locked_system import solve_system
+from dda.bodies.opening_system import OpeningSystem, opening_subdivided, solve_opening_system
+from dda.bodies.subdivision import subdivided
+from dda.bodies.two_block import TwoBlockModel
+from dda.bodies.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
 from dda.contact.springs import Contact, contact_stiffness, spring_vectors
 from dda.contact.unilateral import Unilateral
+from dda.linear.answers import Mode, highest_frequency, modes, response, static
 from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
-from dda.one_block.contact_result import ContactResult
-from dda.one_block.gap_form import COLUMNS, UNKNOWNS, GapForm
-from dda.one_block.modes import Diagnostics, Mode, diagnostics, modes
-from dda.one_block.natural_modes import ModalForm, modal_form
-from dda.one_block.response import response
-from dda.one_block.solution import ADAPTIVE_COLUMNS, Result, solve, solve_adaptive
-from dda.one_block.textbook import solve_textbook, textbook_applicable
-from dda.one_block.two_block import TwoBlockModel
-from dda.one_block.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
+from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
 from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
 from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
+from dda.result.contact_result import ContactResult
+from dda.result.result import COLUMNS, Result
 from dda.scheme import roots, spectral
 from dda.scheme.named import SCHEMES, named_scheme
 from dda.scheme.newmark import Scheme
-from dda.system.glued import GluedBlocks, Traction, glued_blocks
-from dda.system.joints import FIXED, Joint, shared_edges
-from dda.system.opening import OpeningSystem, opening_subdivided, solve_opening_system
-from dda.system.response import system_response
-from dda.system.solution import highest_frequency, solve_system, static_system, system_modes
-from dda.system.subdivision import subdivided
-from dda.system.system import BlockSystem, SurfaceLoad
+from dda.textbook import solve_textbook, textbook_applicable
 
 __all__ = [
     "ADAPTIVE_COLUMNS",
@@ -48,6 +48,7 @@ __all__ = [
     "CornerOnEdge",
     "Diagnostics",
     "EdgeBond",
+    "FirstContact",
     "GapForm",
     "GluedBlocks",
     "Joint",
@@ -72,6 +73,8 @@ __all__ = [
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
+    "first_block_contact",
+    "first_contact",
     "glued_blocks",
     "highest_frequency",
     "modal_form",
@@ -90,9 +93,7 @@ __all__ = [
     "solve_unilateral",
     "spectral",
     "spring_vectors",
-    "static_system",
+    "static",
     "subdivided",
-    "system_modes",
-    "system_response",
     "textbook_applicable",
 ]

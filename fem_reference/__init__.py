@@ -21,12 +21,19 @@ if TYPE_CHECKING:
     from fem_reference.history.solver import solve, static
     from fem_reference.history.unilateral import Unilateral, UnilateralResult, solve_unilateral
     from fem_reference.mesh.model import assemble
+    from fem_reference.plane.body import PlaneBody
+    from fem_reference.plane.contact import PatchContact
+    from fem_reference.plane.model import BodiesResult, PlaneModel
     from fem_reference.scheme.eigen import highest_frequency, modes
 
 _HOMES = {
     "ADAPTIVE_COLUMNS": "history.adaptive",
     "Bar": "exact.bar",
+    "BodiesResult": "plane.model",
     "Friction": "contact.points",
+    "PatchContact": "plane.contact",
+    "PlaneBody": "plane.body",
+    "PlaneModel": "plane.model",
     "applicable": "exact.bar",
     "assemble": "mesh.model",
     "highest_frequency": "scheme.eigen",
@@ -46,9 +53,13 @@ __all__ = [
     "SCHEMES",
     "UNILATERAL_COLUMNS",
     "Bar",
+    "BodiesResult",
     "Friction",
     "Mode",
     "Motion",
+    "PatchContact",
+    "PlaneBody",
+    "PlaneModel",
     "Problem",
     "Result",
     "Scheme",

@@ -32,9 +32,9 @@ from rivals import block_modes, block_numpy, column_numpy, elements_skfem, engin
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
-from dda.column.column import Column, Layer, Spring  # noqa: E402
-from dda.column.contacts import ColumnContactResult, solve_contact_column  # noqa: E402
-from dda.column.stepping import Drive  # noqa: E402
+from dda.bodies.bonded_column import Drive  # noqa: E402
+from dda.bodies.column import Column, Layer, Spring  # noqa: E402
+from dda.bodies.contact_column import ColumnContactResult, solve_contact_column  # noqa: E402
 from dda.march import compiled  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
@@ -275,7 +275,7 @@ def opening_steps(steps: int = 10**5, dt: float = 1e-5, p: float = 1.5e9) -> str
     model = opening_model(p)
     opening_history(4 * steps, dt, model)  # long enough to be compiled, which is kept
     seconds, answer = least(lambda: opening_history(steps, dt, model), 5)
-    switches = np.count_nonzero(np.diff(answer.closed_m))
+    switches = np.count_nonzero(np.diff(answer.closed[0]))
     off = difference(tuple(answer.columns.values()), block_numpy.opening(steps, dt=dt, p=p))
     runs = engine_runs(dt, np.tile([0.0, -9.81], (steps, 1)), gap=1e-3)
     compared = f"numpy loop, all states' inverses: {off:.0e}"

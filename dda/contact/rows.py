@@ -56,7 +56,9 @@ NONE = 1
 SEVERAL = 2
 OVERFLOW = 3
 LIMIT = 4  # the limit of solves
-UNREACHED = 5  # no shorter step helps
+UNREACHED = 5  # no shorter step helps, here and below
+TOO_MANY = 6
+TOO_DEEP = 7
 OUTCOMES = {
     FOUND: "completed",
     NONE: "no consistent contact state",
@@ -64,6 +66,8 @@ OUTCOMES = {
     OVERFLOW: "overflow",
     LIMIT: "solve limit exceeded",
     UNREACHED: "pass limit exceeded",
+    TOO_MANY: "more contacts than there is room for",
+    TOO_DEEP: "a corner deeper in a block than a step can bring it",
 }
 
 ROUNDING = 1e-12  # of a bound, by which the force of a sticking row may exceed it
@@ -76,6 +80,7 @@ class Laws(NamedTuple):
     """The laws of all rows, (m,) each unless said."""
 
     contacts: int  # n
+    rows: int  # m, n or 2n; records may be longer
     compliance: Vector  # c [m/N]; 0: rigid
     lower: Vector  # least force of a row inside of its bounds [N]
     upper: Vector  # greatest one; of a row with friction its cohesion [N]
@@ -166,6 +171,7 @@ def laws_of(law: Unilateral, contacts: int, rows: int, limit: int, share: float 
     cohesion = law.cohesion if law.friction is not None else math.inf
     return Laws(
         contacts=contacts,
+        rows=rows,
         compliance=np.where(across, law.compliance, law.softness) / share,
         lower=np.where(across, -law.pull, -cohesion) * share,
         upper=np.where(across, math.inf, cohesion) * share,
@@ -206,7 +212,7 @@ def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wor
         Room for the equations, with the openings `work.q` of a step without contact forces.
     """
     n = laws.contacts
-    m = len(before.force)
+    m = laws.rows
     copy(before.state, work.tried)
     if laws.lagged:
         return lagged(laws, before, flexible, after, work)
@@ -231,7 +237,7 @@ def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int
     lower = laws.lower
     upper = laws.upper
     damped = laws.retardation > 0
-    rows = len(force)
+    rows = laws.rows
     friction = rows > n and laws.slips
     wrong = 0
     for i in range(n):
@@ -333,7 +339,7 @@ def is_smooth(laws: Laws, i: int) -> bool:
 
 def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
     """Set the first row that disagrees, alone, until all agree or states come back."""
-    m = len(before.force)
+    m = laws.rows
     copy(work.tried, work.saved)
     solves = laws.together
     changes = 0
@@ -366,7 +372,7 @@ def every_state(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, wo
 
     Of contacts with dashpots, which may have several (`with_dashpot`), the first ones.
     """
-    m = len(before.force)
+    m = laws.rows
     choices = choices_of(laws, m)
     count = choices**laws.contacts
     solves = laws.together
@@ -499,7 +505,7 @@ def begin_anew(before: Rows, after: Rows, r: int, state: int) -> None:
 def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> None:
     """Write the rows at the end of the step in the states `work.tried`, whether their forces agree or not."""
     n = laws.contacts
-    m = len(after.force)
+    m = laws.rows
     copy(work.tried, after.state)
     if m == 1:
         after.force[0] = 0.0
@@ -559,7 +565,7 @@ def unretarded(laws: Laws, flexible: Flexibility, after: Rows, work: Work, r: in
 
 def flexed(laws: Laws, flexible: Flexibility, r: int, force: Vector) -> float:
     """Return W_r lambda [m]."""
-    m = len(force)
+    m = laws.rows
     W = flexible.W
     total = 0.0
     for s in range(m):
@@ -570,7 +576,7 @@ def flexed(laws: Laws, flexible: Flexibility, r: int, force: Vector) -> float:
 def solve_dense(laws: Laws, flexible: Flexibility, after: Rows, work: Work, closing: int) -> None:
     """Write the forces for given `work.beta`, and dN/dbeta of the contacts that close."""
     n = laws.contacts
-    m = len(after.force)
+    m = laws.rows
     A = work.A
     right = work.right
     unknown = work.unknown
@@ -616,7 +622,7 @@ def list_unknown(laws: Laws, after: Rows, work: Work) -> int:
     """List the rows whose forces are unknown, write those of the others that follow no friction; return how many."""
     n = laws.contacts
     size = 0
-    for r in range(len(after.force)):
+    for r in range(laws.rows):
         after.force[r] = 0.0
         state = work.tried[r]
         if state == INSIDE and (r < n or holds_along(laws, work, r - n)):

@@ -39,7 +39,6 @@ from dda.contact.rows import (
     LIMIT,
     NONE,
     OVERFLOW,
-    UNREACHED,
     Flexibility,
     Laws,
     Rows,
@@ -260,7 +259,13 @@ def reached_history(history: History, reached: int) -> History:
 
 
 def set_length(march: March, stage: StageRoom, ratio: float, length: Length) -> None:
-    """Write what belongs to a length: 1/s of the modes, and the flexibility of the contacts.
+    """Write what belongs to a length: 1/s of the modes, and the flexibility of the contacts."""
+    write_flexibility(march, set_modes(march, stage, ratio, length), length)
+    march.lengths[0] += 1
+
+
+def set_modes(march: March, stage: StageRoom, ratio: float, length: Length) -> float:
+    """Write what belongs to a length but for its contacts; return the weight of their forces in the displacement [s^2].
 
     A shorter step keeps the share gg^ratio of the velocity, so that the parts of a step together keep gg.
     """
@@ -281,8 +286,7 @@ def set_length(march: March, stage: StageRoom, ratio: float, length: Length) -> 
         retarded = weight + march.laws.retardation * late * h
         length.flexible.own[0] = weight / retarded if weight > 0 else 0.0
         weight = retarded
-    write_flexibility(march, weight, length)
-    march.lengths[0] += 1
+    return weight
 
 
 def write_flexibility(march: March, weight: float, length: Length) -> None:
@@ -664,7 +668,7 @@ def steps_by(
                             break
                         before = end
                 if outcome != FOUND:
-                    if ratio <= SHORTEST or outcome in (UNREACHED, LIMIT):
+                    if ratio <= SHORTEST or outcome >= LIMIT:
                         return number, outcome
                     ratio = max(cut * ratio, SHORTEST)
                     history.cuts[row] += 1

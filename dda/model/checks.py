@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 
@@ -36,3 +36,16 @@ def check_share(**values: float) -> None:
 def check_count(**values: int) -> None:
     """Raise ValueError unless all values are positive integers."""
     _check("a positive integer", lambda n: isinstance(n, int) and not isinstance(n, bool) and n > 0, values)
+
+
+def check_columns(known: Sequence[str], columns: Sequence[str]) -> None:
+    """Raise ValueError unless every column is known."""
+    for name in columns:
+        if name not in known:
+            raise ValueError(f"columns: must be among {', '.join(known)}, got {name!r}")
+
+
+def check_damping(damped: bool, moving: bool) -> None:
+    """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
+    if damped and moving:
+        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")

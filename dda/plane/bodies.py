@@ -32,10 +32,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from dda.bodies.gap_form import free_block
 from dda.contact.dense import Matrix, Vector
 from dda.model.arrays import Array
 from dda.model.block import Block
-from dda.rotation.body import modes_of
 
 STRAINS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]])  # E of unit strains
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
@@ -92,9 +92,9 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
         k.append(np.zeros(RIGID))
         if modes == RIGID:
             continue
-        natural = modes_of(inertia, block)  # strains come first there
-        shapes[i] = natural.shapes[3:, :3]
-        k.append(natural.k[:3])
+        natural, unknowns = free_block(inertia, block)  # strains come first there
+        shapes[i] = unknowns[3:, :3]
+        k.append(natural[:3])
         section = block.section
         S = block.material.density * np.array([[section.s1, section.s3], [section.s3, section.s2]])
         M[i] = inertia[3:, 3:]

@@ -4,8 +4,8 @@ Two convex parts are apart while one edge of either has the other part in front 
 by the first of these rules that holds:
 
 a. the edge through which they are really pressed, however deep, as long as its corner lies over it;
-b. of the edges at which they touch, that which the step without contact leaves farthest in front, unless nothing of the
-   other part lies over it and another edge is crossed in this step;
+b. of the edges at which they touch, that which the step without contact presses least, as they slide along it, unless
+   nothing of the other part lies over it and another edge is crossed in this step;
 c. of the edges that have the other part in front, that which this step crosses last: through it they come to touch;
 d. where none has, the one with the least penetration.
 
@@ -35,7 +35,8 @@ from dda.plane.polygons import Corners, Parts, Sides, outlines
 
 REACH = 0.02  # of the size of the smallest block, within which contacts are kept
 SAME = 1e-9  # of that size: what rounding leaves of a touch
-SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give
+SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give, where they give no more now
+PRESSED = 2.0  # times as deep as a block is pressed now it may be pressed where it comes to the next one
 NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
 DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
@@ -68,6 +69,7 @@ class Detection(NamedTuple):
     parts: Parts
     moves: Any  # (b,) 0 of blocks that cannot
     head: Any  # (b,) work: first contact of the step before of a block
+    depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
     previous: FoundContacts
@@ -95,6 +97,7 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         *outlines(polygons),
         moves=movable,
         head=np.full(len(polygons), NONE),
+        depth=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=FoundContacts(*found),
         previous=FoundContacts(*(array.copy() for array in found)),
@@ -128,8 +131,16 @@ def find_contacts(detection: Detection) -> int:
     along = place_parts(detection)
     for block in range(blocks):
         head[block] = NONE
+        detection.depth[block] = 0.0
     for number in range(detection.count[1] - 1, -1, -1):
-        keeper = keeper_of(detection, corners.block[previous.corner[number]], corners.block[previous.edge[number]])
+        corner = previous.corner[number]
+        start = previous.edge[number]
+        keeper = keeper_of(detection, corners.block[corner], corners.block[start])
+        if previous.closed[number] != 0:
+            _, _, gap = foot(corners.now, corner, start, corners.after[start])
+            for block in (corners.block[corner], corners.block[start]):
+                if detection.moves[block] != 0:
+                    detection.depth[block] = max(detection.depth[block], 0.0 - gap)
         previous.heir[number] = NONE
         previous.chain[number] = head[keeper]
         head[keeper] = number
@@ -216,6 +227,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     margin = REACH * size
     i = parts.block[p]
     j = parts.block[r]
+    soft = min(max(SOFT * size, PRESSED * max(detection.depth[i], detection.depth[j])), margin)
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
@@ -245,7 +257,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     best = -math.inf
     touching = NONE
     touching_point = NONE
-    farthest = -math.inf
+    slowest = -math.inf
     for turn in range(2):
         own = p if turn == 0 else r
         opposite = r if turn == 0 else p
@@ -269,10 +281,10 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             nearest = lowest_then if after < before else lowest
             if sides.real[side] == 0 or corners.convex[sides.corner[nearest]] == 0:
                 continue  # what lies there is another part of one of the two blocks
-            if -SOFT * size < before <= same and after > farthest + same:
+            if -soft < before <= same and after - before > slowest + same:
                 touching = side
                 touching_point = nearest
-                farthest = after
+                slowest = after - before
             if key > best + SAME:
                 best = key
                 edge = side

@@ -26,6 +26,7 @@ from numpy.typing import ArrayLike
 from dda.model.arrays import Array
 from dda.model.checks import check_finite, check_positive
 from dda.model.polygon import checked_polygon
+from dda.plane.model import PlaneModel
 from dda.plane.polygons import convex_parts, turns_of, without_straight_corners
 
 CORNER_EDGE = "corner-edge"
@@ -127,6 +128,30 @@ def first_contact(
         window = max(4 * safe, 1e-9 * until)
         tolerance = rounding
     raise RuntimeError(f"first contact: no decision after {ADVANCES} advances, at t = {time!r} s")
+
+
+def first_block_contact(model: PlaneModel, first: int, second: int, until: float) -> FirstContact | None:
+    """Return the first contact of two blocks of a model, as they move from t = 0 on without loads and other blocks.
+
+    A block turns about its centroid; a fixed one rests. Block 0 of the contact is the first one, 1 the second.
+
+    Raises
+    ------
+    ValueError
+        If a block is driven, or the two overlap at t = 0.
+    """
+    outlines = []
+    motions = []
+    for number in (first, second):
+        part = model.blocks[number]
+        if part.motion is not None:
+            raise ValueError(
+                f"motion: must be uniform for a first contact, got {model.name_of(number)}, which is driven"
+            )
+        centroid = part.block.section.centroid
+        outlines.append(part.block.corners - np.array(centroid))
+        motions.append(UniformMotion(*centroid, 0.0, *part.velocity, part.spin))
+    return first_contact(outlines[0], outlines[1], motions[0], motions[1], until)
 
 
 def rotation(angle: float) -> Array:

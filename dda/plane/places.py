@@ -10,7 +10,7 @@ angle psi of the edge and means of start and end marked by a bar,
 So openings are carried as increments, and no force is the small difference of two places.
 
 Forces act in the directions (2 delta - 1) B + (2 - 2 delta) B_1, B_1 the derivative at the end of the step, as in
-`dda.rotation.step`: average acceleration stays of second order, and at delta = 1 contact does not gain energy.
+`dda.bodies.turning_step`: average acceleration stays of second order, and at delta = 1 contact does not gain energy.
 """
 
 from __future__ import annotations
@@ -28,6 +28,8 @@ AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
 class Places(NamedTuple):
     """Which points are in contact, and where they are when a stage begins."""
 
+    count: Any  # (2,) how many there are, and how many of these are stated
+    law: Any  # (c,) number of its springs
     block: Any  # (c,) that of the corner
     on: Any  # (c,) that of the edge
     bonded: Any  # (c,) 1 of two points that are glued
@@ -44,7 +46,7 @@ class Places(NamedTuple):
 
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
     """Write feet and normals of contacts for where the blocks are."""
-    for k in range(len(places.block)):
+    for k in range(places.count[0]):
         i = places.block[k]
         j = places.on[k]
         edge = places.edge[k]
@@ -85,7 +87,7 @@ def write_rows(
     late
         Weight of the directions at the end of a step in those of the forces.
     """
-    n = len(places.block)
+    n = places.count[0]
     chord_i = places.row[0]
     chord_j = places.row[1]
     force_i = places.row[2]

@@ -23,6 +23,7 @@ class Corners(NamedTuple):
 
     block: Any
     start: Any  # number of the block's first corner
+    after: Any  # corner at which the edge ends that starts here
     convex: Any  # 1 where it can touch an edge
     now: Matrix  # (n, 2) places at the start of a step [m]
     then: Matrix  # (n, 2) places at its end, as they would be without contact
@@ -128,6 +129,7 @@ def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
     sizes = [len(vertices) for vertices in polygons]
     start = np.cumsum([0, *sizes[:-1]])
     convex: list[int] = []
+    ends: list[int] = []
     sides: list[tuple[int, int, int, int, int]] = []
     parts: list[tuple[int, int, int]] = []
     for block, vertices in enumerate(polygons):
@@ -135,6 +137,7 @@ def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
         turning_left = {corner for corner, turn in zip(ring, turns_of(vertices, ring), strict=True) if turn > 0}
         convex += [int(corner in turning_left) for corner in range(len(vertices))]
         following = dict(zip(ring, ring[1:] + ring[:1], strict=True))
+        ends += [int(start[block]) + following.get(corner, corner) for corner in range(len(vertices))]
         for part in convex_parts(vertices):
             first = len(sides)
             for number, corner in enumerate(part):
@@ -149,6 +152,7 @@ def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
     corners = Corners(
         block=np.repeat(np.arange(len(polygons)), sizes),
         start=np.repeat(start, sizes),
+        after=np.array(ends),
         convex=np.array(convex),
         now=places.copy(),
         then=places.copy(),

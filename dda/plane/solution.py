@@ -18,14 +18,19 @@ from dda.march.step import Body, Course, History, March, march_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count
 from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
-from dda.plane.model import PlaneModel
+from dda.plane.detect import detection_of
+from dda.plane.many import many_of
+from dda.plane.model import ContactSprings, PlaneModel
 from dda.plane.places import Places, gap_of, place_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_contacts, push_loads
+from dda.plane.taken import Memory, Springs, write_laws
 from dda.scheme.newmark import Scheme, late_momentum
 
 TOGETHER = 6  # solves with all states updated at once
+ROOM = 8  # contacts found of a block for which there is room
+DENSE = 24  # contacts up to which the equations are those of their forces
 TOUCH = 1e-12  # of a block's size, by which a corner that lies on an edge at t = 0 may be beside it
-BONDED, STICKS, OPEN, SLIPS = 3, 1, 0, 2
+STICKS, SLIPS = 1, 2
 
 
 class PlaneContact(NamedTuple):
@@ -103,7 +108,7 @@ def solve_plane(
     c = len(march.method.places.block)
     b = len(model.blocks)
     history = History(
-        motion=np.zeros((kept + 1, STATE * b)),
+        motion=np.zeros((kept + 1, STATE * b + 1 + 2 * c)),
         force=np.zeros((kept + 1, 2 * c)),
         opening=np.zeros((kept + 1, 2 * c)),
         path=np.zeros((kept + 1, c)),
@@ -141,17 +146,25 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     columns = [2 + len(ramps) + 2 * driven.index(i) if i in driven else -1 for i in range(len(parts))]
     blocks, k = blocks_of([p.block for p in parts], [p.rigid for p in parts], [p.held for p in parts], columns)
     loads, point_loads = loads_of(model, blocks.first, blocks.root_mass, ramps)
-    places = places_of(model)
+    b = len(parts)
+    most = 0 if model.found is None else ROOM * b + ROOM
+    places = places_of(model, most)
+    springs, pairs = springs_of(model)
     c = len(places.block)
     m = 2 * c
-    b = len(parts)
+    dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
+    detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
+    edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
+    real = detection.sides.real == 1
+    edge_end[detection.sides.corner[real]] = detection.sides.end[real]
+    memories = [Memory(rows_of(np.zeros(m), np.zeros(m)), np.zeros(m), np.zeros(c)) for _ in range(2)]
     body = Body(
         k=k,
         loads=loads,
         stored=np.ones(len(loads)),
-        first=np.zeros(m, dtype=np.int64),
-        weight=np.zeros((m, 0)),
-        ground=np.zeros((m, 2)),
+        first=np.zeros(2 * dense, dtype=np.int64),
+        weight=np.zeros((2 * dense, 0)),
+        ground=np.zeros((2 * dense, 2)),
         mobility=np.ones(len(k)),
     )
     moving = [part.block.section.area for part in parts if not part.held]
@@ -172,11 +185,28 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         row=np.zeros((3, 6)),
         spin=np.zeros(4),
         ground=np.zeros((m, 2)),
+        springs=springs,
+        first=memories[0],
+        second=memories[1],
+        dropped=np.zeros(1),
+        dense=dense,
+        many=many_of(blocks, c),
+        finds=int(model.found is not None),
+        detection=detection,
+        edge_end=edge_end,
     )
-    march = march_of(body, laws_of(model), scheme, np.zeros(m), plane)
-    room = march.room._replace(start=np.zeros(2 + len(ramps) + 2 * len(driven)))
-    room = room._replace(end=np.zeros(len(room.start)))
-    return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room)
+    march = march_of(body, laws_of(springs, dense, dense), scheme, np.zeros(2 * dense), plane)
+    laws = laws_of(springs, places.count[1], c)
+    write_laws(springs, places, laws)
+    columns_of_course = 2 + len(ramps) + 2 * len(driven)
+    room = march.room._replace(start=np.zeros(columns_of_course), end=np.zeros(columns_of_course), free=np.zeros(m))
+    work = march.work._replace(
+        **{name: np.zeros(m) for name in ("q", "late", "z", "scale", "first", "mean")},
+        **{name: np.zeros(m, dtype=np.int64) for name in ("tried", "saved", "unknown", "place")},
+        **{name: np.zeros(c) for name in ("beta", "rate", "held")},
+        closing=np.zeros(c, dtype=np.int64),
+    )
+    return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
 
 
 def state_of(modes: int, blocks: int, opening: Array) -> PlaneState:
@@ -232,32 +262,48 @@ def course_of(model: PlaneModel) -> Course:
     return Course(instants, value, np.zeros(1, dtype=np.int64))
 
 
-def laws_of(model: PlaneModel) -> Laws:
-    """Return the laws of contacts, then those of both ends of every bond."""
-    n = len(model.contacts) + 2 * len(model.bonds)
-    across = np.zeros((4, n))  # compliance, lower, upper; friction
-    along = np.zeros((3, n))
-    opens = np.zeros(2 * n, dtype=np.int64)
-    for k, contact in enumerate(model.contacts):
-        springs = contact.springs
-        slips = springs.shear == 0 or springs.friction is not None
-        limit = springs.cohesion if slips else math.inf
-        across[:, k] = 1 / springs.stiffness, -springs.tension, math.inf, springs.friction or 0.0
-        along[:, k] = 1 / springs.shear if springs.shear else 0.0, -limit, limit
-        opens[k] = 1
-    for number, bond in enumerate(model.bonds):
-        for k in range(len(model.contacts) + 2 * number, len(model.contacts) + 2 * number + 2):
-            across[:, k] = 1 / bond.stiffness, -math.inf, math.inf, 0.0
-            along[:, k] = 1 / bond.shear, -math.inf, math.inf
-    compliance, lower, upper = np.hstack([across[:3], along])
+def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
+    """Return the laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
+    rows = [law_of(contact.springs) for contact in model.contacts]
+    rows += [(1 / bond.stiffness, 1 / bond.shear, 0.0, math.inf, math.inf, 0.0) for bond in model.bonds]
+    blocks = len(model.blocks)
+    numbers = np.full((blocks, blocks), -1)
+    if model.found is not None:
+        known: dict[ContactSprings, int] = {}
+        stated = {(part.block, part.on) for part in model.contacts}
+        stated |= {(bond.first, bond.second) for bond in model.bonds}
+        for i in range(blocks):
+            for j in range(i):
+                springs = model.found(i, j) if callable(model.found) else model.found
+                if springs is None or (i, j) in stated or (j, i) in stated:
+                    continue
+                if springs not in known:
+                    known[springs] = len(rows)
+                    rows.append(law_of(springs))
+                numbers[i, j] = numbers[j, i] = known[springs]
+    across, along, friction, limit, tension, opens = np.array(rows, dtype=float).reshape(-1, 6).T.copy()
+    return Springs(across, along, friction, limit, tension, opens.astype(np.int64)), numbers
+
+
+def law_of(springs: ContactSprings) -> tuple[float, ...]:
+    """Return the numbers of a law, as `Springs` has them."""
+    slips = springs.shear == 0 or springs.friction is not None
+    limit = springs.cohesion if slips else math.inf
+    softness = 1 / springs.shear if springs.shear else 0.0
+    return 1 / springs.stiffness, softness, springs.friction or 0.0, limit, springs.tension, 1.0
+
+
+def laws_of(springs: Springs, contacts: int, capacity: int) -> Laws:
+    """Return room for the laws of the rows of so many contacts, of which some are there."""
     return Laws(
-        contacts=n,
-        compliance=compliance,
-        lower=lower,
-        upper=upper,
-        opens=opens,
-        friction=across[3].copy(),
-        slips=bool(np.any(np.isfinite(upper[n:]))),
+        contacts=contacts,
+        rows=2 * contacts,
+        compliance=np.ones(2 * capacity),
+        lower=np.zeros(2 * capacity),
+        upper=np.zeros(2 * capacity),
+        opens=np.zeros(2 * capacity, dtype=np.int64),
+        friction=np.zeros(capacity),
+        slips=bool(np.any(np.isfinite(springs.limit))),
         lagged=False,
         paired=False,
         banded=False,
@@ -268,9 +314,9 @@ def laws_of(model: PlaneModel) -> Laws:
     )
 
 
-def places_of(model: PlaneModel) -> Places:
-    """Return contacts, then both ends of every bond, as points of their blocks."""
-    rows: list[tuple[int, int, int, Array, Array, Array]] = []
+def places_of(model: PlaneModel, most: int) -> Places:
+    """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
+    rows: list[tuple[int, int, int, int, Array, Array, Array]] = []
 
     def outline(block: int) -> Array:
         shape = model.blocks[block].block
@@ -282,16 +328,21 @@ def places_of(model: PlaneModel) -> Places:
 
     for contact in model.contacts:
         at = outline(contact.block)[contact.corner]
-        rows.append((contact.block, contact.on, 0, at, ends(contact.on, contact.edge), np.zeros(2)))
-    for bond in model.bonds:
+        rows.append((len(rows), contact.block, contact.on, 0, at, ends(contact.on, contact.edge), np.zeros(2)))
+    for number, bond in enumerate(model.bonds):
+        law = len(model.contacts) + number
         edge = ends(bond.second, model.edge_of(bond.second, bond.start, bond.end))
         for place in (bond.start, bond.end):
             at, foot = (np.array(place) - model.blocks[i].block.section.centroid for i in (bond.first, bond.second))
-            rows.append((bond.first, bond.second, 1, at, edge, foot))
+            rows.append((law, bond.first, bond.second, 1, at, edge, foot))
+    stated = len(rows)
+    rows += [(0, 0, 0, 0, np.zeros(2), np.zeros(4), np.zeros(2))] * most
     n = len(rows)
-    block, on, bonded = (np.array([row[part] for row in rows], dtype=np.int64) for part in range(3))
-    at, edge, foot = (np.array([row[part] for row in rows], dtype=float) for part in range(3, 6))
+    law_numbers, block, on, bonded = (np.array([row[part] for row in rows], dtype=np.int64) for part in range(4))
+    at, edge, foot = (np.array([row[part] for row in rows], dtype=float) for part in range(4, 7))
     return Places(
+        count=np.array([stated, stated]),
+        law=law_numbers,
         block=block,
         on=on,
         bonded=bonded,
@@ -318,8 +369,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     plane = march.method
     blocks = plane.blocks
     places = plane.places
-    n = len(places.block)
-    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * n))
+    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.block)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     for k, contact in enumerate(model.contacts):
@@ -365,28 +415,28 @@ def result_of(
     """Return the result of so many steps."""
     kept = reached // every + 1
     b = len(model.blocks)
-    c = len(model.contacts)
-    n = march.laws.contacts
-    motion = history.motion[:kept].reshape(kept, b, STATE)
+    stated = len(model.contacts)
+    table = contacts_of(model, march, history, kept)
+    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
     q = motion[:, :, :6]
     velocity = motion[:, :, 6:]
-    force = history.force[:kept]
     centroid = march.method.blocks.centroid + q[:, :, :2]
     inertia = Inertia(march, q, velocity)
     sums = history.sums[: reached + 1 : every]
     stored = (
         inertia.kinetic,
         strain_energy(model, q),
-        force * force @ march.laws.compliance / 2,
+        (table.normal**2 @ table.across + table.shear**2 @ table.along) / 2,
         load_energy(model, march, q),
     )
     repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
     energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
     total = np.sum(list(energy.values()), axis=0)
-    state = np.where(history.state[:kept, n:] == INSIDE, STICKS, -SLIPS * history.state[:kept, n:])
-    state[history.state[:kept, :n] == LOWER] = OPEN
     early = "" if outcome == FOUND else f" at step {reached + 1}"
-    bonds = np.stack([force[:, c:n], force[:, n + c :]], axis=-1).reshape(kept, -1, 2, 2)
+    bonded = np.arange(len(table.contacts)) >= stated
+    bonded[stated + 2 * len(model.bonds) :] = False
+    bonds = np.stack([table.normal[:, bonded], table.shear[:, bonded]], axis=-1).reshape(kept, -1, 2, 2)
+    others = ~bonded
     starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
     return PlaneResult(
         time=scheme.step * every * np.arange(float(kept)),
@@ -395,12 +445,12 @@ def result_of(
         angle=q[:, :, 2],
         strain=q[:, :, 3:],
         velocity=velocity,
-        contacts=tuple(PlaneContact(k.block, k.corner, k.on, k.edge) for k in model.contacts),
-        normal=force[:, :c],
-        shear=force[:, n : n + c],
-        gap=history.opening[:kept, :c],
-        slip=history.path[:kept, :c],
-        state=state[:, :c].astype(np.int8),
+        contacts=tuple(contact for contact, other in zip(table.contacts, others, strict=True) if other),
+        normal=table.normal[:, others],
+        shear=table.shear[:, others],
+        gap=table.gap[:, others],
+        slip=table.slip[:, others],
+        state=table.state[:, others],
         bond=bonds,
         energy=energy | {"balance": total - total[0]},
         momentum=inertia.momentum(centroid),
@@ -410,6 +460,62 @@ def result_of(
         cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
         note=f"stepped, {how}",
     )
+
+
+@dataclass(frozen=True, eq=False)
+class ContactTable:
+    """Histories of contacts, a column each: those that are stated, both ends of bonds, those that were found closed."""
+
+    contacts: list[PlaneContact]
+    across: Array  # (c,) 1/p [m/N]
+    along: Array  # (c,) 1/p_s
+    normal: Array  # (k, c)
+    shear: Array
+    gap: Array
+    slip: Array
+    state: NDArray[np.int8]
+
+
+def contacts_of(model: PlaneModel, march: March, history: History, kept: int) -> ContactTable:
+    """Return the histories of contacts that are stated, or were closed at an instant that is kept."""
+    plane = march.method
+    springs = plane.springs
+    stated = int(plane.places.count[1])
+    contacts = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
+    contacts += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
+    laws = list(plane.places.law[:stated])
+    columns: dict[tuple[int, int], int] = {}
+    places: list[tuple[int, int, int, int]] = []  # row, number in it, how many there are, column
+    corners = plane.detection.corners
+    identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
+    for row in range(kept):
+        n = int(identity[row, 0]) if plane.finds else stated
+        places += [(row, k, n, k) for k in range(min(stated, n))]
+        for k in range(stated, n):
+            corner, edge = identity[row, 1 + 2 * (k - stated) : 3 + 2 * (k - stated)].tolist()
+            if (corner, edge) not in columns:
+                if history.state[row, k] != INSIDE:
+                    continue
+                i = int(corners.block[corner])
+                j = int(corners.block[edge])
+                columns[corner, edge] = len(contacts)
+                contacts.append(
+                    PlaneContact(i, corner - int(corners.start[corner]), j, edge - int(corners.start[edge]))
+                )
+                laws.append(plane.detection.law[i * len(model.blocks) + j])
+            places.append((row, k, n, columns[corner, edge]))
+    normal, shear, slip = np.zeros((3, kept, len(contacts)))
+    gap = np.full((kept, len(contacts)), np.nan)
+    state = np.zeros((kept, len(contacts)), dtype=np.int8)
+    if places:
+        row, k, n, column = np.array(places).T
+        normal[row, column] = history.force[row, k]
+        shear[row, column] = history.force[row, n + k]
+        gap[row, column] = history.opening[row, k]
+        slip[row, column] = history.path[row, k]
+        way = history.state[row, n + k]
+        state[row, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[row, k] == INSIDE)
+    return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
 
 
 class Inertia:

@@ -13,9 +13,9 @@ import math
 from typing import Any, NamedTuple
 
 from dda.contact.dense import Matrix, Vector, copy
-from dda.contact.rows import FOUND, NONE, Rows, find, flexed
+from dda.contact.rows import FOUND, INSIDE, NONE, Rows, find
 from dda.march.account import add_bulk_loss, add_contact_losses, add_damping, half_square, over_stages
-from dda.march.energy import ALGORITHMIC, GIVEN
+from dda.march.energy import ALGORITHMIC, GIVEN, SWITCHING
 from dda.march.step import (
     AnyState,
     Course,
@@ -26,11 +26,10 @@ from dda.march.step import (
     StageRoom,
     begin_step,
     end_modes,
-    end_paths,
     free_modes,
     kept_discount,
-    length_of,
     prescribe,
+    set_modes,
     steps_by,
 )
 from dda.model.arrays import Array
@@ -45,7 +44,20 @@ from dda.plane.bodies import (
     moved,
     set_poses,
 )
+from dda.plane.detect import Detection
+from dda.plane.many import Many, contact_way, find_many
 from dda.plane.places import Places, place_contacts, write_rows
+from dda.plane.taken import (
+    Memory,
+    Springs,
+    dropped_energy,
+    keep_found,
+    laws_for,
+    place_corners,
+    take_found,
+    take_memory,
+    write_laws,
+)
 
 ROUNDS = 40  # of a stage
 SETTLED = 1e-12  # last change of an increment over the size of a block; the next would be this times the step's turn
@@ -96,6 +108,15 @@ class Plane(NamedTuple):
     row: Matrix  # (3, 6) room for a row over D
     spin: Vector  # (4,) r', e'
     ground: Matrix  # (2c, 2) zero: no base is common to all blocks
+    springs: Springs
+    first: Memory  # of a step, or of the first of two stages
+    second: Memory
+    dropped: Vector  # (1,) energy of contacts that are no more [J]
+    dense: int  # contacts up to which the equations are those of their forces
+    many: Many
+    finds: int  # whether contacts are found
+    detection: Detection
+    edge_end: Any  # (corners,) corner at which the edge from a corner ends
 
 
 # ---- one stage -------------------------------------------------------------------------------------------------------
@@ -108,7 +129,9 @@ def make_stage(
     plane = march.method
     blocks = plane.blocks
     room = march.room
-    length = length_of(march, stage, part.ratio)
+    places = plane.places
+    memory = memory_of(plane, stage)
+    length = length_in_plane(march, stage, part.ratio)
     prescribe(march, course, stage, part)
     begin_step(march, start, length)
     free_modes(march, stage, length, before)
@@ -119,8 +142,15 @@ def make_stage(
         if column >= 0:
             for k in range(2):
                 plane.new[i][k] = room.end[column + k] - room.start[column + k]
+    if stage.numbers.begin == 0:
+        outcome = take_contacts(march, before)
+        if outcome != FOUND:
+            return outcome, 0
+    else:
+        copy_memory(before, plane.second)
+    laws = laws_for(march.laws, places.count[0])
     set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
-    place_contacts(blocks, before.q, plane.ends, plane.places)
+    place_contacts(blocks, before.q, plane.ends, places)
     share = stage.numbers.end - stage.numbers.begin
     for i in range(len(plane.x)):
         plane.x[i] = share * room.p[i] + share * share * room.a[i] / 2
@@ -135,11 +165,16 @@ def make_stage(
         for i in range(len(plane.x)):
             plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * plane.loaded[i]
             room.pushed[i] = plane.loaded[i]
-        if len(plane.places.block) > 0:
-            write_rows(blocks, plane.D, plane.chords, plane.ends, before.rows, plane.late, plane.places)
-            write_contact_flexibility(march, length)
-            free_contacts(march, before)
-            outcome, spent = find(march.laws, before.rows, length.flexible, after.rows, march.work)
+        if places.count[0] > 0:
+            write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
+            free_contacts(march, memory)
+            if places.count[0] > plane.dense:
+                outcome, spent = find_many(
+                    plane.many, blocks, places, laws, memory.rows, length, after.rows, march.work, plane.size, turn > 0
+                )
+            else:
+                write_contact_flexibility(march, length)
+                outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
@@ -151,9 +186,53 @@ def make_stage(
         if forces_change > 0 and (turn == 0 or forces_change > SETTLED_FORCE):
             continue
         if largest_change(plane) <= SETTLED * plane.size:
-            accept(march, length, before, after)
+            accept(march, memory, before, after)
             return FOUND, solves
     return NONE, solves
+
+
+def length_in_plane(march: March, stage: StageRoom, ratio: float) -> Length:
+    """Return what belongs to a length, over dt; the flexibility of the contacts is written anew in each round."""
+    if ratio == 1.0:
+        return stage.whole
+    if stage.part.numbers[0] != ratio:
+        set_modes(march, stage, ratio, stage.part)
+    return stage.part
+
+
+def memory_of(plane: Plane, stage: StageRoom) -> Memory:
+    """Return what the contacts of a stage begin with."""
+    return plane.first if stage.numbers.begin == 0 else plane.second
+
+
+def take_contacts(march: March, before: AnyState) -> int:
+    """Find the contacts of a step and write what they begin with; return the outcome."""
+    plane = march.method
+    blocks = plane.blocks
+    detection = plane.detection
+    if plane.finds == 0:
+        copy_memory(before, plane.first)
+        return FOUND
+    set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+    place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
+    increments(blocks, before.q, march.room.x, plane.chords, plane.new)
+    set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
+    place_corners(blocks, before.q, plane.new, plane.ends, detection.corners.then)
+    outcome = take_found(detection, blocks, plane.edge_end, plane.places)
+    if outcome == FOUND:
+        plane.dropped[0] = dropped_energy(detection, plane.springs, plane.places, before.rows)
+        take_memory(detection, plane.places, before.rows, before.path, before.slid, plane.first)
+        write_laws(plane.springs, plane.places, march.laws)
+    return outcome
+
+
+def copy_memory(before: AnyState, memory: Memory) -> None:
+    """Take the contacts of a state for those that a stage begins with."""
+    copy(before.rows.state, memory.rows.state)
+    copy(before.rows.opening, memory.rows.opening)
+    copy(before.rows.force, memory.rows.force)
+    copy(before.path, memory.path)
+    copy(before.slid, memory.slid)
 
 
 def take_increments(plane: Plane) -> None:
@@ -221,7 +300,7 @@ def write_contact_flexibility(march: March, length: Length) -> None:
     plane = march.method
     places = plane.places
     W = length.flexible.W
-    n = len(places.block)
+    n = places.count[0]
     first = plane.blocks.first
     for k in range(n):
         for m in range(n):
@@ -245,41 +324,27 @@ def write_contact_flexibility(march: March, length: Length) -> None:
                             W[axis * n + k][other * n + m] += length.numbers[3] * total
 
 
-def free_contacts(march: March, before: AnyState) -> None:
+def free_contacts(march: March, memory: Memory) -> None:
     """Write the openings at the end of a stage without contact forces, which end in the modes' increments `plane.x`."""
     plane = march.method
     places = plane.places
     free = march.room.free
     q = march.work.q
-    opening = before.rows.opening
-    n = len(places.block)
+    opening = memory.rows.opening
+    n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + moved_contact(plane, r, plane.x)
+        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
             q[k] = FAR
 
 
-def moved_contact(plane: Plane, r: int, x: Vector) -> float:
-    """Return what the modes move a row by."""
-    places = plane.places
-    first = plane.blocks.first
-    k = r if r < len(places.block) else r - len(places.block)
-    total = 0.0
-    for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
-        B = places.B[r][side]
-        for e in range(first[i + 1] - first[i]):
-            total += B[e] * x[first[i] + e]
-    return total
-
-
 def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
     """Add F' lambda to the forces on the modes."""
     places = plane.places
     first = plane.blocks.first
-    n = len(places.block)
+    n = places.count[0]
     for r in range(2 * n):
         if force[r] == 0.0:
             continue
@@ -291,21 +356,30 @@ def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
                 out[first[i] + e] += F[e] * force[r]
 
 
-def accept(march: March, length: Length, before: PlaneState, after: PlaneState) -> None:
+def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) -> None:
     """Write where the stage ends."""
     plane = march.method
     places = plane.places
-    n = len(places.block)
+    rows = after.rows
+    n = places.count[0]
     for i in range(len(plane.new)):
         for k in range(6):
             after.q[i][k] = before.q[i][k] + plane.new[i][k]
     for k in range(n):
+        r = n + k
+        after.slid[k] = memory.slid[k] + rows.slip[r]
+        after.path[k] = memory.path[k] + rows.slip[k]
+        after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            after.rows.opening[k] = before.rows.opening[k] + march.room.free[k]
-            after.rows.opening[k] += flexed(march.laws, length.flexible, k, after.rows.force)
-        after.slid[k] = before.slid[k] + after.rows.slip[n + k]
+            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, n, k)
+            rows.opening[k] = memory.rows.opening[k] + way
+        if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
+            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
+    for r in range(2 * n, len(rows.force)):
+        rows.force[r] = 0.0
+        rows.slip[r] = 0.0
     copy(places.driven, after.driven)
-    end_paths(march, length.flexible, before, after)
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
@@ -349,6 +423,9 @@ def account(march: March, state: PlaneState, after: PlaneState, course: Course, 
         add_bulk_loss(march, state, after, part, sums)
         discount = scheme.gg**part.ratio
         sums[ALGORITHMIC] += discount * discount * excess - kinetic_excess(march, after)
+    if march.method.finds != 0:
+        sums[SWITCHING] += march.method.dropped[0]
+        keep_found(march.method.detection, march.method.places, after.rows)
 
 
 def account_stage(
@@ -366,15 +443,17 @@ def account_stage(
     prescribe(march, course, stage, part)
     late = stage.numbers.delta if march.scheme.newmark else 0.5
     length = march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
-    add_contact_losses(march, march.laws, plane.ground, before, after, late, length, sums)
+    memory = memory_of(plane, stage)
+    laws = laws_for(march.laws, plane.places.count[0])
+    add_contact_losses(march, laws, plane.ground, memory, after, late, length, sums)
     rows = after.rows
-    old = before.rows
+    old = memory.rows
     own = 0.0  # work of forces on their own ways
-    for r in range(len(rows.force)):
+    for r in range(2 * plane.places.count[0]):
         force = (1 - late) * old.force[r] + late * rows.force[r]
         if force != 0.0:
             sums[GIVEN] -= force * after.driven[r]
-            own += force * (rows.opening[r] - old.opening[r] + (after.path[r] - before.path[r]) - after.driven[r])
+            own += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
     for j in range(len(march.body.loads)):
         share = (1 - late) * room.start[2 + j] + late * room.end[2 + j]
         work = 0.0
@@ -446,7 +525,14 @@ def keep_contacts(march: March, state: PlaneState, history: History, number: int
         return
     row = number // plane.every
     rows = state.rows
-    n = len(plane.places.block)
+    n = plane.places.count[1]
+    if plane.finds != 0:
+        n += plane.detection.count[1]
+        identity = STATE * len(plane.D)
+        history.motion[row, identity] = n
+        for k in range(plane.detection.count[1]):
+            history.motion[row, identity + 1 + 2 * k] = plane.detection.previous.corner[k]
+            history.motion[row, identity + 2 + 2 * k] = plane.detection.previous.edge[k]
     for r in range(2 * n):
         history.force[row, r] = rows.force[r]
         history.opening[row, r] = rows.opening[r]

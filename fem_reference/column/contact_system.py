@@ -70,8 +70,9 @@ def system_of(
         ground=ground,
         prescribed=prescribed,
         start_parts=parts[0],
-        bodies=tuple(run.size - (held and run.first == 0) for run in mesh.parts),
-        rigid=tuple(0 if held and run.first == 0 else 1 for run in mesh.parts),
+        motions=tuple(
+            np.zeros((run.size - 1, 0)) if held and run.first == 0 else np.ones((run.size, 1)) for run in mesh.parts
+        ),
     )
 
 

@@ -51,14 +51,21 @@ def columns_of(record: Record, model: ContactModel, rows: ContactRows) -> dict[s
         "largest_gap": np.maximum(gap, 0.0).max(axis=1),
         "largest_penetration": np.maximum(-gap, 0.0).max(axis=1),
         "largest_slide": np.abs(record.slid).max(axis=1),
+        **energies_of(record, rows),
+        "solves": record.solves,
+        "cuts": record.cuts,
+    }
+
+
+def energies_of(record: Record, rows: ContactRows) -> dict[str, Array]:
+    """`ENERGY_COLUMNS` and `LOSS_COLUMNS` of some steps; zero where they are not kept."""
+    return {
         "kinetic_energy": record.stored[:, 0],
         "strain_energy": record.stored[:, 1],
-        "spring_energy": force**2 @ rows.compliance / 2,
+        "spring_energy": record.force**2 @ rows.compliance / 2,
         "load_energy": -record.stored[:, 2] - record.sums[:, GROUND],
         "algorithmic_loss": record.sums[:, ALGORITHMIC],
         "kinetic_damping_loss": record.sums[:, DISCOUNT],
         "switching_loss": record.sums[:, SWITCHING],
         "friction_loss": record.sums[:, FRICTION],
-        "solves": record.solves,
-        "cuts": record.cuts,
     }

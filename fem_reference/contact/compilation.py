@@ -124,8 +124,7 @@ def _warm(march: Callable[..., Any]) -> None:
         ground=square,
         prescribed=lambda positions, times: np.zeros((*times.shape, 1)),
         start_parts=one,
-        bodies=(1,),
-        rigid=(0,),
+        motions=(square,),
         to_modes=square,
     )
     stepper = ContactStepper(system, Scheme(0.5, 1.0, 1.0, 1.0), compiled=march)

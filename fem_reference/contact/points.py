@@ -41,6 +41,7 @@ class ContactModel:
     stiffness: Array  # normal stiffness of each point, 2 p times its share [N/m]
     shear_stiffness: Array  # tangential stiffness of each point, 2 p_s times its share [N/m]
     upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
+    motions: Array  # rigid motions without the springs of the base, shape (unknowns, 1 or 3)
     observers: dict[str, Array]  # rows that give v, u and the rotation at the centroid, shape (unknowns,)
     kind: str  # ``"whole"`` or ``"column"``
     length: float  # length a of the base [m]
@@ -78,9 +79,7 @@ class ContactModel:
             ground=ground,
             prescribed=self._base,
             start_parts=np.zeros(2),
-            bodies=(size,),
-            # Without the springs of the base the block is free to move, and in the plane to turn.
-            rigid=(1 if self.kind == "column" else 3,),
+            motions=(self.motions,),
         )
 
     def _base(self, positions: Array, times: Array) -> Array:
@@ -154,6 +153,7 @@ def column(problem: Problem) -> ContactModel:
         stiffness=np.array([2 * problem.stiffness]),
         shear_stiffness=np.array([2 * problem.shear_stiffness]),
         upwards=np.ones(size),
+        motions=np.ones((size, 1)),
         observers={
             "displacement": line.middle,
             "horizontal_displacement": none,
@@ -192,6 +192,7 @@ def whole(problem: Problem) -> ContactModel:
         stiffness=2 * problem.stiffness * share,
         shear_stiffness=2 * problem.shear_stiffness * share,
         upwards=elasticity.components(basis),
+        motions=elasticity.rigid_motions(basis),
         observers={name: row for name, row in assembled.observers.items() if name != "contact_pressure"},
         kind="whole",
         length=problem.base_length,

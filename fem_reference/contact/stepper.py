@@ -192,7 +192,8 @@ class ContactStepper:
         stage = Stage(*(float(value) for value in scheme.stages[number]))
         implicit = self.rule == "implicit"
         is_modal = system.to_modes is not None
-        M, K = (part if is_modal else operator(part) for part in (system.M, system.K))
+        M = system.M if is_modal else operator(system.M)
+        K = system.K if is_modal else system.elastic
         C = None if system.C is None else operator(system.C)
         rows = system.rows
         is_alone = rows.partner == np.arange(len(rows.partner))

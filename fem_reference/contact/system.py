@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import block_diag, eigh
+from scipy.linalg import block_diag, cholesky, eigh, solve_triangular
 from scipy.sparse import csr_array
 
 from fem_reference.problem.problem import Array
+from fem_reference.scheme.newmark import Operator
 from fem_reference.scheme.stage import Motion
 
 
@@ -61,23 +63,45 @@ class ContactSystem:
     prescribed: Callable[[Array, Array], Array] = field(repr=False)
     """Parts at the ends of the stages, shape (steps, stages, parts), of the steps' positions [steps] and the times."""
     start_parts: Array  # at t = 0, shape (parts,)
-    bodies: tuple[int, ...]  # number of unknowns of each body, one after the other
-    rigid: tuple[int, ...]  # number of rigid motions of each body
+    motions: tuple[Array, ...]  # rigid motions of each body that nothing clamps, (unknowns of the body, 0 or more)
     C: csr_array | None = None  # viscous damping [N s/m]
     to_modes: Array | None = None  # natural modes of a displacement, shape (modes, unknowns), where they are unknowns
+
+    @cached_property
+    def elastic(self) -> Operator:
+        """K of a displacement less its rigid motions, which would leave E u times the last bit in each element.
+
+        With rigid motions R, R' M R = 1, that is K (D - R R' M D).
+        """
+        rigid = []
+        begin = 0
+        for motions in self.motions:
+            body = slice(begin, begin + len(motions))
+            inertia = motions.T @ (self.M[body, body] @ motions)
+            R = solve_triangular(cholesky(inertia, lower=True), motions.T, lower=True)
+            rigid.append((body, R, np.ascontiguousarray((self.M[body, body] @ R.T).T)))
+            begin += len(motions)
+
+        def forces(D: Array) -> Array:
+            strained = D.copy()
+            for body, R, momentum in rigid:
+                strained[body] -= (momentum @ D[body]) @ R
+            return np.asarray(self.K @ strained)
+
+        return Operator(forces)
 
     def in_modes(self) -> ContactSystem:
         """The system in the natural modes of its bodies, in which M is one and K a diagonal, without damping."""
         squares = []
         shapes = []
         begin = 0
-        for size, motions in zip(self.bodies, self.rigid, strict=True):
-            body = slice(begin, begin + size)
+        for motions in self.motions:
+            body = slice(begin, begin + len(motions))
             of_body, turn = eigh(self.K[body, body].toarray(), self.M[body, body].toarray())
-            of_body[:motions] = 0.0
+            of_body[: motions.shape[1]] = 0.0
             squares.append(of_body)
             shapes.append(turn)
-            begin += size
+            begin += len(motions)
         turn = block_diag(*shapes)
         watch = Motion(*(np.ascontiguousarray(part @ turn) for part in self.watch))
         return replace(

@@ -19,9 +19,6 @@ from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
 
-VISIBLE_ROTATION = 1e-4
-"""Rotation by which rounding moves a corner by a ten-thousandth of a side [rad]: less is seen in no figure."""
-
 
 @dataclass(frozen=True)
 class Unilateral:
@@ -138,7 +135,6 @@ def solve_unilateral(
         outcome = marched.outcome
     kept = {name: np.concatenate(values) for name, values in parts.items()}
     ended = time.perf_counter()
-    flight_note = () if model.kind == "column" else _flight(problem, kept, scheme.step * rows)
     saving = ("one column of elements",) if model.kind == "column" else ()
     modes_note = (f"stepped in its {unknowns} natural modes",) if modal else ()
     return UnilateralResult(
@@ -148,7 +144,7 @@ def solve_unilateral(
         unknowns=unknowns,
         points=len(model.share),
         **vars(stepper.work),
-        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *flight_note, *modes_note, compiled_note),
+        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *modes_note, compiled_note),
         setup_seconds=ready - began,
         stepping_seconds=ended - ready,
     )
@@ -172,20 +168,6 @@ def _ramp(problem: Problem) -> tuple[str, ...]:
     kappa = spring / (problem.lame + 2 * problem.shear_modulus)
     passed = kappa * float(np.ptp(problem.outline[:, 1])) / problem.elements
     return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
-
-
-def _flight(problem: Problem, columns: dict[str, Array], duration: float) -> tuple[str, ...]:
-    """Say by how much rounding may have turned a block that has flown far.
-
-    In flight the forces K u of a displacement u alone should vanish; rounding leaves eps E u for each element along an
-    edge, whose moment turns the block of mass m by about n eps E u T^2 / (2 m a), several times that at most.
-    """
-    travelled = np.abs(columns["displacement"]).max(initial=0.0) if "displacement" in columns else 0.0
-    torque = float(np.finfo(float).eps) * problem.elements * problem.young * float(travelled)
-    turned = torque * duration**2 / (2 * problem.density * problem.area * problem.base_length)
-    if not turned > VISIBLE_ROTATION:
-        return ()
-    return (f"rounding may turn a block in free flight by about {turned:.1g} rad in this time: it has moved far",)
 
 
 def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilateral) -> ContactState:

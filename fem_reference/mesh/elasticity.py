@@ -27,6 +27,8 @@ from fem_reference.problem.problem import Array, Problem
 
 ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4, 2): ElementQuad2}
 """Scalar element by (corners of a cell, degree)."""
+SLIVER = 1e-12
+"""Piece of a facet over its length that only rounding leaves between an interval's end and the facet's."""
 
 
 @BilinearForm
@@ -145,7 +147,7 @@ def edge_rule(
         for low, high in intervals:
             a = max(low, min(s0, s1))
             b = min(high, max(s0, s1))
-            if b > a:
+            if b - a > SLIVER * abs(s1 - s0):
                 fraction = ((a + b) / 2 + nodes * (b - a) / 2 - s0) / (s1 - s0)
                 reference.append(local[:, :1] + fraction * (local[:, 1:] - local[:, :1]))
                 cells.append(np.full(order, cell))
@@ -245,6 +247,13 @@ def translation(basis: Basis) -> Array:
     return np.stack([1 - component, component], axis=1)
 
 
+def rigid_motions(basis: Basis) -> Array:
+    """Unknowns of the unit translations and of the turn by one about the origin, shape (unknowns, 3)."""
+    x, y = basis.doflocs
+    turn = np.where(components(basis) == 0, -y, x)
+    return np.column_stack([translation(basis), turn])
+
+
 def components(basis: Basis) -> Array:
     """Component (0: u, 1: v) of each unknown of a displacement basis, shape (unknowns,)."""
     component = np.zeros(basis.N)
@@ -256,13 +265,42 @@ def components(basis: Basis) -> Array:
 def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     """Rows that give u, v and the rotation (dv/dx - du/dy) / 2 at a point of the mesh, each (unknowns,).
 
-    The rotation is discontinuous between cells: it is the mean over those that meet at the point.
+    Raises
+    ------
+    ValueError
+        If the point lies outside the mesh.
+    """
+    rule = point_rule(basis, point)
+    u, v = values(basis, rule.points, rule.cells)
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, *_cells_at(basis, point))
+
+
+def point_strains(basis: Basis, point: Array) -> Array:
+    """Rows that give e_xx, e_yy and g_xy at a point of the mesh, shape (3, unknowns).
 
     Raises
     ------
     ValueError
         If the point lies outside the mesh.
     """
+    gradient = _gradient(basis, *_cells_at(basis, point))
+    return np.array([gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]])
+
+
+def point_rule(basis: Basis, point: Array) -> Rule:
+    """Unit weight at a point of the mesh.
+
+    Raises
+    ------
+    ValueError
+        If the point lies outside the mesh.
+    """
+    local, cells = _cells_at(basis, point)
+    return Rule(local[:, :1], cells[:1], np.ones(1))
+
+
+def _cells_at(basis: Basis, point: Array) -> tuple[Array, NDArray[np.int64]]:
+    """Reference coordinates of a point in each of the cells that meet there, shape (2, count), and these."""
     corners = basis.mesh.p[:, basis.mesh.t]
     x = point[:, None]
     slack = 1e-9 * np.ptp(basis.mesh.p)
@@ -275,17 +313,25 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     hits = np.flatnonzero(outside < 1e-9)
     if len(hits) == 0:
         raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
-    u, v = values(basis, local[:, hits[:1]], cells[hits[:1]])
-    return u.toarray()[0], v.toarray()[0], _rotation(basis, local[:, hits], cells[hits])
+    return local[:, hits], cells[hits]
 
 
 def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
     """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
-    row = np.zeros(basis.N)
+    gradient = _gradient(basis, points, cells)
+    return np.asarray((gradient[1, 0] - gradient[0, 1]) / 2)
+
+
+def _gradient(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
+    """Rows of the mean over cells that meet at a point of the derivatives of u and v, shape (2, 2, unknowns).
+
+    They are discontinuous between cells.
+    """
+    rows = np.zeros((basis.N, 2, 2))
     for k in range(basis.Nbfun):
         gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
-        np.add.at(row, basis.element_dofs[k, cells], (gradient[1, 0] - gradient[0, 1]) / 2 / len(cells))
-    return row
+        np.add.at(rows, basis.element_dofs[k, cells], np.moveaxis(gradient, -1, 0) / len(cells))
+    return np.moveaxis(rows, 0, -1)
 
 
 def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:

@@ -1,25 +1,29 @@
-"""The body: its cells, material, clamps and loads, and the mesh.
+"""The body: its outline, material, clamps and loads, and the mesh.
 
-A body is given by polygons that tile it. Each is cut into triangles from the centroid of its corners and refined, or,
-where the body is an upright rectangle, meshed by a tensor product of quadrilaterals that is graded towards the corners
-of its clamped sides: there stresses are singular, and elements of one size would converge with that singularity.
+A body is given by polygons that tile it, or by a mesh. Each polygon is cut into triangles from the middle of its
+corners and refined, or, where the body is an upright rectangle, meshed by a tensor product of quadrilaterals that is
+graded towards the corners of its clamped sides: there stresses are singular, and elements of one size would converge
+with that singularity.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 from skfem import Mesh, MeshQuad, MeshTri
 
+from fem_reference.mesh.files import read_mesh
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
 
 Point = tuple[float, float]
 Segment = tuple[Point, Point]
+Traction = tuple[float, float] | Callable[[Array], Array]
 LAYERS = 8  # elements that halve towards a clamped corner: 12 change a cantilever's tip by less than 1e-6
 SAME_PLACE = 1e-9  # of the body's extent
 
@@ -34,18 +38,23 @@ class PlaneBody:
         For a value out of its range, naming field, rule and value.
     """
 
-    polygons: tuple[tuple[Point, ...], ...]  # that tile the body, corners counter-clockwise [m]
+    polygons: tuple[tuple[Point, ...], ...]  # that tile the body, corners counter-clockwise [m]; () with a mesh
     density: float  # [kg/m3]
     young: float  # Young's modulus E [Pa]
     poisson: float  # Poisson's ratio [-]
     hypothesis: str = "plane stress"  # or "plane strain"
     rectangle: bool = False  # whether they tile an upright rectangle, which is meshed as one
     clamps: tuple[Segment, ...] = ()  # parts of the outline that do not move [m]
-    tractions: tuple[tuple[Segment, tuple[float, float]], ...] = ()  # parts of the outline, traction in x and y [Pa]
+    rollers: tuple[tuple[Segment, str], ...] = ()  # parts of the outline, "x" or "y" along which they do not move
+    tractions: tuple[tuple[Segment, Traction], ...] = ()  # parts of the outline, traction in x and y [Pa], or that of x
     stress: tuple[float, float, float] = (0.0, 0.0, 0.0)  # whose tractions act on all that is not clamped [Pa]
     gravity: tuple[float, float] = (0.0, 0.0)  # acceleration in x and y [m/s2]
+    forces: tuple[tuple[Point | None, tuple[float, float]], ...] = ()  # place, or all over the body; x and y [N]
+    velocity: tuple[float, float] = (0.0, 0.0)  # of the centre of mass at t = 0 [m/s]
+    spin: float = 0.0  # about it, counter-clockwise [rad/s]
     elements: int = 16  # along the shorter side of a rectangle, or of each polygon's sides [-]
     degree: int = 2  # of the elements [-], 1 or 2
+    mesh: Mesh | str | None = None  # of straight triangles or quadrilaterals, or a file of such, in place of polygons
 
     def __post_init__(self) -> None:
         require_numbers(self, ("density", "young"), ())
@@ -53,6 +62,11 @@ class PlaneBody:
         require(-1 < self.poisson < 0.5, "poisson", "must be above -1 and below 0.5", self.poisson)
         require(self.elements >= 1, "elements", "must be at least 1", self.elements)
         require(self.degree in (1, 2), "degree", "must be 1 or 2", self.degree)
+        is_held = bool(self.clamps or self.rollers)
+        is_moving = any(self.velocity) or self.spin != 0
+        require(not (is_held and is_moving), "velocity", "must be zero of a body with clamps or rollers", self.velocity)
+        one_outline = bool(self.polygons) != (self.mesh is not None)
+        require(one_outline, "mesh", "must be given where there are no polygons, and only there", self.mesh)
 
     @property
     def shear_modulus(self) -> float:
@@ -68,7 +82,7 @@ class PlaneBody:
     @cached_property
     def extent(self) -> tuple[Array, Array]:
         """Lowest and highest coordinates, each of shape (2,) [m]."""
-        corners = np.vstack([np.array(polygon) for polygon in self.polygons])
+        corners = np.vstack([np.array(polygon) for polygon in self.polygons]) if self.polygons else mesh_of(self).p.T
         return corners.min(axis=0), corners.max(axis=0)
 
     @property
@@ -78,7 +92,15 @@ class PlaneBody:
 
 
 def mesh_of(body: PlaneBody) -> Mesh:
-    """Return the mesh of a body."""
+    """Return the mesh of a body.
+
+    Raises
+    ------
+    ValueError
+        Its file cannot be read.
+    """
+    if body.mesh is not None:
+        return read_mesh(body.mesh) if isinstance(body.mesh, str) else body.mesh
     return _tensor_mesh(body) if body.rectangle else _fan_mesh(body)
 
 
@@ -107,15 +129,13 @@ def _graded(low: float, high: float, size: float, graded: Sequence[bool]) -> Arr
 
 def _fan_mesh(body: PlaneBody) -> MeshTri:
     """Return triangles from the middle of each polygon, all corners that lie on its sides among its own."""
-    corners: list[Array] = []
-    for polygon in body.polygons:
-        for corner in np.array(polygon, float):
-            if all(np.hypot(*(corner - other)) > body.slack for other in corners):
-                corners.append(corner)
+    places = np.vstack([np.array(polygon, float) for polygon in body.polygons])
+    first = [min(near) for near in cKDTree(places).query_ball_point(places, body.slack)]
+    corners = places[np.unique(first)]
     points = [*corners]
     triangles = []
     for polygon in body.polygons:
-        ring = _ring(np.array(polygon, float), np.array(corners), body.slack)
+        ring = _ring(np.array(polygon, float), corners, body.slack)
         points.append(np.mean(np.array(polygon, float), axis=0))
         triangles += [[len(points) - 1, ring[i - 1], ring[i]] for i in range(len(ring))]
     mesh = MeshTri(np.array(points).T, np.array(triangles).T)
@@ -135,23 +155,44 @@ def _ring(polygon: Array, corners: Array, slack: float) -> list[int]:
     return ring
 
 
-def facets_between(mesh: Mesh, start: Point, end: Point, slack: float) -> NDArray[np.int64]:
-    """Return the boundary facets that lie on a straight piece of the outline.
+def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[NDArray[np.int64], Array]:
+    """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
+
+    Returns
+    -------
+    tuple
+        The facets, and the arc lengths of their ends from the start [m], lower first, shape (2, facets).
 
     Raises
     ------
     ValueError
         They do not cover it.
     """
-    a = np.array(start, float)
-    along = np.array(end, float) - a
+    along = end - start
     length = float(np.hypot(*along))
     facets = mesh.boundary_facets()
-    ends = mesh.p[:, mesh.facets[:, facets]] - a[:, None, None]
+    ends = mesh.p[:, mesh.facets[:, facets]] - start[:, None, None]
     offsets = abs(along[0] * ends[1] - along[1] * ends[0]) / length
-    places = (along[0] * ends[0] + along[1] * ends[1]) / length
-    inside = np.all((offsets <= slack) & (places >= -slack) & (places <= length + slack), axis=0)
-    covered = float(np.sum(np.ptp(places[:, inside], axis=0)))
+    places = np.sort((along[0] * ends[0] + along[1] * ends[1]) / length, axis=0)
+    on_line = np.all(offsets <= slack, axis=0)
+    on_piece = on_line & (places[1] > slack) & (places[0] < length - slack)
+    covered = float(np.sum(np.ptp(np.clip(places[:, on_piece], 0.0, length), axis=0)))
     if abs(covered - length) > slack * len(facets):
-        raise ValueError(f"edge: must be covered by edges of the outline's polygons, got {start!r} to {end!r}")
-    return np.asarray(facets[inside], np.int64)
+        raise ValueError(
+            f"edge: must be covered by edges of the outline, got {tuple(start.tolist())!r} to {tuple(end.tolist())!r}"
+        )
+    return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
+
+
+def facets_between(mesh: Mesh, start: Point, end: Point, slack: float) -> NDArray[np.int64]:
+    """Return the boundary facets that make up a straight piece of the outline.
+
+    Raises
+    ------
+    ValueError
+        They do not cover it.
+    """
+    facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
+    if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
+        raise ValueError(f"edge: must begin and end at corners of elements, got {start!r} to {end!r}")
+    return facets

@@ -1,173 +1,195 @@
-"""Matrices, loads and observers of a plane body, and what it answers: at rest, by modes, step by step."""
+"""Bodies in the plane on common contacts, and what they answer: at rest, by modes, step by step.
+
+Displacements are small and normals those of t = 0. A body that nothing clamps keeps its rigid motions: no spring is in
+its stiffness K, whose forces they have none of; contacts are rows (`fem_reference.contact`).
+"""
 
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import block_array, csr_array
+from scipy.linalg import block_diag as dense_block_diag
+from scipy.linalg import null_space
+from scipy.sparse import block_array, block_diag, csr_array, diags_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
-from skfem import FacetBasis, LinearForm
 
-from fem_reference.mesh import elasticity
-from fem_reference.plane.body import PlaneBody, Point, facets_between, mesh_of
+from fem_reference.contact import compilation
+from fem_reference.contact.columns import ENERGY_COLUMNS, LOSS_COLUMNS, energies_of
+from fem_reference.contact.driver import OUTCOMES, Cut, make_steps
+from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.law import AT_LOWER, INSIDE
+from fem_reference.contact.march import ContactState, Record
+from fem_reference.contact.stepper import ContactStepper
+from fem_reference.contact.system import ContactSystem
+from fem_reference.plane.body import PlaneBody, Point
+from fem_reference.plane.contact import PatchContact, points_of
+from fem_reference.plane.elements import BodyElements
+from fem_reference.problem.motion import Motion as BaseMotion
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Mode, Result
 from fem_reference.scheme.eigen import eigenvalues, largest_frequency
-from fem_reference.scheme.newmark import Stepper, Work
+from fem_reference.scheme.newmark import Work
+from fem_reference.scheme.stage import Motion
 
 SHIFT = 1e-3  # of the square of the lowest frequency of a shear wave: keeps K + shift M definite where a body is free
 UNBALANCED = 1e-9  # of the sum of the loads' sizes: what rounding leaves of a balanced load
+UNHELD = 1e-9  # of the stiffest rigid motion on its springs: a motion below its square is held by none
+REST_SOLVES = 50  # greatest number of sets of closed points that are tried for a rest
+CUT = Cut(0.3, 0.01)  # of a step whose contact has no solution, as of a block
 
 
-@LinearForm
-def _push_x(v, w):  # type: ignore[no-untyped-def]
-    return v[0]
+@dataclass(frozen=True)
+class Rest:
+    """Bodies at rest; arrays of contacts have the shape (contacts,)."""
+
+    D: Array  # displacements [m], shape (unknowns,)
+    place: Array  # of each row beyond the length of its spring, of an open point its gap [m], shape (rows,)
+    force: Array  # of each row [N]
+    normal: Array  # force out of the second body on the first [N]
+    shear: Array  # force on the first body clockwise of that [N]
 
 
-@LinearForm
-def _push_y(v, w):  # type: ignore[no-untyped-def]
-    return v[1]
+@dataclass(frozen=True, kw_only=True)
+class BodiesResult(Result):
+    """Histories of the steps that were reached; row 0 is step 1, and a contact has a column of its arrays."""
 
-
-@LinearForm
-def _traction(v, w):  # type: ignore[no-untyped-def]
-    """S n . v of a constant stress."""
-    s_xx, s_yy, s_xy = w.stress
-    return (s_xx * w.n[0] + s_xy * w.n[1]) * v[0] + (s_xy * w.n[0] + s_yy * w.n[1]) * v[1]
+    outcome: str  # "completed", or why the history ends early
+    normal: Array  # force out of the second body on the first [N]
+    shear: Array  # force on the first body clockwise of that [N]
+    gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
+    slip: Array  # mean of what its points have slid while closed, there less back [m]
+    closed: Array  # share of the patch that is closed [-]
+    momentum: Array  # in x, in y and about (0, 0) at the places of t = 0 [kg m/s, kg m2/s], shape (steps, 3)
+    energy: dict[str, Array]  # `ENERGY_COLUMNS` and `LOSS_COLUMNS` of `fem_reference.contact.columns` [J]
+    step_solves: Array  # solutions of the contact in each step [-], shape (steps,)
+    cuts: Array  # of each step [-]
 
 
 class PlaneModel:
-    """M D'' + K D = F of a body on its mesh, clamped unknowns left out.
+    """M D'' + K D = F + B' N of bodies on their meshes, clamped unknowns left out, N by the laws of their contacts.
+
+    Parameters
+    ----------
+    bodies
+        Their unknowns come one body after the other.
+    contacts
+        Springs over patches of their outlines.
+    base_motion
+        Of what is fixed below the contacts, zero at t = 0.
 
     Raises
     ------
     ValueError
-        A clamp or a load does not lie on the outline.
+        A clamp, a load or a contact does not lie on the outline.
     """
 
-    def __init__(self, body: PlaneBody) -> None:
-        self.body = body
-        self.mesh = mesh_of(body)
-        self.basis = elasticity.vector_basis(self.mesh, body.degree)
-        fixed = [self.basis.get_dofs(self._facets(*clamp)).all() for clamp in body.clamps]
-        self.free = np.setdiff1d(np.arange(self.basis.N), np.concatenate([*fixed, np.empty(0, int)]).astype(int))
-        mass = elasticity.mass(self.basis, body.density)
-        stiffness = self.elastic()
-        self.M = csr_array(mass[self.free][:, self.free])
-        self.K = csr_array(stiffness[self.free][:, self.free])
-        self.F = self._load(mass)[self.free]
+    def __init__(
+        self,
+        bodies: Sequence[PlaneBody],
+        contacts: Sequence[PatchContact] = (),
+        base_motion: BaseMotion | None = None,
+    ) -> None:
+        self.parts = [BodyElements(body) for body in bodies]
+        self.first = [0, *np.cumsum([len(part.free) for part in self.parts]).tolist()]
+        self.M = csr_array(block_diag([part.M for part in self.parts]))
+        self.K = csr_array(block_diag([part.K for part in self.parts]))
+        self.F = np.concatenate([part.F for part in self.parts])
+        self.points = points_of(contacts, self.parts, self.first)
+        self.base_motion = base_motion
 
-    def elastic(self) -> csr_array:
-        """Return the stiffness of all unknowns [N/m]."""
-        return elasticity.stiffness(self.basis, self.body)  # type: ignore[arg-type]  # which reads its moduli alone
-
-    def _facets(self, start: Point, end: Point) -> NDArray[np.int64]:
-        return facets_between(self.mesh, start, end, self.body.slack)
-
-    def _edge(self, start: Point, end: Point) -> FacetBasis:
-        return FacetBasis(self.mesh, self.basis.elem, facets=self._facets(start, end), intorder=2 * self.body.degree)
-
-    def _load(self, mass: csr_array) -> Array:
-        body = self.body
-        F: Array = mass @ (elasticity.translation(self.basis) @ np.array(body.gravity))
-        for (start, end), (x, y) in body.tractions:
-            edge = self._edge(start, end)
-            F = F + x * _push_x.assemble(edge) + y * _push_y.assemble(edge)
-        if any(body.stress):
-            outline = self.mesh.boundary_facets()
-            clamped = [self._facets(*clamp) for clamp in body.clamps]
-            loaded = np.setdiff1d(outline, np.concatenate([*clamped, np.empty(0, np.int64)]))
-            F = F + _traction.assemble(FacetBasis(self.mesh, self.basis.elem, facets=loaded), stress=body.stress)
-        return F
-
-    def observer(self, start: Point, end: Point) -> Array:
-        """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
+    def observer(self, start: Point, end: Point, body: int = 0) -> Array:
+        """Return the rows of the mean displacement in x and y of a part of a body's outline, or of a point.
 
         Raises
         ------
         ValueError
             Nothing lies there.
         """
-        if start == end:
-            u, v, _ = elasticity.point_values(self.basis, np.array(start))
-            return np.array([u, v], dtype=float)[:, self.free]
-        edge = self._edge(start, end)
-        length = float(np.hypot(*np.subtract(end, start)))
-        rows: Array = np.array([_push_x.assemble(edge), _push_y.assemble(edge)])[:, self.free] / length
+        return self.rows(self.parts[body].observer(start, end), body)
+
+    def means(self, body: int) -> Array:
+        """Rows of the means over a body of u, v, rotation, e_xx, e_yy and g_xy, shape (6, unknowns)."""
+        return self.rows(self.parts[body].means, body)
+
+    def rows(self, of_body: Array, body: int) -> Array:
+        """Rows on a body's unknowns as rows on all."""
+        rows = np.zeros((len(of_body), len(self.F)))
+        rows[:, self.first[body] : self.first[body + 1]] = of_body
         return rows
 
     @cached_property
     def motions(self) -> Array:
-        """Rigid motions of a body that nothing holds, (unknowns, 3); none of a clamped one."""
-        if self.body.clamps:
-            return np.zeros((len(self.free), 0))
-        x, y = self.basis.doflocs
-        component = elasticity.components(self.basis)
-        turn = np.where(component == 0, -y, x)
-        motions: Array = np.column_stack([elasticity.translation(self.basis), turn])[self.free]
-        return motions
+        """Rigid motions of each body that no clamp holds, shape (unknowns, motions)."""
+        return np.asarray(dense_block_diag(*(part.motions for part in self.parts)))
+
+    def highest_frequency(self) -> float:
+        """Return the largest natural frequency of all states: all points closed and sticking [rad/s]."""
+        return largest_frequency(self._stiffness(self.points.all_closed), self.M)
 
     @cached_property
-    def rest(self) -> Array:
-        """Displacements at rest, orthogonal to the rigid motions of a free body, (unknowns,).
+    def settled(self) -> Rest:
+        """The bodies at rest under their loads: points that would pull are open, springs of shear stick.
+
+        Orthogonal to what rigid motions no spring holds.
 
         Raises
         ------
         ValueError
-            Nothing is clamped and the loads have a resultant.
+            The loads have a resultant that nothing holds, or no set of closed points was found.
         """
-        momentum = self.M @ self.motions
-        resultant = self.motions.T @ self.F
-        size = float(np.sum(abs(self.F)))
-        if np.any(abs(resultant) > UNBALANCED * size * np.max(abs(self.motions), axis=0, initial=0.0)):
-            raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
-        if not self.motions.shape[1]:
-            return Work().factor(self.K)(self.F)
-        weight = self.body.young / float(abs(momentum).max())  # rows of the size of the others
-        border = csr_array(weight * momentum)
-        matrix = block_array([[self.K, border], [border.T, None]], format="csc")
-        return np.asarray(splu(matrix).solve(np.concatenate([self.F, np.zeros(border.shape[1])]))[: len(self.F)])
+        points = self.points
+        rows = points.rows
+        closed = points.all_closed
+        for _ in range(REST_SOLVES):
+            D = self._rest_of(closed)
+            y = points.B @ D + points.gap
+            force = np.where(closed, -y / rows.compliance, 0.0)
+            following = np.where(closed, force >= rows.lower, y < 0)[rows.partner]
+            if np.array_equal(following, closed):
+                place = np.where(closed, -force * rows.compliance, y)
+                return Rest(D, place, force, force @ points.normal, force @ points.shear)
+            closed = following
+        raise ValueError(
+            "contacts: must agree with their own forces at rest, which steps with gg = 0 may find, got none"
+        )
+
+    @property
+    def rest(self) -> Array:
+        """Displacements at rest, as `settled` has them, shape (unknowns,)."""
+        return self.settled.D
 
     def stress_error(self) -> float:
-        """Return the largest difference of a stress component at rest from the loads' own, over the largest of these.
+        """Return the largest difference of a stress component at rest from the loads' own, of the first body.
 
         Raises
         ------
         ValueError
             The loads are not those of a stress.
         """
-        stress = np.array(self.body.stress)
-        if not np.any(stress):
-            raise ValueError("stress: must be stated, got none")
-        D = np.zeros(self.basis.N)
-        D[self.free] = self.rest
-        gradient = self.basis.interpolate(D).grad
-        e_xx = gradient[0, 0]
-        e_yy = gradient[1, 1]
-        g_xy = gradient[0, 1] + gradient[1, 0]
-        lame = self.body.lame
-        shear = self.body.shear_modulus
-        dilatation = lame * (e_xx + e_yy)
-        found = np.array([dilatation + 2 * shear * e_xx, dilatation + 2 * shear * e_yy, shear * g_xy])
-        return float(np.max(abs(found - stress[:, None, None])) / np.max(abs(stress)))
+        return self.parts[0].stress_error(self.rest[: self.first[1]])
 
     def modes(self, scheme: Scheme, count: int) -> tuple[Mode, ...]:
-        """Return the lowest modes that are no rigid motion, in rising order."""
-        body = self.body
-        reach = float(np.max(body.extent[1] - body.extent[0]))
-        shift = SHIFT * body.shear_modulus / body.density * (np.pi / reach) ** 2
-        rigid = self.motions.shape[1]
-        inverse = Work().factor(csr_array(self.K + shift * self.M))
+        """Return the lowest modes that are no free motion, all points closed and sticking, in rising order."""
+        closed = self.points.all_closed
+        K = self._stiffness(closed)
+        first = self.parts[0].body
+        reach = float(np.max(first.extent[1] - first.extent[0]))
+        shift = SHIFT * first.shear_modulus / first.density * (np.pi / reach) ** 2
+        rigid = self._unheld(closed).shape[1]
+        inverse = Work().factor(csr_array(K + shift * self.M))
         start = np.random.default_rng(0).standard_normal(len(self.F))
-        operator = LinearOperator(self.K.shape, matvec=inverse, dtype=float)
-        squares, shapes = eigsh(self.K, count + rigid, self.M, sigma=-shift, OPinv=operator, v0=start)
+        operator = LinearOperator(K.shape, matvec=inverse, dtype=float)
+        squares, shapes = eigsh(K, count + rigid, self.M, sigma=-shift, OPinv=operator, v0=start)
         order = np.argsort(squares)[rigid:]
         squares = squares[order]
         shapes = shapes[:, order]
-        work = float(self.F @ self.rest)
+        work = float(self.F @ self._rest_of(closed))
         shares = (shapes.T @ self.F) ** 2 / (squares * work) if work else np.zeros(count)
         frequencies = np.sqrt(squares)
         return tuple(
@@ -175,31 +197,147 @@ class PlaneModel:
             for w, share in zip(frequencies, shares, strict=True)
         )
 
-    def highest_frequency(self) -> float:
-        """Return the largest natural frequency, which limits a conditionally stable scheme [rad/s]."""
-        return largest_frequency(self.K, self.M)
+    def history(
+        self, scheme: Scheme, steps: int, rows: Array, *, settled: bool = False, limit: int = 6
+    ) -> BodiesResult:
+        """Return what some rows observe of the bodies, at each step, with their contacts and energies.
 
-    def history(self, scheme: Scheme, steps: int, rows: Array) -> Result:
-        """Return what some rows observe of the body from rest, at each step.
+        They begin unstrained with their velocities, or at rest under their loads. A numerical failure is an outcome:
+        the history then ends with the last step that was reached.
 
         Parameters
         ----------
         rows : (columns, unknowns) array
             As `observer` returns them; the columns of the result are named by their numbers.
+        settled
+            Whether they begin at `rest`.
+        limit
+            Greatest number of solutions of the open-close iteration before its fallback.
         """
         began = time.perf_counter()
-        stepper = Stepper(self.M, self.K, self.F, scheme)
+        system = self._system(scheme, rows)
+        modal = system.C is None and len(self.F) <= compilation.MODES and steps >= compilation.LONG
+        compiled, note = compilation.march(modal, steps)
+        stepper = ContactStepper(
+            system.in_modes() if modal else system, scheme, limit, energies=True, losses=True, compiled=compiled
+        )
+        state = self._start(stepper, settled)
         ready = time.perf_counter()
-        observed = np.empty((len(rows), steps))
-        with np.errstate(over="ignore", invalid="ignore"):
-            for n, state in enumerate(stepper.states(steps)):
-                observed[:, n] = rows @ state.D
-        return Result(
-            time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
-            columns={str(i): values for i, values in enumerate(observed)},
+        cut = None if scheme.staggered or system.C is not None else CUT
+        outcome = CONVERGED
+        pieces = [self._kept(stepper.record(0))]
+        for record, marched in make_steps(stepper, state, steps, cut):
+            pieces.append(self._kept(record))
+            outcome = marched.outcome
+        kept: dict[str, Any] = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+        observed = kept.pop("observed")
+        energy = {name: kept.pop(name) for name in (*ENERGY_COLUMNS, *LOSS_COLUMNS)}
+        return BodiesResult(
+            time=np.asarray(scheme.step * np.arange(1, len(observed) + 1), dtype=np.float64),
+            columns={str(i): values for i, values in enumerate(observed.T)},
             unknowns=len(self.F),
             **vars(stepper.work),
-            notes=(),
+            notes=(note,) if len(self.points.gap) else (),
             setup_seconds=ready - began,
             stepping_seconds=time.perf_counter() - ready,
+            outcome=OUTCOMES[outcome],
+            energy=energy,
+            **kept,
         )
+
+    def _system(self, scheme: Scheme, rows: Array) -> ContactSystem:
+        """The bodies on their contacts, what the rows observe, and the momenta."""
+        rigid = dense_block_diag(*(part.rigid for part in self.parts)).reshape(len(self.F), -1, 3).sum(axis=1)
+        damping = scheme.mass_damping * self.M + scheme.stiffness_damping * self.K
+        return ContactSystem(
+            M=self.M,
+            K=self.K,
+            F=self.F,
+            B=self.points.B,
+            rows=self.points.rows,
+            watch=Motion(np.asarray(rows, float), rigid.T @ self.M, np.zeros((0, len(self.F)))),
+            pushes=np.zeros((len(self.F), 0)),
+            ground=self.points.ground,
+            prescribed=self._base,
+            start_parts=np.zeros(2),
+            motions=tuple(part.motions for part in self.parts),
+            C=csr_array(damping) if scheme.damped else None,
+        )
+
+    def _base(self, positions: Array, times: Array) -> Array:
+        """Displacement of the base in x and y, shape (steps, stages, 2) [m]."""
+        if self.base_motion is None:
+            return np.zeros((*times.shape, 2))
+        return np.asarray(self.base_motion(times.ravel())).reshape(*times.shape, 2)
+
+    def _start(self, stepper: ContactStepper, settled: bool) -> ContactState:
+        """The bodies at t = 0."""
+        rows = self.points.rows
+        gap = self.points.gap
+        states = np.where(gap[rows.partner] > 0, AT_LOWER, INSIDE).astype(np.int8)
+        states[rows.slips] = INSIDE
+        place = gap
+        D = np.zeros(len(self.F))
+        force = np.zeros(len(gap))
+        if settled:
+            D = self.settled.D
+            place = self.settled.place
+            force = self.settled.force
+            states = np.where(rows.slips | (force > 0), INSIDE, AT_LOWER).astype(np.int8)
+        V = np.concatenate([part.velocity() for part in self.parts])
+        to_modes = stepper.system.to_modes
+        if to_modes is not None:
+            V = to_modes @ V
+            D = to_modes @ D
+        return stepper.start(V, place, states, D, force)
+
+    def _kept(self, record: Record) -> dict[str, Any]:
+        """What a result has of some steps."""
+        points = self.points
+        mean = points.share[:, None]
+        return {
+            "observed": record.displacements,
+            "momentum": record.velocities,
+            "normal": record.force @ points.normal,
+            "shear": record.force @ points.shear,
+            "gap": record.place @ (mean * points.normal),
+            "slip": record.slid @ (mean * points.shear),
+            "closed": (record.states == INSIDE) @ (mean * points.normal),
+            "step_solves": record.solves,
+            "cuts": record.cuts,
+            **energies_of(record, points.rows),
+        }
+
+    def _stiffness(self, closed: NDArray[np.bool_]) -> csr_array:
+        """K with the springs of the closed rows [N/m]."""
+        B = self.points.B[closed]
+        return csr_array(self.K + B.T @ diags_array(1 / self.points.rows.compliance[closed]) @ B)
+
+    def _unheld(self, closed: NDArray[np.bool_]) -> Array:
+        """Rigid motions that neither clamps nor closed springs hold, orthonormal, shape (unknowns, 0 or more)."""
+        motions, _ = np.linalg.qr(self.motions)
+        springs = np.sqrt(1 / self.points.rows.compliance[closed])[:, None] * (self.points.B[closed] @ motions)
+        return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
+
+    def _rest_of(self, closed: NDArray[np.bool_]) -> Array:
+        """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold.
+
+        Raises
+        ------
+        ValueError
+            The loads have a resultant that nothing holds.
+        """
+        points = self.points
+        F = self.F - points.B[closed].T @ (points.gap / points.rows.compliance)[closed]
+        K = self._stiffness(closed)
+        motions = self._unheld(closed)
+        size = float(np.sum(abs(F)))
+        if np.any(abs(motions.T @ F) > UNBALANCED * size * np.max(abs(motions), axis=0, initial=0.0)):
+            raise ValueError("load: must be in balance where nothing is clamped, got a resultant")
+        if not motions.shape[1]:
+            return Work().factor(K)(F)
+        momentum = self.M @ motions
+        weight = float(abs(K).max()) / float(abs(momentum).max())  # rows of the size of the others
+        border = csr_array(weight * momentum)
+        matrix = block_array([[K, border], [border.T, None]], format="csc")
+        return np.asarray(splu(matrix).solve(np.concatenate([F, np.zeros(border.shape[1])]))[: len(F)])

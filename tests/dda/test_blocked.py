@@ -11,7 +11,7 @@ from faults import seams
 from oracles import mp_reference
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
-from dda.one_block.solution import modal_histories
+from dda.bodies.locked_block import modal_histories
 from dda.scheme import blocked as blocks
 from dda.scheme.newmark import staged_step, step_matrices, stepped_modes
 

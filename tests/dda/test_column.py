@@ -7,8 +7,8 @@ import pytest
 from conftest import thinned
 
 import dda
-from dda.column.column import Column, Layer, Motion, Spring
-from dda.column.stepping import Drive, solve_column
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Motion, Spring
 from validation.metrics.transform import spectrum
 from validation.theory import waves
 from validation.theory.stepping import Stepping

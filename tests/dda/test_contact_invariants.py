@@ -11,10 +11,10 @@ from oracles.contact_bodies import CASES, OneBlock, TurningBlock, put_stage, wit
 from oracles.unilateral_checks import apart, size
 
 from dda import Load
+from dda.bodies.turning_step import SETTLED
 from dda.contact.rows import FOUND, INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
 from dda.march.step import push_modes
-from dda.rotation.step import SETTLED
 
 SEEDS = range(16)
 SHORT = range(4)  # each kind of random block and each scheme once

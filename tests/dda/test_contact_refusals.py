@@ -19,7 +19,7 @@ from dda import (
     solve_opening_system,
     solve_unilateral,
 )
-from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
 
 ROUGH = {"stiffness": 1e9, "shear": 1e9, "friction": 0.5}
 SMOOTH = {"stiffness": 1e9}

@@ -7,8 +7,7 @@ import pytest
 from conftest import thinned
 from oracles import mp_reference
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve
-from dda.one_block.modes import modes
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, modes, solve
 from dda.scheme import spectral
 
 STEPS = 300

@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 from oracles.frictional import square
 
 from dda import Scheme, Unilateral, UnilateralModel, solve_unilateral
@@ -38,23 +37,3 @@ def test_a_history_of_a_program_is_met_step_by_step():
     assert (
         np.max(np.abs([creep(stable(22, "consistent", (0.0, 0.0)), 2e-3)[n - 1] for n in PROGRAM] / program - 1)) > 0.5
     )
-
-
-def test_the_lag_takes_one_solve_where_nothing_opens_and_leaves_the_law():
-    model = stable(22)
-    result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 2e-3), 100)
-    assert np.all(result.step_solves == 1)
-    over = np.abs(result.shear) - model.contact.friction * result.normal
-    assert np.max(over) > 0.1 * np.max(np.abs(result.shear))  # what shear grows by in the step that sees it
-
-
-@pytest.mark.parametrize("rules", [{}, {"friction": 0.5}, {"friction": 0.5, "rules": "lagged"}])
-@pytest.mark.parametrize("traction", [0.0, 1e3])
-def test_an_open_corner_closes_beyond_its_band(rules, traction):
-    """It falls by 0.1 mm a step on frictionless springs, on rough ones and on those of common programs."""
-    law = Unilateral(1e9, 1e9 if rules else 0.0, gap=1.05e-3, band=(5e-4, 0.0), **rules)
-    model = UnilateralModel(square(), law, 0.0, velocity=-1.0, traction=traction)
-    found = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, 1e-4), 20)
-    first = int(np.argmax(found.closed_m))
-    assert found.gap_m[:first].min() == pytest.approx(-4.5e-4, rel=1e-2)
-    assert found.closed_m[first] and found.normal_force_m[first] > 0

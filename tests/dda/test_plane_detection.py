@@ -141,12 +141,14 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
 
 
 @pytest.mark.parametrize("ahead", [-1e-3, -1e-12, 0.0, 1e-12, 1e-3])
-@pytest.mark.parametrize("sunk", [1e-12, 1e-6])
+@pytest.mark.parametrize("sunk", [1e-12, 1e-6, 3e-4, 5e-3])
 def test_a_block_slides_over_a_flush_seam(ahead, sunk):
     floors = [SQUARE * 2 - (2, 2), SQUARE * 2 - (0, 2)]
     scene = Scene([*floors, SQUARE - (1 - ahead, sunk)])
     scene.detection.moves[1] = 0
     scene.detection.law[:] = [-1, -1, 0, -1, -1, 0, 0, 0, -1]
+    scene.step((0.0, -1e-3), [*floors, SQUARE - (1.1, -1e-12)])
+    scene.press(*[1.0] * scene.count)
     found = scene.step((2e-3, 0.0))
     scene.press(*[1e-9 if sunk < 1e-9 else 1e3] * len(found))
     found = scene.step((2e-3, 0.0), [*floors, SQUARE - (1 - ahead - 2e-3, sunk)])

@@ -6,15 +6,12 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from oracles.contact_bodies import put_stage
 
-import dda.rotation.solution as solution
-import dda.rotation.step as step
+import dda.bodies.turning_step as step
 from dda import Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, named_scheme
 from dda import solve_unilateral as solve_small
-from dda.march.step import set_length
-from dda.rotation.body import FIRST_ORDER, turned
-from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_body import FIRST_ORDER
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", "strain_x", "strain_y")
 MATERIAL = Material(2700.0, 1e9, 0.2)
@@ -32,7 +29,7 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
 
     def vibrating(model, scheme):
         start = real(model, scheme)
-        return start._replace(p=scheme.step * (model.body.modes.shapes.T @ model.body.M @ V))
+        return start._replace(p=scheme.step * (model.body.shapes.T @ model.body.M @ V))
 
     with patch.object(RollingModel, "start", vibrating):
         result = solve_rolling(model, scheme, 300)
@@ -57,25 +54,6 @@ def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     outline = result.outline[-1] - result.motion.c[-1]
     angle = math.atan2(*(outline[1] - outline[0])[::-1]) % (2 * math.pi)
     assert angle == pytest.approx(steps * math.atan(r), rel=1e-11)
-
-
-def test_the_modes_of_a_grown_outline_are_those_of_its_polygon(monkeypatch):
-    model = RollingModel(QUADRILATERAL, FAR)
-    scheme = Scheme(*CONSTANT, 1.0, 1e-3)
-    marches = []
-    put_stage(monkeypatch, solution, lambda make: lambda march, *given: marches.append(march) or make(march, *given))
-    solve_rolling(model, scheme, 1, options=RollingOptions(FIRST_ORDER))
-    march, length = marches[0], marches[0].last.whole
-    growth = step.area_growth(march.method, 1.1 * turned(0.4))
-    step.grow(march, growth)
-    set_length(march, march.last, 1.0, length)
-    larger = Block(model.body.xi * 1.1, MATERIAL)
-    S = larger.mass()
-    S[3:, 3:] += 0.5e-6 * larger.elastic()[3:, 3:]
-    shapes = model.body.modes.shapes
-    flexible = shapes * np.multiply(march.body.mobility, length.inverse) @ shapes.T
-    assert growth == pytest.approx(1.21, rel=1e-15)
-    assert np.allclose(flexible @ S, np.eye(6), rtol=0, atol=1e-12)
 
 
 SMALL_STEPS = [

@@ -7,8 +7,8 @@ import pytest
 from oracles.rolling import RollingBlock
 
 from dda import Block, Load, Material, Scheme, Unilateral
-from dda.rotation.body import Turn, turn, turned
-from dda.rotation.solution import RollingModel, solve_rolling
+from dda.bodies.turning_block import RollingModel, solve_rolling
+from dda.bodies.turning_body import Turn, turn, turned
 
 OUTLINE = [[0, 0], [1, 0], [1.1, 1.4], [0.1, 1.6]]
 MATERIAL = Material(2000.0, 3e7, 0.2)

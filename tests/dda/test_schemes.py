@@ -24,9 +24,10 @@ from dda import (
     solve,
     solve_adaptive,
     solve_textbook,
+    static,
     textbook_applicable,
 )
-from dda.one_block.modes import step_of_mode
+from dda.bodies.diagnostics import step_of_mode
 from dda.scheme import roots
 
 # name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1
@@ -207,8 +208,7 @@ def test_long_histories_are_blocked_where_a_step_has_two_numbers_a_mode(name, va
     assert result.solves == (3000 if scheme.averages else 0) and stepped.solves == 3000 * len(scheme.stages)
     for column, values_of in stepped.columns.items():
         assert np.max(np.abs(values_of - result.columns[column])) < 1e-11 * np.max(np.abs(values_of))
-    static = square().static()["displacement"]
-    assert np.mean(result.columns["displacement"]) == pytest.approx(static, rel=0.1)
+    assert np.mean(result.columns["displacement"]) == pytest.approx(static(square())["displacement"], rel=0.1)
 
 
 def test_what_grows_is_stepped_and_overflows_by_name():

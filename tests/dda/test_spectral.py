@@ -7,8 +7,7 @@ import pytest
 from conftest import thinned
 from oracles import real_roots
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, solve
-from dda.one_block.modes import modes
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes, solve
 from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)

@@ -8,7 +8,7 @@ from oracles.plain_newmark import SIDE, glued, stepped, upright
 
 import dda
 import fem_reference
-from dda.system.system import BlockSystem
+from dda.bodies.block_system import BlockSystem
 from validation import load_scene, solve
 from validation.errors import InputError
 
@@ -41,10 +41,10 @@ def test_one_sub_block_is_the_two_block_model_to_the_last_bits(scheme, p, moved,
     model = two_block(TRAPEZIUM, 0.3, p, **(LOADS | {"motion": start if moved else None}))
     one = dda.solve_system(dda.subdivided(model, 1, 1, 1e9), scheme, 150, COLUMNS)
     assert largest_error(one, dda.solve(model, scheme, 150, COLUMNS)) < 150 * 2.0**-bits
-    static, expected = dda.static_system(dda.subdivided(model, 1, 1, 1e9)), model.static()
+    static, expected = dda.static(dda.subdivided(model, 1, 1, 1e9)), dda.static(model)
     for name in COLUMNS:
         assert static[name] == pytest.approx(expected[name], rel=1e-12)
-    modes = dda.system_modes(dda.subdivided(model, 1, 1, 1e9), scheme)
+    modes = dda.modes(dda.subdivided(model, 1, 1, 1e9), scheme)
     # the dense eigenvalue solver keeps the digits of the largest flexibility
     for mode, same in zip(modes[:2], dda.modes(model, scheme)[:2], strict=True):
         assert mode.frequency == pytest.approx(same.frequency, rel=1e-9)
@@ -160,7 +160,7 @@ def test_squares_and_triangles_under_mixed_loads_keep_equilibrium():
     a, rho, tau, q, g, e = 2.0, 2700.0, 2e5, 5e6, 9.81, 0.35
     for pattern in ("squares", "triangles"):
         model = two_block(mu=0.25, gravity=g, traction=tau, eccentricity=e)
-        static = dda.static_system(dda.subdivided(model, 5, 3, 1e12, pattern))
+        static = dda.static(dda.subdivided(model, 5, 3, 1e12, pattern))
         # 0.35 cuts the middle of a sub-block's edge: the pressed part ends inside it
         assert static["contact_pressure"] == pytest.approx(q * (a - 2 * e) / a + rho * g * a, rel=1e-11)
 

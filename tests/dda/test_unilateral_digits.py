@@ -30,8 +30,8 @@ def histories(model, scheme, steps):
     result, exact = solve_unilateral(model, scheme, steps), unilateral_mp.history(model, scheme, steps)
     assert result.outcome == "completed"
     v = (result.columns["displacement"], [row[0] for row in exact])
-    N = [(mine, [row[1][i] for row in exact]) for i, mine in enumerate((result.normal_force_m, result.normal_force_n))]
-    T = [(mine, [row[2][i] for row in exact]) for i, mine in enumerate((result.shear_force_m, result.shear_force_n))]
+    N = [(mine, [row[1][i] for row in exact]) for i, mine in enumerate((result.normal[0], result.normal[1]))]
+    T = [(mine, [row[2][i] for row in exact]) for i, mine in enumerate((result.shear[0], result.shear[1]))]
     return v, N, T
 
 
@@ -49,10 +49,10 @@ def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
 def test_a_penalty_that_grows_becomes_the_rigid_stop():
     scheme, model = Scheme(0.5, 1.0, 1.0, 2e-4), model_of(replace(IMPACT, pressure=1e6))
     stiff, rigid = (solve_unilateral(replace(model, contact=Unilateral(p)), scheme, 60) for p in (1e24, np.inf))
-    assert np.array_equal(stiff.closed_m, rigid.closed_m) and np.all(rigid.gap_m[rigid.closed_m] == 0)
+    assert np.array_equal(stiff.closed[0], rigid.closed[0]) and np.all(rigid.gap[0][rigid.closed[0]] == 0)
     # 1/p is 1e-13 of the step's flexibility; some twenty impacts multiply that
-    largest = np.max(rigid.normal_force_m)
-    assert np.max(np.abs(stiff.normal_force_m - rigid.normal_force_m)) < 1e-9 * largest
+    largest = np.max(rigid.normal[0])
+    assert np.max(np.abs(stiff.normal[0] - rigid.normal[0])) < 1e-9 * largest
 
 
 # A corner that closes meets the rounding of a step as a relative error of its small overshoot; two corners in turn

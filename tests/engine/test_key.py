@@ -42,13 +42,13 @@ def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_pa
     for package in ("dda", "fem_reference", "validation"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "small.toml").write_text(SCENE)
-    named = [f"validation/{room}" for room in ROOMS] + ["dda/one_block", "fem_reference/mesh"]
+    named = [f"validation/{room}" for room in ROOMS] + ["dda/bodies", "fem_reference/mesh"]
     command = [sys.executable, "-c", KEYS, str(tmp_path), str(tmp_path / "small.toml"), *named]
     done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=True)
     changed = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
     for room in ROOMS:
         assert changed[f"validation/{room}"] == ["1", "1", "1", "1"], room
-    assert changed["dda/one_block"] == ["1", "0", "0", "0"]
+    assert changed["dda/bodies"] == ["1", "0", "0", "0"]
     assert changed["fem_reference/mesh"] == ["0", "1", "1", "0"]
 
 

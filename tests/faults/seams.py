@@ -16,20 +16,21 @@ import dda
 import fem_reference.exact.bar as exact_bar
 import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
-from dda.column import contacts as column_contacts
-from dda.column import equations as column_equations
-from dda.column import stepping as column_stepping
+from dda.bodies import block_system as system
+from dda.bodies import bonded_column as column_stepping
+from dda.bodies import column_equations, gap_form, joints, subdivision
+from dda.bodies import contact_column as column_contacts
+from dda.bodies import glued_blocks as glued
+from dda.bodies import glued_step as system_step
+from dda.bodies import locked_block as solution
+from dda.bodies import locked_system as system_solution
+from dda.bodies import turning_block as rolling
+from dda.bodies import turning_body as rolling_body
+from dda.bodies import turning_step as rolling_step
+from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
-from dda.one_block import gap_form, solution
-from dda.one_block import response as dda_vibration
-from dda.rotation import body as rolling_body
-from dda.rotation import solution as rolling
-from dda.rotation import step as rolling_step
-from dda.scheme import blocked, harmonic, newmark
-from dda.system import glued, joints, subdivision, system
-from dda.system import solution as system_solution
-from dda.system import step as system_step
+from dda.scheme import blocked, newmark
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
@@ -40,7 +41,7 @@ from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
 from fem_reference.history import solver as fem_history
 from fem_reference.mesh import model as fem_model
-from fem_reference.plane import model as plane_model
+from fem_reference.plane import elements as plane_elements
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
@@ -105,7 +106,7 @@ DDA_TEXTBOOK = Seam(dda, dda.solve_textbook)
 DDA_SCHEME = Seam(dda_adapter, dda_adapter.scheme_of)
 
 # Answers to what vibrates
-DDA_ANSWERING = Seam(dda_vibration, dda_vibration.answering)
+DDA_ANSWERING = Seam(gap_form, gap_form.answering)
 FEM_ANSWERING = Seam(fem_vibration, fem_vibration.answering)
 BAR_ANSWERING = Seam(bar_vibration, bar_vibration.answering)
 
@@ -118,18 +119,18 @@ SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_step, system_step.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_step, system_step.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution, system_solution.observed_steps)
-SYSTEM_DENSE = Seam(harmonic, harmonic.DENSE)
+SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
 GLUED_EDGES = Seam(glued, glued.shared_edges)
 GLUED_LOAD = Seam(glued, glued._traction_of)
 PLANE_MATERIAL = Seam(dda, dda.Material)
-FEM_PLANE_STIFFNESS = Seam(plane_model.PlaneModel, plane_model.PlaneModel.elastic)
+FEM_PLANE_STIFFNESS = Seam(plane_elements.BodyElements, plane_elements.BodyElements.elastic)
 
 # Blocks that turn
 ROLLING_WEIGHT = Seam(rolling.RollingModel, rolling.RollingModel.weight)
 ROLLING_LAWS = Seam(rolling, rolling.laws_of)
-ROLLING_MODES = Seam(rolling_body, rolling_body.modes_of)
+ROLLING_MODES = Seam(rolling_body, rolling_body.free_block)
 ROLLING_START = Seam(rolling.RollingModel, rolling.RollingModel.start)
 ROLLING_STEPS = Seam(rolling, rolling.make_steps)
 ROLLING_BASE = Seam(rolling, rolling.base_motion)

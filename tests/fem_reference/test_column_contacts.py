@@ -170,20 +170,6 @@ def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch:
         assert modal.columns[name] == pytest.approx(plain.columns[name], abs=1e-8 * size), name
 
 
-@pytest.mark.parametrize("pull", [4.0, -4.0, -20.0])
-def test_a_base_that_starts_at_once_takes_a_rigid_contact_along_or_leaves_it(pull: float) -> None:
-    """The foot has the base's acceleration, or that of gravity where the base falls faster."""
-    contact = (ColumnContact(0.0, math.inf),)
-    column = ContactColumn(ground((2.0, 2500.0, 1e9)), "unilateral", contact, (0.0,), 9.81)
-    drive = still(1, acceleration=np.full(2, pull))
-    stepper, start = stepper_and_start(column, 3, 2, scheme(CONSTANT, 1e-4), drive)
-    assert pytest.approx(max(pull, -9.81), rel=1e-9) == stepper.system.B @ start.A
-    assert (start.force[0] > 0) == (pull > -9.81)
-    # All momentum that the mesh gains comes from weight and contact.
-    ones = np.ones(len(start.A))
-    assert ones @ (stepper.system.M @ start.A) == pytest.approx(start.force[0] - 9.81 * 5000, rel=1e-9)
-
-
 def test_contacts_that_never_slip_are_bonded_springs() -> None:
     strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
     springs = [(0.0, 3e9), (1.0, 1e9)]
@@ -222,14 +208,6 @@ def test_a_column_at_rest_has_closed_its_gaps() -> None:
     moved = -(0.01 + 2 * weight / 2e9 + 1.5 * weight / 1e9)
     assert found.columns["displacement_1"] == pytest.approx(np.full(9, moved), rel=1e-9)
     assert found.columns["force_1"] == pytest.approx(np.full(9, weight), rel=1e-9)
-
-
-@pytest.mark.parametrize("speed", [1.0, -1.0])
-def test_a_thrown_column_slips_at_its_strength(speed: float) -> None:
-    contact = (ColumnContact(0.0, 1e9, strength=1e4),)
-    column = ContactColumn(ground((1.0, 2500.0, 1e9), motion="shear"), "frictional", contact, (speed,))
-    found = solve_contacts(column, [2], 1, scheme(CONSTANT, 1e-4), still(5), ["force_1"], [0.0])
-    assert np.abs(found.columns["force_1"]) == pytest.approx(np.full(5, 1e4), rel=1e-12)
 
 
 @pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])

@@ -1,11 +1,9 @@
 """Elements that slide: turned axes, closed forms, other bases, symmetry."""
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
@@ -17,8 +15,6 @@ from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history.unilateral import block_at_start
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 2e-4, "consistent")
-AVERAGE = Scheme(0.25, 0.5, 1.0, 2e-4, "consistent")
-GLUED = Unilateral(shear="glued")
 RUBBING = Unilateral(shear="glued", friction=Friction(25.0))
 SHAKE = Motion((0.0, 0.004, 0.011, 0.02, 0.03), (0.0, 1e-3, -2e-3, 1e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0, 0.0))
 
@@ -64,88 +60,9 @@ def test_a_turned_block_is_a_block_under_turned_gravity(contact, motion):
         assert np.abs(b[name] - a[name]).max() <= 1e-9 * np.abs(a[name]).max(), name
 
 
-@pytest.mark.parametrize(
-    ("rule", "foundation"), thinned(product(["newmark", "implicit"], ["distributed", "corner", "patch"]), 4)
-)
-def test_while_all_points_slide_one_sum_of_the_mean_motion_is_free(rule, foundation):
-    """u_t + tan(phi) u_n of the centre of mass falls freely under g (sin b - tan(phi) cos b), by the same scheme."""
-    more = {"patch_width": 0.5} if foundation == "patch" else {}
-    problem = incline(40.0, foundation=foundation, degree=2, poisson=0.0, **more)
-    for scheme in (replace(AVERAGE, gg=0.99, start="zero"), Scheme(0.3025, 0.6, 0.999, 1e-3), CONSTANT):
-        if rule == "implicit":
-            scheme = replace(scheme, alpha=0.25, delta=0.5)
-        model = build(problem)
-        stepper = ContactStepper(model.system("glued", Friction(15.0)), scheme, rule=rule)
-        tan, pull = np.tan(np.radians(15.0)), np.array(problem.pull)
-        weights = (1 - model.upwards + tan * model.upwards) @ model.M / 10800.0
-        state, g = block_at_start(stepper, model, GLUED), float(pull @ [1.0, tan])
-        x, v, a = 0.0, 0.0, g if scheme.start == "consistent" else 0.0
-        seen, dt, most = set(), scheme.step, 0.0
-        for _ in range(100):
-            state = stepper.march(state, stepper.record(1)).state
-            closed, held = np.split(state.states == INSIDE, 2)
-            seen |= set(held[closed].tolist())
-            x += scheme.gg * dt * v + dt**2 * ((0.5 - scheme.alpha) * a + scheme.alpha * g)
-            v, a = scheme.gg * v + dt * ((1 - scheme.delta) * a + scheme.delta * g), g
-            most = max(most, abs(weights @ state.D - x))
-        assert seen == {False}
-        # the sum is of forces that cancel, each with the rounding of a solution with a matrix of condition 1e4
-        assert most <= 1e-11 * x
-
-
-@pytest.mark.parametrize(("degree", "foundation"), thinned([(1, "distributed"), (2, "corner")], 2))
-def test_a_block_slides_where_its_incline_is_steeper_than_its_friction(degree, foundation):
-    angle, scheme, steps = 25.0, replace(CONSTANT, step=5e-2), 400
-    # what the first fall of the weight has set off is slowed, or made faster, by g sin(0.01 deg) / cos(phi)
-    faster = 9.81 * np.sin(np.radians(0.01)) / np.cos(np.radians(angle))
-    for slope, expected in ((angle - 0.01, 0.0), (angle + 0.01, faster)):
-        problem = incline(slope, 9.81, elements=2, degree=degree, foundation=foundation)
-        slide = solve_unilateral(problem, scheme, steps, RUBBING, columns=("largest_slide",)).columns["largest_slide"]
-        speed = np.diff(slide[steps // 2 :]) / scheme.step
-        gained = (speed[-1] - speed[0]) / (scheme.step * (len(speed) - 1))
-        # at rest to the last bit; or sped up by the sum of all forces, but for what still rings on the springs
-        assert gained == pytest.approx(expected, rel=1e-4, abs=0.0)
-        assert (speed[-1] == 0) == (expected == 0)
-
-
-def test_where_nothing_opens_or_slides_a_moving_base_is_the_locked_one():
-    still = Motion((0.0, 0.05, 0.1), (0.0, 2e-5, -1e-5), (0.0, 1e-5, 3e-5))
-    problem = replace(incline(10.0, 98.1, foundation="nodes", p=1e8, shear=3e7), motion=still)
-    contact = replace(RUBBING, friction=Friction(60.0, 1e6))
-    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-    scheme = replace(CONSTANT, step=1e-3)
-    steps = 20
-    run, locked = (
-        solve_unilateral(problem, scheme, steps, contact).columns,
-        solve(problem, scheme, steps, names).columns,
-    )
-    assert run["open_share"].max() == run["largest_slide"].max() == 0.0
-    for name in names:
-        scale = np.abs(locked["contact_pressure" if name == "contact_pressure" else "displacement"]).max()
-        # twenty solutions, each with the rounding of a matrix of condition 1e4
-        assert np.abs(run[name] - locked[name]).max() <= 1e-11 * scale, name
-
-
 def test_a_base_must_begin_where_the_block_stands():
     with pytest.raises(ValueError, match=r"^motion: must be zero at t = 0"):
         solve_unilateral(replace(incline(0.0), motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1)
-
-
-@pytest.mark.parametrize("foundation", thinned(["distributed", "corner"], 2))
-def test_no_limit_glues_and_none_at_all_lets_go(foundation):
-    problem = replace(make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8), foundation=foundation)
-    problem = replace(problem, traction=1e6)
-    cases = ((Friction(0.0, 1e12), GLUED), (Friction(0.0), Unilateral()))
-    for friction, other in cases:
-        names = ("displacement", "contact_pressure", "horizontal_displacement", "base_shear", "rotation", "open_share")
-        found, expected = (
-            solve_unilateral(problem, CONSTANT, 120, contact, columns=names).columns
-            for contact in (replace(GLUED, friction=friction), other)
-        )
-        assert 0 < expected["open_share"].mean() < 1
-        for name in names[:-1]:
-            size = np.abs(expected["displacement" if "displacement" in name else name]).max()
-            assert np.abs(found[name] - expected[name]).max() <= 1e-9 * size, name
 
 
 def test_a_point_that_closes_and_slides_has_slid_since_it_crossed():

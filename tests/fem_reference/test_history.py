@@ -6,7 +6,7 @@ from conftest import thinned
 from faults import seams
 from oracles.elements import INCLINED, make
 
-from fem_reference import Bar, Scheme, highest_frequency, modes, solve
+from fem_reference import Scheme, highest_frequency, modes, solve
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 0.97, 7e-4, "consistent")
@@ -48,17 +48,6 @@ def test_no_saving_where_none_is_exact(change):
     assert solve(make(**change, poisson=0.3), CONSTANT, 1).notes == ("stepped: few steps",)
 
 
-@pytest.mark.parametrize(("degree", "order"), thinned([(1, 2.0), (2, 4.0)], 2))
-@pytest.mark.parametrize("full", [False, True])
-def test_order_in_the_element_size(degree, order, full):
-    meshes = [4, 6, 8, 12, 16]
-    bar = Bar.of(make()).solve(CONSTANT, 100)
-    error = [errors(solve(make(elements=n, degree=degree), CONSTANT, 100, full=full), bar) for n in meshes]
-    slope = -np.polyfit(np.log(meshes), np.log(error), 1)[0]
-    # The coarsest mesh is not yet asymptotic.
-    assert slope == pytest.approx(order, abs=0.06)
-
-
 def test_first_axial_mode():
     first = modes(make(elements=64, degree=1), CONSTANT)[0]
     assert first.frequency == pytest.approx(327.686, abs=5e-4)
@@ -78,20 +67,6 @@ def test_sparse_and_dense_modes_agree(monkeypatch):
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)
     assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=2e-2)
-
-
-@pytest.mark.parametrize(
-    "scheme", [Scheme(0.5, 1.0, 0.93, 2e-3), Scheme(0.3025, 0.6, 1.0, 5e-3), Scheme(0.0, 0.5, 1.0, 1e-4)]
-)
-def test_one_step_operator_has_the_roots_of_trace_and_determinant(scheme):
-    mode = modes(make(elements=4), scheme)[0]
-    h = (mode.frequency * scheme.step) ** 2
-    h /= 1 + scheme.alpha * h
-    trace = 1 - h / 2 + scheme.gg * (1 - scheme.delta * h)
-    det = scheme.gg * (1 + (0.5 - scheme.delta) * h)
-    assert mode.eigenvalues[:2].sum() == pytest.approx(trace, abs=1e-12)
-    assert mode.eigenvalues[:2].prod() == pytest.approx(det, abs=1e-12)
-    assert abs(mode.eigenvalues[2]) <= 1e-12
 
 
 def test_central_differences_are_stable_up_to_the_highest_frequency():

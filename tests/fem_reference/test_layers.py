@@ -36,21 +36,6 @@ def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
     assert found.estimate < 1e-6
 
 
-@pytest.mark.parametrize("ratio", [0.25, 0.5, 1.0, 2.0])
-def test_a_joint_transmits_what_its_closed_form_says(ratio: float) -> None:
-    """Half-space, joint, layer of the same material: the surface shows 2 T / (1 - R e^(-2ikH)) of the wave."""
-    omega = 130.0
-    z = SOIL.density * SPEED
-    ground = Ground((SOIL,), "shear", ((0.0, ratio * z * omega),), z)
-    moved, _ = layers.amplitudes(ground, omega, ("displacement",))
-    turn = np.exp(-1j * omega * SOIL.thickness / SPEED)
-    open_share = 1j / (2 * ratio)
-    transmitted, reflected = 1 / (1 + open_share), open_share / (1 + open_share)
-    exact = 2 * transmitted * turn / (1 - reflected * turn**2)
-    assert abs(transmitted) == pytest.approx((1 + (0.5 / ratio) ** 2) ** -0.5)
-    assert abs(moved["displacement"] * 1j * omega - exact) < 1e-12 * abs(exact)
-
-
 def test_a_discount_is_a_rate_of_mass_damping() -> None:
     """A pressed top settles on its springs: the static solution, after a damped motion."""
     ground = Ground((SOIL,), "pressure", ((0.0, 1e7),))
@@ -101,9 +86,3 @@ def test_no_rate_without_velocity() -> None:
     scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
     with pytest.raises(ValueError, match="gg = 0 has no rate"):
         layers.solve_layers(Ground((SOIL,), "shear"), scheme, 10, drive, ("displacement",))
-
-
-def test_the_moduli_of_plane_waves() -> None:
-    """E = 300 MPa and mu = 1/4: G = E / 2.5, and M = E (1 - mu) / ((1 + mu) (1 - 2 mu)) = 1.2 E."""
-    assert SOIL.modulus("shear") == pytest.approx(1.2e8)
-    assert SOIL.modulus("pressure") == pytest.approx(3.6e8)

@@ -144,22 +144,6 @@ def test_static_value_without_contraction_is_exact_on_every_mesh(elements, degre
     assert static(tall, full)["displacement"] == pytest.approx(-(5e6 * 3 / 8e8 + 2.5 * 5e-3), rel=1e-11)
 
 
-def test_corner_springs_drift_with_the_logarithm_of_the_element_size():
-    drift = [static(make(elements=n, degree=1, foundation="corner"))["displacement"] for n in (4, 8, 16, 32, 64)]
-    # Printed to four decimals.
-    assert np.round(drift, 4).tolist() == [-0.0212, -0.0263, -0.0310, -0.0356, -0.0402]
-    assert any("foundation" in note for note in build(make(elements=2, foundation="corner")).notes)
-    assert not any("foundation" in note for note in build(make(elements=2)).notes)
-
-
-def test_pressure_of_an_inclined_base_balances_the_load_normal_to_it():
-    problem = make(INCLINED, 1, 3, 0.2, p=2e9, elements=4)
-    side = problem.outline[3] - problem.outline[2]
-    # Statics: the normal springs carry q times the loaded length times the normal's y component.
-    expected = 5e6 * np.hypot(*side) * problem.normal[1] / problem.base_length
-    assert static(problem)["contact_pressure"] == pytest.approx(expected, rel=1e-10)
-
-
 def corner_block(tmp_path, vertices, top, holes):
     """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
     grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))

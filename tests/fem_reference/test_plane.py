@@ -26,7 +26,7 @@ SCHEME = Scheme(0.25, 0.5, 1.0, 1e-3)
 
 
 def tip(**changes):
-    model = PlaneModel(replace(CANTILEVER, **changes))
+    model = PlaneModel([replace(CANTILEVER, **changes)])
     return float(model.observer(*RIGHT)[1] @ model.rest)
 
 
@@ -52,7 +52,7 @@ def test_a_cantilever_bends_and_shears_as_a_beam():
 @pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
 @pytest.mark.parametrize("degree", [1, 2])
 def test_a_free_body_has_its_three_strains_and_no_momentum(hypothesis, degree):
-    model = PlaneModel(replace(STRESSED, hypothesis=hypothesis, degree=degree))
+    model = PlaneModel([replace(STRESSED, hypothesis=hypothesis, degree=degree)])
     assert model.stress_error() < 1e-10
     momentum = model.motions.T @ (model.M @ model.rest)
     assert np.abs(momentum).max() < 1e-9 * np.abs(model.M @ model.rest).sum()
@@ -76,14 +76,14 @@ def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
 
 
 def test_modes_of_a_cantilever_share_its_deflection():
-    modes = PlaneModel(replace(CANTILEVER, elements=4)).modes(SCHEME, 6)
+    modes = PlaneModel([replace(CANTILEVER, elements=4)]).modes(SCHEME, 6)
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
     assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia
 
 
 def test_a_step_of_a_cantilever_swings_about_its_rest():
-    model = PlaneModel(replace(CANTILEVER, elements=2))
+    model = PlaneModel([replace(CANTILEVER, elements=2)])
     rows = model.observer(*RIGHT)
     period = 2 * np.pi / model.modes(SCHEME, 1)[0].frequency
     steps = 400
@@ -103,11 +103,11 @@ INSIDE = ((0.0, 0.5), (4.0, 0.5))
         (lambda: replace(CANTILEVER, hypothesis="bending"), "hypothesis"),
         (lambda: replace(CANTILEVER, elements=0), "elements"),
         (lambda: replace(CANTILEVER, degree=3), "degree"),
-        (lambda: PlaneModel(replace(CANTILEVER, clamps=(INSIDE,))), "edge"),
-        (lambda: PlaneModel(replace(CANTILEVER, tractions=((INSIDE, (1.0, 0.0)),))), "edge"),
-        (lambda: PlaneModel(CANTILEVER).observer(*INSIDE), "edge"),
-        (lambda: PlaneModel(replace(CANTILEVER, clamps=())).rest, "load"),
-        (lambda: PlaneModel(CANTILEVER).stress_error(), "stress"),
+        (lambda: PlaneModel([replace(CANTILEVER, clamps=(INSIDE,))]), "edge"),
+        (lambda: PlaneModel([replace(CANTILEVER, tractions=((INSIDE, (1.0, 0.0)),))]), "edge"),
+        (lambda: PlaneModel([CANTILEVER]).observer(*INSIDE), "edge"),
+        (lambda: PlaneModel([replace(CANTILEVER, clamps=())]).rest, "load"),
+        (lambda: PlaneModel([CANTILEVER]).stress_error(), "stress"),
     ],
 )
 def test_what_cannot_be_is_refused_by_field(ask, field):

@@ -89,15 +89,6 @@ def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_betw
     assert not motion.overturned
 
 
-def test_a_block_beyond_its_balance_falls() -> None:
-    motion = solve(BLOCK, 50.0, 1.001 * BLOCK.alpha)
-    assert motion.overturned
-    assert not motion.impacts
-    assert motion.at([motion.end])[0] == pytest.approx(math.pi / 2)
-    assert not solve(BLOCK, 5.0, 0.999 * BLOCK.alpha).overturned
-    assert motion.end < 50
-
-
 def test_below_the_lifting_acceleration_nothing_moves() -> None:
     still = solve(BLOCK, 2.0, pulse=Pulse(0.999 * BLOCK.lifting, 1.0))
     assert not np.any(still.at(np.linspace(0, 2, 9))[0])

@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.elements import make
 
-from fem_reference import Unilateral, named_scheme, solve_unilateral
+from fem_reference import named_scheme
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
@@ -64,26 +63,6 @@ def test_steps_settle_in_the_frequency_response(name, options, base):
             # Above a half-space the beginning may have shifted the whole column for good.
             change = np.diff(history.columns[column][late])
             assert np.abs(change - np.diff(expected)).max() < 1e-8 * np.abs(expected).max()
-
-
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
-def test_a_column_on_a_contact_is_the_block_on_its_point(name, options):
-    """One stratum as wide as the block, dropped on its base."""
-    scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 5e-4, gg=0.99, **options)
-    steps = 60
-    contact = Unilateral(gap=1e-4, velocity=-0.5)
-    block = solve_unilateral(make(elements=4), scheme, steps, contact).columns
-    ground = Ground((Stratum(2.0, 2700.0, 1e9, 0.0),), "pressure")
-    column = ContactColumn(ground, "unilateral", (ColumnContact(0.0, 1e9, 1e-4),), (-0.5,))
-    drive = rest(scheme, steps, pressure=lambda t: np.full_like(t, 5e6))
-    result = solve_contacts(column, [4], 2, scheme, drive, ("contact_pressure",))
-    assert result.outcome == "completed"
-    largest = np.abs(block["contact_pressure"]).max()
-    assert largest > 0
-    np.testing.assert_allclose(result.columns["contact_pressure"], block["contact_pressure"], atol=1e-9 * largest)
-    np.testing.assert_allclose(result.mean_velocity, block["velocity"], atol=1e-10)
-    assert result.step_solves == pytest.approx(block["solves"], abs=0) or name == "composite"
-    assert result.step_solves.min() == len(scheme.stages)
 
 
 def test_what_has_no_velocity_at_the_ends_of_steps_has_no_dashpot():

@@ -1,7 +1,6 @@
 """Schemes of stages on a base that opens: against exact motion, printed rebounds and each other."""
 
 import functools
-from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,10 +10,8 @@ from oracles.elements import make
 from fem_reference import (
     UNILATERAL_COLUMNS,
     Friction,
-    Problem,
     Unilateral,
     named_scheme,
-    solve,
     solve_unilateral,
 )
 from fem_reference.contact.columns import columns_of
@@ -82,46 +79,9 @@ def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, erro
     assert solves.min() == (2 if name == "composite" else 1)
 
 
-def rebounds(scheme, contact_omega, phases):
-    """Velocity after the rebound of an almost rigid block that falls with 1 m/s, by the phase of its landing."""
-    mass = 2700.0 * 4.0
-    k = mass * (contact_omega / scheme.step) ** 2
-    square = ((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0))
-    problem = Problem(square, 0, 2, 2700.0, 1e6 * k, 0.0, "plane stress", k / 2, 0.0, 0.0, elements=1, degree=1)
-    velocities = []
-    for phase in phases:
-        contact = Unilateral(gap=(1 + phase) * scheme.step, velocity=-1.0)
-        columns = solve_unilateral(problem, scheme, 90, contact, columns=("velocity",)).columns
-        velocities.append(columns["velocity"][-1])
-    return np.array(velocities)
-
-
-@pytest.mark.parametrize(("name", "options"), thinned([case for case in IMPLICIT if case[0] != "composite"], 2))
-def test_the_opening_bar_is_the_limit_of_the_mesh(name, options, gg=0.97):
-    """Convolution quadrature of the bar that is exact in space, against the elements."""
-    scheme = named_scheme(name, step=2.5e-4, gg=gg, **options)
-    bar = OpeningBar.of(make(), 1e-4, -0.1).solve(scheme, 120)
-    mesh = solve_unilateral(make(elements=24), scheme, 120, Unilateral(gap=1e-4, velocity=-0.1)).columns
-    for column in ("displacement", "contact_pressure", "velocity"):
-        reference = getattr(bar, column)
-        assert np.abs(mesh[column] - reference).max() < 1e-3 * np.abs(reference).max()
-
-
 def test_the_opening_bar_takes_one_stage():
     with pytest.raises(ValueError, match=r"^scheme: must have one stage, .*'composite' has 2"):
         OpeningBar.of(make()).solve(named_scheme("composite", step=1e-3), 3)
-
-
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
-def test_a_block_that_stays_closed_moves_as_on_locked_springs(name, options):
-    """Under a weight that keeps the base closed, with the springs in the contact and in the stiffness."""
-    scheme = named_scheme(name, step=2e-5 if name == "leapfrog" else 1e-3, gg=0.9, **options)
-    base = make(elements=3, degree=1, poisson=0.2, foundation="nodes", p=1e8, shear=0.0)
-    problem = replace(base, pressure=0.0, gravity=9.81)
-    opened = solve_unilateral(problem, scheme, 30, columns=("displacement", "open_share")).columns
-    assert not opened["open_share"].any()
-    locked = solve(problem, scheme, 30, full=True).columns["displacement"]
-    np.testing.assert_allclose(opened["displacement"], locked, atol=1e-11 * np.abs(locked).max())
 
 
 @pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
@@ -148,18 +108,6 @@ def test_a_motion_does_not_depend_on_how_it_is_stepped(name, options):
     stored = sum(tables[0][:, stepper_columns.index(column)] for column in STORED)
     lost = sum(tables[0][:, stepper_columns.index(column)] for column in LOST)
     assert np.abs(stored + lost).max() < 1e-9 * np.abs(tables[0][:, stepper_columns.index("load_energy")]).max()
-
-
-def test_the_discount_acts_once_a_step_and_not_on_the_first_half_step():
-    """In free fall with v = 1 m/s upwards each whole step keeps gg of the velocity, the leapfrog's first one all."""
-    contact = Unilateral(gap=10.0, velocity=1.0)
-    problem = Problem(((0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)), 0, 2, 2700.0, 1e9, 0.0, "plane stress",
-                      1e9, 0.0, 0.0, elements=1, degree=1)  # fmt: skip
-    for name, options in EVERY:
-        scheme = named_scheme(name, step=1e-4, gg=0.9, **options)
-        velocity = solve_unilateral(problem, scheme, 5, contact).columns["velocity"]
-        first = 1.0 if name == "leapfrog" else 0.9
-        assert velocity == pytest.approx(first * 0.9 ** np.arange(5), rel=1e-9)
 
 
 def test_a_cut_step_keeps_the_acceleration():

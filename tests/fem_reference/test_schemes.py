@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.elements import error, make, stepped
-from scipy.sparse import csr_array
 
 import fem_reference
 from fem_reference import SCHEMES, Bar, Motion, Scheme, named_scheme, solve
@@ -71,38 +70,9 @@ def characteristic(name, options, omega, gg):
     return np.polyadd(free, square * np.polymul([1 - af, af], moved))
 
 
-def one_mode(omega, scheme, steps, load=0.0):
-    """Displacement of one mode of mass one from x = 1, v = 0.3 in equilibrium, at t = 0 and after every step."""
-    w = omega / scheme.step
-    stepper = Stepper(csr_array([[1.0]]), csr_array([[w**2]]), np.array([load]), scheme)
-    A = np.array([load - w**2])
-    state = State(np.ones(1), np.array([0.3 * w]), A)
-    if scheme.staggered:
-        state = replace(state, V=state.V - scheme.step / 2 * A, undiscounted=True)
-    x = [1.0]
-    for _ in range(steps):
-        state = stepper.advance(state)
-        x.append(float(state.D[0]))
-    return np.array(x)
-
-
 def damping_ratio(root):
     log = np.log(root)
     return -log.real / abs(log)
-
-
-@pytest.mark.parametrize(("case", "omega", "gg"), thinned(product(EVERY, [0.05, 0.7, 1.8, 40.0], [1.0, 0.93]), 5))
-def test_a_stepped_mode_obeys_the_closed_characteristic_polynomial(case, omega, gg):
-    name, options = case
-    scheme = named_scheme(name, step=2e-3, gg=gg, **options)
-    if scheme.explicit and omega > 2:
-        return
-    polynomial = characteristic(name, options, omega, gg)
-    x = one_mode(omega, scheme, 40)[3:]
-    order = len(polynomial)
-    windows = np.lib.stride_tricks.sliding_window_view(x, order)[:, ::-1]
-    sizes = np.abs(windows) @ np.abs(polynomial)
-    assert np.max(np.abs(windows @ polynomial) / sizes) < 2e-13
 
 
 @pytest.mark.parametrize(("case", "gg"), thinned(product(IMPLICIT, [1.0, 0.93]), 5))
@@ -120,27 +90,6 @@ def test_the_roots_of_a_mode_are_those_of_the_closed_forms(case, gg):
         am, af, _, _ = generalised_alpha(name, options["rho_inf"])
         leading = (af - am) * (1 - am - af) ** 2 * 1e-6 / 8
         assert damping_ratio(modal.roots(1e-2, scheme)[0]) == pytest.approx(leading, rel=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("name", "options", "p", "step", "first", "contact"),
-    [
-        ("chung-hulbert", {"rho_inf": 0.8}, 1e11, 1e-3, 9.34125611e-5, 0.0243384411),
-        ("chung-hulbert", {"rho_inf": 0.5}, 1e10, 2e-3, 0.0118670379, 0.118455233),
-        ("chung-hulbert", {"rho_inf": 0.0}, 1e9, 1e-2, 0.408696341, 0.654455795),
-        ("hht", {"rho_inf": HHT[0.1]}, 1e10, 1e-2, 0.0562147538, 0.0660538446),
-        ("hht", {"rho_inf": HHT[0.3]}, 1e9, 2e-3, 0.00477740987, 0.0625812319),
-        ("wbz", {"rho_inf": 0.5}, 1e11, 1e-3, 0.00812976494, 0.220434922),
-        ("composite", {"split": 0.5}, 1e9, 2e-3, 0.00106935112, 0.033023397),
-        ("composite", {}, 1e11, 1e-3, 0.000511292083, 0.25730859),
-        ("composite", {"rho_inf": 0.5}, 1e10, 1e-2, 0.0633825604, 0.681652103),
-    ],
-)
-def test_hidden_damping_of_the_block_of_one_strain(name, options, p, step, first, contact):
-    """One linear element is the block of one strain on its springs, whose damping ratios two other programs gave."""
-    modes = fem_reference.modes(make(p=p, elements=1, degree=1), named_scheme(name, step=step, **options))
-    ratios = [damping_ratio(mode.eigenvalues[0]) for mode in sorted(modes, key=lambda mode: mode.frequency)]
-    assert ratios == pytest.approx([first, contact], rel=1e-8)
 
 
 @pytest.mark.parametrize(("name", "options"), thinned(EVERY, 3))
@@ -249,13 +198,6 @@ def test_stability_limits():
     for name, options in IMPLICIT:
         for gg in (1.0, 0.9):
             assert modal.applicable(named_scheme(name, step=1.0, gg=gg, **options)) is None
-
-
-def test_the_radius_for_infinitely_fast_modes_is_the_parameter():
-    for name in ("chung-hulbert", "hht", "wbz", "composite"):
-        for rho in (0.5, 0.62, 0.9):
-            radius = modal.radii(np.array([1e7]), named_scheme(name, step=1.0, rho_inf=rho))[0]
-            assert radius == pytest.approx(rho, abs=2e-5)
 
 
 def test_diagnostics_agree_with_themselves():

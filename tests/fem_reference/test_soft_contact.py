@@ -77,25 +77,3 @@ def test_the_transform_itself() -> None:
     first = bar_by_transform.history("contact_pressure", 2.5, 1e-3, 0.0)
     with mp.workdps(bar_by_transform.DIGITS):
         assert abs(first + 2 * mp.expm1(-mpf(1e-3) * 3 / 2)) < mpf(10) ** -25
-
-
-OTHER = Bar(3.1, 1.7, 1900.0, 4.2e9, 7.7e10, 3.3e5)
-FIRM = Bar(0.8, 2.6, 3100.0, 2.5e10, 9e9, 1.2e6)
-
-
-@pytest.mark.parametrize(
-    ("bar", "scheme"),
-    [
-        (FIRM, Scheme(0.5, 1.0, 1.0, 1e-3)),
-        (OTHER, Scheme(0.5, 1.0, 0.9, 1e-2)),
-        (FIRM, Scheme(0.25, 0.5, 1.0, 7e-4, "consistent")),
-        (OTHER, Scheme(0.25, 0.5, 0.95, 2e-4)),
-        (FIRM, Scheme(0.3025, 0.6, 0.98, 2e-3)),
-        (OTHER, Scheme(0.5, 1.0, 0.0, 1e-3)),
-    ],
-)
-def test_firm_bars_in_steps(bar: Bar, scheme: Scheme) -> None:
-    result, steps = bar.solve(scheme, 60), [1, 2, 7, 30, 45, 60]
-    for name, expected in bar_by_series.at_steps(bar, scheme, COLUMNS, steps).items():
-        assert over_maximum(result.columns[name][np.array(steps) - 1], expected) <= 10 * bar_module.TARGET
-    assert result.estimate <= bar_module.TARGET

@@ -1,21 +1,18 @@
 """Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.elements import make
 from oracles.random_contact import at_every_point
 
-from fem_reference import Friction, Scheme, Unilateral, solve, solve_unilateral
+from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
 from fem_reference.events.bar_events import solve as exact
 from fem_reference.problem.bar import BarProblem
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-SLOPE = ((1.0, 5.0), (4.0, 5.4), (3.6, 6.6), (1.4, 6.3))
 GLUED = Unilateral(shear="glued")
 
 
@@ -51,48 +48,6 @@ def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
     assert error[0] < 0.02 and error[1] < 0.1
 
 
-@pytest.mark.parametrize(
-    ("problem", "contact"),
-    thinned(
-        [
-            (make(p=1e8, elements=6), Unilateral()),
-            (make(p=1e8, elements=6, degree=1, poisson=0.25, foundation="nodes", shear=0.0), Unilateral()),
-            (make(elements=6, degree=1, poisson=0.25, foundation="nodes", shear=4e8, eccentricity=0.1), GLUED),
-            (make(elements=4, poisson=0.3, foundation="corner", shear=4e8), GLUED),
-            (make(elements=6, poisson=0.25, foundation="patch", patch_width=0.7, shear=4e8), GLUED),
-            (make(SLOPE, elements=4, degree=1, foundation="nodes", p=1e8, poisson=0.1), GLUED),
-        ],
-        4,
-    ),
-)
-@pytest.mark.parametrize("full", [False, pytest.param(True, marks=pytest.mark.long)])
-def test_where_nothing_opens_the_base_is_the_locked_one(problem, contact, full):
-    check_locked(problem, Scheme(0.5, 1.0, 0.98, 1e-2), contact, full)
-
-
-def check_locked(problem, scheme, contact, full):
-    names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-    run = solve_unilateral(problem, scheme, 40, contact, full, columns=(*names, "open_share"))
-    assert np.all(run.columns["open_share"] == 0)
-    locked = solve(problem, scheme, 40, names, full=True).columns
-    size = {"contact_pressure": np.abs(locked["contact_pressure"]).max()}
-    for name in names:
-        scale = size.get(name, np.abs(locked["displacement"]).max())
-        # forty solutions, each with the rounding of a matrix of condition 1e4
-        assert np.abs(run.columns[name] - locked[name]).max() <= 1e-11 * scale, name
-
-
-def test_one_column_is_the_whole_block():
-    problem, contact = replace(make(elements=4), gravity=20.0), Unilateral(gap=2e-4, velocity=-0.1)
-    column = solve_unilateral(problem, CONSTANT, 200, contact)
-    whole = solve_unilateral(problem, CONSTANT, 200, contact, full=True)
-    assert (column.points, whole.points) == (1, 9)
-    assert column.notes[0] == "one column of elements" and column.notes[1:] == whole.notes
-    for name in ("displacement", "contact_pressure", "largest_gap", "kinetic_energy", "strain_energy", "spring_energy"):
-        a, b = column.columns[name], whole.columns[name]
-        assert np.abs(a - b).max() <= 1e-9 * np.abs(b).max(), name
-
-
 def test_the_block_is_factorised_once_and_solved_once_a_step():
     problem = make(elements=4, eccentricity=0.3)
     run = solve_unilateral(problem, replace(CONSTANT, start="zero"), 200)
@@ -100,17 +55,6 @@ def test_the_block_is_factorised_once_and_solved_once_a_step():
     assert (run.factorisations, run.points, run.solves) == (1, 9, 9 + 200)
     again = solve_unilateral(problem, CONSTANT, 5, GLUED)
     assert (again.factorisations, again.solves) == (2, 2 * 9 + 1 + 5)
-
-
-@pytest.mark.parametrize(("degree", "n"), thinned(product([1, 2], [4, 8, 12, 16]), 5))
-def test_a_frictionless_base_in_pieces_does_not_cycle(n, degree):
-    for p, scheme in product((1e9, 1e11), (CONSTANT, AVERAGE)):
-        problem = make(elements=n, degree=degree, eccentricity=0.3, p=p)
-        scheme = replace(scheme, step=5e-4)
-        run = solve_unilateral(problem, scheme, 60, Unilateral(limit=20), columns=("cuts", "solves"))
-        assert run.outcome == "completed" and run.columns["cuts"].max() == 0
-        # No bound is proved from three points on; the greatest number seen is four.
-        assert 2 <= run.columns["solves"].max() <= 6
 
 
 def test_columns_are_those_of_the_points():
@@ -166,14 +110,10 @@ def test_bad_requests_are_refused_by_name():
             Friction(angle, cohesion)
 
 
-@pytest.mark.parametrize(("velocity", "turns"), [(1e3, True), (0.1, False)])
-def test_what_rounding_turns_a_block_by_in_a_long_flight_is_noted(velocity, turns):
+def test_rounding_does_not_turn_a_block_in_a_long_flight():
+    """K of the displacement itself would leave eps E u in each element and turn the block by 10 rad: it is rigid."""
     scheme = replace(AVERAGE, step=0.25)
     block = replace(make(elements=2), poisson=0.2, young=4e10, pressure=0.0, gravity=0.0)
-    run = solve_unilateral(block, scheme, 400, Unilateral(velocity=velocity), columns=("displacement", "rotation"))
-    noted = [
-        float(note.split(" by about ")[1].split()[0]) for note in run.notes if note.startswith("rounding may turn")
-    ]
-    assert len(noted) == turns
-    if turns:
-        assert np.abs(run.columns["rotation"]).max() < 10 * noted[0]
+    run = solve_unilateral(block, scheme, 400, Unilateral(velocity=1e3), columns=("displacement", "rotation"))
+    assert run.columns["displacement"][-1] == pytest.approx(1e5, rel=1e-13)
+    assert np.abs(run.columns["rotation"]).max() < 1e-7

@@ -45,6 +45,22 @@ def test_solvers_are_named_where_they_are_declared_drawn_or_told() -> None:
             assert named <= NAMED.get(module, set()), module
 
 
+# What asks today, of a column's own numbers; it may only become less.
+ASKING = {"diagnosis/judgement.py", "diagnosis/numbers.py"}
+ASKS_FOR_THE_KIND = re.compile(
+    r"\b(scene|case|first|base)\.((rigid|plane|column)\b|kind(\.name)? (==|!=|in|not in) )", re.M
+)
+
+
+def test_no_room_asks_for_the_kind_of_a_scene() -> None:
+    asking = set()
+    for path in (ROOT / "validation").rglob("*.py"):
+        module = path.relative_to(ROOT / "validation").as_posix()
+        if not module.startswith("models/") and ASKS_FOR_THE_KIND.search(path.read_text(encoding="utf-8")):
+            asking.add(module)
+    assert asking <= ASKING
+
+
 # ---- seams ----------------------------------------------------------------------------------------------------------
 
 

@@ -8,9 +8,9 @@ from flint import arb
 from oracles.column_motions import COLUMNS
 
 from dda import Scheme
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnOptions, solve_contact_column
-from dda.column.stepping import Drive
+from dda.bodies.bonded_column import Drive
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.contact_column import ColumnOptions, solve_contact_column
 from fem_reference.events import column_drive as drives
 from fem_reference.events.column_model import ColumnProblem
 

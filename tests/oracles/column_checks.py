@@ -9,9 +9,9 @@ import math
 import numpy as np
 
 from dda import Scheme
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
-from dda.column.stepping import Drive
+from dda.bodies.bonded_column import Drive
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.contact_column import ColumnContactResult, ColumnOptions, solve_contact_column
 
 SCHEMES = [(0.25, 0.5), (0.5, 1.0), (0.3025, 0.6), (0.375, 0.75), (1 / 6, 0.5)]
 

@@ -15,14 +15,14 @@ from oracles.frictional import rubbing_model, shaken
 from oracles.rolling import random_rolling
 from oracles.unilateral_checks import DT, random_model
 
-import dda.one_block.unilateral as one_block
-import dda.rotation.solution as rotation
+import dda.bodies.turning_block as rotation
+import dda.bodies.unilateral as one_block
 from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme
+from dda.bodies.turning_block import RollingOptions
+from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
 from dda.march.step import steps_by
-from dda.one_block.natural_modes import free_modes
-from dda.rotation.solution import RollingOptions
 
 
 @dataclass(frozen=True)

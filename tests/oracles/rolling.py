@@ -4,7 +4,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from dda import Block, Load, Material, Unilateral
-from dda.rotation.solution import RollingModel
+from dda.bodies.turning_block import RollingModel
 
 
 class RollingBlock:

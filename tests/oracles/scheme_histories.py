@@ -193,6 +193,11 @@ def implicit_euler(run: Run) -> Rows:
     return theta(run, 1.0)
 
 
+def midpoint(run: Run) -> Rows:
+    """Of a constant load and springs that hold it is the trapezoidal rule in this form."""
+    return theta(run, 0.5)
+
+
 def theta(run: Run, share: float) -> Rows:
     """v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
     b, dt = run.body, run.dt
@@ -220,11 +225,19 @@ def theta(run: Run, share: float) -> Rows:
 
 
 def composite(run: Run, split: float, r: float) -> Rows:
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), x1 so of u, vg, v1 (Noh, Bathe 2019)."""
-    b, dt = run.body, run.dt
+    """The weights of Noh and Bathe 2019."""
     q1 = (r + 1) / (2 * split * (r - 1) + 4)
-    q0 = (split - 1) * q1 + 0.5
-    q2 = 0.5 - split * q1
+    return two_stages(run, split, (split - 1) * q1 + 0.5, q1, 0.5 - split * q1)
+
+
+def tr_bdf2(run: Run) -> Rows:
+    """The backward difference of second order as weights of slopes (Hosea and Shampine 1996)."""
+    return two_stages(run, 2 - math.sqrt(2), math.sqrt(2) / 4, math.sqrt(2) / 4, 1 - math.sqrt(2) / 2)
+
+
+def two_stages(run: Run, split: float, q0: float, q1: float, q2: float) -> Rows:
+    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), and x1 so of u, vg, v1."""
+    b, dt = run.body, run.dt
     x = np.zeros(2)
     v = np.zeros(2)
     a = np.linalg.solve(b.M, b.F)
@@ -250,39 +263,6 @@ def composite(run: Run, split: float, r: float) -> Rows:
         _, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
         x, v, a, closed, N = implicit(x + dt * (q0 * u + q1 * vg), u + dt * (q0 * a + q1 * ag), q2 * dt, closed)
         rows.append((x, N))
-    return rows
-
-
-def tr_bdf2(run: Run) -> Rows:
-    g = 2 - math.sqrt(2)
-    b, dt = run.body, run.dt
-    K = b.K + b.k * np.outer(b.B, b.B)
-    A = np.block([[np.zeros((2, 2)), np.eye(2)], [-np.linalg.solve(b.M, K), np.zeros((2, 2))]])
-    f = np.concatenate([np.zeros(2), np.linalg.solve(b.M, b.F)])
-    y = np.zeros(4)
-    rows = []
-    for _ in range(run.steps):
-        y = y * np.array([1.0, 1.0, run.gg, run.gg])
-        yg = np.linalg.solve(np.eye(4) - g * dt / 2 * A, y + g * dt / 2 * (A @ y + 2 * f))
-        known = (yg - (1 - g) ** 2 * y) / (g * (2 - g))
-        h = (1 - g) / (2 - g) * dt
-        y = np.linalg.solve(np.eye(4) - h * A, known + h * f)
-        rows.append((y[:2], -b.k * b.B @ y[:2]))
-    return rows
-
-
-def midpoint(run: Run) -> Rows:
-    b, dt = run.body, run.dt
-    K = b.K + b.k * np.outer(b.B, b.B)
-    x = np.zeros(2)
-    v = np.zeros(2)
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-        middle = np.linalg.solve(b.M + dt * dt / 4 * K, b.M @ u + dt / 2 * (b.F - K @ x))
-        x = x + dt * middle
-        v = 2 * middle - u
-        rows.append((x, -b.k * b.B @ x))
     return rows
 
 

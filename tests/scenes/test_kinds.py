@@ -33,22 +33,62 @@ class KIND(Kind):
 
     name = "pendulum"
     words = "a pendulum"
+    feature = "pendulum"
     tables = {"pendulum": PendulumSection}
+    solvers = {"swing": "validation.models.pendulum.swing:Swing"}
     refuses = ("fem",)
 
     def run(self, table):
-        return {"solvers": ["dda"], "columns": ["rotation"]}
+        return {"solvers": ["swing"], "columns": ["rotation"]}
+''',
+    "swing.py": '''
+import numpy as np
+
+from validation.runs.history import History
+from validation.runs.run import Outcome, Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Solver
+
+
+class Swing(Solver):
+    """Small swings."""
+
+    name = "swing"
+    handles = frozenset({"pendulum"})
+    sources = ()
+
+    def solve(self, scene, full=False, fields=None):
+        time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
+        return Run(Outcome.COMPLETED, History(time, {"rotation": np.cos(np.sqrt(9.81 / scene.pendulum.length) * time)}))
 ''',
 }
 SCENE = "title = 'A pendulum'\npendulum = { length = 1.0 }\ntime = { step = 0.01, steps = 10 }\n"
-ADDED = """
+HERE = """
 import sys
+import validation
+from validation.scenes.scene import load_scene, parse_scene, scene_names
+from validation.scenes.kinds import kinds
+from validation.cli.entry import main
+
+
+def command(*words):
+    sys.argv = ["dda-validate", *map(str, words)]
+    try:
+        main()
+    except SystemExit as ended:
+        assert not ended.code, (words, ended.code)
+
+"""
+ADDED = (
+    """
 import validation.models
 validation.models.__path__.append("kinds")
-from validation.scenes.scene import load_scene, parse_scene
+"""
+    + HERE
+    + """
 scene = load_scene("swing.toml")
 assert scene.kind.name == "pendulum" and scene.pendulum.length == 1.0, scene
-assert scene.run.solvers == ("dda",) and scene.run.columns == ("rotation",)
+assert scene.run.solvers == ("swing",) and scene.run.columns == ("rotation",)
 assert load_scene("figures-3-4").kind.name == "block"
 for more, field in (({"fem": {}}, "fem"), ({"block": {"side": 1.0, "density": 1.0, "young": 1.0}}, "block")):
     try:
@@ -57,7 +97,18 @@ for more, field in (({"fem": {}}, "fem"), ({"block": {"side": 1.0, "density": 1.
         assert error.field == field, error.field
     else:
         raise AssertionError(more)
+assert validation.solve(scene, "swing").history.columns["rotation"][-1] < 1
+try:
+    validation.solve(scene, "dda")
+except ValueError as error:
+    assert "pendulum" in str(error), error
+else:
+    raise AssertionError("dda takes it")
+command("show", "swing.toml")
+command("run", "swing.toml", "--results", "results", "--jobs", "1")
+command("report", "swing", "--results", "results", "--site", "site")
 """
+)
 
 
 def python(code: str, place: Path) -> None:
@@ -76,26 +127,42 @@ def test_a_folder_adds_a_kind(tmp_path: Path) -> None:
     python(ADDED, tmp_path)
 
 
-KEPT = """
+KEPT = (
+    HERE
+    + """
 from pathlib import Path
-import validation
+
 assert Path(validation.__file__).is_relative_to(Path.cwd()), validation.__file__
-from validation.scenes.kinds import kinds
-from validation.scenes.scene import load_scene, scene_names
 assert "{kind}" not in kinds() and len(kinds()) == 3
-count = 0
-for name in scene_names():
-    count += bool(load_scene(name))
-assert count > 50
+left = [load_scene(name) for name in scene_names()]
+assert {{scene.kind.name for scene in left}} == {{*kinds()}}
+for name in {scenes}:
+    command("show", name)
+command("run", "figures-3-4", "--set", "time.step=0.01", "--results", "results", "--jobs", "1")
+command("report", "figures-3-4", "--results", "results", "--site", "site")
+command("list", "studies")
 """
+)
 
 
-@pytest.mark.parametrize("kind", ["rigid"])
-def test_a_deleted_folder_leaves_the_rest(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("kind", "studies", "scenes"),
+    [
+        ("rigid", (), ["figures-3-4", "columns-weight", "beams-squares"]),
+        pytest.param(
+            *("plane", ("patch", "beams"), ["figures-3-4", "columns-weight", "rigid-pile"]), marks=pytest.mark.long
+        ),
+    ],
+)
+def test_a_deleted_folder_leaves_the_rest(
+    kind: str, studies: tuple[str, ...], scenes: list[str], tmp_path: Path
+) -> None:
     for package in ("dda", "fem_reference", "validation"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.rmtree(tmp_path / "validation" / "models" / kind)
-    for scene in (tmp_path / "validation").rglob("scenes/**/*.toml"):
+    for study in studies:  # that are of its scenes
+        shutil.rmtree(tmp_path / "validation" / "studies" / study)
+    for scene in (tmp_path / "validation" / "scenes" / "library").glob("*.toml"):
         if f"[{kind}]" in scene.read_text(encoding="utf-8"):
             scene.unlink()
-    python(KEPT.format(kind=kind), tmp_path)
+    python(KEPT.format(kind=kind, scenes=scenes), tmp_path)

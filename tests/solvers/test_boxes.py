@@ -56,21 +56,6 @@ def test_the_rows_are_those_of_the_scene_and_the_steps_dda_s_own():
     assert run.work["steps"] == 2 * 10 * scene.time.steps  # 2 ms, halved
 
 
-def test_a_box_falls_and_the_springs_give_back_what_the_scheme_leaves():
-    falling = {**BOX, "lift": 0.3}
-    drop = math.sqrt(2 * 0.3 / 9.81)
-    kept = columns_of(scene_of(falling, time=AVERAGE, restitution=1.0, stiffness=2e5))
-    lost = columns_of(scene_of(falling, restitution=1.0))
-    rest = 0.75
-    assert kept["y_1"][: int(drop / 0.02) - 1].min() > rest
-    assert kept["y_1"][int(1.5 * drop / 0.02) :].max() == pytest.approx(rest + 0.3, rel=0.02)
-    # m g + sqrt((m g)^2 + k m v^2); rows 0.02 s apart see the crest of 0.17 s to a per cent.
-    landing = 2 * 9.81 * 0.3
-    crest = WEIGHT + math.sqrt(WEIGHT**2 + 2e5 * WEIGHT / 9.81 * landing)
-    assert kept["force_1"].max() == pytest.approx(crest, rel=0.02)
-    assert lost["y_1"][-50:].max() < rest  # alpha = 1/2, delta = 1 at this step: no bounce at all
-
-
 def test_a_box_turns_with_the_spin_and_the_velocity_it_starts_with():
     tossed = {**BOX, "lift": 5.0, "velocity": [1.5, 2.0], "spin": 3.0}
     columns = columns_of(scene_of(tossed, seconds=0.5, time=AVERAGE, restitution=1.0))

@@ -7,10 +7,10 @@ from oracles.stepped_vibration import fit
 
 import dda
 import fem_reference
-from dda.column.column import Column, Layer, Spring
-from dda.column.response import column_response
-from dda.column.stepping import Drive, solve_column
-from dda.one_block.solution import Result
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.result.result import Result
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response
@@ -68,7 +68,7 @@ def check(seed: int) -> bool:
     line = solve_line(ground, elements, degree, fem_reference.Scheme(**numbers), Excitation(*parts), NAMES)
     f = np.array([w / 2 / np.pi])
     answers = (
-        column_response(column, dda.Scheme(**numbers), f, "top" if at_top else "base"),
+        dda.response(equations(column), dda.Scheme(**numbers), f, along=None if at_top else (1.0, 0.0)),
         line_response(ground, elements, degree, fem_reference.Scheme(**numbers), f, at_top),
     )
     both = [ends_there(*pair, w) for pair in zip((blocks, line), answers, strict=True)]

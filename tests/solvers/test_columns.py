@@ -56,25 +56,6 @@ def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) ->
         assert np.abs(blocks - elements).max() <= 1e-11 * np.abs(elements).max() + 1e-300, name
 
 
-@pytest.mark.parametrize(
-    "base",
-    ["half-space", "springs", *(pytest.param(b, marks=pytest.mark.long) for b in ("rigid", "jointed half-space"))],
-)
-def test_blocks_converge_to_the_exact_layers(site: Scene, base: str) -> None:
-    """Average acceleration at half the size and half the step: a quarter of the error, or three tenths."""
-    errors = []
-    coarse = standing(site, base).with_values({"run.columns": ["displacement", "contact_pressure"]})
-    for halvings in (1, 2):
-        layers = [x.model_dump() | {"blocks": x.blocks * 2**halvings} for x in coarse.column.layer]
-        steps = {"time.step": coarse.time.step / 2**halvings, "time.steps": coarse.time.steps * 2**halvings}
-        scene = coarse.with_values({"column.layer": layers} | steps)
-        blocks, exact = (solve(scene, solver).history for solver in ("dda", "layers"))
-        parts = [(blocks.columns[name], exact.columns[name]) for name in scene.run.columns]
-        errors.append([np.linalg.norm(a - b) / np.linalg.norm(b) for a, b in parts])
-    assert np.all(np.array(errors[1]) < 0.3 * np.array(errors[0]))
-    assert max(errors[1]) < 0.01
-
-
 def test_a_record_drives_a_column_as_the_pulse_that_it_holds(site: Scene, tmp_path: Path) -> None:
     time = 1e-3 * np.arange(1200)
     pulse = drive.motion_at(site, time)

@@ -48,16 +48,3 @@ def test_lagged_friction_and_its_bands_are_taken():
     assert not np.array_equal(record(lagged)[0]["displacement"], record(scene())[0]["displacement"])
     with pytest.raises(InputError, match="is frictional under lagged rules only"):
         DDA().build(scene({"band": [0.0, 1e-6]}), False)
-
-
-@pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])
-def test_a_base_that_shakes_carries_a_block_that_rubs(tmp_path, block):
-    time = np.linspace(0.0, 0.05, 51)
-    path = tmp_path / "base.csv"
-    rows = np.column_stack([time, 1e-3 * np.sin(200 * time) ** 2, 1e-5 * np.sin(100 * time)])
-    np.savetxt(path, rows, delimiter=",", header="time,x,y", comments="")
-    moved, seen = record(scene(load={"base_motion": str(path)}, block=block))
-    still, rests = record(scene(block=block))
-    assert np.max(np.abs(moved["horizontal_displacement"] - still["horizontal_displacement"])) > 1e-4
-    total = sum(seen.energies.values())
-    assert np.ptp(total) < 1e-11 * np.max(np.abs(list(seen.energies.values()))) and seen.slip[-1] > rests.slip[-1]

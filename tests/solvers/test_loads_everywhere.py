@@ -16,7 +16,7 @@ from oracles.elements import make
 
 import dda
 import fem_reference
-from dda.system.joints import gap_groups
+from dda.bodies.joints import gap_groups
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.model import assemble
 
@@ -43,7 +43,7 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
         block = dda.Block(SQUARE, dda.Material(2700.0, 1e16, 0.2))
         model = dda.TwoBlockModel(block, dda.Contact(P), Q, top=side, eccentricity=e, traction=tau)
         cut = dda.subdivided(model, 1, 3, 1e20)
-        static = model.static() if foundation == "block" else dda.static_system(cut)
+        static = dda.static(model) if foundation == "block" else dda.static(cut)
     rotation = moment / (P * A * A / 2)
     assert static["rotation"] == pytest.approx(rotation, rel=2e-6)  # E / p = 1e7 of rigidity
     assert static["displacement"] == pytest.approx(-Q * (A - 2 * abs(e)) / (2 * P), rel=2e-6)
@@ -145,7 +145,7 @@ def test_joints_whose_ends_differ_by_rounding_meet(off: float, met: bool) -> Non
 
 def test_inverses_of_graded_matrices_keep_their_digits() -> None:
     """The inverse of R H R is (1/R) H^-1 (1/R) entry by entry, however R is graded."""
-    from dda.system.system import _inverse
+    from dda.bodies.block_system import _inverse
 
     rng = np.random.default_rng(1)
     for _ in range(100):

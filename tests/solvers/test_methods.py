@@ -55,19 +55,6 @@ def test_modes_have_the_roots_of_the_scene_s_scheme(scheme: str, solver: str, gg
         assert max(map(abs, mode.eigenvalues)) == pytest.approx(abs(Stepping.of(scene).roots(omega)[0]), rel=1e-10)
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_a_scheme_s_history_comes_near_to_the_exact_one_and_is_no_newmark_s(scheme: str, solver: str) -> None:
-    locked = LOCKED.with_values({"time.step": 1e-4}) if solver == "fem" else LOCKED  # which the leapfrog bears
-    exact = solve(locked, "block-events").displacement
-    average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-    newmark = solve(locked.with_values(average), solver).displacement
-    history = solve(locked.with_values({"time.start": "consistent"} | SCHEMES[scheme]), solver).displacement
-    if solver == "dda":
-        assert np.abs(history - exact).max() < 0.2 * np.abs(exact).max()
-    assert np.abs(history - newmark).max() > 1e-4 * np.abs(exact).max()
-
-
 @pytest.mark.parametrize(("solver", "scene"), [("continuum", LOCKED), ("block-events", OPENING), ("layers", COLUMN)])
 def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver: str, scene: Scene) -> None:
     scene = scene.with_values({"time.steps": 20})

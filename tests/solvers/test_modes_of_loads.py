@@ -62,7 +62,7 @@ def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-unty
 )
 def test_shares_of_a_column_under_a_moving_base(p: float, n: int, solver: str) -> None:
     if solver == "sub-blocks":
-        found = dda.system_modes(dda.subdivided(model(p, "y"), 1, n, 1e17), SCHEME)
+        found = dda.modes(dda.subdivided(model(p, "y"), 1, n, 1e17), SCHEME)
     else:
         found = fem_reference.modes(problem(n, p, "y"), SAME, count=60, full=solver == "whole fem")
     agree(found, carried(*upright(n, p)))
@@ -78,7 +78,7 @@ def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
 def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
     block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
     system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(P), 0.0), 1, 1, 1e9)
-    modes = dda.system_modes(system, SCHEME)
+    modes = dda.modes(system, SCHEME)
     agree(modes, carried(*upright(1, P)))  # those of a weight, which is M R as well
 
 
@@ -89,7 +89,7 @@ def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int
     assert few[0].frequency == pytest.approx(327.682, abs=0.01)
     block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
     system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(P), 5e6), 3, 3, 1e13)
-    found = dda.system_modes(system, SCHEME, count=count, full=True)
+    found = dda.modes(system, SCHEME, count=count, full=True)
     assert found[0].share > 0.8 and found[0].frequency == pytest.approx(327.7, abs=4.0)  # coarse: three blocks high
 
 

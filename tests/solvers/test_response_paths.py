@@ -11,7 +11,7 @@ import scipy.linalg
 from conftest import thinned
 from oracles.stepped_vibration import fit
 
-import dda.scheme.harmonic
+import dda.linear.elimination
 import fem_reference.history.response
 from validation import load_scene, response, solve
 from validation.advice.response import Response
@@ -81,7 +81,7 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
     scene = BLOCK.with_values(size | {"block.poisson": 0.3, "load.traction": 1e6} | damped)
     f = np.linspace(0.0, 240.0, 25)
     space, elements = response(scene, f, "dda"), response(scene, f, "fem")
-    monkeypatch.setattr(dda.scheme.harmonic, "BAND", np.inf)
+    monkeypatch.setattr(dda.linear.elimination, "BAND", np.inf)
     monkeypatch.setattr(fem_reference.history.response, "NARROW", np.inf)
     for found, solver in ((space, "dda"), (elements, "fem")):
         band = response(scene, f, solver)
@@ -95,7 +95,7 @@ def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch
     def refuse(*_: object) -> NoReturn:
         raise AssertionError("a step was run")
 
-    for target in ("dda.system.solution.run_glued", "dda.one_block.solution.modal_histories"):
+    for target in ("dda.bodies.locked_system.run_glued", "dda.bodies.locked_block.modal_histories"):
         monkeypatch.setattr(target, refuse)
     for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.step_change"):
         monkeypatch.setattr(target, refuse)

@@ -19,7 +19,7 @@ from faults.fault import Fault, late, no_damping, no_discount, of_first, thousan
 from faults.kill_matrix import cases_of, check_kill_matrix
 
 import dda
-from dda.one_block.natural_modes import ModalForm
+from dda.bodies.gap_form import ModalForm
 from validation.engine.run import run_study
 from validation.gates.gate import Gate, Status
 from validation.report.book import build, write_figures

@@ -15,9 +15,9 @@ from faults.fault import Fault, of_first, scaled
 from faults.kill_matrix import check_kill_matrix
 from scipy.integrate import solve_ivp
 
+from dda.bodies import turning_step as step
+from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
 from dda.march.step import steps_by
-from dda.rotation import step
-from dda.rotation.body import EXACT, FIRST_ORDER, turned
 from fem_reference.exact.rocking import Pulse, RockingBlock
 from fem_reference.exact.rocking import solve as solve_rigid
 from validation.engine.study import Study

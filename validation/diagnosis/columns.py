@@ -54,7 +54,7 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 if TYPE_CHECKING:
-    from dda.column.contacts import ColumnContactResult
+    from dda.bodies.contact_column import ColumnContactResult
 
 REPEATS = 300  # runs of a scene for one history, about: compiled code pays
 ROUNDS, NUDGE = 8, 1e-6  # evaluations of a fit, those of derivatives apart, and its relative change of a number
@@ -247,8 +247,8 @@ class ColumnSearch:
         shift
             Relative change of all densities.
         """
-        from dda.column.contacts import ColumnOptions, solve_contact_column
-        from dda.column.stepping import Drive
+        from dda.bodies.bonded_column import Drive
+        from dda.bodies.contact_column import ColumnOptions, solve_contact_column
         from validation.solvers.columns.blocks import dda_column
         from validation.solvers.dda import scheme_of
 

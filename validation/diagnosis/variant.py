@@ -125,7 +125,7 @@ class Rectangle:
     @cached_property
     def static(self) -> float:
         """Static displacement of the centroid in the locked linear model [m]."""
-        return self.model.static()["displacement"]
+        return dda.static(self.model)["displacement"]
 
     def elasticity(self, variants: Sequence[Variant]) -> Array:
         """Return the elasticity of each variant in (ey, ex) [Pa], shape (variants, 2, 2)."""

@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
-from validation.scenes.scene import Scene
+from validation.scenes.kinds import MODELS
+from validation.scenes.scene import FILES, Scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import FULL, get_solver
 
@@ -53,6 +54,7 @@ class Case:
     def key(self) -> str:
         """Hash of what decides the row: the tables that the solver reads, options, measures, sources, versions."""
         solver = self.make_solver()
+        of_kind = f"{MODELS}.{self.scene.kind.name}"
         state = {
             "solver": solver.name,
             "full": self.full,
@@ -60,7 +62,7 @@ class Case:
             "measures": sorted(self.measures),
             "only": None if self.only is None else sorted(self.only),
             "repeats": self.repeats,
-            "sources": {name: source_digest(name) for name in (*solver.sources, *SOURCES)},
+            "sources": {name: source_digest(name) for name in (*solver.sources, *SOURCES, of_kind)},
             "versions": {**library_versions(), **solver.versions()},
         }
         return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
@@ -68,19 +70,16 @@ class Case:
     def _read(self, solver: Solver) -> dict[str, Any]:
         """Return the part of the scene that the solver reads, files by their content."""
         data = self.scene.model_dump(mode="json", by_alias=True)
-        table_data: dict[str, Any] = {section: dict(data[section] or {}) for section in solver.sections}
+        names = (*solver.sections, *self.scene.kind.tables)
+        table_data: dict[str, Any] = {name: dict(data[name]) for name in names if data[name] is not None}
         for section, _, key in (name.partition(".") for name in solver.unread):
-            table_data[section].pop(key, None)
+            table_data.get(section, {}).pop(key, None)
         table_data["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
         del table_data["run"]["solvers"]  # which others run decides nothing
-        if self.scene.fem.mesh and "fem" in solver.sections:
-            table_data["mesh"] = _file_digest(Path(self.scene.fem.mesh), "mesh file")
-        load = self.scene.stated_load
-        if load and load.base_motion:
-            table_data["base_motion"] = _file_digest(Path(load.base_motion), "record of the base's motion")
-        excitation = self.scene.stated_input
-        if excitation and excitation.record:
-            table_data["record"] = _file_digest(Path(excitation.record), "record of the input")
+        for field, role in FILES.items():
+            section, _, key = field.partition(".")
+            if path := table_data.get(section, {}).get(key):
+                table_data[field] = _file_digest(Path(path), role)
         return table_data
 
 
@@ -95,11 +94,14 @@ def _file_digest(path: Path, role: str) -> str:
 def source_digest(module: str) -> str:
     """Hash of a module's file, or of all files of a package, without importing it."""
     spec = importlib.util.find_spec(module)
-    if spec is None or spec.origin is None:
+    if spec is not None and spec.submodule_search_locations:
+        root = Path(spec.submodule_search_locations[0])
+        files = sorted(root.rglob("*.py"))
+    elif spec is not None and spec.origin is not None:
+        root = Path(spec.origin).parent
+        files = [Path(spec.origin)]
+    else:
         raise InputError("its source cannot be found, so that its results cannot be kept", source=module)
-    origin = Path(spec.origin)
-    root = origin.parent
-    files = sorted(root.rglob("*.py")) if origin.name == "__init__.py" else [origin]
     digest = hashlib.sha256()
     for file in files:
         digest.update(f"{file.relative_to(root).as_posix()}\0".encode())

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from validation.errors import InputError
+from validation.models.column.tables import ColumnSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome
 from validation.scenes import features
@@ -77,7 +78,7 @@ def _role(scene: Scene) -> Role:
     """
     scene_features = {*features.of(scene)}
     if features.RIGID_BLOCKS in scene_features:
-        elastic = [layer.young for layer in scene.column.layer if math.isfinite(layer.young)]
+        elastic = [layer.young for layer in scene.table(ColumnSection).layer if math.isfinite(layer.young)]
         if elastic:
             raise InputError(
                 "must be inf in all layers or in none: no exact motion is known of rigid blocks beside elastic bars",

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from validation.errors import InputError
 from validation.scenes.keys import is_fulfilled, keys_of
+from validation.scenes.kinds import kinds
 from validation.scenes.scene import Scene
 from validation.scenes.tables import LoadSection
 
@@ -40,6 +41,9 @@ DASHPOTS, IMPACT, AUGMENTED = "contact dashpots", "impact law", "augmented Lagra
 GENERALISED_ALPHA, LEAPFROG, COMPOSITE = "generalised-alpha scheme", "leapfrog scheme", "composite scheme"
 
 OF_LOADS = tuple(Feature(key.feature, f"load.{name}") for name, _, key in keys_of(LoadSection) if key.feature)
+OF_KINDS = tuple(
+    Feature(kind.feature, f"{kind.name}.present", kind.linear) for kind in kinds().values() if kind.feature
+)
 FEATURES = (
     Feature(SUB_BLOCKS, "block.subdivide"),
     Feature(OFF_CENTRE, "load.off_centre"),
@@ -53,13 +57,11 @@ FEATURES = (
     Feature(LAGGED, 'contact.rules = "lagged"', linear=False),
     Feature(SLOPE, "load.slope"),
     Feature(ROTATION, 'run.geometry = "updated"', linear=False),
-    Feature(COLUMN, "column.layer"),
+    *OF_KINDS,
     Feature(UNILATERAL_COLUMN, 'column.law = "unilateral"', linear=False),
     Feature(FRICTIONAL_COLUMN, 'column.law = "frictional"', linear=False),
     Feature(RIGID_BLOCKS, "column.has_rigid_blocks", linear=False),
     Feature(RIGID_JOINTS, "column.has_rigid_joints", linear=False),
-    Feature(RIGID_BOXES, "rigid.box", linear=False),
-    Feature(PLANE, "plane.present"),
     Feature(MOVING_BLOCKS, "plane.moves", linear=False),
     Feature(DAMPING, "damping.present"),
     Feature(ADAPTIVE, 'damping.kinetic = "adaptive"', linear=False),

@@ -36,6 +36,11 @@ class Section(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", str_max_length=10_000)
 
+    @property
+    def present(self) -> bool:
+        """Whether the table says something; by itself every table does."""
+        return True
+
 
 def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
     """Yield name, field and description of the keys of a table, without the tables in it."""

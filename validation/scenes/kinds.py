@@ -62,6 +62,7 @@ class Kind:
     name: str = ""  # of the folder, and of the table that says that a scene is of this kind
     words: str = ""  # after "a scene of"
     feature: str = ""  # that its scenes have, by which solvers say that they take them; none of a block
+    linear: bool = True  # whether their motion is, unless another feature says no
     rank: float = 9.0  # place among the kinds; a scene without a table of any kind is of the first
     tables: ClassVar[Mapping[str, type[Section]]] = {}  # by name, that of the kind first
     columns: OwnColumns = NO_OWN  # numbered columns of histories that only this kind has, without their numbers

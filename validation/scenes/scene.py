@@ -208,7 +208,11 @@ def _sweepable() -> set[str]:
 
 
 OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
-FILES = ("fem.mesh", "load.base_motion", "input.record")
+FILES = {  # keys that name files, and what these are
+    "fem.mesh": "mesh file",
+    "load.base_motion": "record of the base's motion",
+    "input.record": "record of the input",
+}
 _EXCLUSIVE = {
     "time.gg": ("time.gg_rate",),
     "time.gg_rate": ("time.gg",),

@@ -165,7 +165,7 @@ class Solver:
     2. `handles`: the features of a scene that it takes (`validation.scenes.features`); a scene with another one is
        refused by name, so that no solver runs it as if the feature were absent; `apart`: which of them it does not
        take together.
-    3. `sections`: the tables of a scene that it reads, and `unread`: keys in them that it does not; a change
+    3. `sections`: the tables that it reads beside those of the scene's kind, `unread`: keys that it does not; a change
        elsewhere does not make it run again.
     4. `sources`: modules or packages whose files enter the key of its results.
     5. `role`, `rank` and `line`: its part in comparisons, its place among the references (each solver is compared
@@ -181,7 +181,7 @@ class Solver:
     name: str = ""
     handles: frozenset[str] = features.FIRST
     apart: features.Apart = ()
-    sections: tuple[str, ...] = ("block", "contact", "load", "time", "run")
+    sections: tuple[str, ...] = ("time", "run")
     unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
     cached: bool = True  # whether a finished case is kept for the next run

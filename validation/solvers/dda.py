@@ -54,6 +54,7 @@ class OneBlock(Prepared):
         with naming(scene):
             self.model = model_of(scene)
             self.scheme = scheme_of(scene)
+        self.body: dda.TwoBlockModel | dda.BlockSystem = self.model
 
     def history_run(self) -> Run:
         """Run the scene."""
@@ -69,12 +70,12 @@ class OneBlock(Prepared):
         return dda.solve(self.model, self.scheme, steps, columns, self.full)
 
     def highest_frequency(self) -> float:
-        """Return the highest natural frequency of the modes that the load reaches [rad/s]."""
-        return max(mode.frequency for mode in self.modes())
+        """Return the highest natural frequency that the load reaches, joints included [rad/s]."""
+        return dda.highest_frequency(self.body)
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution."""
-        return self.model.static()
+        return dda.static(self.body)
 
     def modes(self) -> tuple[Mode, ...]:
         """Return the modes that the load reaches, of sub-blocks the lowest."""
@@ -82,16 +83,16 @@ class OneBlock(Prepared):
 
     def package_modes(self) -> Sequence[dda.Mode]:
         """Return the modes as DDA gives them."""
-        return dda.modes(self.model, self.scheme)
+        return dda.modes(self.body, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
         """Return spectral radius, condition numbers and residual."""
         return vars(dda.diagnostics(self.model, self.scheme))
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
-        """Return the frequency response, mode by mode."""
+        """Return the frequency response."""
         along = base_direction(self.scene)
-        return dda.response(self.model, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
+        return dda.response(self.body, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 class SubBlocks(OneBlock):
@@ -102,31 +103,15 @@ class SubBlocks(OneBlock):
         b = scene.block
         with naming(scene):
             self.system = dda.subdivided(self.model, *b.subdivide or (1, 1), b.glue_ratio * b.young, b.pattern)
+        self.body = self.system
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps."""
         return dda.solve_system(self.system, self.scheme, steps, columns, self.full)
 
-    def highest_frequency(self) -> float:
-        """Return the highest natural frequency that the load reaches, joints included [rad/s]."""
-        return dda.highest_frequency(self.system)
-
-    def static(self) -> Mapping[str, float]:
-        """Return the static solution."""
-        return dda.static_system(self.system)
-
-    def package_modes(self) -> Sequence[dda.Mode]:
-        """Return the lowest modes as DDA gives them."""
-        return dda.system_modes(self.system, self.scheme)
-
     def diagnostics(self) -> Mapping[str, float]:
         """Raise: diagnostics are those of one whole block."""
         raise NotReported("dda reports diagnostics of a whole block only")
-
-    def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
-        """Return the frequency response of the system."""
-        along = base_direction(self.scene)
-        return dda.system_response(self.system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
 
 
 # Dashpots, impact law and augmented Lagrangian are of the corners of one block, which open at once.
@@ -158,10 +143,7 @@ class DDA(Solver):
         (features.ADAPTIVE, features.COURSES | {features.SUB_BLOCKS}),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (
-        *("block", "contact", "load", "damping", "column", "input", "rigid", "plane"),
-        *("time", "run"),
-    )
+    sections: tuple[str, ...] = ("damping", "time", "run")
     sources: tuple[str, ...] = ("dda",)
     role = Role.JUDGED
     rank = 0.0

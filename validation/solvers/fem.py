@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from fem_reference.history.unilateral import UnilateralResult
     from fem_reference.mesh.model import Model
 
-MESH_SECTIONS = ("block", "contact", "load", "time", "run", "fem")
+MESH_SECTIONS = ("time", "run", "fem")
 OF_CUTS = ("plane.subdivide", "plane.pattern", "plane.glue", "plane.clamp_glue")
 OF_SUB_BLOCKS = ("block.subdivide", "block.pattern", "block.glue_ratio")  # the whole body stands for its parts
 
@@ -273,7 +273,7 @@ class FiniteElements(Solver):
         (features.ADAPTIVE, features.COURSES),
         *features.DAMPING_APART,
     )
-    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping", "column", "input", "plane")
+    sections: tuple[str, ...] = (*MESH_SECTIONS, "damping")
     unread = (*OF_SUB_BLOCKS, *OF_CUTS, "column.glue")
     sources: tuple[str, ...] = ("fem_reference",)
     meshed = True

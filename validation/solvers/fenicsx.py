@@ -152,7 +152,7 @@ class FEniCSx(Solver):
         features.FRICTION,
         features.PLANE,
     }
-    sections = (*MESH_SECTIONS, "plane")
+    sections = MESH_SECTIONS
     unread = (*OF_SUB_BLOCKS, *OF_CUTS)
     sources = ("fem_reference.fenicsx",)
     distributed = True

@@ -15,7 +15,6 @@ from validation.runs.run import Outcome, Run
 from validation.runs.units import ratios
 from validation.scenes.scene import Scene
 from validation.solvers.dda import DDA
-from validation.solvers.hooks import SolvingHooks
 from validation.solvers.translation import tension_note
 
 FACTOR_TOLERANCE = 0.3  # a damped or badly resolved run has another size, but not by a factor of ten
@@ -87,7 +86,8 @@ def force(scene: Scene, history: History, reference: History) -> str | None:
     size = norm(expected)
     if not (0 < size < math.inf and norm(history.columns[DISPLACEMENT] - expected) <= FORCE_TOLERANCE * size):
         return None
-    width = SolvingHooks.of(scene).base_length(scene)
+    block = scene.stated_block
+    width = 1.0 if block is None else block.base_length
     values, pressure = history.columns[PRESSURE], reference.columns[PRESSURE]
     sizes = norm(values), norm(pressure)
     if min(sizes) == 0 or not np.isfinite(sizes).all() or abs(width - 1) <= NEAR_ONE:

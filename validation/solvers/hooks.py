@@ -48,7 +48,3 @@ class SolvingHooks(Hooks):
     def scaled(self, scene: Scene, factor: float) -> dict[str, Any]:
         """Return keys whose values times a factor make another scene of the same size; none where there are none."""
         return {}
-
-    def base_length(self, scene: Scene) -> float:
-        """Return the length by which a contact pressure becomes a force [m]."""
-        return 1.0

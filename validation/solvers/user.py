@@ -49,7 +49,7 @@ class UserSolver(Solver):
     """A user's ``solve(scene)``, or an object or class with it and, where it likes, `static` and `modes`."""
 
     # what it reads of a scene cannot be known either: two scenes that differ anywhere are two cases
-    sections = ("block", "contact", "load", "damping", "fem", "column", "input", "rigid", "time", "run")
+    sections = ("damping", "fem", "time", "run")
     cached = False  # what it is made of cannot be known, so it always runs afresh
 
     def __init__(self, name: str, target: str) -> None:

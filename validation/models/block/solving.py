@@ -17,7 +17,7 @@ from validation.solvers.soundness import ROUNDING, TINY
 
 
 class HOOKS(SolvingHooks):
-    """Memory, reach and base of a block."""
+    """Memory and reach of a block."""
 
     def memory(self, scene: Scene, solver: Solver) -> tuple[float, str]:
         """Return the bytes of assembly and factor of a mesh, or of the dense matrices of sub-blocks."""
@@ -55,10 +55,6 @@ class HOOKS(SolvingHooks):
         if math.isinf(scene.contact.stiffness):
             return {"block.density": scene.block.density * factor}
         return {"contact.stiffness": scene.contact.stiffness * factor}
-
-    def base_length(self, scene: Scene) -> float:
-        """Return the length of the base edge [m]."""
-        return scene.block.base_length
 
 
 def _blocks(scene: Scene) -> tuple[float, str]:

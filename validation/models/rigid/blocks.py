@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 import dda
-from dda.rotation.solution import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
 from validation.models.rigid.tables import RigidSection
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run

@@ -36,7 +36,6 @@ class RigidExact(Solver):
 
     name = "rigid-exact"
     handles = features.SCHEMES | {features.RIGID_BOXES}
-    sections = ("rigid", "time", "run")
     sources = ("validation.theory.boxes", "validation.theory.rocking", "fem_reference.exact.rocking")
     role = Role.TRUTH
     rank = 3.0

@@ -25,6 +25,7 @@ class RigidBoxes(Kind):
     name = "rigid"
     words = "rigid boxes"
     feature = "rigid boxes"
+    linear = False
     rank = 2.0
     tables: ClassVar = {"rigid": RigidSection}
     solvers: ClassVar = {"rigid-exact": "validation.models.rigid.exact:RigidExact"}

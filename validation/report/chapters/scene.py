@@ -35,6 +35,7 @@ from validation.runs.records import Manifest
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes import features
+from validation.scenes.keys import is_fulfilled
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role, role
 from validation.suite.folders import sources_of
@@ -254,13 +255,12 @@ def outcomes(group: CaseGroup) -> Blocks:
 
 
 def _columns(group: CaseGroup) -> list[str]:
-    """Return the columns that some solver reports, displacement and contact pressure, or the first box, first."""
+    """Return the columns that some solver reports, displacement and contact pressure, or of the first body, first."""
     names: set[str] = set()
     for case in group.cases:
         names.update(*(history.columns for history in case.histories.values()))
-    if (rigid := group.cases[0].scene.rigid) is not None:
-        return [name for name in rigid.columns if name in names]
-    return sorted(names, key=lambda name: (rank(name), name))
+    own = [name for name in group.cases[0].scene.kind.column_names() if name in names]
+    return own or sorted(names, key=lambda name: (rank(name), name))
 
 
 def lead_figure(group: CaseGroup, directory: Path) -> Blocks:
@@ -355,8 +355,8 @@ def free_window(case: CaseResults, column: str) -> float:
     Where no solver knows the frequency of the first mode, a period is what a history swings in.
     """
     end = min(_ends([case]), default=0.0)
-    load = case.scene.stated_load
-    if case.scene.stated_input is not None or (load is not None and load.base_motion is not None):
+    tables = case.scene.tables()
+    if "input" in tables or is_fulfilled("load.base_motion", "", tables):
         return end
     frequencies = [case.number(solver, "mode1.frequency") for solver in case.rows]
     known = [frequency for frequency in frequencies if frequency]

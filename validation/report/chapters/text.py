@@ -23,9 +23,6 @@ _MEANINGS = (
 _WORDS = {word: short_word for word, short_word, _ in _MEANINGS}
 UNITS = str.maketrans("23", "²³")
 
-PLACES = (  # tables of data
-    "block", "column", "rigid", "plane", "contact", "load", "input", "damping", "time", "fem", "run",
-)  # fmt: skip
 ALWAYS = {  # data that are written at their defaults too
     "block.poisson", "block.hypothesis", "time.alpha", "time.delta", "time.start", "fem.degree", "fem.foundation",
 }  # fmt: skip
@@ -129,7 +126,7 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
     hooks = ShowingHooks.of(scene)
     items = list(hooks.bodies(scene, varied))
     for place, table in scene.tables().items():
-        for name, field, _ in keys_of(type(table)) if place in PLACES else ():
+        for name, field, _ in keys_of(type(table)):
             path = f"{place}.{name}"
             value = stated_value(table, name)
             is_default = value is None or (value == field.default and path not in ALWAYS)

@@ -39,16 +39,11 @@ def closed_model(scene: Scene) -> dda.TwoBlockModel:
     return dda.TwoBlockModel(block_of(scene), corners, load, b.base, b.top)
 
 
-def largest_frequency(model: dda.TwoBlockModel, scheme: dda.Scheme) -> float:
-    """Return the largest frequency of a whole block in the unknowns that its load moves [rad/s]."""
-    return max(mode.frequency for mode in dda.modes(model, scheme))
-
-
-def opening_frequency(scene: Scene, scheme: dda.Scheme) -> float:
+def opening_frequency(scene: Scene) -> float:
     """Return the largest frequency of a whole block that may leave its base [rad/s]."""
     if math.isinf(scene.contact.stiffness):
         return math.inf
-    return largest_frequency(closed_model(scene), scheme)
+    return dda.highest_frequency(closed_model(scene))
 
 
 def opening_system_frequency(scene: Scene) -> float:
@@ -60,7 +55,7 @@ def opening_system_frequency(scene: Scene) -> float:
     return dda.highest_frequency(dda.subdivided(closed_model(scene), columns, rows, b.glue_ratio * b.young, b.pattern))
 
 
-def rolling_frequency(scene: Scene, scheme: dda.Scheme) -> float:
+def rolling_frequency(scene: Scene) -> float:
     """Return the largest frequency of a block that may turn on to any of its edges [rad/s].
 
     The directions of the springs turn against the block, so that the stiffer of the two acts along both. A pressure and
@@ -76,5 +71,5 @@ def rolling_frequency(scene: Scene, scheme: dda.Scheme) -> float:
     for base in range(len(scene.block.outline)):
         top = 0 if base else 1  # any other edge
         model = dda.TwoBlockModel(block, corners, pressure=1.0, base=base, top=top, traction=1.0)
-        frequencies.append(largest_frequency(model, scheme))
+        frequencies.append(dda.highest_frequency(model))
     return max(frequencies)

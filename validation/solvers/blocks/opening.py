@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -20,16 +19,20 @@ from validation.solvers.blocks.closed import block_of, load_of, opening_frequenc
 from validation.solvers.contract import Prepared, completed
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
-if TYPE_CHECKING:
-    from dda.rotation.solution import RollingResult
-
-FORCES = ("normal_force_m", "normal_force_n", "shear_force_m", "shear_force_n")  # N, on the block
-GAPS = ("gap_m", "gap_n")  # m, negative where the contact is pressed
-SLIDES = ("slide_m", "slide_n")  # m, along the base, less its own displacement
-STATES = ("state_m", "state_n")  # 0 open, 1 stick (closed without friction, too), 2 and -2 slip towards N and M
+# What is a column of each of the corners M and N: forces on the block [N], gaps, negative where pressed, and slides
+# along the base, less its own displacement [m], states: 0 open, 1 stick (closed without friction, too), 2 and -2 slip
+# towards N and M
+OF_CORNERS = {
+    "gap": "gap",
+    "normal_force": "normal",
+    "shear_force": "shear",
+    "slide": "slide",
+    "state": "states",
+}
+CORNERS = tuple(f"{name}_{corner}" for name in OF_CORNERS for corner in "mn")
 COUNTS = ("solves", "cuts")  # of the open-close iteration, a step
 PASSES = "passes"  # column: of an augmented Lagrangian, a step
-OPENING = (*GAPS, *FORCES, *SLIDES, *STATES, *COUNTS)
+OPENING = (*CORNERS, *COUNTS)
 
 
 class OpeningBlock(Prepared):
@@ -52,7 +55,7 @@ class OpeningBlock(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the block on both corners [rad/s]."""
-        return opening_frequency(self.scene, self.scheme)
+        return opening_frequency(self.scene)
 
     def history_run(self) -> Run:
         """Run the scene."""
@@ -65,22 +68,29 @@ class OpeningBlock(Prepared):
 
     def _contact(self, result: dda.ContactResult) -> dict[str, Array]:
         """Return the asked columns of the contacts, which are made when they are asked for."""
-        counts = {"solves": "step_solves", "cuts": "step_cuts"}
-        if result.step_passes is not None:
-            counts[PASSES] = "step_passes"
-        names = [name for name in self.scene.run.columns if name in (*OPENING, *counts)]
-        return {name: np.asarray(getattr(result, counts.get(name, name)), dtype=float) for name in names}
+        return {name: contact_column(result, name) for name in self.scene.run.columns if name in (*OPENING, PASSES)}
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches between the steps of the history that was run."""
         result = completed(self.result)
-        return switches_between_steps({"M": ~result.closed_m, "N": ~result.closed_n}, result.time)
+        is_open = {corner: ~result.closed[row] for corner, row in zip("MN", result.base_contacts, strict=True)}
+        return switches_between_steps(is_open, result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did in the history that was run."""
         result = completed(self.result)
         impulse = opened.impulse_of_contact(self.scene, result.normal.sum(axis=0), result.velocity)
         return record_of_steps(self.scene, result, impulse)
+
+
+def contact_column(result: dda.ContactResult, name: str) -> Array:
+    """Return a column of a corner of the base, or of the iteration."""
+    quantity, _, corner = name.rpartition("_")
+    if name in CORNERS:
+        values = getattr(result, OF_CORNERS[quantity])[result.base_contacts["mn".index(corner)]]
+    else:
+        values = getattr(result, f"step_{name}")
+    return np.asarray(values, dtype=float)
 
 
 def law_of(scene: Scene) -> dda.Unilateral:
@@ -107,7 +117,7 @@ def options_of(scene: Scene, full: bool) -> dda.UnilateralOptions:
 
 
 def record_of_steps(
-    scene: Scene, result: dda.ContactResult | RollingResult, impulse: Array, base: Sequence[int] | slice = slice(None)
+    scene: Scene, result: dda.ContactResult, impulse: Array, base: Sequence[int] | slice = slice(None)
 ) -> ContactRecord:
     """Return what the contacts of a block did at its steps.
 

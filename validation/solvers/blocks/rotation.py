@@ -7,18 +7,17 @@ from typing import TYPE_CHECKING
 
 import dda
 from validation.runs.contact import ContactRecord
-from validation.runs.history import Array
 from validation.runs.modes import Switch
 from validation.runs.run import Run
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.blocks.closed import block_of, load_of, rolling_frequency
-from validation.solvers.blocks.opening import FORCES, GAPS, OPENING, SLIDES, STATES, law_of, record_of_steps
+from validation.solvers.blocks.opening import OPENING, contact_column, law_of, record_of_steps
 from validation.solvers.contract import Prepared, completed
 from validation.solvers.translation import check_columns, naming, switches_between_steps, to_run
 
 if TYPE_CHECKING:
-    from dda.rotation.solution import RollingResult
+    from dda.bodies.turning_block import RollingResult
 
 AREA = "area"  # column: of the outline, over that of the start [-]
 ROLLING_COLUMNS = (*OPENING, AREA)
@@ -39,7 +38,7 @@ class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None) -> None:
-        from dda.rotation.solution import RollingModel, RollingOptions
+        from dda.bodies.turning_block import RollingModel, RollingOptions
 
         self.scene = scene
         self.scheme = scheme
@@ -60,19 +59,20 @@ class RollingBlock(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the block on any of its edges [rad/s]."""
-        return rolling_frequency(self.scene, self.scheme)
+        return rolling_frequency(self.scene)
 
     def history_run(self) -> Run:
         """Run the scene."""
-        from dda.rotation.solution import solve_rolling
+        from dda.bodies.turning_block import solve_rolling
 
         check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))
         requested_columns = self.scene.run.columns
         model_columns = [name for name in requested_columns if name in dda.COLUMNS]
         result = solve_rolling(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
         self.result = result
-        corner_columns = of_corners(result)
-        columns = {name: corner_columns[name] for name in requested_columns if name in ROLLING_COLUMNS}
+        columns = {name: contact_column(result, name) for name in requested_columns if name in OPENING}
+        if AREA in requested_columns:
+            columns[AREA] = result.area
         return to_run(self.scene, result, result.columns | columns)
 
     def switches(self) -> tuple[Switch, ...]:
@@ -86,21 +86,3 @@ class RollingBlock(Prepared):
         """Return what the contact did in the history that was run."""
         result = completed(self.result)
         return record_of_steps(self.scene, result, result.impulse, list(result.base_contacts))
-
-
-def of_corners(result: RollingResult) -> dict[str, Array]:
-    """Return the columns of the base corners and of the iteration."""
-    corners = list(result.base_contacts)
-    names = (*FORCES, *GAPS, *SLIDES, *STATES)
-    by_corner = (
-        *result.normal[corners],
-        *result.shear[corners],
-        *result.gap[corners],
-        *result.slide[corners],
-        *result.states[corners].astype(float),
-    )
-    return dict(zip(names, by_corner, strict=True)) | {
-        "solves": result.step_solves.astype(float),
-        "cuts": result.step_cuts.astype(float),
-        AREA: result.area,
-    }

@@ -161,7 +161,6 @@ class BarsEvents(Solver):
     handles = features.SCHEMES | frozenset(
         {features.COLUMN, features.UNILATERAL_COLUMN, features.FRICTIONAL_COLUMN, features.RIGID_JOINTS}
     )
-    sections = ("column", "input", "time", "run")
     unread = ("column.solve_limit", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference.events", "fem_reference.problem")
     role = Role.TRUTH
@@ -174,7 +173,7 @@ class BarsEvents(Solver):
         """Return None, or why there is no exact motion for this scene."""
         if "column" not in scene.tables():
             return "it takes columns only"
-        if scene.column.law == "bonded":
+        if scene.table(ColumnSection).law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for a bonded one'
         if scene.time.discount != 1:
             return "the exact motion has no kinetic damping, and gg is below 1"

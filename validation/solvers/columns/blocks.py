@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 import dda
-from dda.column.column import Column, Layer, Spring
-from dda.column.contacts import ColumnContactResult, ColumnOptions, solve_contact_column
-from dda.column.response import column_response, highest_frequency
-from dda.column.step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
-from dda.column.stepping import Drive, solve_column
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+from dda.bodies.column_step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
+from dda.bodies.contact_column import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.contact.unilateral import OPEN, SLIP
 from validation.models.column.tables import ColumnSection
 from validation.runs.contact import ContactRecord
@@ -59,7 +59,7 @@ class BlockColumn(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the column's highest frequency: glue, joints, contacts and base springs included [rad/s]."""
-        return highest_frequency(self.column)
+        return dda.highest_frequency(equations(self.column))
 
     def drive(self) -> Drive:
         """Return what drives the column at t = 0 and at the end of every stage."""
@@ -72,10 +72,9 @@ class BlockColumn(Prepared):
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response per metre at the base, or under the pressure on the top."""
-        excited_end = self.scene.input.at
-        amplitudes = column_response(
-            self.column, self.scheme, frequencies, excited_end, (DISPLACEMENT, PRESSURE), exact
-        )
+        along = (1.0, 0.0) if self.scene.input.at == "base" else None
+        system = equations(self.column)
+        amplitudes = dda.response(system, self.scheme, frequencies, (DISPLACEMENT, PRESSURE), along, exact)
         return {name: amplitude(self.scene) * values for name, values in amplitudes.items()}
 
 

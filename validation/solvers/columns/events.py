@@ -236,7 +236,6 @@ class ColumnEvents(Solver):
 
     name = "column-events"
     handles = features.OF_MOVING_COLUMN | features.SCHEMES | {features.COLUMN, features.RIGID_BLOCKS}
-    sections = ("column", "input", "time", "run")
     unread = ("column.glue", "column.solve_limit", *OF_SCHEMES)
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
@@ -249,9 +248,10 @@ class ColumnEvents(Solver):
         """Return None, or why the motion from switch to switch is not that of the scene."""
         if "column" not in scene.tables():
             return "it takes columns only"
-        if scene.column.law == "bonded":
+        column = scene.table(ColumnSection)
+        if column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for bonded columns'
-        if any(math.isinf(contact.stiffness) for contact in scene.column.contacts):
+        if any(math.isinf(contact.stiffness) for contact in column.contacts):
             return "what blocks do at a rigid stop depends on how it is approached: give the contacts a stiffness"
         return None if scene.time.discount == 1 else "the exact motion has no kinetic damping, and gg is below 1"
 

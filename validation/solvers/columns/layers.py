@@ -66,7 +66,6 @@ class ExactLayers(Solver):
 
     name = "layers"
     handles = features.SCHEMES | {features.COLUMN}
-    sections = ("column", "input", "time", "run")
     unread = ("column.glue", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference",)
     role = Role.TRUTH

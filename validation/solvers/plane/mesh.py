@@ -55,7 +55,7 @@ def elastic_model(scene: Scene, plane: PlaneSection) -> PlaneModel:
     """Return the elements of a scene's body."""
     from fem_reference.plane.model import PlaneModel
 
-    return PlaneModel(body_of(scene, plane))
+    return PlaneModel((body_of(scene, plane),))
 
 
 def points_and_cells(body: PlaneBody) -> tuple[list[list[float]], list[list[int]]]:

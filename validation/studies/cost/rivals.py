@@ -34,7 +34,7 @@ class ColumnSolver(Solver):
     """A solver of a rectangular block whose motion depends on the height alone."""
 
     name = "rival"
-    sections = ("block", "contact", "load", "damping", "fem", "time", "run")
+    sections = ("damping", "fem", "time", "run")
     sources = (__name__,)
     own_columns = ("displacement", "contact_pressure")
 

@@ -1,0 +1,1 @@
+"""What a linear body answers at rest, by its modes and under a steady vibration, whatever body it is."""

@@ -1,4 +1,0 @@
-"""One block of one strain on contact springs.
-
-Its equations, modes and histories.
-"""

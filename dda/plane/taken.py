@@ -1,0 +1,164 @@
+"""Contacts of a step that are found: what they take from the step before, and where their points are."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from dda.contact.dense import Matrix, Vector
+from dda.contact.rows import FOUND, INSIDE, LOWER, TOO_DEEP, TOO_MANY, Laws, Rows
+from dda.plane.bodies import Blocks, Poses, point
+from dda.plane.detect import TOO_MANY as MANY
+from dda.plane.detect import Detection, find_contacts, keep_contacts
+from dda.plane.places import Places
+
+
+class Springs(NamedTuple):
+    """Laws of contacts, (laws,) each."""
+
+    across: Vector  # 1/p [m/N]
+    along: Vector  # 1/p_s; zero of what is smooth
+    friction: Vector  # tan(phi)
+    limit: Vector  # cohesion; infinite of what never slips [N]
+    tension: Vector  # infinite of glue [N]
+    opens: Any  # 0 of glue
+
+
+class Memory(NamedTuple):
+    """What the contacts of a stage begin with, in their order."""
+
+    rows: Rows
+    path: Vector  # (2c,) [m]
+    slid: Vector  # (c,) [m]
+
+
+def laws_for(laws: Laws, count: int) -> Laws:
+    """Return the laws of the first contacts."""
+    return Laws(
+        count,
+        2 * count,
+        laws.compliance,
+        laws.lower,
+        laws.upper,
+        laws.opens,
+        laws.friction,
+        laws.slips,
+        laws.lagged,
+        laws.paired,
+        laws.banded,
+        laws.closing,
+        laws.retardation,
+        laws.together,
+        laws.most,
+    )
+
+
+def write_laws(springs: Springs, places: Places, laws: Laws) -> None:
+    """Write the laws of all present contacts into rows."""
+    n = places.count[0]
+    for k in range(n):
+        law = places.law[k]
+        laws.compliance[k] = springs.across[law]
+        laws.compliance[n + k] = springs.along[law]
+        laws.friction[k] = springs.friction[law]
+        laws.lower[k] = 0.0 - springs.tension[law]
+        laws.upper[k] = math.inf
+        laws.lower[n + k] = 0.0 - springs.limit[law]
+        laws.upper[n + k] = springs.limit[law]
+        laws.opens[k] = springs.opens[law]
+        laws.opens[n + k] = 0
+
+
+def place_corners(blocks: Blocks, q: Matrix, D: Matrix, ends: Poses, out: Matrix) -> None:
+    """Write where all corners are after increments D, for the poses there [m]."""
+    for i in range(len(blocks.root_mass)):
+        x = blocks.centroid[i][0] + (q[i][0] + D[i][0])
+        y = blocks.centroid[i][1] + (q[i][1] + D[i][1])
+        for corner in range(blocks.start[i], blocks.start[i + 1]):
+            px, py = point(ends, i, blocks.xi[corner][0], blocks.xi[corner][1])
+            out[corner][0] = x + px
+            out[corner][1] = y + py
+
+
+def take_found(detection: Detection, blocks: Blocks, edge_end: Any, places: Places) -> int:
+    """Find the contacts of a step and write their points after those that are stated; return the outcome."""
+    found = find_contacts(detection)
+    if found < 0:
+        return TOO_MANY if found == MANY else TOO_DEEP
+    contacts = detection.contacts
+    corners = detection.corners
+    stated = places.count[1]
+    places.count[0] = stated + found
+    for f in range(found):
+        k = stated + f
+        corner = contacts.corner[f]
+        edge = contacts.edge[f]
+        places.block[k] = corners.block[corner]
+        places.on[k] = corners.block[edge]
+        places.law[k] = contacts.law[f]
+        for axis in range(2):
+            places.at[k][axis] = blocks.xi[corner][axis]
+            places.edge[k][axis] = blocks.xi[edge][axis]
+            places.edge[k][2 + axis] = blocks.xi[edge_end[edge]][axis]
+    return FOUND
+
+
+def take_memory(detection: Detection, places: Places, rows: Rows, path: Vector, slid: Vector, out: Memory) -> None:
+    """Write what every contact takes from the contact of the step before from which it goes on."""
+    n = places.count[0]
+    stated = places.count[1]
+    old = stated + detection.count[1]
+    for k in range(n):
+        origin = k if k < stated else detection.contacts.origin[k - stated]
+        if k >= stated and origin >= 0:
+            origin += stated
+        for axis in range(2):
+            r = k if axis == 0 else n + k
+            out.rows.slip[r] = 0.0
+            if origin < 0:
+                out.rows.state[r] = INSIDE
+                out.rows.opening[r] = 0.0
+                out.rows.force[r] = 0.0
+                out.path[r] = 0.0
+                continue
+            before = origin if axis == 0 else old + origin
+            out.rows.state[r] = rows.state[before]
+            out.rows.opening[r] = rows.opening[before]
+            out.rows.force[r] = rows.force[before]
+            out.path[r] = path[before]
+        out.slid[k] = slid[origin] if origin >= 0 else 0.0
+        if k >= stated and (origin < 0 or detection.contacts.same[k - stated] == 0):
+            gap = detection.contacts.gap[k - stated]
+            out.rows.opening[k] = gap
+            if origin < 0 and gap > 0:
+                out.rows.state[k] = LOWER
+    for r in range(2 * n, len(out.path)):
+        out.rows.force[r] = 0.0
+        out.rows.slip[r] = 0.0
+
+
+def dropped_energy(detection: Detection, springs: Springs, places: Places, rows: Rows) -> float:
+    """Return what was stored in contacts of the step before from which none of this step goes on [J]."""
+    previous = detection.previous
+    block = detection.corners.block
+    stated = places.count[1]
+    old = detection.count[1]
+    total = 0.0
+    for o in range(old):
+        if previous.heir[o] >= 0:
+            continue
+        law = detection.law[block[previous.corner[o]] * len(detection.head) + block[previous.edge[o]]]
+        normal = rows.force[stated + o]
+        shear = rows.force[stated + old + stated + o]
+        total += (springs.across[law] * normal * normal + springs.along[law] * shear * shear) / 2
+    return total
+
+
+def keep_found(detection: Detection, places: Places, rows: Rows) -> None:
+    """Take the contacts of a step that was accepted for those of the step before."""
+    stated = places.count[1]
+    for f in range(detection.count[0]):
+        k = stated + f
+        detection.contacts.normal[f] = rows.force[k]
+        detection.contacts.closed[f] = 1 if rows.state[k] == INSIDE else 0
+    keep_contacts(detection)

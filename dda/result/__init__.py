@@ -1,0 +1,1 @@
+"""What a history is returned in, and what every request must hold to."""

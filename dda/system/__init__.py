@@ -1,4 +1,0 @@
-"""Systems of glued blocks.
-
-Joint forces are unknowns of their own.
-"""

@@ -1,0 +1,94 @@
+"""The sparse matrix of bodies: order, fill and solutions, against dense ones."""
+
+import numpy as np
+import pytest
+
+from dda.march.compiled import as_lists, as_record, compiled
+from dda.plane.elimination import (
+    MISSING,
+    block_matrix,
+    clear_blocks,
+    clear_pattern,
+    factor_blocks,
+    order_blocks,
+    solve_blocks,
+)
+
+
+def neighbours(kind, n):
+    """Return the pairs of bodies that touch."""
+    if kind == "chain":
+        return [(i, i + 1) for i in range(n - 1)]
+    if kind == "star":
+        return [(0, i) for i in range(1, n)]
+    if kind == "apart":
+        return []
+    random = np.random.default_rng(n)
+    return sorted({tuple(sorted(random.choice(n, 2, replace=False).tolist())) for _ in range(2 * n)})
+
+
+def filled(kind, n, m, symmetric=True, most=10_000):
+    """Return a matrix of blocks and the same as a dense one."""
+    random = np.random.default_rng(3)
+    matrix = block_matrix(n, m, most)
+    clear_pattern(matrix)
+    for i, j in neighbours(kind, n):
+        matrix.number[i, j] = matrix.number[j, i] = 0
+    total = order_blocks(matrix)
+    clear_blocks(matrix, total)
+    dense = np.zeros((n, m, n, m))
+    dense[np.arange(n), :, np.arange(n)] = 40.0 * np.eye(m)
+    for i, j in neighbours(kind, n):
+        block = random.normal(size=(m, m))
+        dense[i, :, j] = block
+        dense[j, :, i] = block.T if symmetric else random.normal(size=(m, m))
+    for i, j in np.argwhere(matrix.number != MISSING):
+        matrix.blocks[matrix.number[i, j]] = dense[i, :, j]
+    return matrix, dense.reshape(n * m, n * m), total
+
+
+@pytest.mark.parametrize("symmetric", [True, False])
+@pytest.mark.parametrize(
+    ("kind", "n", "m"), [("chain", 12, 3), ("star", 9, 6), ("apart", 4, 3), ("random", 15, 6), ("random", 40, 3)]
+)
+def test_solutions_are_those_of_the_dense_matrix(kind, n, m, symmetric):
+    matrix, dense, _ = filled(kind, n, m, symmetric)
+    right = np.random.default_rng(5).normal(size=(n, m))
+    x = right.copy()
+    assert factor_blocks(matrix)
+    solve_blocks(matrix, x)
+    assert x.ravel() == pytest.approx(np.linalg.solve(dense, right.ravel()), rel=1e-11, abs=1e-13)
+
+
+@pytest.mark.parametrize(("kind", "blocks"), [("chain", 12 + 2 * 11), ("star", 12 + 2 * 11), ("apart", 12)])
+def test_trees_fill_nothing(kind, blocks):
+    matrix, _, total = filled(kind, 12, 3)
+    assert total == blocks
+    assert sorted(matrix.order) == list(range(12))
+    small = block_matrix(12, 3, blocks - 1)
+    small.number[:] = np.where(matrix.number == MISSING, MISSING, 0)
+    assert order_blocks(small) == MISSING
+
+
+def test_a_zero_pivot_is_told():
+    matrix, _, _ = filled("chain", 4, 3)
+    matrix.blocks[matrix.number[2, 2]] = 0.0
+    matrix.blocks[matrix.number[1, 2]] = 0.0
+    matrix.blocks[matrix.number[3, 2]] = 0.0
+    assert not factor_blocks(matrix)
+
+
+def test_lists_and_compiled_code_solve_as_arrays_do():
+    pytest.importorskip("numba")
+    matrix, _, _ = filled("random", 15, 3, most=300)
+    right = np.random.default_rng(5).normal(size=(15, 3))
+    lists = as_lists(matrix)
+    x = right.tolist()
+    assert order_blocks(lists) == order_blocks(matrix)
+    assert factor_blocks(lists)
+    solve_blocks(lists, x)
+    record = as_record(matrix)
+    y = right.copy()
+    assert compiled(factor_blocks, (record,))(record)
+    compiled(solve_blocks, (record, y))(record, y)
+    assert np.array(x) == pytest.approx(y, rel=1e-14, abs=1e-16)

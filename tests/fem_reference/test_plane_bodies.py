@@ -1,0 +1,301 @@
+"""Bodies in the plane on contacts: the block's own solver, a column, closed forms, balances, a mesh's limit."""
+
+import math
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from skfem import MeshQuad, MeshTri
+
+from fem_reference import Friction, Motion, PatchContact, PlaneBody, PlaneModel, Problem, Scheme, Unilateral
+from fem_reference.column.contact_model import ColumnContact, ContactColumn
+from fem_reference.column.contacts import solve_contacts
+from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.contact import compilation
+from fem_reference.history.unilateral import solve_unilateral
+
+YOUNG, DENSITY, GRAVITY, UP = 1e9, 2500.0, 9.81, (0.0, 1.0)
+CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
+
+
+def rectangle(x0, y0, x1, y1, **changes):
+    polygon = ((x0, y0), (x1, y0), (x1, y1), (x0, y1))
+    return replace(PlaneBody((polygon,), DENSITY, YOUNG, 0.25, rectangle=True, elements=4), **changes)
+
+
+def patches(first, second, left, right, y, width, **law):
+    """Both ends of a horizontal face."""
+    ends = (((left, y), (left + width, y)), ((right - width, y), (right, y)))
+    return [PatchContact(first, second, *piece, UP, **law) for piece in ends]
+
+
+def in_modes(monkeypatch):
+    """Step what follows in natural modes, not compiled."""
+    monkeypatch.setattr(compilation, "LONG", 1)
+    monkeypatch.setattr(compilation, "march", lambda modal, steps: (None, ""))
+
+
+def apart(found, truth, size=0.0):
+    return np.abs(found - truth).max() / max(size, np.abs(truth).max())
+
+
+SHAKEN = Motion((0.0, 0.05, 0.1, 0.15), (0.0, 1e-3, -1e-3, 0.0), (0.0, 0.0, 5e-4, 0.0))
+
+
+@pytest.mark.parametrize(("shear", "angle", "width"), [(0.0, None, 0.25), (4e8, None, 0.5), (4e8, 20.0, 1.0)])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
+    """Dropped with a sideways traction: the same springs, points, friction and steps from two ways to a mesh."""
+    side, stiffness, drag, pressure = 2.0, 1e9, 4e5 if shear else 0.0, 2e5
+    corners = ((0.0, 0.0), (side, 0.0), (side, side), (0.0, side))
+    problem = Problem(
+        corners, 0, 2, DENSITY, YOUNG, 0.25, "plane stress", stiffness, shear, pressure, 4, degree,
+        foundation="patch", patch_width=width, traction=drag, gravity=GRAVITY, motion=SHAKEN,
+    )  # fmt: skip
+    friction = None if angle is None else Friction(angle, 1e4)
+    start = Unilateral(1e-3, -0.1, "glued" if shear else "frictionless", friction=friction)
+    block = solve_unilateral(problem, CONSTANT, 200, start, full=True)
+    law = {"friction": None, "cohesion": 0.0}
+    if angle is not None:
+        law = {"friction": math.tan(math.radians(angle)), "cohesion": 1e4 * side / 2}
+    top = ((side, side), (0.0, side))
+    body = rectangle(
+        0.0, 0.0, side, side, degree=degree, velocity=(0.0, -0.1), gravity=(0.0, -GRAVITY),
+        tractions=((top, (drag, -pressure)),),
+    )  # fmt: skip
+    law |= {"stiffness": stiffness, "shear_stiffness": shear, "gap": 1e-3}
+    model = PlaneModel([body], patches(0, None, 0.0, side, 0.0, width, **law), SHAKEN)
+    found = model.history(CONSTANT, 200, model.observer((1.0, 1.0), (1.0, 1.0)))
+    columns = block.columns
+    place = np.abs(columns["displacement"]).max()
+    force = np.abs(columns["contact_pressure"]).max()
+    assert apart(found.columns["0"], columns["horizontal_displacement"], place) < 1e-11
+    assert apart(found.columns["1"], columns["displacement"]) < 1e-11
+    assert apart(found.normal.sum(axis=1) / side, columns["contact_pressure"]) < 1e-11
+    assert apart(found.shear.sum(axis=1) / side, columns["base_shear"], force) < 1e-11
+    if angle is not None:
+        assert np.abs(found.slip).max() > 1e-3
+    work = np.abs(columns["load_energy"]).max()
+    for name, values in found.energy.items():
+        assert apart(values, columns[name], work) < 1e-11
+
+
+@pytest.mark.parametrize("modal", [False, True])
+@pytest.mark.parametrize("degree", [1, 2])
+def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
+    """Poisson's ratio 0 and springs all along the faces: the same motion on every vertical line, tilts none."""
+    width, height, gap, stiffness = 2.0, 1.0, (2e-3, 1e-3), (1e9, 5e8)
+    changes = {"poisson": 0.0, "gravity": (0.0, -GRAVITY), "velocity": (0.0, -1.0), "degree": degree}
+    bodies = [rectangle(0.0, y, width, y + height, **changes) for y in (0.0, height + gap[1])]
+    contacts = patches(0, None, 0.0, width, 0.0, width / 2, stiffness=stiffness[0], gap=gap[0])
+    contacts += patches(1, 0, 0.0, width, height + gap[1], width / 2, stiffness=stiffness[1], gap=gap[1])
+    model = PlaneModel(bodies, contacts)
+    top = 2 * height + gap[1]
+    scheme = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
+    still = np.zeros(1001)
+    faces = [ColumnContact(y, 2 * k / width, g) for y, k, g in zip((0.0, height), stiffness, gap, strict=True)]
+    strata = (Stratum(height, DENSITY, YOUNG, 0.0),) * 2
+    column = ContactColumn(Ground(strata, "pressure"), "unilateral", tuple(faces), (-1.0, -1.0), GRAVITY)
+    names = ("displacement", "force_1", "force_2")
+    truth = solve_contacts(column, (4, 4), degree, scheme, Excitation(*[still] * 4), names, (0.0, height)).columns
+    if modal:
+        in_modes(monkeypatch)
+    rows = np.vstack([model.observer((0.0, top), (width, top), 1)[1], model.means(1)[[0, 2]]])
+    found = model.history(scheme, 1000, rows)
+    assert apart(found.columns["0"], truth["displacement"]) < 1e-12
+    for pair, name in (((0, 1), "force_1"), ((2, 3), "force_2")):
+        assert apart(found.normal[:, pair].sum(axis=1) / width, truth[name]) < 1e-12
+    assert np.abs(np.array([found.columns["1"], found.columns["2"]])).max() < 1e-12 * np.abs(found.columns["0"]).max()
+
+
+@pytest.mark.parametrize("modal", [False, True])
+def test_bodies_that_collide_keep_momentum_and_energy(modal, monkeypatch):
+    """Free bodies, an oblique impact with friction: no rigid motion has forces of its own."""
+    lower = rectangle(0.0, 0.0, 2.0, 1.0, velocity=(0.3, 0.5), spin=0.02, elements=3)
+    polygon = ((0.5, 1.01), (2.5, 1.01), (2.2, 1.9), (0.7, 2.2))
+    upper = PlaneBody((polygon,), DENSITY, 2 * YOUNG, 0.3, velocity=(-1.0, -1.0), elements=2)
+    law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
+    model = PlaneModel([lower, upper], patches(1, 0, 0.5, 2.0, 1.01, 0.4, **law))
+    if modal:
+        in_modes(monkeypatch)
+    found = model.history(Scheme(0.25, 0.5, 1.0, 2e-4), 1500, model.means(0))
+    assert found.outcome == "completed" and found.normal.max() > 1e5 and np.abs(found.slip[-1]).min() > 1e-3
+    assert np.all(found.closed[-1] == 0)
+    masses = np.array([2.0, 1.8125]) * DENSITY
+    linear = masses[0] * np.array(lower.velocity) + masses[1] * np.array(upper.velocity)
+    assert np.abs(found.momentum[:, :2] - linear).max() < 1e-13 * np.abs(found.momentum).max()
+    total = sum(found.energy.values())
+    assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
+
+
+@pytest.mark.parametrize("stiffness", [1e8, 1e9])
+def test_stiff_bodies_in_an_overhang_press_as_rigid_ones(stiffness):
+    """Below k blocks the ends of a seat c bear k W (1 - e/c) and k W e/c: the weight is e = 0.05 l/2 from the edge."""
+    length, height = 2.0, 0.5
+    weight = DENSITY * length * height * GRAVITY
+    bodies = []
+    contacts = []
+    forces = []
+    left = 0.0
+    for number, above in enumerate((3, 2, 1)):
+        out = 0.95 * length / (2 * above)
+        low = number * height
+        stiff = {"young": 1e6 * YOUNG, "poisson": 0.0, "gravity": (0.0, -GRAVITY), "elements": 1, "degree": 1}
+        bodies.append(rectangle(left + out, low, left + out + length, low + height, **stiff))
+        below = None if number == 0 else number - 1
+        for x in (left + length, left + out):
+            contacts.append(PatchContact(number, below, (x, low), (x, low), UP, stiffness, stiffness))
+        inner = 0.05 * length / 2 / (length - out)
+        forces += [above * weight * (1 - inner), above * weight * inner]
+        left += out
+    assert PlaneModel(bodies, contacts).settled.normal == pytest.approx(forces, rel=1e-6)
+
+
+@pytest.mark.parametrize("degree", [1, 2])
+def test_two_bodies_pressed_on_patches_have_a_limit(degree):
+    """At the ends of a patch the pressure jumps, at corners it is singular: order 1.5 to 2 whatever the degree."""
+    places = []
+    for elements in (4, 8, 16, 32):
+        top = ((0.5, 2.0), (1.5, 2.0))
+        lower = rectangle(0.0, 0.0, 2.0, 1.0, elements=elements, degree=degree)
+        upper = rectangle(0.5, 1.0, 1.5, 2.0, elements=elements, degree=degree, tractions=((top, (2e4, -1e6)),))
+        law = {"stiffness": 1e9, "shear_stiffness": 4e8}
+        contacts = patches(0, None, 0.0, 2.0, 0.0, 0.25, **law) + patches(1, 0, 0.5, 1.5, 1.0, 0.25, **law)
+        model = PlaneModel([lower, upper], contacts)
+        places.append(model.observer(*top, 1)[1] @ model.rest)
+        resultants = model.settled.normal.reshape(2, 2).sum(axis=1)
+        assert resultants == pytest.approx([1e6, 1e6], rel=1e-9)
+    changes = np.diff(places)
+    assert np.all(changes < 0)
+    assert 1.2 < np.log2(changes[1] / changes[2]) < 2.1 and abs(changes[2] / places[-1]) < 0.01
+
+
+def kirsch(x):
+    """Stress s_xx, s_yy, s_xy of 1 Pa along x around a hole of radius 1."""
+    q = 1 / np.sum(x**2, axis=0)
+    turn = np.arctan2(x[1], x[0])
+    c2, s2, c4, s4 = np.cos(2 * turn), np.sin(2 * turn), np.cos(4 * turn), np.sin(4 * turn)
+    s_xx = 1 - q * (1.5 * c2 + c4) + 1.5 * q**2 * c4
+    s_yy = -q * (0.5 * c2 - c4) - 1.5 * q**2 * c4
+    return np.array([s_xx, s_yy, -q * (0.5 * s2 + s4) + 1.5 * q**2 * s4])
+
+
+def ring(cells):
+    """A quarter of the plate with a hole, its outer side under the exact tractions."""
+    angles = np.linspace(0.0, np.pi / 2, cells + 1)
+    square = MeshQuad.init_tensor(4.0 ** (np.arange(cells + 1) / cells), angles)
+    points = square.p[0] * np.array([np.cos(square.p[1]), np.sin(square.p[1])])
+    outer = 4 * np.array([np.cos(angles), np.sin(angles)]).T
+    tractions = []
+    for start, end in pairwise(outer):
+        n = (start + end) / np.hypot(*(start + end))
+
+        def traction(x, n=n):
+            s_xx, s_yy, s_xy = 1e6 * kirsch(x)
+            return np.array([s_xx * n[0] + s_xy * n[1], s_xy * n[0] + s_yy * n[1]])
+
+        tractions.append(((tuple(start), tuple(end)), traction))
+    rollers = ((((1.0, 0.0), (4.0, 0.0)), "y"), (((0.0, 4.0), (0.0, 1.0)), "x"))
+    mesh = MeshQuad(np.ascontiguousarray(points), square.t)
+    return PlaneBody((), DENSITY, YOUNG, 0.25, mesh=mesh, rollers=rollers, tractions=tuple(tractions))
+
+
+def test_a_plate_with_a_hole_opens_as_kirsch_says():
+    """u(a, 0) = 3 s a / E and v(0, a) = -s a / E; straight sides round the hole leave order 2, the stress there 3 s."""
+    errors = []
+    for cells in (4, 8, 16):
+        model = PlaneModel([ring(cells)])
+        u, v = (model.observer(place, place)[i] @ model.rest for i, place in enumerate(((1.0, 0.0), (0.0, 1.0))))
+        errors.append((u / 3e-3 - 1, v / -1e-3 - 1))
+    part = model.parts[0]
+    peak = part.stresses(part.strains((0.0, 1.0)) @ model.rest)
+    assert peak == pytest.approx([3e6, 0.0, 0.0], abs=5e4)
+    orders = np.log2(np.abs(np.array(errors[:-1]) / errors[1:]))
+    assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[-1]).max() < 2e-3
+
+
+def disc(parts):
+    """A disc of 16 sectors times their parts, pressed over 22.5 degrees to both sides of its upper and lower ends."""
+    rings, sides = 8 * parts, 16 * parts
+    turns = 2 * np.pi * np.arange(sides) / sides
+    circle = np.array([np.cos(turns), np.sin(turns)])
+    points = np.hstack([np.zeros((2, 1)), *(circle * (i + 1) / rings for i in range(rings))])
+    inner = 1 + np.arange(sides)
+    following = np.roll(inner, -1)
+    triangles = [np.array([np.zeros(sides, int), inner, following])]
+    for i in range(rings - 1):
+        a, b = inner + i * sides, following + i * sides
+        triangles += [np.array([a, a + sides, b + sides]), np.array([a, b + sides, b])]
+    pressure = 1e6 / (np.pi / 4)
+    tractions = []
+    for start, end in zip(points[:, -sides:].T, np.roll(points[:, -sides:], -1, axis=1).T, strict=True):
+        n = (start + end) / np.hypot(*(start + end))
+        if abs(n[1]) > np.cos(np.pi / 8):
+            tractions.append(((tuple(start), tuple(end)), tuple(-pressure * n)))
+    mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(np.hstack(triangles)))
+    return PlaneBody((), DENSITY, YOUNG, 0.25, mesh=mesh, tractions=tuple(tractions))
+
+
+def test_a_disc_that_is_pressed_splits_as_hondros_says():
+    errors = []
+    for parts in (1, 2):
+        model = PlaneModel([disc(parts)])
+        part = model.parts[0]
+        s_xx, s_yy, _ = part.stresses(part.strains((0.0, 0.0)) @ model.rest)
+        errors.append([s_xx / 254849.282066966 - 1, s_yy / -891469.054434547 - 1])
+    orders = np.log2(np.array(errors[0]) / errors[1])
+    assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[1]).max() < 3e-3
+
+
+FLOOR = PatchContact(0, None, (0.0, 0.0), (0.25, 0.0), UP, 1e9)
+STILL = rectangle(0.0, 0.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("ask", "field"),
+    [
+        (lambda: replace(FLOOR, normal=(0.0, 2.0)), "normal"),
+        (lambda: replace(FLOOR, second=0), "second"),
+        (lambda: replace(FLOOR, stiffness=0.0), "stiffness"),
+        (lambda: replace(FLOOR, cohesion=1.0), "cohesion"),
+        (lambda: replace(FLOOR, bonded=True, gap=0.1), "gap"),
+        (lambda: PlaneModel([STILL], [replace(FLOOR, first=1)]), "contact"),
+        (lambda: PlaneModel([STILL], [replace(FLOOR, end=(2.0, 0.0))]), "edge"),
+        (lambda: PlaneModel([replace(STILL, gravity=(1.0, 0.0))], [FLOOR]).rest, "load"),
+        (lambda: replace(STILL, mesh=MeshTri()), "mesh"),
+        (lambda: replace(STILL, spin=1.0, clamps=(((0.0, 0.0), (1.0, 0.0)),)), "velocity"),
+        (lambda: PlaneModel([replace(STILL, rollers=((((0.0, 0.0), (1.0, 0.0)), "z"),))]), "rollers"),
+    ],
+)
+def test_what_cannot_be_is_refused_by_field(ask, field):
+    with pytest.raises(ValueError, match=f"^{field}: "):
+        ask()
+
+
+def test_a_free_body_turns_about_its_centre_of_mass():
+    """A trapezoid, its middle beside its centroid: u, v and rotation are those of velocity and spin, strains none."""
+    polygon = ((3.0, 1.0), (6.0, 1.0), (4.0, 3.0), (3.0, 3.0))
+    body = PlaneBody((polygon,), DENSITY, YOUNG, 0.3, velocity=(0.2, -0.4), spin=0.01, elements=1)
+    model = PlaneModel([body])
+    found = model.history(replace(CONSTANT, step=1e-2), 10, model.means(0))
+    for number, rate in enumerate((0.2, -0.4, 0.01, 0.0, 0.0, 0.0)):
+        assert found.columns[str(number)] == pytest.approx(rate * found.time, abs=1e-12)
+
+
+def test_bodies_that_begin_at_rest_stay_there():
+    """Over gaps: the springs are as long at rest as the weight says, and nothing moves."""
+    weight = {"gravity": (0.0, -GRAVITY), "elements": 2}
+    bodies = [rectangle(0.0, 0.0, 2.0, 1.0, **weight), rectangle(0.0, 1.01, 2.0, 2.01, **weight)]
+    law = {"stiffness": 1e9, "gap": 0.01}
+    contacts = patches(0, None, 0.0, 2.0, 0.0, 0.5, **law) + patches(1, 0, 0.0, 2.0, 1.01, 0.5, **law)
+    model = PlaneModel(bodies, contacts)
+    half = DENSITY * GRAVITY
+    assert model.settled.normal == pytest.approx([2 * half, 2 * half, half, half], rel=1e-9)
+    rows = np.vstack([model.means(0), model.means(1)])
+    assert rows[7] @ model.rest < rows[1] @ model.rest - 0.01 < -0.02
+    consistent = replace(CONSTANT, start="consistent")
+    found = model.history(consistent, 50, rows, settled=True)
+    at_rest = rows @ model.rest
+    for number, values in found.columns.items():
+        assert np.abs(values - at_rest[int(number)]).max() < 1e-12
