@@ -55,7 +55,7 @@ def draw_plane(axes: Any, plane: PlaneSection) -> None:
         _draw_moving(sketch, plane.assembly)
     if any(plane.gravity):
         vector = LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity)
-        place = sketch.middle if plane.is_glued else (sketch.low[0] - 0.3 * LONGEST * sketch.size, sketch.high[1])
+        place = sketch.middle if plane.is_glued else (sketch.low[0] - 0.3 * LONGEST * sketch.size, sketch.middle[1])
         sketch.arrow(place, vector, "g")
     sketch.fit()
     if not plane.is_glued:

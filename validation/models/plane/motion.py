@@ -25,7 +25,8 @@ def _outline(block: PlacedBlock, history: History, step: int) -> Array:
     columns = history.columns
     if f"{block.name}.x" not in columns:
         return corners
-    x, y, angle = (float(columns[f"{block.name}.{part}"][step]) for part in ("x", "y", "angle"))
+    x, y = (float(columns[f"{block.name}.{part}"][step]) for part in ("x", "y"))
+    angle = float(columns[name][step]) if (name := f"{block.name}.angle") in columns else block.angle
     ex, ey, gxy = (
         float(columns[name][step]) if (name := f"{block.name}.{part}") in columns else 0.0
         for part in ("ex", "ey", "gxy")

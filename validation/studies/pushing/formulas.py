@@ -24,7 +24,6 @@ from validation.studies.pushing.exact import Pushing, at
 from validation.suite.bands import Band, cases
 
 PUSHING = ("pushing-both", "pushing-held")
-EXACT = "exact motion"
 PASSIVE, ACTIVE = math.radians(10), math.radians(50)  # dips of the planes that the wedges slide on
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 LIMIT = 1.16335645885845  # factor of safety at 35 degrees, 20 between the wedges
@@ -172,6 +171,7 @@ def up_dip(history: History, block: str, dip: float) -> Array:
 
 def against_wedges(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return accelerations and mean forces over those of rigid wedges, less one, and the larger speed at the end."""
+    plane = scene.table(PlaneSection)
     late = history.time > SETTLED
     ways = {"active": up_dip(history, "active", ACTIVE), "passive": up_dip(history, "passive", PASSIVE)}
     measured = {name: 2 * float(np.polyfit(history.time[late], way[late], 2)[0]) for name, way in ways.items()}
@@ -184,7 +184,10 @@ def against_wedges(scene: Scene, history: History) -> Mapping[str, Value]:
         measured[name] = float(np.mean(sum(history.columns[column][late] for column in columns)))
     exact = wedge_motion(scene)
     speed = max(float(way[-1] - way[-2]) for way in ways.values()) / scene.time.step
-    return {name: value / exact[name] - 1 for name, value in measured.items()} | {"speed": speed}
+    return {name: value / exact[name] - 1 for name, value in measured.items()} | {
+        "speed": speed,
+        "stiffness": plane.contact.stiffness if plane.contact else None,
+    }
 
 
 def rigid_wedges(case: Scene) -> Band:
