@@ -127,7 +127,7 @@ def test_one_solver_stands_on_both_pages() -> None:
     assert len(solvers) == 2 and solvers[0] == solvers[1]
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/step.md", "docs/subblocks.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/step.md", "docs/plane-step.md", "docs/subblocks.md"])
 def test_python_blocks_run(page: str, capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, object] = {}
     for text in [text for language, _, text in blocks(ROOT / page) if language == "python"]:
