@@ -16,13 +16,6 @@ STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, an
 class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
-    def refusal(self, scene: Scene, solver: str) -> str | None:
-        """Return why contacts that are found as blocks move are not stepped: none but stated ones are."""
-        plane = scene.table(PlaneSection)
-        if plane.moves and plane.contact is not None and not plane.touch:
-            return "contacts must be stated by [[plane.touch]]"
-        return None
-
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
         """Return blocks for `dda`, a mesh for `fem`."""
         plane = scene.table(PlaneSection)
