@@ -6,8 +6,10 @@ import meshio
 import numpy as np
 import pytest
 
+import dda
 from validation.models.plane.figure import frames_figure
 from validation.models.plane.motion import forces_at, outlines_at
+from validation.models.plane.moving import model_of
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver, solve
 
@@ -20,7 +22,7 @@ TOUCH = {"block": "slope_1", "on": "slope_ground", "edge": 2}
 
 def sliding(columns=(), **changes):
     """Return a square that slides down a slope at mu = tan(10 deg), standing on its springs from t = 0 on."""
-    slope = {"name": "slope", "angle": SLOPE, "length": 9.0, "rectangles": [[1.0, 1.0]], "sinks": [SINK]}
+    slope = {"name": "slope", "angle": SLOPE, "length": 9.0, "rectangles": [[1.0, 1.0]], "gaps": [1.0], "sinks": [SINK]}
     plane = {
         "young": "inf",
         "density": MASS,
@@ -84,3 +86,14 @@ def test_a_free_block_turns_from_where_it_was_put():
     angle, x, momentum = (run.history.columns[name] for name in names)
     assert angle == pytest.approx(math.radians(30) + 2 * run.history.time)
     assert x == pytest.approx(run.history.time) and momentum == pytest.approx(momentum[0])
+
+
+def test_contacts_that_are_found_are_those_that_a_scene_may_state():
+    """A corner that presses on a face is the same contact, stated or found."""
+    stated, found = (model_of(scene.plane) for scene in (sliding(), sliding(touch=[])))
+    scheme = dda.Scheme(0.5, 1.0, 1.0, 1e-3, "consistent")
+    first, second = (dda.solve_plane(model, scheme, 20, compiled=False) for model in (stated, found))
+    assert {*second.contacts} == {*first.contacts} and first.outcome == second.outcome == "completed"
+    assert second.displacement == pytest.approx(first.displacement, abs=1e-13)
+    order = [second.contacts.index(contact) for contact in first.contacts]
+    assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)

@@ -18,10 +18,8 @@ class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
     def refusal(self, scene: Scene, solver: str) -> str | None:
-        """Return why contacts that are found as blocks move are not stepped: none but stated ones are."""
+        """Return what of blocks that move `fem` does not step."""
         plane = scene.table(PlaneSection)
-        if plane.moves and plane.contact is not None and not plane.touch:
-            return "contacts must be stated by [[plane.touch]]"
         return refusal_of(scene, plane) if plane.moves and solver == "fem" else None
 
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
