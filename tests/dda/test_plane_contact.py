@@ -161,3 +161,17 @@ def test_bad_input_is_refused_by_field_and_value(message):
     with pytest.raises(ValueError) as error:
         BAD[message]()
     assert str(error.value).startswith(message) and ", got " in str(error.value)
+
+
+@pytest.mark.parametrize("young", [math.inf, 1e8])
+def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
+    """The edge belongs to a block that turns: its turn is part of every row."""
+    struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)
+    corner = PlaneBlock([(0.7, 0.502), (1.3, 1.2), (0.2, 1.3)], 2000.0, young, 0.2, velocity=(0.2, -2.0))
+    contacts = [CornerOnEdge(1, 0, 0, 2, ContactSprings(1e7, 4e6, 0.3))]
+    result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 1e-4), 400, compiled=False)
+    assert result.normal.max() > 0 and not result.normal[-1].any()
+    drift = np.ptp(result.momentum, axis=0)
+    assert drift[:2].max() <= 1e-11 * np.abs(result.momentum[:, :2]).max()
+    assert drift[2] <= 1e-6 * np.abs(result.momentum[0, 2])
+    assert np.abs(result.energy["balance"]).max() <= 1e-11 * result.energy["kinetic"][0]
