@@ -50,7 +50,6 @@ class FoundContacts(NamedTuple):
 
     corner: Any  # numbers among all corners
     edge: Any
-    share: Vector  # of the edge, at which the corner's foot is
     gap: Vector  # at the start of the step, along the edge's outward normal [m]
     law: Any
     origin: Any  # contact of the step before from which it goes on, -1: none
@@ -90,20 +89,23 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
     looked_at[~np.logical_or.outer(movable, movable)] = NONE
     np.fill_diagonal(looked_at, NONE)
     areas = [section(vertices).area for vertices, moving in zip(polygons, moves, strict=True) if moving]
-    found = [
-        np.zeros(most, dtype) for dtype in (np.int64,) * 2 + (float,) * 2 + (np.int64,) * 3 + (float,) + (np.int64,) * 3
-    ]
     return Detection(
         *outlines(polygons),
         moves=movable,
         head=np.full(len(polygons), NONE),
         depth=np.zeros(len(polygons)),
         law=looked_at.ravel(),
-        contacts=FoundContacts(*found),
-        previous=FoundContacts(*(array.copy() for array in found)),
+        contacts=found_contacts(most),
+        previous=found_contacts(most),
         count=np.zeros(2, np.int64),
         size=float(np.sqrt(min(areas))),
     )
+
+
+def found_contacts(most: int) -> FoundContacts:
+    """Return room for so many contacts."""
+    numbers = ("gap", "normal")
+    return FoundContacts(*(np.zeros(most, float if name in numbers else np.int64) for name in FoundContacts._fields))
 
 
 def keep_contacts(detection: Detection) -> None:
@@ -340,7 +342,6 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
             start = sides.corner[against]
             end = sides.end[against]
             length, along, gap = foot(corners.now, corner, start, end)
-            share = along / length
             length_then, along_then, gap_then = foot(corners.then, corner, start, end)
             if late == 1:
                 length = length_then
@@ -358,7 +359,6 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 return TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
-            contacts.share[found] = share
             contacts.gap[found] = gap
             contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1

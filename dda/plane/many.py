@@ -71,7 +71,7 @@ class Many(NamedTuple):
     residual: Vector  # (n,)
     kappa: Vector  # (c,) what N changes of the ways of contacts that close
     normal: Vector  # (c,) N about which that is linear [N]
-    known: Any  # (2,) mark of the pattern, and how many blocks the factors have
+    known: Any  # (1,) how many blocks the factors have
 
 
 def many_of(blocks: Blocks, contacts: int) -> Many:
@@ -91,28 +91,33 @@ def many_of(blocks: Blocks, contacts: int) -> Many:
         residual=np.zeros(total),
         kappa=np.zeros(contacts),
         normal=np.zeros(contacts),
-        known=np.zeros(2, dtype=np.int64),
+        known=np.zeros(1, dtype=np.int64),
     )
 
 
 def set_pattern(many: Many, places: Places) -> bool:
-    """Order the bodies for the present contacts, unless these are between the same as before; tell if there is room."""
-    mark = 7
+    """Order the bodies for the present contacts, where one is between two that have none; tell if there is room.
+
+    Blocks of pairs that touch no more are kept until then: they cost time alone.
+    """
+    number = many.matrix.number
+    known = many.known[0] > 0
     for k in range(places.count[0]):
-        mark = (mark * 1003 + places.block[k] * 409 + places.on[k]) % 2147483647
-    if mark == many.known[0]:
+        i = many.body[places.block[k]]
+        j = many.body[places.on[k]]
+        if i >= 0 and j >= 0 and number[i][j] == MISSING:
+            known = False
+    if known:
         return True
     clear_pattern(many.matrix)
     for k in range(places.count[0]):
         i = many.body[places.block[k]]
         j = many.body[places.on[k]]
         if i >= 0 and j >= 0:
-            many.matrix.number[i][j] = 0
-            many.matrix.number[j][i] = 0
-    total = order_blocks(many.matrix)
-    many.known[0] = mark if total >= 0 else 0
-    many.known[1] = total
-    return total >= 0
+            number[i][j] = 0
+            number[j][i] = 0
+    many.known[0] = order_blocks(many.matrix)
+    return bool(many.known[0] > 0)
 
 
 def find_many(
@@ -141,6 +146,10 @@ def find_many(
         copy(after.state, work.tried)
     else:
         copy(before.state, work.tried)
+    for k in range(laws.contacts):
+        if places.over[k] == 0:  # it carries nothing, and its gap is too large to be solved with
+            work.tried[k] = LOWER
+            work.tried[laws.contacts + k] = INSIDE
     if not set_pattern(many, places):
         return NONE, 0
     solves = 0
@@ -260,7 +269,7 @@ def assemble(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Len
     matrix = many.matrix
     m = len(matrix.part)
     n = laws.contacts
-    clear_blocks(matrix, many.known[1])
+    clear_blocks(matrix, many.known[0])
     for i in range(len(many.body)):
         body = many.body[i]
         if body < 0:

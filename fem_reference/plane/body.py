@@ -138,6 +138,9 @@ def _fan_mesh(body: PlaneBody) -> MeshTri:
         ring = _ring(np.array(polygon, float), corners, body.slack)
         points.append(np.mean(np.array(polygon, float), axis=0))
         triangles += [[len(points) - 1, ring[i - 1], ring[i]] for i in range(len(ring))]
+    a, b, c = np.moveaxis(np.array(points)[np.array(triangles)], 1, 0)
+    turns = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+    require(bool(np.all(turns > 0)), "polygons", "must be seen whole from the middle of their corners", body.polygons)
     mesh = MeshTri(np.array(points).T, np.array(triangles).T)
     return mesh.refined(max(0, int(np.ceil(np.log2(body.elements)))))
 

@@ -49,10 +49,10 @@ class PatchContact:
     friction: float | None = None  # tangent of the angle [-]; None: it never slips
     cohesion: float = 0.0  # shear force that the whole closed patch bears without pressure [N]
     bonded: bool = False  # whether it never opens
-    gap: float = 0.0  # at t = 0, along the normal [m]
+    gap: float = 0.0  # at t = 0, along the normal, negative where the springs begin compressed [m]
 
     def __post_init__(self) -> None:
-        require_numbers(self, ("stiffness",), ("shear_stiffness", "friction", "cohesion", "gap"))
+        require_numbers(self, ("stiffness",), ("shear_stiffness", "friction", "cohesion"))
         unit = abs(math.hypot(*self.normal) - 1) <= UNIT
         require(unit, "normal", "must be a unit vector", self.normal)
         require(self.second != self.first, "second", "must differ from first", self.second)

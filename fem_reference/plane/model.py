@@ -65,6 +65,7 @@ class BodiesResult(Result):
     gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
     slip: Array  # mean of what its points have slid while closed, there less back [m]
     closed: Array  # share of the patch that is closed [-]
+    rates: dict[str, Array]  # of the columns [1/s]
     momentum: Array  # in x, in y and about (0, 0) at the places of t = 0 [kg m/s, kg m2/s], shape (steps, 3)
     energy: dict[str, Array]  # `ENERGY_COLUMNS` and `LOSS_COLUMNS` of `fem_reference.contact.columns` [J]
     step_solves: Array  # solutions of the contact in each step [-], shape (steps,)
@@ -231,6 +232,7 @@ class PlaneModel:
             outcome = marched.outcome
         kept: dict[str, Any] = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
         observed = kept.pop("observed")
+        rates = kept.pop("rates")
         energy = {name: kept.pop(name) for name in (*ENERGY_COLUMNS, *LOSS_COLUMNS)}
         return BodiesResult(
             time=np.asarray(scheme.step * np.arange(1, len(observed) + 1), dtype=np.float64),
@@ -241,6 +243,7 @@ class PlaneModel:
             setup_seconds=ready - began,
             stepping_seconds=time.perf_counter() - ready,
             outcome=OUTCOMES[outcome],
+            rates={str(i): values for i, values in enumerate(rates.T)},
             energy=energy,
             **kept,
         )
@@ -255,7 +258,7 @@ class PlaneModel:
             F=self.F,
             B=self.points.B,
             rows=self.points.rows,
-            watch=Motion(np.asarray(rows, float), rigid.T @ self.M, np.zeros((0, len(self.F)))),
+            watch=Motion(np.asarray(rows, float), np.vstack([rigid.T @ self.M, rows]), np.zeros((0, len(self.F)))),
             pushes=np.zeros((len(self.F), 0)),
             ground=self.points.ground,
             prescribed=self._base,
@@ -278,7 +281,7 @@ class PlaneModel:
         states[rows.slips] = INSIDE
         place = gap
         D = np.zeros(len(self.F))
-        force = np.zeros(len(gap))
+        force = np.where(states == INSIDE, -gap / rows.compliance, 0.0)  # of springs that are short at t = 0
         if settled:
             D = self.settled.D
             place = self.settled.place
@@ -297,7 +300,8 @@ class PlaneModel:
         mean = points.share[:, None]
         return {
             "observed": record.displacements,
-            "momentum": record.velocities,
+            "momentum": record.velocities[:, :3],
+            "rates": record.velocities[:, 3:],
             "normal": record.force @ points.normal,
             "shear": record.force @ points.shear,
             "gap": record.place @ (mean * points.normal),

@@ -292,6 +292,9 @@ def test_a_column_that_starts_settled_stays_there() -> None:
     for name in names:
         np.testing.assert_allclose(result.columns[name], result.columns[name][0], rtol=1e-11)
     assert result.step_switches.sum() == 0
+    assert result.energies is not None
+    total = np.sum(list(result.energies.values()), axis=0)  # of the loads less what the settled column stores
+    assert np.max(np.abs(total)) < 1e-9 * np.max(result.energies["springs"])
 
 
 @pytest.mark.parametrize("stiffness", [1e6, 1e9, 1e18, math.inf])

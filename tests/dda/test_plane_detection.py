@@ -249,7 +249,7 @@ def test_compiled_and_plain_find_the_same():
     lists = as_lists(scene.detection)
     count = find_contacts(lists)
     assert compiled(find_contacts, (record,))(record) == count == len(found)
-    for name in ("corner", "edge", "share", "gap", "origin", "same"):
+    for name in ("corner", "edge", "gap", "origin", "same"):
         assert getattr(lists.contacts, name)[:count] == getattr(record.contacts, name)[:count].tolist()
 
 

@@ -90,6 +90,7 @@ def test_momentum_and_the_law_of_the_base_of_random_motions(seed: int) -> None:
     momentum = problem.density * problem.height * change + problem.pressure * history.time
     scale = abs(problem.pressure) * history.time[-1] + np.abs(history.impulse).max()
     assert np.abs(momentum - history.impulse).max() <= 1e-14 * scale
+    assert history.gap[0] == problem.gap
     assert np.all(history.contact_pressure >= 0)
     assert history.contact_pressure == pytest.approx(
         np.maximum(0, -problem.base_stiffness * history.gap / problem.width), rel=1e-14

@@ -249,6 +249,7 @@ def test_a_disc_that_is_pressed_splits_as_hondros_says():
 
 
 FLOOR = PatchContact(0, None, (0.0, 0.0), (0.25, 0.0), UP, 1e9)
+HOOK = ((0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (2.9, 3.0), (2.9, 0.1), (0.0, 0.1))
 STILL = rectangle(0.0, 0.0, 1.0, 1.0)
 
 
@@ -260,6 +261,7 @@ STILL = rectangle(0.0, 0.0, 1.0, 1.0)
         (lambda: replace(FLOOR, stiffness=0.0), "stiffness"),
         (lambda: replace(FLOOR, cohesion=1.0), "cohesion"),
         (lambda: replace(FLOOR, bonded=True, gap=0.1), "gap"),
+        (lambda: PlaneModel([replace(STILL, polygons=(HOOK,), rectangle=False)]), "polygons"),
         (lambda: PlaneModel([STILL], [replace(FLOOR, first=1)]), "contact"),
         (lambda: PlaneModel([STILL], [replace(FLOOR, end=(2.0, 0.0))]), "edge"),
         (lambda: PlaneModel([replace(STILL, gravity=(1.0, 0.0))], [FLOOR]).rest, "load"),
@@ -299,3 +301,13 @@ def test_bodies_that_begin_at_rest_stay_there():
     at_rest = rows @ model.rest
     for number, values in found.columns.items():
         assert np.abs(values - at_rest[int(number)]).max() < 1e-12
+
+
+def test_springs_that_begin_as_short_as_the_weight_asks_stay_so():
+    depth = DENSITY * 2.0 * GRAVITY / (2 * 1e8)
+    body = rectangle(0.0, 0.0, 2.0, 1.0, young=1e6 * YOUNG, gravity=(0.0, -GRAVITY), elements=1)
+    model = PlaneModel([body], patches(0, None, 0.0, 2.0, 0.0, 0.5, stiffness=1e8, gap=-depth))
+    # with delta = 1/2 the force at t = 0 counts
+    found = model.history(Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 50, model.means(0)[1:2])
+    assert np.abs(found.columns["0"]).max() < 1e-3 * depth
+    assert found.normal == pytest.approx(np.full((50, 2), 1e8 * depth), rel=1e-3)

@@ -37,7 +37,7 @@ from numpy.typing import NDArray
 import dda
 from dda.scheme.stage import Stage, dashpot_matrix, predictor, velocity_corrector
 from validation.diagnosis.contact_force import conserving, impact
-from validation.diagnosis.schemes import EXPLICIT, stages
+from validation.diagnosis.schemes import EXPLICIT, discounts, stages
 from validation.diagnosis.variant import GRAVITY, Array, Flags, Histories, Rectangle, Variant
 
 OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
@@ -45,6 +45,7 @@ BLOCK = 32  # steps that are summed up at once
 UNEQUAL = 1e-9  # relative difference of two time steps
 PLACES = [1, 4, 3]  # of v, ey and ex among the six unknowns of a block
 OF_ITS_SIGN = frozenset({"dashpot", "implicit", "energy-conserving", "rigid", "impact"})  # closed where it presses
+OF_A_STEP = frozenset({"dashpot", "implicit", "rigid"})  # forces that are reported as they act, not of the spring
 OF_NO_ACCELERATION = frozenset({"implicit", "energy-conserving", "impact"})  # forces that enter displacement, velocity
 
 
@@ -81,8 +82,7 @@ def _at_once(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) ->
     groups: dict[tuple[Any, ...], list[int]] = {}
     for j, v in enumerate(variants):
         by_powers = is_equal and not (v.opens or v.updated)
-        law = v.contact if v.contact in OF_ITS_SIGN else "springs"
-        kind = (by_powers, v.updated, _unknowns(rectangle, v), v.parts, v.exact, len(stages(v)), law)
+        kind = (by_powers, v.updated, _unknowns(rectangle, v), v.parts, v.exact, len(stages(v)), v.contact)
         groups.setdefault(kind, []).append(j)
     shape = len(steps), len(variants)
     histories_of_all = Histories(np.empty(shape), np.empty(shape), np.zeros(shape, dtype=bool))
@@ -159,21 +159,11 @@ class Runs:
         self.of = of = SimpleNamespace(**numbers)
         numbers_of_stages = np.array([stages(v) for v in variants], dtype=float)  # (variants, stages, numbers)
         self.stages: list[Any] = [Stage._make(one.T[..., None]) for one in np.moveaxis(numbers_of_stages, 1, 0)]
-        self.law = variants[0].contact if variants[0].contact in OF_ITS_SIGN else "springs"
+        self.law = variants[0].contact
         self.is_exact = variants[0].exact
         self.is_updated = variants[0].updated
-        self.by_mean_gap = of.contact == "mean gap"
-        self.gg_displacement = np.where(np.isin(of.discounted, ("velocity", "(7)")), 1.0, of.gg)[:, None]
-        self.gg_velocity = np.where(of.discounted == "displacement", 1.0, of.gg)[:, None]
-        # by the increment d, (6) is A1 = d / (alpha dt^2) - gg V / (alpha dt) - ... and (7) V1 = delta d / (alpha dt)
-        # + gg (1 - delta / alpha) V + ...: with gg in one of them V1 has another share of V
-        is_printed = np.isin(of.discounted, ("(6)", "(7)"))
-        if np.any(is_printed):
-            ratio = of.delta / np.where(is_printed, of.alpha, 1.0)
-            share = np.where(of.discounted == "(6)", 1 - ratio * (1 - of.gg), ratio + (1 - ratio) * of.gg)
-            self.gg_velocity = np.where(is_printed[:, None], share[:, None], self.gg_velocity)
-        self.has_base = (of.base > 0) & (of.softness > 0)
-        soft = np.where(self.has_base, 0.0, of.softness)
+        self.gg_displacement, self.gg_velocity = np.array([discounts(v) for v in variants]).T[:, :, None]
+        soft = of.softness * (d < 4)  # else it is the base that yields
         self.springs = rectangle.normal * np.exp(-soft)
         self.base_width = rectangle.width * of.side
         # what the scene's own matrices hold of every variant's
@@ -211,12 +201,10 @@ class Runs:
             M[:, 2] = self.masses[2] * area * wide**2
             B[:, 1, 2] = 1.0
         if d > 3:
-            base_mass = np.where(self.has_base, of.base, 1.0)
-            softness = np.where(self.has_base, of.softness, 1.0)
-            B[:, 0, 3] = -1.0 * self.has_base
-            M[:, 3] = base_mass * self.masses[0] * of.side**2 * of.tall
-            K[:, 3, 3] = np.where(self.has_base, self.rectangle.normal / np.expm1(softness), 1.0)
-            F[:, 3] = B[:, 0, 3] * M[:, 3] * gravity
+            B[:, 0, 3] = -1.0
+            M[:, 3] = of.base * self.masses[0] * of.side**2 * of.tall
+            K[:, 3, 3] = self.rectangle.normal / np.expm1(of.softness)
+            F[:, 3] = -M[:, 3] * gravity
         carried = K * (of.kept != "springs")[:, None, None]
         if closed:
             lost = self.springs * (1 - of.coupling) * B[:, 0, 1]  # of the springs' entry between v and ey
@@ -262,9 +250,11 @@ class Runs:
             kick = (c.delta if self.law == "impact" else 0.5) * times(inverse, push)
             rate = rate + push / q.mass
             push = 0.0 * push
-        R = R + np.where(self.by_mean_gap[:, None], 0.0, push)
-        balance = (1 - c.af) * R + c.af * state[..., self.R] - c.am * q.mass * W
-        balance = balance + np.where(self.by_mean_gap[:, None], push, 0.0)
+        whole = 0.0 * push
+        if self.law == "mean gap":  # whose force is that of the whole step
+            whole, push = push, whole
+        R = R + push
+        balance = (1 - c.af) * R + c.af * state[..., self.R] - c.am * q.mass * W + whole
         end_W = times(inverse, balance / (1 - c.am))
         change = c.alpha * end_W + kick
         end_W = end_W - dt * dt * times(q.stiffness, kick) / q.mass
@@ -292,11 +282,13 @@ class Runs:
         free = whole[..., :m]
         push = whole[..., m:]
         k = self.row_springs(wide)
-        stiffness = k * np.where(self.by_mean_gap[:, None], 1 - c.af, 1.0)
-        before = np.where(self.by_mean_gap[:, None], c.af / (1 - c.af), 0.0)
-        before -= (self.of.kept == "stress")[:, None]
+        stiffness = k
+        before = -1.0 * (self.of.kept == "stress")[:, None] * np.ones_like(k)
         own = np.eye(self.r)
-        if self.law == "energy-conserving":
+        if self.law == "mean gap":
+            stiffness = (1 - c.af) * k
+            before = before + c.af / (1 - c.af)
+        elif self.law == "energy-conserving":
             stiffness = k / 2
             before = np.ones_like(k)
         elif self.law == "rigid":
@@ -317,8 +309,7 @@ class Runs:
         if len(self.stages) == 2:
             second = self.linear(q, self.stages[1], dt, self.of.side, 1).closed
             T = second[..., : self.size] + second[..., self.size :] @ T
-        is_of_end = self.law in ("springs", "energy-conserving")
-        T[:, -2] = -self.springs[:, None] * T[:, 0] if is_of_end else whole.force[:, 0]
+        T[:, -2] = whole.force[:, 0] if self.law in OF_A_STEP else -self.springs[:, None] * T[:, 0]
         return T
 
     def exponential(self, q: Equations, dt: float) -> Array:
@@ -397,7 +388,7 @@ class Runs:
                 moving.state[:, self.W] *= ratio**2
                 moving.state[:, self.R] *= ratio**2
                 before = dt
-            is_open = self._pressed(sets[-1][0], moving, dt) if self.law != "springs" else self._opened(sets, moving)
+            is_open = self._pressed(sets[-1][0], moving) if self.law in OF_ITS_SIGN else self._opened(sets, moving)
             kept.append((self.observed(moving.state), is_open))
         observed, flags = map(np.array, zip(*kept, strict=True))
         return observed[..., 0], observed[..., 1], flags
@@ -411,7 +402,7 @@ class Runs:
         for stage, c in enumerate(self.stages):
             yield self.linear(q, c, dt, moving.wide, stage)
 
-    def _pressed(self, whole: Linear, moving: Moving, dt: float) -> Flags:
+    def _pressed(self, whole: Linear, moving: Moving) -> Flags:
         """Make a step of contact that is closed where it presses; return where it is open at the end."""
         state = moving.state
         end = times(whole.free, state)
@@ -440,7 +431,6 @@ class Runs:
         of = self.of
         state = moving.state
         closed = moving.closed
-        by_mean_gap = self.by_mean_gap & of.opens
         start = state
         for stage, c in enumerate(self.stages):
             if np.any(of.lags != ""):
@@ -453,8 +443,9 @@ class Runs:
                 force = np.where(closed[:, None], times(whole.force, start), 0.0)
                 end = times(whole.free, start) + times(whole.push, force)
                 limit = np.where(closed, of.band * of.reopening + of.hold, -of.band)
-                a_f = c.af[:, 0]
-                gap = np.where(by_mean_gap, (1 - a_f) * end[:, 0] + a_f * state[:, 0], end[:, 0])
+                gap = end[:, 0]
+                if self.law == "mean gap":
+                    gap = (1 - c.af[:, 0]) * gap + c.af[:, 0] * state[:, 0]
                 now_closed = np.where(of.opens, gap < limit, True)
                 now_closed = np.where(of.lags == "opening", closed | now_closed, now_closed)
                 now_closed = np.where(of.lags == "switching", closed, now_closed)
@@ -473,7 +464,7 @@ class Runs:
             moving.wide = moving.wide * (1 + of.updated * (strain[:, 2] if self.d > 2 else 0.0))
         if self.d > 2:
             end[:, 1] = np.where(closed, end[:, 1], 0.0)
-        pressing = np.where(by_mean_gap, end[:, 0] < 0, closed)
+        pressing = end[:, 0] < 0 if self.law == "mean gap" else closed
         end[:, -2] = np.where(pressing, -self.springs * end[:, 0], 0.0)
         moving.state = end
         moving.closed = closed

@@ -53,6 +53,26 @@ def stages(v: Variant) -> tuple[Stage, ...]:
     return leapfrog().stages  # whose U is that of the half step before
 
 
+def discounts(v: Variant) -> tuple[float, float]:
+    """Return the shares of the velocity that enter the displacement and the velocity at the end of a step.
+
+    By the increment d, (6) is A1 = d / (alpha dt^2) - gg V / (alpha dt) - ... and (7) V1 = delta d / (alpha dt)
+    + gg (1 - delta / alpha) V + ...: with gg in one of them V1 has another share of V.
+    """
+    gg = v.gg
+    ratio = v.delta / v.alpha if v.alpha else math.inf
+    match v.discounted:
+        case "velocity":
+            return 1.0, gg
+        case "displacement":
+            return gg, 1.0
+        case "(6)":
+            return gg, 1 - ratio * (1 - gg)
+        case "(7)":
+            return 1.0, gg + ratio * (1 - gg)
+    return gg, gg
+
+
 def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
     return v.split or same_matrix(v.spectral)

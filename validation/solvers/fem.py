@@ -260,6 +260,7 @@ class FiniteElements(Solver):
                 features.IMPLICIT,
                 features.COLUMN,
                 features.PLANE,
+                features.MOVING_BLOCKS,
                 features.UNILATERAL_COLUMN,
                 features.FRICTIONAL_COLUMN,
                 features.RIGID_JOINTS,
@@ -287,6 +288,10 @@ class FiniteElements(Solver):
 
         locked_columns = (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS)
         return tuple(dict.fromkeys((*locked_columns, *UNILATERAL_COLUMNS, *AT_HEIGHTS)))
+
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or what a kind of scene says of elements."""
+        return SolvingHooks.of(scene).refusal(scene, self.name)
 
     def missing(self, scene: Scene) -> str | None:
         """Return None, or what a mesh file needs that is not installed."""

@@ -21,7 +21,7 @@ class BlocksInThePlane(Kind):
     feature = "blocks in the plane"
     rank = 3.0
     tables: ClassVar = {"plane": PlaneSection}
-    fem_keys = ("elements", "degree")
+    fem_keys = ("elements", "degree", "foundation", "patch_width")
 
     def run(self, table: object) -> dict[str, Any]:
         """Return both packages for glued blocks and what they observe; of moving ones the poses, by `dda`."""

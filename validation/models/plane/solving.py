@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from validation.models.plane.meshed import MovingMesh, refusal_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared, Solver
@@ -15,6 +16,11 @@ STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, an
 
 class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
+
+    def refusal(self, scene: Scene, solver: str) -> str | None:
+        """Return what of moving blocks elements do not take."""
+        plane = scene.table(PlaneSection)
+        return refusal_of(scene, plane) if plane.moves and solver == "fem" else None
 
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
         """Return blocks for `dda`, a mesh for `fem`."""
@@ -28,7 +34,7 @@ class HOOKS(SolvingHooks):
         from validation.solvers.fem import scheme_of
         from validation.solvers.plane.mesh import PlaneMesh
 
-        return PlaneMesh(scene, plane, scheme_of(scene))
+        return (PlaneMesh if plane.is_glued else MovingMesh)(scene, plane, scheme_of(scene))
 
     def request(self, scene: Scene) -> dict[str, Any]:
         """Return the elastic body of the outline on the mesh of `fem`, as the worker takes it."""

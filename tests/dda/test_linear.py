@@ -1,0 +1,91 @@
+"""What every linear body must obey at rest, by its modes and under steady vibrations."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import dda
+from dda import BaseMotion, Block, Contact, Load, Material, Scheme, TwoBlockModel
+from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_equations import equations
+
+SCHEME = Scheme(0.5, 1.0, 1.0, 1e-3)
+MOVED = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.03, -0.02]])
+LOAD = Load(pressure=2e6, traction=3e5, gravity=9.81, slope=8.0)
+
+
+def block(load=LOAD):
+    outline = [(0, 0), (2, 0), (1.8, 1.4), (0.1, 1.5)]
+    return TwoBlockModel(Block(outline, Material(2700.0, 1e9, 0.2)), Contact(3e9, 1e9), load)
+
+
+def sub_blocks(load=LOAD):
+    return dda.subdivided(block(load), 2, 2, 1e11)
+
+
+def column(load=LOAD):
+    layers = [Layer(3.0, 2500.0, 2e9, 0.2, 3), Layer(2.0, 2000.0, 5e8, 0.3, 2)]
+    return equations(Column(layers, "pressure", None, [Spring(0.0, 4e9), Spring(3.0, 2e9)]))
+
+
+BODIES = [block, sub_blocks, column]
+PLANE = [block, sub_blocks]
+
+
+@pytest.mark.parametrize("body", PLANE)
+def test_a_slow_load_finds_the_static_solution(body):
+    rest = dda.static(body())
+    slow = dda.response(body(), SCHEME, [0.0], tuple(rest))
+    for name, value in rest.items():
+        assert slow[name][0] == pytest.approx(value, rel=1e-9, abs=1e-9 * abs(rest["strain_y"])), name
+
+
+@pytest.mark.parametrize("body", PLANE)
+def test_a_base_at_its_last_position_carries_the_static_solution(body):
+    rest = dda.static(body())
+    moved = dda.static(body(replace(LOAD, motion=MOVED)))
+    shift = {"horizontal_displacement": 0.03, "displacement": -0.02}
+    for name, value in rest.items():
+        assert moved[name] == pytest.approx(value + shift.get(name, 0.0), rel=1e-9, abs=1e-12), name
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_a_base_that_vibrates_is_answered_without_the_loads(body):
+    loaded = dda.response(body(replace(LOAD, motion=MOVED)), SCHEME, [0.0, 7.0], along=(0.0, 1.0))
+    alone = dda.response(body(Load(motion=MOVED)), SCHEME, [0.0, 7.0], along=(0.0, 1.0))
+    for name, values in loaded.items():
+        assert values == pytest.approx(alone[name], rel=1e-9), name
+
+
+@pytest.mark.parametrize("body", PLANE)
+def test_the_modes_share_the_static_solution_and_end_below_the_highest_frequency(body):
+    found = dda.modes(body(), SCHEME, count=40)
+    assert sum(mode.share for mode in found) == pytest.approx(1.0, rel=1e-9)
+    pressure = dda.static(body())["contact_pressure"]
+    size = body().load_size
+    assert sum(mode.contact_share for mode in found) * size == pytest.approx(pressure, rel=1e-9)
+    assert max(mode.frequency for mode in found) == pytest.approx(dda.highest_frequency(body()), rel=1e-9)
+
+
+def test_a_column_on_a_shaken_base_is_stepped_to_its_response():
+    w = 2 * np.pi * 40.0
+    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.9)
+    t = scheme.instants(1200)
+    sine = np.array([np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)])
+    for spring in ([Spring(0.0, 4e9)], []):
+        body = Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)], joints=spring)
+        stepped = solve_column(body, scheme, Drive(*sine, 0 * t))
+        amplitudes = dda.response(equations(body), scheme, [40.0], along=(1.0, 0.0))
+        for name, (amplitude,) in amplitudes.items():
+            expected = (amplitude * np.exp(1j * w * stepped.time)).imag[-100:]
+            assert np.max(np.abs(stepped.columns[name][-100:] - expected)) < 1e-9 * abs(amplitude), (name, spring)
+
+
+def test_a_ramp_adds_a_load_at_each_step():
+    # by superposition: a quarter of the load begins to act at the end of each step
+    ramped = dda.solve(block(replace(LOAD, ramp=4e-3)), SCHEME, 3)
+    at_once = dda.solve(block(), SCHEME, 3)
+    expected = np.cumsum(0.25 * at_once.columns["displacement"])
+    assert ramped.columns["displacement"] == pytest.approx(expected, rel=1e-12)

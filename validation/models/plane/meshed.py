@@ -1,0 +1,203 @@
+"""Moving blocks in the plane by `fem`: elastic bodies on the same springs, with the normals of t = 0.
+
+Each corner spring acts over a strip of `fem.patch_width` from its corner, along the face that its block turns to the
+edge, with `fem.foundation = "corner"` at the corner itself, which has no limit of fine elements.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from validation.models.plane.assembly import Assembly, StatedContact
+from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.geometry import Segment, corner_on_edge
+from validation.models.plane.history import ENERGY, place_of
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import Array
+from validation.runs.run import Run
+from validation.scenes.scene import Scene
+from validation.solvers.contract import Prepared
+from validation.solvers.plane.mesh import ELEMENTS
+from validation.solvers.translation import naming, to_run
+
+if TYPE_CHECKING:
+    from fem_reference import BodiesResult, PatchContact, PlaneBody, PlaneModel, Scheme
+
+FACING = 1e-6  # sine of the angle between a face and the edge in front of it, below which a strip lies on both
+TOUCHING = 1e-12  # gap over the thinnest block that rounding leaves of a corner on an edge
+RATES = {"vx": "x", "vy": "y", "spin": "angle"}
+MEANS = ("x", "y", "angle", "ex", "ey", "gxy")  # of a body, in the order of `PlaneModel.means`
+OF_ENERGY = {
+    "kinetic": "kinetic_energy",
+    "strain": "strain_energy",
+    "springs": "spring_energy",
+    "load": "load_energy",
+    "friction": "friction_loss",
+    "algorithmic": "algorithmic_loss",
+    "kinetic_damping": "kinetic_damping_loss",
+    "switching": "switching_loss",
+}
+
+
+def refusal_of(scene: Scene, plane: PlaneSection) -> str | None:
+    """Return why moving blocks are no elastic bodies on patches, None where they are."""
+    assembly = plane.assembly
+    if plane.contact is not None and not plane.touch:
+        return "contacts must be stated by [[plane.touch]]"
+    if scene.fem.foundation not in ("patch", "corner"):
+        return "corner springs need a patch: fem.foundation = 'patch' with patch_width (or 'corner')"
+    if plane.ramp or any(load.ramp for load in assembly.loads):
+        return "loads must come on at once"
+    if any(np.isinf(block.young) for block in assembly.blocks if not block.fixed):
+        return "blocks must be elastic, got young = inf"
+    if any(contact.springs.tension for contact in assembly.contacts):
+        return "contacts must carry no tension"
+    return None
+
+
+class MovingMesh(Prepared):
+    """Elastic bodies that touch each other."""
+
+    def __init__(self, scene: Scene, plane: PlaneSection, scheme: Scheme) -> None:
+        from fem_reference import PlaneModel
+
+        self.scene = scene
+        self.scheme = scheme
+        self.assembly = plane.assembly
+        self.moving = [i for i, block in enumerate(self.assembly.blocks) if not block.fixed]
+        width = scene.fem.patch_width or 0.0
+        with naming(scene):
+            bodies = [self._body(i, plane) for i in self.moving]
+            contacts = [_contact(self.assembly, self.moving, contact, width) for contact in self.assembly.contacts]
+            self.model: PlaneModel = PlaneModel(bodies, [*contacts, *_glue(self.assembly, self.moving, width)])
+
+    def history_run(self) -> Run:
+        """Step the bodies from their velocities."""
+        rows = np.vstack([self.model.means(body) for body in range(len(self.moving))])
+        result = self.model.history(self.scheme, self.scene.time.steps, rows)
+        columns = {name: self._column(result, name) for name in self.scene.run.columns}
+        return to_run(self.scene, result, columns)
+
+    def highest_frequency(self) -> float:
+        """Return the highest natural frequency with all contacts closed [rad/s]."""
+        return float(self.model.highest_frequency())
+
+    def _body(self, number: int, plane: PlaneSection) -> PlaneBody:
+        from fem_reference import PlaneBody
+
+        block = self.assembly.blocks[number]
+        loads = [load for load in self.assembly.loads if load.block == number]
+        return PlaneBody(
+            polygons=(block.vertices,),
+            density=block.density,
+            young=block.young,
+            poisson=block.poisson,
+            hypothesis=block.hypothesis,
+            rectangle=_is_upright(block),
+            tractions=tuple((load.edge, load.vector) for load in loads if load.edge is not None),
+            forces=tuple((load.place, load.vector) for load in loads if load.edge is None),
+            gravity=plane.gravity,
+            velocity=block.velocity,
+            spin=block.spin,
+            elements=ELEMENTS if self.scene.fem.elements is None else self.scene.fem.elements,
+            degree=self.scene.fem.degree,
+        )
+
+    def _column(self, result: BodiesResult, column: str) -> Array:
+        """Return a column of a result by its name."""
+        place = place_of(column)
+        if place is None:
+            raise ValueError(f"run.columns: must be of blocks, contacts or all, got {column!r}")
+        names = [block.name for block in self.assembly.blocks]
+        if place.whole == ENERGY:
+            total = np.asarray(sum(result.energy.values()))
+            return total - total[0] if place.part == "balance" else result.energy[OF_ENERGY[place.part]]
+        if place.whole:
+            return np.asarray(result.momentum[:, ("x", "y", "angular").index(place.part)])
+        if place.contact is not None:
+            block, corner, on, edge = place.contact
+            key = names.index(block), corner, names.index(on), edge
+            keys = [(one.block, one.corner, one.on, one.edge) for one in self.assembly.contacts]
+            return np.asarray(getattr(result, place.part)[:, keys.index(key)])
+        number = names.index(place.block)
+        return self._of_block(result, number, place.part)
+
+    def _of_block(self, result: BodiesResult, number: int, part: str) -> Array:
+        """Return what a block does; a fixed one nothing."""
+        block = self.assembly.blocks[number]
+        start = dict(zip(MEANS, (*centroid(block.vertices), block.angle), strict=False)).get(part, 0.0)
+        if block.fixed:
+            return np.full(len(result.time), start)
+        row = str(len(MEANS) * self.moving.index(number) + MEANS.index(RATES.get(part, part)))
+        return np.asarray(result.rates[row] if part in RATES else start + result.columns[row])
+
+
+def _is_upright(block: PlacedBlock) -> bool:
+    """Whether a block is a rectangle with sides along the axes."""
+    sides = np.roll(np.array(block.vertices), -1, axis=0) - np.array(block.vertices)
+    return len(sides) == 4 and bool(np.all(np.min(abs(sides), axis=1) == 0))
+
+
+def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, width: float) -> PatchContact:
+    """Return the springs of a corner over the strip of its block's face, seen from the block that moves."""
+    from fem_reference import PatchContact
+
+    vertices = np.array(assembly.blocks[contact.block].vertices)
+    outline = np.array(assembly.blocks[contact.on].vertices)
+    along = np.roll(outline, -1, axis=0)[contact.edge] - outline[contact.edge]
+    along = along / np.hypot(*along)
+    normal = np.array([along[1], -along[0]])
+    corner = vertices[contact.corner]
+    end = corner
+    for neighbour in (vertices[contact.corner - 1], vertices[(contact.corner + 1) % len(vertices)]):
+        side = (neighbour - corner) / np.hypot(*(neighbour - corner))
+        if abs(side @ normal) < FACING:
+            end = corner + width * side
+    gap = corner_on_edge((float(corner[0]), float(corner[1])), assembly.blocks[contact.on].vertices, contact.edge)[1]
+    if abs(gap) <= TOUCHING * assembly.thinnest:
+        gap = 0.0
+    first, second = contact.block, contact.on
+    if assembly.blocks[first].fixed:
+        corner = corner - gap * normal
+        end = end - gap * normal
+        first, second = second, first
+        normal = -normal
+    springs = contact.springs
+    return PatchContact(
+        moving.index(first),
+        None if assembly.blocks[second].fixed else moving.index(second),
+        (float(corner[0]), float(corner[1])),
+        (float(end[0]), float(end[1])),
+        (float(normal[0]), float(normal[1])),
+        springs.stiffness,
+        springs.shear,
+        springs.friction_coefficient if springs.shear else None,
+        springs.cohesion if springs.shear else 0.0,
+        gap=gap,
+    )
+
+
+def _glue(assembly: Assembly, moving: list[int], width: float) -> list[PatchContact]:
+    """Return the springs at both ends of what blocks are glued along."""
+    from fem_reference import PatchContact
+
+    contacts = []
+    for bond in assembly.bonds:
+        first, second = (bond.second, bond.first) if assembly.blocks[bond.first].fixed else (bond.first, bond.second)
+        below = None if assembly.blocks[second].fixed else moving.index(second)
+        for start, end in (_strip(bond.edge, width), _strip((bond.edge[1], bond.edge[0]), width)):
+            along = np.subtract(*bond.edge) / np.hypot(*np.subtract(*bond.edge))
+            normal = float(-along[1]), float(along[0])
+            side = moving.index(first)
+            contacts.append(PatchContact(side, below, start, end, normal, bond.stiffness, bond.shear, bonded=True))
+    return contacts
+
+
+def _strip(edge: Segment, width: float) -> Segment:
+    """Return the part of an edge from its start that is as wide as a patch."""
+    start = np.array(edge[0])
+    along = np.subtract(edge[1], edge[0])
+    end = start + width * along / np.hypot(*along)
+    return edge[0], (float(end[0]), float(end[1]))
