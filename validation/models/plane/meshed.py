@@ -44,6 +44,8 @@ OF_ENERGY = {
 def refusal_of(scene: Scene, plane: PlaneSection) -> str | None:
     """Return why moving blocks are no elastic bodies on patches, None where they are."""
     assembly = plane.assembly
+    if plane.contact is not None and not plane.touch:
+        return "contacts must be stated by [[plane.touch]]"
     if scene.fem.foundation not in ("patch", "corner"):
         return "corner springs need a patch: fem.foundation = 'patch' with patch_width (or 'corner')"
     if plane.ramp or any(load.ramp for load in assembly.loads):

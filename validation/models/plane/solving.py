@@ -18,7 +18,7 @@ class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
     def refusal(self, scene: Scene, solver: str) -> str | None:
-        """Return what of blocks that move `fem` does not step."""
+        """Return what of moving blocks elements do not take."""
         plane = scene.table(PlaneSection)
         return refusal_of(scene, plane) if plane.moves and solver == "fem" else None
 
