@@ -516,7 +516,8 @@ def _ramped(values: Array, steps: float) -> Array:
 
     The load of step n is min(1, n / steps): a sum of loads that each come on at once, a share of 1 / steps every step.
     """
-    shares = np.diff(np.minimum(np.arange(math.ceil(steps) + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
+    rising = min(math.ceil(steps), len(values))
+    shares = np.diff(np.minimum(np.arange(rising + 1) / steps, 1.0)) if steps > 1 else np.ones(1)
     return np.asarray(np.convolve(values, shares)[: len(values)])
 
 
