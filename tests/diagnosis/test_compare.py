@@ -20,8 +20,8 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.other_solvers import slipped
 from validation.diagnosis.reading import Foreign, Stepping, read
 from validation.diagnosis.readings import Reading
-from validation.diagnosis.runs import histories
 from validation.diagnosis.sentences import span
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant, rectangle_of
 from validation.scenes.scene import Scene
 

@@ -20,8 +20,8 @@ from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.runs import histories
 from validation.diagnosis.schemes import companion_split
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.scenes.scene import Scene

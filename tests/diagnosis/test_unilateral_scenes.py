@@ -12,7 +12,7 @@ from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.runs import histories
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant, rectangle_of
 from validation.errors import InputError
 

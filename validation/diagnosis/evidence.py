@@ -18,7 +18,7 @@ from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import Fit
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.readings import Reading
-from validation.diagnosis.runs import histories
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 from validation.metrics.poles import swing
 from validation.metrics.values import largest

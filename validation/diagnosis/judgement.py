@@ -28,9 +28,9 @@ from validation.diagnosis.readings import (
     slips,
     words_of_slips,
 )
-from validation.diagnosis.runs import histories
 from validation.diagnosis.scene_keys import assignments
 from validation.diagnosis.search import Verdict, as_it_is, simple, twofold
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
 from validation.metrics.values import largest

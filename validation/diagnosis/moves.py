@@ -16,8 +16,8 @@ import numpy as np
 
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.runs import UNEQUAL, histories
 from validation.diagnosis.schemes import EXPLICIT, SHARED
+from validation.diagnosis.stepping import UNEQUAL, histories
 from validation.diagnosis.variant import Variant
 
 

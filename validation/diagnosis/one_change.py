@@ -9,13 +9,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
-from validation.diagnosis.fits.least_squares import one_fit
 from validation.diagnosis.numbers import Values, numbers, numbers_of_layers
 from validation.diagnosis.sentences import scheme_words
 from validation.runs.history import Array
@@ -29,8 +29,6 @@ IN_UNITS = frozenset({"density-factor", "young-factor", "springs-factor", "load-
 NEAR_UNIT = 0.02  # relative, of a fitted factor that is said to be one of units: the rest is the fit's
 SPAN = 0.05  # of u, that a step of a fit is measured in
 BESIDE_NOTHING = 1e-12  # u that a step of the fit's own length has brought to zero but for rounding
-REACH = 6.0  # spans that a step of a fit goes, or as far as u is from zero: a factor of 1.35 at first
-FARTHEST = 300.0  # of u: its exponential is a double
 TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
 FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
 HALVED = 0.5  # of the remainder at the start
@@ -194,23 +192,37 @@ def fitted(
     """
     if not candidate.change.starts:
         return replace(candidate, remainder=norm(residual(0.0)))
-    first = _at_best(residual, candidate, min(rounds, FIRST_ROUNDS), nudge, settled)
+    first = _least_squares(residual, candidate, min(rounds, FIRST_ROUNDS), nudge, settled)
     if rounds <= FIRST_ROUNDS or (
         min(first.remainder, candidate.remainder) > hopeless and first.remainder > HALVED * norm(residual(candidate.u))
     ):
         return first
-    return _at_best(residual, first, rounds - FIRST_ROUNDS, nudge, settled)
+    return _least_squares(residual, first, rounds - FIRST_ROUNDS, nudge, settled)
 
 
-def _at_best(
+def _least_squares(
     residual: Residual, candidate: Fitted[Change], rounds: int, nudge: float, settled: float
 ) -> Fitted[Change]:
-    def nudges(u: Array) -> Array:
-        """Return steps relative to u, of rounding beside a span those that a double can tell."""
-        return np.where(np.abs(u) > BESIDE_NOTHING, nudge * u, TOLD_APART)
+    from scipy.optimize import least_squares
 
-    solution = one_fit(lambda u: residual(float(u[0])), [candidate.u], [SPAN], rounds, settled, nudges, FARTHEST, REACH)
-    return replace(candidate, u=float(solution.point[0]), remainder=solution.misfit)
+    known = lru_cache(maxsize=4)(residual)
+
+    def slope(u: Array) -> Array:
+        """Return the derivative by a step relative to u, of rounding beside a span by one that a double can tell."""
+        x = float(u[0])
+        step = nudge * x if abs(x) > BESIDE_NOTHING else TOLD_APART
+        return np.asarray((known(x + step) - known(x)) / step)[:, None]
+
+    solution = least_squares(
+        lambda u: known(float(u[0])),
+        [candidate.u],
+        jac=slope,
+        x_scale=SPAN,
+        max_nfev=rounds,
+        xtol=settled,
+        ftol=settled,
+    )
+    return replace(candidate, u=float(solution.x[0]), remainder=norm(solution.fun))
 
 
 # ---- the decision ---------------------------------------------------------------------------------------------------

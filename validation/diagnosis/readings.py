@@ -11,7 +11,7 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import last_digits
 from validation.diagnosis.reading import SIDEWAYS, Foreign, Stepping, steppings
-from validation.diagnosis.runs import histories
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.metrics.values import largest
 from validation.runs.columns import unit_of

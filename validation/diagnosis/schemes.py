@@ -1,6 +1,6 @@
 """The time schemes of candidate changes, each by its family and one number: names, tables and other names.
 
-The stages are those of `dda.scheme`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
+The tables are those of `validation.theory.stages`. Newmark 1959; Hilber, Hughes and Taylor 1977; Wood, Bossak and
 Zienkiewicz 1980; Chung and Hulbert 1993; Bathe and Baig 2005, with rho_inf Noh and Bathe 2019.
 """
 
@@ -9,11 +9,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from dda.scheme.composite import composite, same_matrix
-from dda.scheme.generalised_alpha import chung_hulbert, generalised_alpha, wood_bossak_zienkiewicz
-from dda.scheme.leapfrog import leapfrog
-from dda.scheme.stage import Stage, newmark_stage
 from validation.diagnosis.variant import Family, Variant
+from validation.theory import stages as tables
+from validation.theory.stages import Stage, Stages
 
 LARGEST_ALPHA_F = 1 / 3  # of HHT: beyond it the spectral radius at high frequency rises again
 EXPLICIT: tuple[Family, ...] = ("leapfrog", "symplectic-euler")
@@ -34,48 +32,28 @@ FAMILIES: dict[str, str] = {
 }
 
 
-def stages(v: Variant) -> tuple[Stage, ...]:
-    """Return the stages of a step of a variant, those of `dda`."""
+def stages(v: Variant) -> Stages:
+    """Return the stages of a step of a variant."""
     r = v.spectral
     match v.family:
         case "newmark":
-            return (newmark_stage(v.alpha, v.delta),)
+            return tables.newmark(v.alpha, v.delta)
         case "hht":
-            return generalised_alpha(0.0, r).stages
+            return tables.generalised_alpha(0.0, r)
         case "wbz":
-            return wood_bossak_zienkiewicz(r).stages
+            return tables.wbz(r)
         case "chung-hulbert":
-            return chung_hulbert(r).stages
+            return tables.chung_hulbert(r)
         case "theta":
-            return (Stage(alpha=r**2, delta=r, e_0=r * (1 - r), g_0=1 - r),)
+            return (Stage(e_0=r * (1 - r), beta=r**2, g_0=1 - r, gamma=r),)
         case "composite":
-            return composite(r, split_of(v)).stages
-    return leapfrog().stages  # whose U is that of the half step before
-
-
-def discounts(v: Variant) -> tuple[float, float]:
-    """Return the shares of the velocity that enter the displacement and the velocity at the end of a step.
-
-    By the increment d, (6) is A1 = d / (alpha dt^2) - gg V / (alpha dt) - ... and (7) V1 = delta d / (alpha dt)
-    + gg (1 - delta / alpha) V + ...: with gg in one of them V1 has another share of V.
-    """
-    gg = v.gg
-    ratio = v.delta / v.alpha if v.alpha else math.inf
-    match v.discounted:
-        case "velocity":
-            return 1.0, gg
-        case "displacement":
-            return gg, 1.0
-        case "(6)":
-            return gg, 1 - ratio * (1 - gg)
-        case "(7)":
-            return 1.0, gg + ratio * (1 - gg)
-    return gg, gg
+            return tables.composite(r, split_of(v))
+    return tables.LEAPFROG  # whose U is that of the half step before
 
 
 def split_of(v: Variant) -> float:
     """Return the share of the step at which a composite scheme is split; without one, that of equal matrices."""
-    return v.split or same_matrix(v.spectral)
+    return v.split or tables.equal_split(v.spectral)
 
 
 def scheme_numbers(v: Variant) -> dict[str, Any]:

@@ -26,8 +26,8 @@ from validation.diagnosis.causes import CAUSES, CONTACT_METHODS, benign_springs
 from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
-from validation.diagnosis.runs import histories
 from validation.diagnosis.schemes import SHARED
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant
 from validation.runs.history import Array
 

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.fits.least_squares import NUDGE, Problem, least_squares
+from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.target import ROUNDING, Target
 from validation.diagnosis.schemes import LARGEST_ALPHA_F
 from validation.diagnosis.variant import Variant
@@ -36,7 +36,9 @@ NAMED: dict[str, tuple[float, float]] = {
 NUMBERS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 SPAN: dict[str, float] = {name: row["span"] for name, row in NUMBERS.items()}
 LEAST_FACTOR, LARGEST_FACTOR = 1e-7, 1e7  # of what has no range of its own: other units
+DIFFERENCE = 1e-6  # of the spans, for the Jacobian: root of the rounding of a relative history, about
 NORMAL_95 = 1.96
+UNFELT = 1e-12  # of the largest curvature: keeps the equations of a number without effect solvable
 SETTLED = 1e-3  # share of a misfit: a fit that gains less has arrived
 LEAST_INDEPENDENT = 6.0  # rows: a smooth residual of a few swings tells that much
 UNTOLD = 0.05  # share of its span from which on a number counts as not told by the data
@@ -83,32 +85,21 @@ def fit(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], round
         Steps of Levenberg and Marquardt's method.
     """
     goal = target.values
-
-    def residuals(points: Sequence[tuple[int, Array]]) -> list[Array]:
-        variants = [_at(*starts[i], point) for i, point in points]
-        return list((goal[:, None] - target.responses(variants)).T)
-
-    solutions = least_squares(residuals, [_problem(*start) for start in starts], rounds, SETTLED, ROUNDING)
-    return [
-        Fit(_at(variant, free, solution.point), free, solution.misfit, solution.residual, -solution.jacobian)
-        for (variant, free), solution in zip(starts, solutions, strict=True)
-    ]
-
-
-def _at(variant: Variant, free: Sequence[str], point: Array) -> Variant:
-    return changed(variant, dict(zip(free, point.tolist(), strict=True)))
-
-
-def _problem(variant: Variant, free: Sequence[str]) -> Problem:
-    """Return the free numbers of a variant; they are nudged away from their upper bounds."""
-    span = np.array([SPAN[name] for name in free])
-    low, high = np.array([bounds(name, variant) for name in free]).reshape(-1, 2).T
-
-    def nudges(point: Array) -> Array:
-        nudge = NUDGE * span
-        return np.where(point + nudge > high, -nudge, nudge)
-
-    return Problem(np.array([float(getattr(variant, name)) for name in free]), span, low, high, nudges)
+    best = _linearised(target, starts, goal)
+    damping = [1e-4] * len(best)
+    active = [bool(f.free) for f in best]
+    for _ in range(rounds):
+        trial_of = [i for i, on in enumerate(active) if on]
+        if not trial_of:
+            break
+        trials = [(_moved(best[i], damping[i]), best[i].free) for i in trial_of]
+        for i, new in zip(trial_of, _linearised(target, trials, goal), strict=True):
+            gain = best[i].misfit - new.misfit
+            damping[i] *= 0.1 if gain > 0 else 10.0
+            active[i] = damping[i] < 1e4 and not 0 <= gain <= SETTLED * new.misfit and new.misfit > ROUNDING
+            if gain > 0:
+                best[i] = new
+    return best
 
 
 def fit_one(target: Target, variant: Variant, free: tuple[str, ...] = (), rounds: int = 8) -> Fit:
@@ -119,6 +110,47 @@ def fit_one(target: Target, variant: Variant, free: tuple[str, ...] = (), rounds
 def explains(target: Target, variant: Variant) -> bool:
     """Whether a variant as it is leaves nothing but digits and noise."""
     return target.explained(fit_one(target, variant).residual)
+
+
+def _linearised(target: Target, starts: Sequence[tuple[Variant, tuple[str, ...]]], goal: Array) -> list[Fit]:
+    """Return the fits where they stand, with their Jacobians."""
+    requested = [v for variant, free in starts for v in (variant, *(_nudged(variant, name) for name in free))]
+    answers, fits, at = target.responses(requested), [], 0
+    for variant, free in starts:
+        base = answers[:, at]
+        rates = [
+            (answers[:, at + 1 + j] - base) / (DIFFERENCE * SPAN[name] * _side(variant, name))
+            for j, name in enumerate(free)
+        ]
+        jacobian = np.column_stack(rates) if rates else np.empty((len(base), 0))
+        residual = goal - base
+        fits.append(Fit(variant, free, norm(residual), residual, jacobian))
+        at += 1 + len(free)
+    return fits
+
+
+def _side(variant: Variant, name: str) -> float:
+    """Return the side to which a number is nudged: away from its upper bound."""
+    return -1.0 if getattr(variant, name) + SPAN[name] * DIFFERENCE > bounds(name, variant)[1] else 1.0
+
+
+def _nudged(variant: Variant, name: str) -> Variant:
+    value = getattr(variant, name) + _side(variant, name) * DIFFERENCE * SPAN[name]
+    return changed(variant, {name: value})
+
+
+def _moved(current: Fit, damping: float) -> Variant:
+    """Return the variant one damped Gauss-Newton step on."""
+    span = np.array([SPAN[name] for name in current.free])
+    J = current.jacobian * span
+    H = J.T @ J
+    scale = np.diag(H) + UNFELT * (np.max(np.diag(H)) or 1.0)
+    step = np.linalg.solve(H + damping * np.diag(scale), J.T @ current.residual) * span
+    changes = {
+        name: float(np.clip(getattr(current.variant, name) + change, *bounds(name, current.variant)))
+        for name, change in zip(current.free, step, strict=True)
+    }
+    return changed(current.variant, changes)
 
 
 def bounds(name: str, variant: Variant) -> tuple[float, float]:

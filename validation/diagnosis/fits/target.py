@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from validation.diagnosis.fits.bar import AROUND, LOST_ROWS, Bar
 from validation.diagnosis.fits.bar import norm as size_of
-from validation.diagnosis.runs import histories
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.runs.history import Array
 

@@ -9,14 +9,9 @@ import numpy as np
 
 from validation.diagnosis.causes import round_factor
 from validation.diagnosis.fits.bar import norm
-from validation.diagnosis.fits.least_squares import one_fit
 from validation.diagnosis.forces.laws import Body, Followed, body_of, follow, motion_of
 from validation.diagnosis.forces.runs import (
-    ARRIVED,
-    FITTED,
     NO_RUN,
-    ROUNDS,
-    SPANS,
     SURROUNDINGS,
     Agreement,
     OneChange,
@@ -32,6 +27,7 @@ from validation.scenes.scene import Scene
 from validation.scenes.tables import TimeSection
 from validation.theory.statics import moduli, size
 
+FITTED = 150  # steps that weight and softness are fitted to: a period of the springs and more
 CLOSE = 0.01  # of the mean limit of friction, within which a law gives the force that the motion shows
 NOISE = 6.0  # standard deviations, of two steps together, of what digits leave of a force
 BLURRED = 0.1  # of the limit: digits that leave more do not show which law it is
@@ -218,16 +214,17 @@ def _law(right: dict[str, np.ndarray], telling: np.ndarray, scene_rules: str) ->
 
 def _fitted(body: Body, time: TimeSection, place: Array) -> tuple[float, float]:
     """Return the share of the own weight and the softness [ln] that the normal resultants ask for."""
+    from scipy.optimize import least_squares
 
     def remainder(z: Array) -> Array:
         trial = body.heavier(float(z[0])).softer(float(z[1]))
         run = follow(trial, motion_of(place, time, trial), False)
         return np.asarray((run.law_forces - run.motion_forces)[:, 1] / run.scale)
 
-    starts = [(0.0, 0.0), (1.0, 0.0)]
-    start = min(starts, key=lambda z: norm(remainder(np.array(z))))
-    weight, softness = one_fit(remainder, start, SPANS, ROUNDS, ARRIVED).point.tolist()
-    return weight, softness
+    starts = [np.array([weight, 0.0]) for weight in (0.0, 1.0)]
+    start = min(starts, key=lambda z: norm(remainder(z)))
+    solution = least_squares(remainder, start, x_scale=(1.0, 0.1), max_nfev=12)
+    return float(solution.x[0]), float(solution.x[1])
 
 
 def _along_too(body: Body, softness: float, time: TimeSection, place: Array, law: str) -> bool:

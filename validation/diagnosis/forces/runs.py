@@ -16,7 +16,6 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import ARITHMETIC, outlying, spread_of_most, white
 from validation.diagnosis.fits.fit import NORMAL_95
-from validation.diagnosis.fits.least_squares import one_fit
 from validation.diagnosis.forces.laws import STANDARD, body_of
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import (
@@ -45,8 +44,7 @@ APART = 1e-4  # of the largest displacement: where arithmetic alone leaves so mu
 TOLD = 0.25  # share of the steps that must tell; what amplifies rounding so much amplifies any other difference too
 NOISE = 1e-2  # of the largest displacement: more is not put down to noise
 NOISY = 100  # rows from which on noise can be told from a shape
-FITTED = 150  # steps that weight and springs are fitted to: a period of the springs and more
-SPANS = (1.0, 0.1)  # of a share of the weight, and of the logarithm of the springs
+FITTED = 150  # steps that weight and springs are fitted to
 SURROUNDINGS = frozenset({"own-weight", "base-compliance", "springs-factor"})  # what a scene of the suite can hold
 STAGES = (60, 150)  # steps that numbers are fitted to, before all
 ROUNDS = 8  # evaluations of a fit
@@ -179,6 +177,8 @@ def displacements(scene: Scene) -> Array | None:
 
 def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place: Array) -> tuple[Array, float]:
     """Return the weight and the softness that suit the first steps best, and the 95 % half width of the softness."""
+    from scipy.optimize import least_squares
+
     first = place[:FITTED]
     size = _size(first)
     short = scene.with_values({"time.steps": len(first)})
@@ -192,15 +192,13 @@ def _nearest(scene: Scene, free: np.ndarray, start: Array, follows: bool, place:
         run = displacements(_changed(short, whole(z), follows))
         return np.ones(first.size) if run is None else np.ravel((run - first) / size)
 
-    spans = [span for span, is_free in zip(SPANS, free, strict=True) if is_free]
-    solution = one_fit(left, start[free].tolist(), spans, ROUNDS, ARRIVED)
+    solution = least_squares(left, start[free], x_scale=np.array([1.0, 0.1])[free], xtol=1e-14, ftol=1e-14, max_nfev=12)
     if not free[1]:
-        return whole(solution.point), 0.0
-    variance = solution.misfit**2 / max(first.size - len(solution.point), 1)
+        return whole(solution.x), 0.0
+    variance = 2 * solution.cost / max(first.size - len(solution.x), 1)
     softness = -1  # the last of the free numbers
-    J = solution.jacobian
-    spread = math.sqrt(variance * float(np.linalg.pinv(J.T @ J)[softness, softness]))
-    return whole(solution.point), NORMAL_95 * spread
+    spread = math.sqrt(variance * float(np.linalg.pinv(solution.jac.T @ solution.jac)[softness, softness]))
+    return whole(solution.x), NORMAL_95 * spread
 
 
 def _changed(scene: Scene, fitted: Array, follows: bool) -> Scene:

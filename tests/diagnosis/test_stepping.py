@@ -12,8 +12,8 @@ from oracles.plain_block import Plain, run
 
 import dda
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.runs import histories
 from validation.diagnosis.schemes import stages
+from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 
 DT, STEPS = 1e-3, 60
@@ -95,7 +95,7 @@ def test_generalised_alpha_is_its_recursion_mode_by_mode(family: Any, number: fl
     displacement, _ = stepped(variant, rigid)
     close([displacement], [np.array(rows)], 1e-6)
     (stage,) = stages(variant)
-    assert math.isclose(stage.alpha, beta) and math.isclose(stage.delta, gamma)
+    assert math.isclose(stage.beta, beta) and math.isclose(stage.gamma, gamma)
 
 
 def test_steps_of_other_lengths_are_newmark_s_recursion_in_seconds() -> None:
