@@ -131,7 +131,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
     rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
     others = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane/mesh")}
-    assert elements == {"exact.py", *others, *rigid, *columns}
+    assert elements == {"exact.py", "models/plane/meshed.py", *others, *rigid, *columns}
     assert not dda & elements
     adapters = {
         "solvers/dda.py",

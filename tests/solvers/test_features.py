@@ -82,6 +82,7 @@ TAKES: dict[str, set[str]] = {
     features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
     features.RIGID_BOXES: {"dda", "rigid-exact"},
     features.PLANE: {"dda", "fem", "fenicsx"},
+    features.MOVING_BLOCKS: {"dda", "fem"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
@@ -125,6 +126,23 @@ APART = [  # what a solver takes each by itself: solver, values, the two that ar
     *((solver, VISCOUS | KINETIC, features.DAMPING, features.ADAPTIVE) for solver in ("dda", "fem")),
 ]
 
+TWO_BLOCKS: dict[str, Any] = {
+    "plane": {
+        "young": 1e9,
+        "density": 2700.0,
+        "gravity": [0.0, -9.81],
+        "contact": {"stiffness": 1e8, "friction": 20.0},
+        "block": [
+            {"name": "floor", "vertices": [[-2, -1], [3, -1], [3, 0], [-2, 0]], "fixed": True},
+            {"name": "box", "vertices": [[0, 0], [1, 0], [1, 1], [0, 1]]},
+        ],
+        "touch": [{"block": "box", "corner": corner, "on": "floor", "edge": 2} for corner in (0, 1)],
+    },
+    "fem": {"foundation": "corner", "elements": 2},
+    "time": {"step": 1e-4, "steps": 5},
+    "run": {"solvers": ["dda"]},
+}
+
 
 def scene_with(values: dict[str, Any], directory: Path) -> Scene:
     """Return the locked block with other values; a record of its base stands in the directory."""
@@ -141,6 +159,8 @@ def scene_of(feature: str, directory: Path) -> Scene:
         return parse_scene({"rigid": {"box": [box]}, "time": {"step": 1e-2, "steps": 5}}, feature)
     if feature == features.PLANE:
         return load_scene("patch-strip").expand()[0]
+    if feature == features.MOVING_BLOCKS:
+        return parse_scene(TWO_BLOCKS, feature)
     if feature in OF_CONTACTS:
         layer = {"thickness": 2.0, "density": 2e3, "young": 1e9, "blocks": 2, "velocity": -1.0}
         column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [layer]} | OF_CONTACTS[feature]

@@ -39,8 +39,10 @@ class BlocksInThePlane(Kind):
         return plane.moves and _is_column(column, plane.assembly)
 
     def check(self, scene: Any) -> None:
-        """Check the columns of moving blocks."""
+        """Check the columns of moving blocks, and that no others have contacts on patches."""
         plane: PlaneSection = scene.plane
+        if plane.is_glued and scene.fem.foundation != "distributed":
+            raise ValueError(f"fem: foundation goes with blocks that move, got {scene.fem.foundation!r} of glued ones")
         for column in scene.run.columns if plane.moves else ():
             if not self.has_column(scene, column):
                 near = difflib.get_close_matches(column, plane.assembly.pose_columns, n=1)
