@@ -30,6 +30,7 @@ from dda.bodies import turning_step as rolling_step
 from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
+from dda.result import result as dda_result
 from dda.scheme import blocked, newmark
 from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
@@ -97,7 +98,7 @@ DDA_LOAD = Seam(gap_form, gap_form._load)
 DDA_CARRIED = Seam(solution, solution.stepped_modes)
 DDA_HISTORIES = Seam(solution, solution.modal_histories)
 DDA_MODES = Seam(solution, solution.modal_form)
-DDA_OVERFLOW = Seam(solution, solution.bound_overflow)
+DDA_OVERFLOW = Seam(dda_result, dda_result.bound_overflow)
 DDA_SEGMENT_LOAD = Seam(Block, Block.segment_load)
 DDA_SOLVE = Seam(dda, dda.solve)
 DDA_OPENED = Seam(dda, dda.solve_unilateral)
