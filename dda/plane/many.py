@@ -47,7 +47,7 @@ from dda.plane.elimination import (
     order_blocks,
     solve_blocks,
 )
-from dda.plane.places import Places
+from dda.plane.places import Places, contact_way, push_contacts
 
 TOGETHER = 8  # solves in which all states are updated at once
 RESTARTS = 6  # of sweeps, each longer than the last one
@@ -240,7 +240,7 @@ def solve_states(
             share = max(crossing_share(laws, before.opening[k], k, N), LEAST_SHARE)
             if abs(share - work.beta[k]) > CROSSED * share:
                 settled = False
-            way = work.q[n + k] + contact_way(many.x, blocks, places, n, n + k)
+            way = work.q[n + k] + contact_way(many.x, blocks, places, n + k)
             many.kappa[k] = (after.force[n + k] * laws.compliance[n + k] + way) / N if N > 0 else 0.0
             many.normal[k] = N
             work.beta[k] = share
@@ -249,19 +249,6 @@ def solve_states(
             return newton + 1
     write_openings(many, blocks, places, laws, before, work, after)
     return CROSSINGS
-
-
-def contact_way(x: Vector, blocks: Blocks, places: Places, n: int, r: int) -> float:
-    """Return B x of a row [m]."""
-    k = r if r < n else r - n
-    total = 0.0
-    for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
-        first = blocks.first[i]
-        B = places.B[r][side]
-        for e in range(blocks.first[i + 1] - first):
-            total += B[e] * x[first + e]
-    return total
 
 
 def assemble(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Length, work: Work) -> None:
@@ -355,12 +342,12 @@ def write_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: W
         after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(work.q[k] + contact_way(many.x, blocks, places, n, k)) / laws.compliance[k]
+        N = -(work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
         after.force[k] = N
         if work.tried[r] != INSIDE:
             after.force[r] = work.tried[r] * (laws.friction[k] * N + laws.upper[r])
         elif not is_smooth(laws, k):
-            way = work.q[r] + contact_way(many.x, blocks, places, n, r)
+            way = work.q[r] + contact_way(many.x, blocks, places, r)
             if many.kappa[k] != 0.0:
                 way += many.kappa[k] * (N - many.normal[k])
             after.force[r] = -way * work.beta[k] / laws.compliance[r]
@@ -380,10 +367,10 @@ def write_openings(
         after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
         after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
         if work.tried[k] != INSIDE:
-            work.z[k] = work.q[k] + contact_way(many.x, blocks, places, n, k)
+            work.z[k] = work.q[k] + contact_way(many.x, blocks, places, k)
             after.opening[k] = work.z[k]
         elif work.tried[r] != INSIDE:
-            z = work.q[r] + contact_way(many.x, blocks, places, n, r)
+            z = work.q[r] + contact_way(many.x, blocks, places, r)
             if before.state[k] != INSIDE:
                 z *= crossing_share(laws, before.opening[k], k, after.force[k])
             work.z[r] = z + laws.compliance[r] * after.force[r]
@@ -395,15 +382,7 @@ def refine(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Lengt
     n = laws.contacts
     for i in range(len(many.x)):
         many.residual[i] = -many.x[i] * stiffness_of(length, i)
-    for r in range(2 * n):
-        if after.force[r] == 0.0:
-            continue
-        k = r if r < n else r - n
-        for side in range(2):
-            i = places.block[k] if side == 0 else places.on[k]
-            first = blocks.first[i]
-            for e in range(blocks.first[i + 1] - first):
-                many.residual[first + e] += places.F[r][side][e] * after.force[r]
+    push_contacts(blocks, places, after.force, many.residual)
     for i in range(len(many.body)):
         body = many.body[i]
         if body >= 0:
@@ -418,14 +397,14 @@ def refine(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Lengt
         if work.tried[k] != INSIDE:
             continue
         r = n + k
-        N = -contact_way(many.x, blocks, places, n, k) / laws.compliance[k]
+        N = -contact_way(many.x, blocks, places, k) / laws.compliance[k]
         after.force[k] += N
         after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
         if work.tried[r] != INSIDE:
             after.force[r] += work.tried[r] * laws.friction[k] * N
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
         elif not is_smooth(laws, k):
-            way = contact_way(many.x, blocks, places, n, r) + many.kappa[k] * N
+            way = contact_way(many.x, blocks, places, r) + many.kappa[k] * N
             after.force[r] -= way * work.beta[k] / laws.compliance[r]
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
 
@@ -454,25 +433,25 @@ def sweep(
         T = min(max(after.force[r], -limit), limit) if N != 0.0 or laws.opens[k] == 0 else 0.0
         after.force[k] = 0.0
         after.force[r] = 0.0
-        push(many, blocks, places, length, n, k, N, after)
-        push(many, blocks, places, length, n, r, T, after)
+        push(many, blocks, places, length, k, N, after)
+        push(many, blocks, places, length, r, T, after)
     for number in range(sweeps):
         for step in range(n):
             k = step if number % 2 == 0 else n - 1 - step
             r = n + k
-            gap = work.q[k] + contact_way(many.x, blocks, places, n, k)
+            gap = work.q[k] + contact_way(many.x, blocks, places, k)
             own = own_flexibility(blocks, places, length, k, k)
             N = (own * after.force[k] - gap) / (own + laws.compliance[k])
             if laws.opens[k] == 1 and laws.lower[k] > N:
                 N = 0.0
             T = 0.0
             if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
-                way = work.q[r] + contact_way(many.x, blocks, places, n, r)
+                way = work.q[r] + contact_way(many.x, blocks, places, r)
                 own = own_flexibility(blocks, places, length, k, r)
                 limit = shear_limit(laws, k, N)
                 T = min(max((own * after.force[r] - way) / (own + laws.compliance[r]), -limit), limit)
-            push(many, blocks, places, length, n, k, N, after)
-            push(many, blocks, places, length, n, r, T, after)
+            push(many, blocks, places, length, k, N, after)
+            push(many, blocks, places, length, r, T, after)
     for k in range(n):
         r = n + k
         work.tried[r] = INSIDE
@@ -496,12 +475,13 @@ def own_flexibility(blocks: Blocks, places: Places, length: Length, k: int, r: i
     return float(length.numbers[3] * total)
 
 
-def push(many: Many, blocks: Blocks, places: Places, length: Length, n: int, r: int, force: float, after: Rows) -> None:
+def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, force: float, after: Rows) -> None:
     """Set the force of a row, and what it moves."""
     change = force - after.force[r]
     after.force[r] = force
     if change == 0.0:
         return
+    n = places.count[0]
     k = r if r < n else r - n
     for side in range(2):
         i = places.block[k] if side == 0 else places.on[k]

@@ -170,6 +170,35 @@ def write_rows(
             by_modes(blocks, j, chords, force_j, True, places.F[r][1])
 
 
+def contact_way(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
+    """Return B x of a row [m]."""
+    n = places.count[0]
+    k = r if r < n else r - n
+    total = 0.0
+    for side in range(2):
+        i = places.block[k] if side == 0 else places.on[k]
+        first = blocks.first[i]
+        B = places.B[r][side]
+        for e in range(blocks.first[i + 1] - first):
+            total += B[e] * x[first + e]
+    return total
+
+
+def push_contacts(blocks: Blocks, places: Places, force: Vector, out: Vector) -> None:
+    """Add F' lambda to the forces on the modes."""
+    n = places.count[0]
+    for r in range(2 * n):
+        if force[r] == 0.0:
+            continue
+        k = r if r < n else r - n
+        for side in range(2):
+            i = places.block[k] if side == 0 else places.on[k]
+            first = blocks.first[i]
+            F = places.F[r][side]
+            for e in range(blocks.first[i + 1] - first):
+                out[first + e] += F[e] * force[r]
+
+
 def turn_with(
     row: Vector, turned: float, strained: bool, mx: float, my: float, tx: float, ty: float, across: float
 ) -> None:

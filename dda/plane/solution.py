@@ -21,8 +21,8 @@ from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
-from dda.plane.places import Places, gap_of, place_contacts, write_rows
-from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_contacts, push_loads
+from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
+from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
 from dda.plane.taken import Memory, Springs, write_laws
 from dda.scheme.newmark import Scheme, late_momentum
 
@@ -108,7 +108,7 @@ def solve_plane(
     c = len(march.method.places.block)
     b = len(model.blocks)
     history = History(
-        motion=np.zeros((kept + 1, STATE * b + 1 + 2 * c)),
+        motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
         force=np.zeros((kept + 1, 2 * c)),
         opening=np.zeros((kept + 1, 2 * c)),
         path=np.zeros((kept + 1, c)),
@@ -400,7 +400,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     write_rows(blocks, plane.D, plane.chords, plane.ends, state.rows, plane.late, places)
     push_loads(march, state._replace(a=0 * p))
     R = plane.loaded + course.value[0][2 : 2 + len(march.body.loads)] @ march.body.loads
-    push_contacts(plane, state.rows.force, R)
+    push_contacts(plane.blocks, plane.places, state.rows.force, R)
     state.R[:] = scheme.step**2 * R
     if scheme.start == "consistent":
         state.a[:] = state.R
@@ -487,13 +487,12 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
     contacts += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
     laws = list(plane.places.law[:stated])
     columns: dict[tuple[int, int], int] = {}
-    places: list[tuple[int, int, int, int]] = []  # row, number in it, how many there are, column
+    places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
     corners = plane.detection.corners
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
+    present = identity[:, 0] if plane.finds else np.full(kept, stated)
     for row in range(kept):
-        n = int(identity[row, 0]) if plane.finds else stated
-        places += [(row, k, n, k) for k in range(min(stated, n))]
-        for k in range(stated, n):
+        for k in range(stated, int(present[row])):
             corner, edge = identity[row, 1 + 2 * (k - stated) : 3 + 2 * (k - stated)].tolist()
             if (corner, edge) not in columns:
                 if history.state[row, k] != INSIDE:
@@ -505,18 +504,21 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
                     PlaneContact(i, corner - int(corners.start[corner]), j, edge - int(corners.start[edge]))
                 )
                 laws.append(plane.detection.law[i * len(model.blocks) + j])
-            places.append((row, k, n, columns[corner, edge]))
+            places.append((row, k, columns[corner, edge]))
     normal, shear, slip = np.zeros((3, kept, len(contacts)))
     gap = np.full((kept, len(contacts)), np.nan)
     state = np.zeros((kept, len(contacts)), dtype=np.int8)
-    if places:
-        row, k, n, column = np.array(places).T
-        normal[row, column] = history.force[row, k]
-        shear[row, column] = history.force[row, n + k]
-        gap[row, column] = history.opening[row, k]
-        slip[row, column] = history.path[row, k]
-        way = history.state[row, n + k]
-        state[row, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[row, k] == INSIDE)
+    numbers = np.arange(stated)
+    of_stated = (np.arange(kept)[:, None], numbers, numbers)
+    of_found = tuple(np.array(places, dtype=np.int64).reshape(-1, 3).T)
+    for at, number, column in (of_stated, of_found):
+        along = present[at] + number
+        normal[at, column] = history.force[at, number]
+        shear[at, column] = history.force[at, along]
+        gap[at, column] = history.opening[at, number]
+        slip[at, column] = history.path[at, number]
+        way = history.state[at, along]
+        state[at, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[at, number] == INSIDE)
     return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
 
 

@@ -45,8 +45,8 @@ from dda.plane.bodies import (
     set_poses,
 )
 from dda.plane.detect import Detection
-from dda.plane.many import Many, contact_way, find_many
-from dda.plane.places import Places, place_contacts, write_rows
+from dda.plane.many import Many, find_many
+from dda.plane.places import Places, contact_way, place_contacts, push_contacts, write_rows
 from dda.plane.taken import (
     Memory,
     Springs,
@@ -178,7 +178,7 @@ def make_stage(
             solves += spent
             if outcome != FOUND:
                 return outcome, solves
-            push_contacts(plane, after.rows.force, room.pushed)
+            push_contacts(blocks, places, after.rows.force, room.pushed)
         end_modes(march, stage, length, before, after)
         for i in range(len(plane.x)):
             plane.x[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
@@ -239,6 +239,14 @@ def take_increments(plane: Plane) -> None:
     """Take the increments that the last round found for those of the next one."""
     for i in range(len(plane.D)):
         copy(plane.new[i], plane.D[i])
+
+
+def stand(plane: Plane, q: Matrix) -> None:
+    """Write no increments, and the poses of where the blocks are."""
+    for i in range(len(plane.D)):
+        for k in range(6):
+            plane.D[i][k] = 0.0
+    set_poses(plane.blocks, q, plane.D, plane.chords, plane.ends)
 
 
 def largest_change(plane: Plane) -> float:
@@ -333,27 +341,11 @@ def free_contacts(march: March, memory: Memory) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
+        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
             q[k] = FAR
-
-
-def push_contacts(plane: Plane, force: Vector, out: Vector) -> None:
-    """Add F' lambda to the forces on the modes."""
-    places = plane.places
-    first = plane.blocks.first
-    n = places.count[0]
-    for r in range(2 * n):
-        if force[r] == 0.0:
-            continue
-        k = r if r < n else r - n
-        for side in range(2):
-            i = places.block[k] if side == 0 else places.on[k]
-            F = places.F[r][side]
-            for e in range(first[i + 1] - first[i]):
-                out[first[i] + e] += F[e] * force[r]
 
 
 def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) -> None:
@@ -371,10 +363,10 @@ def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) 
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, n, k)
+            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, k)
             rows.opening[k] = memory.rows.opening[k] + way
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, n, r)
+            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
             after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
@@ -393,10 +385,7 @@ def kinetic_excess(march: March, state: PlaneState) -> float:
     total = 0.0
     for i in range(len(plane.x)):
         plane.x[i] = state.p[i] + lag * state.a[i]
-    for i in range(len(plane.D)):
-        for k in range(6):
-            plane.D[i][k] = 0.0
-    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    stand(plane, state.q)
     for i in range(len(blocks.root_mass)):
         first = blocks.first[i]
         if blocks.first[i + 1] - first == 2 * RIGID:
@@ -494,10 +483,7 @@ def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
         total += state.z[i] + plane.x[i]
     if number % plane.every != 0:
         return math.isfinite(total)
-    for i in range(len(plane.D)):
-        for k in range(6):
-            plane.D[i][k] = 0.0
-    set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
+    stand(plane, state.q)
     for i in range(len(blocks.root_mass)):
         first = blocks.first[i]
         modes = blocks.first[i + 1] - first
