@@ -11,7 +11,7 @@ from validation.models.plane.geometry import inside, overlap, shared_edges, tria
 from validation.scenes import features
 from validation.scenes.outline import area
 from validation.scenes.scene import parse_scene
-from validation.solvers.registry import get_solver
+from validation.solvers.registry import get_solver, solve
 
 AIR = [[0.0, 0.6], [1.0, 0.6]]
 FLOOR = {"name": "floor", "rectangle": [6.0, 1.0], "at": [0.0, -0.5], "fixed": True}
@@ -51,6 +51,7 @@ def square(**changes):
             "edges 0 and 2 that do",
         ),
         (square(sides=6), "plane.block.1", "rectangle and sides"),
+        (square(fixed=True), "plane.block", "2 that are fixed"),
         (square(subdivide=[2, 2]), "plane.block.1", "inf"),
         (square(name="energy"), "plane.block", "'energy'"),
         (square(at=[0.0, 2.0]) | {"gravity": [0.0, 0.0]}, "plane.block", "no load and no velocity"),
@@ -105,6 +106,21 @@ def test_a_column_of_nothing_is_refused(column):
     with pytest.raises(InputError) as caught:
         scene(columns=[column])
     assert caught.value.field == "run"
+
+
+def test_a_column_of_a_contact_that_is_not_stated_is_refused():
+    touch = {"touch": [{"block": "square", "corner": corner, "on": "floor", "edge": 2} for corner in (0, 1)]}
+    assert scene(touch, columns=["square.0-floor.2.gap"]).run.columns == ("square.0-floor.2.gap",)
+    with pytest.raises(InputError) as caught:
+        scene(touch, columns=["square.2-floor.2.gap"])
+    assert caught.value.field == "run"
+
+
+def test_a_gap_that_nobody_looked_at_is_no_number():
+    far = scene(columns=["square.2-floor.2.gap", "square.2-floor.2.normal"])
+    history = solve(far, "dda").history
+    assert np.all(np.isnan(history.columns["square.2-floor.2.gap"]))
+    assert not np.any(history.columns["square.2-floor.2.normal"])
 
 
 def test_a_scene_keeps_the_poses_of_what_moves_and_elements_take_no_contact_that_is_found():

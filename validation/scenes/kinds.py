@@ -76,13 +76,13 @@ class Kind:
         for number in range(1, self.greatest_number + 1):
             yield from (f"{part}_{number}" for part in self.columns)
 
-    def run(self, table: object) -> dict[str, Any]:
+    def run(self, table: Any) -> dict[str, Any]:
         """Return keys of `run`, such as solvers and columns, for a scene that does not state them.
 
         Parameters
         ----------
         table
-            The kind's own table as the file has it, which nobody has checked yet.
+            The kind's own table.
         """
         return {}
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self, TypeVar
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, ValidationError, create_model, model_validator
 
 from validation.errors import InputError
 from validation.scenes.keys import Section, stated_value
@@ -108,8 +108,12 @@ class SceneTables(TablesOfKinds):
         if not isinstance(data, dict) or not isinstance(run := data.get("run", {}), dict):
             return data
         for name, kind in kinds().items():
-            if name in data and (defaults := kind.run(data[name])):
-                return {**data, "run": {**defaults, **run}}
+            if name in data and type(kind).run is not Kind.run:
+                try:
+                    table = kind.tables[name].model_validate(data[name])
+                except ValidationError:  # by the scene, which says where
+                    return data
+                return {**data, name: table, "run": {**kind.run(table), **run}}
         return data
 
     @model_validator(mode="after")

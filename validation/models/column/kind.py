@@ -25,10 +25,9 @@ class Column(Kind):
     tables: ClassVar = {"column": ColumnSection, "input": InputSection}
     fem_keys = ("elements", "degree")
 
-    def run(self, table: object) -> dict[str, Any]:
+    def run(self, table: ColumnSection) -> dict[str, Any]:
         """Return the solvers that take the law of its springs."""
-        law = str(table.get("law")) if isinstance(table, dict) else ""
-        return {"solvers": list(TAKE.get(law, TAKE["bonded"]))}
+        return {"solvers": list(TAKE[table.law])}
 
     def optional(self, scene: Any) -> Collection[str]:
         """Return the input of a column that weight or velocities at t = 0 move."""

@@ -265,6 +265,8 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
         "field: rule, got value".
     """
     blocks = assembly.blocks
+    if all(block.fixed for block in blocks):
+        raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed")
     sizes = np.array([thickness(block.vertices) for block in blocks])
     joined = {number for bond in assembly.bonds for number in (bond.first, bond.second)}
     joined |= {number for contact in assembly.contacts for number in (contact.block, contact.on)}

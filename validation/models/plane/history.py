@@ -6,11 +6,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 POSE = ("x", "y", "angle")
 MOMENTUM, ENERGY = "momentum", "energy"
+GAP = "gap"  # of a contact
 RESERVED = (MOMENTUM, ENERGY)  # no block is called so
 OF_BLOCK: Mapping[str, tuple[str, str]] = {
     "x": ("m", "position of the centroid"),
@@ -26,7 +27,7 @@ OF_BLOCK: Mapping[str, tuple[str, str]] = {
 OF_CONTACT: Mapping[str, tuple[str, str]] = {
     "normal": ("N", "normal force, compression positive"),
     "shear": ("N", "force against the direction of the edge, which runs counter-clockwise about its block"),
-    "gap": ("m", "distance of the corner from the edge, negative where the spring is compressed"),
+    GAP: ("m", "distance of the corner from the edge, negative where the spring is compressed"),
     "slip": ("m", "sliding of the corner along the edge"),
 }
 OF_MOMENTUM: Mapping[str, tuple[str, str]] = {
@@ -85,3 +86,9 @@ def unit_and_meaning(column: str) -> tuple[str, str]:
 def contact_column(block: str, corner: int, on: str, edge: int, part: str) -> str:
     """Return the name of a contact's column."""
     return f"{block}.{corner}-{on}.{edge}.{part}"
+
+
+def numbers_of(contact: tuple[str, int, str, int], names: Sequence[str]) -> tuple[int, int, int, int]:
+    """Return a contact by the numbers of its blocks in place of their names."""
+    block, corner, on, edge = contact
+    return names.index(block), corner, names.index(on), edge

@@ -5,10 +5,8 @@ from __future__ import annotations
 import difflib
 from typing import Any, ClassVar
 
-from pydantic import ValidationError
-
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.history import place_of
+from validation.models.plane.history import numbers_of, place_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.kinds import Kind
 
@@ -23,15 +21,11 @@ class BlocksInThePlane(Kind):
     tables: ClassVar = {"plane": PlaneSection}
     fem_keys = ("elements", "degree", "foundation", "patch_width")
 
-    def run(self, table: object) -> dict[str, Any]:
+    def run(self, table: PlaneSection) -> dict[str, Any]:
         """Return both packages for glued blocks and what they observe; of moving ones the poses, by `dda`."""
-        if isinstance(table, dict) and "observe" in table:
+        if table.is_glued:
             return {"solvers": ["dda", "fem"], "columns": ["displacement"]}
-        try:
-            poses = PlaneSection.model_validate(table).assembly.pose_columns
-        except ValidationError:  # the table itself is refused, with its defect
-            poses = ()
-        return {"solvers": ["dda"], **({"columns": list(poses)} if poses else {})}
+        return {"solvers": ["dda"], "columns": list(table.assembly.pose_columns)}
 
     def has_column(self, scene: Any, column: str) -> bool:
         """Whether a column is of moving blocks, corners and edges that there are."""
@@ -48,18 +42,23 @@ class BlocksInThePlane(Kind):
                 near = difflib.get_close_matches(column, plane.assembly.pose_columns, n=1)
                 meant = f"; did you mean {near[0]}?" if near else ""
                 rule = "columns must be BLOCK.x, BLOCK.0-BLOCK.0.normal, energy.kinetic, momentum.x or their like"
+                if plane.touch and "-" in column:
+                    rule = "columns of contacts must be of those that [[plane.touch]] states"
                 raise ValueError(f"run: {rule}, got {column!r}{meant}")
 
 
 def _is_column(column: str, assembly: Assembly) -> bool:
-    """Whether a column is of blocks, corners and edges that there are."""
+    """Whether a column is of blocks, corners and edges that there are; of contacts, where these are stated."""
     place = place_of(column)
     if place is None:
         return False
     corners = {block.name: len(block.vertices) for block in assembly.blocks}
     if place.contact is not None:
         block, corner, on, edge = place.contact
-        return corner < corners.get(block, 0) and edge < corners.get(on, 0) and block != on
+        if not (corner < corners.get(block, 0) and edge < corners.get(on, 0) and block != on):
+            return False
+        stated = [(one.block, one.corner, one.on, one.edge) for one in assembly.contacts]
+        return not stated or numbers_of(place.contact, [*corners]) in stated
     return bool(place.whole) or place.block in corners
 
 

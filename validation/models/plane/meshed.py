@@ -13,7 +13,7 @@ import numpy as np
 from validation.models.plane.assembly import Assembly, StatedContact
 from validation.models.plane.blocks import PlacedBlock, centroid
 from validation.models.plane.geometry import Segment, corner_on_edge
-from validation.models.plane.history import ENERGY, place_of
+from validation.models.plane.history import ENERGY, OF_MOMENTUM, numbers_of, place_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array
 from validation.runs.run import Run
@@ -115,12 +115,11 @@ class MovingMesh(Prepared):
             total = np.asarray(sum(result.energy.values()))
             return total - total[0] if place.part == "balance" else result.energy[OF_ENERGY[place.part]]
         if place.whole:
-            return np.asarray(result.momentum[:, ("x", "y", "angular").index(place.part)])
+            return np.asarray(result.momentum[:, [*OF_MOMENTUM].index(place.part)])
         if place.contact is not None:
-            block, corner, on, edge = place.contact
-            key = names.index(block), corner, names.index(on), edge
-            keys = [(one.block, one.corner, one.on, one.edge) for one in self.assembly.contacts]
-            return np.asarray(getattr(result, place.part)[:, keys.index(key)])
+            contact = numbers_of(place.contact, names)
+            contacts = [(one.block, one.corner, one.on, one.edge) for one in self.assembly.contacts]
+            return np.asarray(getattr(result, place.part)[:, contacts.index(contact)])
         number = names.index(place.block)
         return self._of_block(result, number, place.part)
 

@@ -9,7 +9,7 @@ import numpy as np
 import dda
 from validation.errors import InputError
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.history import ENERGY, OF_BLOCK, OF_MOMENTUM, contact_column, place_of
+from validation.models.plane.history import ENERGY, GAP, OF_BLOCK, OF_MOMENTUM, contact_column, numbers_of, place_of
 from validation.models.plane.joints import PlaneContactSection
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
@@ -123,12 +123,10 @@ class MovingBlocks(Prepared):
         elif place.contact is None:
             values = self._of_block(result, names.index(place.block), place.part)
         else:
-            block, corner, on, edge = place.contact
-            key = names.index(block), corner, names.index(on), edge
-            contacts = [tuple(contact) for contact in result.contacts]
-            if key not in contacts:
-                return np.zeros(len(result.time) - 1)
-            values = getattr(result, place.part)[:, contacts.index(key)]
+            contact = numbers_of(place.contact, names)
+            if contact not in result.contacts:  # named tuples, which equal plain ones
+                return np.full(len(result.time) - 1, np.nan if place.part == GAP else 0.0)  # whose gap nobody looked at
+            values = getattr(result, place.part)[:, result.contacts.index(dda.PlaneContact(*contact))]
         return np.asarray(values)[AFTER_START]
 
     def _of_block(self, result: dda.PlaneResult, block: int, part: str) -> Array:
@@ -152,9 +150,8 @@ class MovingBlocks(Prepared):
 
         parts = [(f"{name}.{part}", k, part) for k, name in enumerate(names) for part in OF_BLOCK]
         columns = {name: self._of_block(result, k, part)[AFTER_START] for name, k, part in parts}
-        for block, corner, on, edge in result.contacts:
-            for part in ("normal", "shear"):
-                name = contact_column(names[block], corner, names[on], edge, part)
-                columns[name] = self._column(result, names, name)
+        for number, (block, corner, on, edge) in enumerate(result.contacts):
+            for part, values in (("normal", result.normal), ("shear", result.shear)):
+                columns[contact_column(names[block], corner, names[on], edge, part)] = values[AFTER_START, number]
         if self.fields is not None:
             write_fields(self.fields, self.plane.assembly, History(result.time[AFTER_START], columns))

@@ -33,12 +33,10 @@ class RigidBoxes(Kind):
     greatest_number = MOST_BOXES
     refuses = ("damping", "fem")
 
-    def run(self, table: object) -> dict[str, Any]:
+    def run(self, table: RigidSection) -> dict[str, Any]:
         """Return the exact motion as solver, and the poses of all boxes as columns."""
-        boxes = table.get("box") if isinstance(table, dict) else None
-        boxes = boxes if isinstance(boxes, list | tuple) else ()  # anything else is refused by the table itself
-        poses = [f"{part}_{number}" for number in range(1, len(boxes) + 1) for part in POSE]
-        return {"solvers": ["rigid-exact"], "columns": poses or list(POSE)}
+        poses = [f"{part}_{number}" for number in range(1, len(table.box) + 1) for part in POSE]
+        return {"solvers": ["rigid-exact"], "columns": poses}
 
     def motion_unread(self, scene: Any) -> str:
         """Return that boxes are judged by numbers of their motion."""
