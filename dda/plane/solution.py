@@ -193,6 +193,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         dropped=np.zeros(1),
         dense=dense,
         many=many_of(blocks, c),
+        strained=int(np.any(k > 0)),
         finds=int(model.found is not None),
         detection=detection,
         edge_end=edge_end,

@@ -114,6 +114,7 @@ class Plane(NamedTuple):
     dropped: Vector  # (1,) energy of contacts that are no more [J]
     dense: int  # contacts up to which the equations are those of their forces
     many: Many
+    strained: int  # whether a block has strains
     finds: int  # whether contacts are found
     detection: Detection
     edge_end: Any  # (corners,) corner at which the edge from a corner ends
@@ -383,6 +384,8 @@ def kinetic_excess(march: March, state: PlaneState) -> float:
     blocks = plane.blocks
     lag = march.scheme.lag
     total = 0.0
+    if plane.strained == 0:
+        return total
     for i in range(len(plane.x)):
         plane.x[i] = state.p[i] + lag * state.a[i]
     stand(plane, state.q)
