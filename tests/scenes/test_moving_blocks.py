@@ -8,6 +8,9 @@ import pytest
 
 from validation.errors import InputError
 from validation.models.plane.geometry import inside, overlap, shared_edges, triangles_of
+from validation.report.figures.curves import HistoryPanel, common_range
+from validation.runs.columns import axis_of, unit_of
+from validation.runs.history import History
 from validation.scenes import features
 from validation.scenes.outline import area
 from validation.scenes.scene import parse_scene
@@ -106,6 +109,27 @@ def test_a_column_of_nothing_is_refused(column):
     with pytest.raises(InputError) as caught:
         scene(columns=[column])
     assert caught.value.field == "run"
+
+
+def test_every_column_has_its_unit_on_an_axis():
+    own = scene().kind.columns
+    units = {"square.x": "m", "square.angle": "rad", "square.0-floor.2.normal": "N", "energy.kinetic": "J"}
+    assert {column: axis_of(column, own) for column in units} == {column: (column, units[column]) for column in units}
+    assert unit_of("square.heat", own) == ""
+
+
+def test_places_are_drawn_where_they_are_and_forces_from_zero():
+    time = np.array([0.1, 0.2])
+    drawn = {
+        "square.x": np.array([4.0, 5.0]),
+        "square.y": np.array([4.0, 4.001]),
+        "energy.kinetic": np.array([4.0, 5.0]),
+    }
+    panel = HistoryPanel("", {"dda": History(time, drawn)}, {}, None, own=scene().kind.columns)
+    assert common_range([panel], "square.x") == (4.0, 5.0)
+    low, high = common_range([panel], "square.y")
+    assert low == pytest.approx(4.0005 - 0.025 * 4.001) and high == pytest.approx(4.0005 + 0.025 * 4.001)
+    assert common_range([panel], "energy.kinetic") == (0.0, 5.0)
 
 
 def test_a_column_of_a_contact_that_is_not_stated_is_refused():

@@ -1,7 +1,7 @@
 """The columns of histories: their words, units and meanings, in the order in which they are drawn.
 
-``displacement_2`` is the displacement at the second height of a column. A kind of scene may have numbered columns of
-its own, ``x_1``: `own`, by their words without the number.
+``displacement_2`` is the displacement at the second height of a column. A kind of scene may have columns of its own:
+`own`, by their names, of numbered ones without the number (``x`` of ``x_1``).
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ class ColumnKind:
     meaning: str
     words: str = ""  # in a figure, with {n}
     rounding: float = 0.0  # size below which its values are those of a body at rest
+    from_zero: bool = True  # whether a figure shows zero; not of places, which are measured from anywhere
 
 
 OF_BLOCK: Mapping[str, ColumnKind] = {
@@ -65,7 +66,7 @@ def kind_of(column: str, own: OwnColumns = NO_OWN) -> ColumnKind | None:
     """Return what a column holds, None where it is of no kind that is known."""
     plain, number = split(column)
     if not number:
-        return OF_BLOCK.get(plain)
+        return OF_BLOCK.get(plain) or own.get(plain)
     return own.get(plain) or AT_HEIGHT.get(plain)
 
 

@@ -6,8 +6,10 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+
+from validation.runs.columns import ColumnKind
 
 POSE = ("x", "y", "angle")
 MOMENTUM, ENERGY = "momentum", "energy"
@@ -74,13 +76,22 @@ def place_of(column: str) -> ColumnPlace | None:
     return ColumnPlace(match[2], block=match[1]) if match[2] in OF_BLOCK else None
 
 
-def unit_and_meaning(column: str) -> tuple[str, str]:
-    """Return unit and meaning of a column; nothing of one that is of no kind."""
-    place = place_of(column)
-    if place is None:
-        return "", ""
-    parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_CONTACT if place.contact else OF_BLOCK}
-    return parts[place.whole][place.part]
+class PlaneColumns(Mapping[str, ColumnKind]):
+    """What every column of moving blocks holds, by its name; so many that they are not listed."""
+
+    def __getitem__(self, column: str) -> ColumnKind:
+        place = place_of(column)
+        if place is None:
+            raise KeyError(column)
+        parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_CONTACT if place.contact else OF_BLOCK}
+        unit, meaning = parts[place.whole][place.part]
+        return ColumnKind(unit, meaning, words=column, from_zero=bool(place.contact) or place.part not in POSE)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(())
+
+    def __len__(self) -> int:
+        return 0
 
 
 def contact_column(block: str, corner: int, on: str, edge: int, part: str) -> str:

@@ -6,7 +6,7 @@ import difflib
 from typing import Any, ClassVar
 
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.history import numbers_of, place_of
+from validation.models.plane.history import PlaneColumns, numbers_of, place_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.kinds import Kind
 
@@ -19,6 +19,7 @@ class BlocksInThePlane(Kind):
     feature = "blocks in the plane"
     rank = 3.0
     tables: ClassVar = {"plane": PlaneSection}
+    columns = PlaneColumns()
     fem_keys = ("elements", "degree", "foundation", "patch_width")
 
     def run(self, table: PlaneSection) -> dict[str, Any]:

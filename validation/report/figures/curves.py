@@ -21,6 +21,7 @@ from validation.solvers.registry import get_solver, is_solver
 
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
 GREY = "#6b6b6b"
+LEAST_MOVED = 0.05  # of a place: less is not enlarged, or its ticks would need more digits than they have room for
 
 EXACT = "exact"  # name of the line of an exact motion, whichever solution it comes from
 
@@ -99,7 +100,7 @@ class HistoryPanel:
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
     finer: Mapping[str, History] = field(default_factory=dict)  # exact solutions at more instants, drawn in their place
-    own: OwnColumns = field(default_factory=dict)  # numbered columns that only its kind of scene has
+    own: OwnColumns = field(default_factory=dict)  # columns that only its kind of scene has
 
     def drawn(self, column: str) -> dict[str, History]:
         """Return the histories that a column is drawn from, by solver."""
@@ -112,14 +113,19 @@ HistoryPanels = Sequence[HistoryPanel]
 
 def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
-    columns = [np.zeros(1)]
-    for panel in panels:
-        columns += [history.columns[column] for history in panel.drawn(column).values()]
-    if len(columns) == 1:  # no history: a range that is not empty
-        columns.append(np.ones(1))
-    values = np.concatenate(columns)
+    kinds = [kind for panel in panels if (kind := kind_of(column, panel.own))]
+    from_zero = all(kind.from_zero for kind in kinds)
+    drawn = [history.columns[column] for panel in panels for history in panel.drawn(column).values()]
+    drawn = drawn or [np.ones(1)]  # no history: a range that is not empty
+    values = np.concatenate(drawn)
     values = values[np.isfinite(values)]
-    rounding = max([kind.rounding for panel in panels if (kind := kind_of(column, panel.own))], default=0.0)
+    if from_zero or not len(values):
+        values = np.append(values, 0.0)
+    rounding = max((kind.rounding for kind in kinds), default=0.0)
+    if not from_zero:
+        half = max(LEAST_MOVED * np.abs(values).max() / 2, (values.max() - values.min()) / 2)
+        middle = (values.max() + values.min()) / 2
+        return (float(middle - half), float(middle + half)) if half > 0 else (-1.0, 1.0)
     if np.abs(values).max() < rounding:
         return -rounding, rounding  # what does not move is at rest, and not a line of rounding errors
     limit = 6 * max((abs(p.static[column]) for p in panels if p.static.get(column)), default=math.inf)
