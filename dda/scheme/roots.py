@@ -20,7 +20,7 @@ import numpy as np
 
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, step_matrices, viscosity
-from dda.scheme.spectral import ComplexArray, damping_of, largest_first, pair
+from dda.scheme.spectral import ComplexArray, Quadratic, damping_of, largest_first, pair
 from dda.scheme.stage import effective_matrix, predictor, velocity_corrector
 
 
@@ -71,7 +71,7 @@ def increments(scheme: Scheme, omega: float) -> ComplexArray:
     """Return y = z - 1 of the roots."""
     coefficients = polynomial(scheme, omega)
     if len(coefficients) == 3:
-        return pair(*coefficients[1:])
+        return pair(quadratic(*coefficients[1:]))[0]
     y = np.roots(coefficients).astype(complex)
     slope = np.polyder(coefficients)
     for _ in range(2):  # Newton's method takes back what the eigenvalues of a companion matrix lose
@@ -98,4 +98,9 @@ def eigenvalues(scheme: Scheme, omega: float) -> tuple[complex, complex]:
 def damping_ratio(scheme: Scheme, omega: float) -> float:
     """Return xi = -Re(ln z)/|ln z|; at least one where overdamped, NaN where the dominant root is not positive."""
     y = principal_pair(scheme, omega)
-    return float(damping_of(float(-np.sum(y).real), float(np.prod(y).real)))
+    return float(damping_of(quadratic(float(-np.sum(y).real), float(np.prod(y).real))))
+
+
+def quadratic(b: float, c: float) -> Quadratic:
+    """Return the equation of a pair by that of its y."""
+    return Quadratic(np.asarray(b), np.asarray(c), np.asarray(1 + (c - b)), np.asarray(c - b))

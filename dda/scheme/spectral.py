@@ -7,11 +7,14 @@ step but the first maps the mode's state with two eigenvalues lambda = 1 + y (th
 
 and the product 1 - b + c = gg (1 + (1/2 - delta) X).
 
-At gg = 1 this is eq. (11), (12). Nothing is subtracted from one, so that slow modes keep their digits. A complex pair
-is written lambda = exp((-xi + i sqrt(1 - xi^2)) w' dt). All functions take arrays of Omega [-].
+At gg = 1 this is eq. (11), (12). Slow modes have y near zero and keep their digits by y; what a step removes nearly
+wholly, as with small gg, has lambda near zero and keeps them by lambda. A complex pair is written
+lambda = exp((-xi + i sqrt(1 - xi^2)) w' dt). All functions take arrays of Omega [-].
 """
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +23,7 @@ from dda.model.arrays import Array
 
 Number = float | Array  # alpha, delta and gg may vary with Omega where a function takes arrays
 ComplexArray = NDArray[np.complex128]
+NEAR_ONE = 0.5  # distance of an eigenvalue from one, below which its logarithm is that of 1 + y
 
 
 def _x(omega: ArrayLike, alpha: Number) -> Array:
@@ -32,22 +36,41 @@ def _x(omega: ArrayLike, alpha: Number) -> Array:
     return x
 
 
-def coefficients(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> tuple[Array, Array]:
-    """Return b and c of y^2 + b y + c = 0; the product of the eigenvalues is 1 - b + c."""
+class Quadratic(NamedTuple):
+    """The equation of two eigenvalues."""
+
+    b: Array  # of y^2 + b y + c = 0
+    c: Array
+    product: Array  # of the eigenvalues, 1 - b + c, which keeps its digits where it is small
+    change: Array  # of it from one, which keeps them where it is near one
+
+
+def newmark_quadratic(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Quadratic:
+    """Return the equation of the two eigenvalues."""
     X = _x(omega, alpha)
-    return 1 - gg + (0.5 + gg * delta) * X, (1 + gg) / 2 * X
+    grown = (0.5 - delta) * X
+    return Quadratic(1 - gg + (0.5 + gg * delta) * X, (1 + gg) / 2 * X, gg * (1 + grown), gg * grown - (1 - gg))
 
 
-def pair(b: Number, c: Number) -> ComplexArray:
-    """Return both y of y^2 + b y + c = 0, last axis of length two."""
-    middle = -np.asarray(b) / 2
-    discriminant = middle * middle - c
+def pair(of: Quadratic) -> tuple[ComplexArray, ComplexArray]:
+    """Return both y and both lambda, last axis of length two, by equations of their own: small ones keep digits."""
+    middle = -np.asarray(of.b) / 2
+    center = 1 + middle
+    is_fast = np.abs(center) < np.abs(middle)
+    discriminant = np.where(is_fast, center * center - of.product, middle * middle - of.c)
     root = np.sqrt(np.abs(discriminant))
-    first = middle + np.copysign(root, middle)
-    second = np.divide(c, first, out=np.zeros_like(first), where=first != 0)
-    real = np.stack([first, second], axis=-1).astype(complex)
-    conjugate = np.stack([middle + 1j * root, middle - 1j * root], axis=-1)
-    return np.asarray(np.where((discriminant < 0)[..., None], conjugate, real))
+    large_y = middle + np.copysign(root, middle)
+    small_y = np.divide(of.c, large_y, out=np.zeros_like(large_y), where=large_y != 0)
+    large = center + np.copysign(root, center)
+    small = np.divide(of.product, large, out=np.zeros_like(large), where=large != 0)
+    is_of_large_y = np.signbit(center) == np.signbit(middle)
+    with_large_y = np.where(is_of_large_y, large, small)
+    with_small_y = np.where(is_of_large_y, small, large)
+    is_complex = (discriminant < 0)[..., None]
+    turned = 1j * np.stack([root, -root], axis=-1)
+    y = np.where(is_complex, middle[..., None] + turned, np.stack([large_y, small_y], axis=-1))
+    z = np.where(is_complex, center[..., None] + turned, np.stack([with_large_y, with_small_y], axis=-1))
+    return np.asarray(y), np.asarray(z)
 
 
 def largest_first(eigenvalues: ComplexArray) -> ComplexArray:
@@ -58,42 +81,45 @@ def largest_first(eigenvalues: ComplexArray) -> ComplexArray:
 
 def eigenvalues(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> ComplexArray:
     """Return the two eigenvalues, last axis of length two, the larger modulus first."""
-    return largest_first(1 + pair(*coefficients(omega, alpha, delta, gg)))
+    return largest_first(pair(newmark_quadratic(omega, alpha, delta, gg))[1])
 
 
 def spectral_radius(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return max |lambda|; sqrt(det), the paper's (13), holds for a complex pair only."""
-    b, c = coefficients(omega, alpha, delta, gg)
-    largest = largest_first(1 + pair(b, c))[..., 0]
-    return np.asarray(np.where(largest.imag != 0, np.sqrt(np.abs(1 + (c - b))), np.abs(largest)))
+    of = newmark_quadratic(omega, alpha, delta, gg)
+    largest = largest_first(pair(of)[1])[..., 0]
+    return np.asarray(np.where(largest.imag != 0, np.sqrt(np.abs(of.product)), np.abs(largest)))
 
 
-def logarithms(b: Number, c: Number) -> ComplexArray:
+def logarithms(of: Quadratic) -> ComplexArray:
     """Return ln lambda of both eigenvalues, last axis of length two, NaN where one is real and not positive."""
-    y = pair(b, c)
-    product = np.asarray(np.subtract(c, b))[..., None]  # of the eigenvalues, less one
+    y, z = pair(of)
+    change = np.asarray(of.change)[..., None]
+    product = np.asarray(of.product)[..., None]
     with np.errstate(all="ignore"):
-        size = np.where(y.imag == 0, np.log1p(y.real), np.log1p(product) / 2)
-        logs = size + 1j * np.arctan2(y.imag, 1 + y.real)
-    positive = np.all((y.imag != 0) | (y.real > -1), axis=-1, keepdims=True)
+        of_product = np.where(np.abs(change) < NEAR_ONE, np.log1p(change), np.log(product))
+        of_real = np.where(np.abs(y) < NEAR_ONE, np.log1p(y.real), np.log(z.real))
+        size = np.where(y.imag == 0, of_real, of_product / 2)
+        logs = size + 1j * np.arctan2(y.imag, z.real)
+    positive = np.all((y.imag != 0) | (z.real > 0), axis=-1, keepdims=True)
     return np.asarray(np.where(positive, logs, np.nan))
 
 
-def damping_of(b: Number, c: Number) -> Array:
+def damping_of(of: Quadratic) -> Array:
     """Return xi = -Re(ln lambda) / |ln lambda|, of real eigenvalues -(ln l1 + ln l2) / (2 sqrt(ln l1 ln l2))."""
-    logs = logarithms(b, c)
+    logs = logarithms(of)
     with np.errstate(all="ignore"):
         return np.asarray(-np.sum(logs, axis=-1).real / (2 * np.sqrt(np.prod(logs, axis=-1)).real))
 
 
 def damping_ratio(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return xi; at least one where overdamped, NaN where an eigenvalue is not positive."""
-    return damping_of(*coefficients(omega, alpha, delta, gg))
+    return damping_of(newmark_quadratic(omega, alpha, delta, gg))
 
 
 def period_elongation(omega: ArrayLike, alpha: Number, delta: Number, gg: Number = 1.0) -> Array:
     """Return w / w' - 1, w' dt = |ln lambda|, or sqrt(ln l1 ln l2)."""
-    logs = logarithms(*coefficients(omega, alpha, delta, gg))
+    logs = logarithms(newmark_quadratic(omega, alpha, delta, gg))
     with np.errstate(all="ignore"):
         return np.asarray(np.asarray(omega, dtype=float) / np.sqrt(np.prod(logs, axis=-1)).real - 1)
 
