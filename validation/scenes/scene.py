@@ -22,6 +22,7 @@ from pydantic import Field, ValidationError, model_validator
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
+from validation.scenes.kinds import kinds
 from validation.scenes.places import scene_files
 from validation.scenes.tabled import SceneTables
 from validation.scenes.tables import GateSection, RunSection, TimeSection
@@ -67,16 +68,14 @@ class Scene(SceneTables):
         return self
 
     def _check_files(self) -> None:
-        for field in FILES:
-            section, _, key = field.partition(".")
-            name = getattr(self.tables().get(section), key, None)
-            if name is not None and "\0" in name:
-                raise ValueError(f"{section}: {key}: must not hold a NUL, got {name!r}")
+        for place, _, table, key in named_files(self.tables()):
+            name = getattr(table, key)
+            if "\0" in name:
+                raise ValueError(f"{place}: {key}: must not hold a NUL, got {name!r}")
             try:
-                if name is not None:
-                    regular(Path(name))
+                regular(Path(name))
             except InputError as error:
-                raise ValueError(f"{section}: {key}: {error}") from None
+                raise ValueError(f"{place}: {key}: {error}") from None
             except (OSError, ValueError):  # that it cannot be read is said where it is read
                 continue
 
@@ -208,7 +207,7 @@ def _sweepable() -> set[str]:
 
 
 OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
-FILES = {  # keys that name files, and what these are
+FILES = {  # keys that name files, and what these are; `Kind.files` has more
     "fem.mesh": "mesh file",
     "load.base_motion": "record of the base's motion",
     "input.record": "record of the input",
@@ -333,13 +332,38 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
     def beside(value: object) -> object:
         return str(directory / value) if isinstance(value, str) else value
 
+    for _, _, table, key in named_files(data):
+        table[key] = beside(table[key])
+    sweep = data.get("sweep")
     for field in FILES:
-        section, _, key = field.partition(".")
-        table, sweep = data.get(section), data.get("sweep")
-        if isinstance(table, dict) and key in table:
-            table[key] = beside(table[key])
         if isinstance(sweep, dict) and isinstance(sweep.get(field), list):
             sweep[field] = [beside(value) for value in sweep[field]]
+
+
+def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
+    """Yield where tables name a file: the place, what the file is, the table and the key that has its name.
+
+    A table of a list, as ``[[plane.block]]``, has a place for each of its entries.
+    """
+    of_kinds = [kind.files for kind in kinds().values()]
+    for field, role in itertools.chain(FILES.items(), *(files.items() for files in of_kinds)):
+        *parts, key = field.split(".")
+        holders: list[tuple[str, Any]] = [("", tables)]
+        for part in parts:
+            inner = [(f"{place}.{part}".lstrip("."), _value(holder, part)) for place, holder in holders]
+            holders = []
+            for place, value in inner:
+                if isinstance(value, list | tuple):
+                    holders += [(f"{place}.{number}", entry) for number, entry in enumerate(value)]
+                else:
+                    holders.append((place, value))
+        for place, holder in holders:
+            if _value(holder, key) is not None:
+                yield place, role, holder, key
+
+
+def _value(table: Any, key: str) -> Any:
+    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -74,12 +74,12 @@ class Assembly:
     @property
     def thinnest(self) -> float:
         """Return the least thickness of a block that moves [m]."""
-        return min(thickness(block.vertices) for block in self.blocks if not block.fixed)
+        return min(thickness(block.vertices) for block in self.blocks if not block.held)
 
     @property
     def pose_columns(self) -> tuple[str, ...]:
         """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
-        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.fixed for part in POSE)
+        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.held for part in POSE)
 
 
 def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], dict[str, tuple[int, ...]]]:
@@ -265,8 +265,8 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
         "field: rule, got value".
     """
     blocks = assembly.blocks
-    if all(block.fixed for block in blocks):
-        raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed")
+    if all(block.held for block in blocks):
+        raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed or driven")
     sizes = np.array([thickness(block.vertices) for block in blocks])
     joined = {number for bond in assembly.bonds for number in (bond.first, bond.second)}
     joined |= {number for contact in assembly.contacts for number in (contact.block, contact.on)}
@@ -275,21 +275,21 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
         for i, j in geometry.near_pairs(outlines, TOUCHING * sizes):
             size = min(sizes[i], sizes[j])
             depth = geometry.overlap(outlines[i], outlines[j])
-            if depth > OVERLAP * size and not (blocks[i].fixed and blocks[j].fixed):
+            if depth > OVERLAP * size and not (blocks[i].held and blocks[j].held):
                 raise ValueError(f"block: {blocks[i].name} and {blocks[j].name} must not overlap, got {depth:.3g} m")
             if depth > 0 or geometry.gap(outlines[i], outlines[j]) <= TOUCHING * size:
                 joined |= {i, j}
     loaded = {load.block for load in assembly.loads}
     weighty = any(plane.gravity)
     for number, block in enumerate(blocks):
-        if block.fixed or number in joined:
+        if block.held or number in joined:
             continue
         if assembly.contacts or (assembly.bonds and assembly.springs is None):
             raise ValueError(f"block: {block.name} must be in a touch or a bond as others are, got neither")
         if not (weighty or number in loaded or block.spin or any(block.velocity)):
             raise ValueError(f"block: {block.name} touches nothing and nothing moves it, got no load and no velocity")
     for number, block in enumerate(blocks):
-        if not block.fixed and assembly.springs is not None:
+        if not block.held and assembly.springs is not None:
             _check_springs(plane, assembly, number, float(sizes[number]))
 
 
