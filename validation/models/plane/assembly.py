@@ -317,6 +317,6 @@ def _check_springs(plane: PlaneContents, assembly: Assembly, number: int, size: 
     ):
         if depth > size:
             raise ValueError(
-                f"{softest[0]}.stiffness: must stop {block.name}, which is {size:.3g} m thick, and {stiffness:g} N/m lets "
-                f"its {cause} through, got {depth:.3g} m"
+                f"{softest[0]}.stiffness: must stop {block.name}, which is {size:.3g} m thick, and {stiffness:g} N/m "
+                f"lets its {cause} through, got {depth:.3g} m"
             )
