@@ -69,6 +69,27 @@ def test_the_rival_of_columns_gives_our_answers(rivals):
         assert np.abs(ours.columns[name] - values).max() <= 1e-9 * np.abs(values).max()
 
 
+def test_the_rival_of_the_plane_gives_our_answers(rivals):
+    """To what its simpler rule of contact leaves: nothing of blocks that slide, what corners coincide of a wall."""
+    import bench
+    from rivals import plane_numpy
+
+    stiffness, shear, friction = bench.PLANE
+    springs = dda.ContactSprings(stiffness, shear, friction)
+    for blocks, steps, most in (
+        (bench.sliding_blocks(), 200, 1e-4),
+        (bench.wall(3, 2), 60, 0.1),
+        (bench.pile(5), 150, 0.01),
+    ):
+        model = dda.PlaneModel(blocks, gravity=(0.0, -9.81), found=springs)
+        ours = dda.solve_plane(model, dda.Scheme(0.5, 1.0, 1.0, 1e-3, "consistent"), steps, compiled=False)
+        velocity = np.array([(*block.velocity, block.spin) for block in blocks])
+        outlines = [np.array(block.vertices) for block in blocks]
+        held = [block.held for block in blocks]
+        theirs = plane_numpy.history(outlines, held, steps, 1e-3, *bench.PLANE, velocity)
+        assert bench.difference((theirs,), (ours.displacement[-1],)) < most
+
+
 def test_the_committed_table_holds_what_was_asked_for():
     lines = re.findall(r"\*\*(\d+)\*\* \| (\d+) \|", (ROOT / "docs" / "speed.md").read_text())
     assert len(lines) >= 5
