@@ -119,8 +119,8 @@ def solve_plane(
         sums=np.zeros((steps + 1, SUMS)),
     )
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
-    # what compiling takes, some 90 s, is a million steps of a block or a contact in plain Python
-    weight = steps * (b + touching) // 50 if compiled is None else compiled * ANEW
+    # what compiling takes, some 20 s, is 200,000 steps of a block or a contact in plain Python
+    weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
     arguments = (march, start, deepcopy(start), course), (history, steps, cut)
     (reached, outcome), _, how = run_loop(make_steps, (), *arguments, weight)
     return result_of(model, scheme, march, history, every, reached, outcome, how)
