@@ -230,8 +230,8 @@ def solve_states(
         if not factor_blocks(many.matrix):
             return 0
         solve_blocks(many.matrix, many.right)
-        take_solution(many, blocks, 0.0)
-        write_forces(many, blocks, places, laws, work, after)
+        take_solution(many, blocks)
+        add_forces(many, blocks, places, laws, work, after, 1.0)
         settled = True
         for k in range(n):
             if not closing or not closes(laws, before, work, k):
@@ -323,34 +323,35 @@ def add_row(
                         block[e][f] += push * B[f]
 
 
-def take_solution(many: Many, blocks: Blocks, share: float) -> None:
-    """Write the solution as increments of the modes, added to a share of what they were."""
+def take_solution(many: Many, blocks: Blocks) -> None:
+    """Write the solution as increments of the modes."""
     for i in range(len(many.body)):
         body = many.body[i]
         if body >= 0:
             first = blocks.first[i]
             for e in range(blocks.first[i + 1] - first):
-                many.x[first + e] = share * many.x[first + e] + many.right[body][e]
+                many.x[first + e] = many.right[body][e]
 
 
-def write_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Work, after: Rows) -> None:
-    """Write the forces that the increments make."""
+def add_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Work, after: Rows, whole: float) -> None:
+    """Write the forces that the increments make; where `whole` is zero, add what more increments add to them."""
     n = laws.contacts
     for k in range(n):
         r = n + k
-        after.force[k] = 0.0
-        after.force[r] = 0.0
+        if whole != 0:
+            after.force[k] = 0.0
+            after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
-        after.force[k] = N
+        N = -(whole * work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
+        after.force[k] += N
         if work.tried[r] != INSIDE:
-            after.force[r] = work.tried[r] * (laws.friction[k] * N + laws.upper[r])
+            after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            way = work.q[r] + contact_way(many.x, blocks, places, r)
+            way = whole * work.q[r] + contact_way(many.x, blocks, places, r)
             if many.kappa[k] != 0.0:
-                way += many.kappa[k] * (N - many.normal[k])
-            after.force[r] = -way * work.beta[k] / laws.compliance[r]
+                way += many.kappa[k] * (N - whole * many.normal[k])
+            after.force[r] -= way * work.beta[k] / laws.compliance[r]
 
 
 def write_openings(
@@ -392,20 +393,10 @@ def refine(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Lengt
             for e in range(blocks.first[i + 1] - first):
                 many.right[body][e] = many.residual[first + e]
     solve_blocks(many.matrix, many.right)
-    take_solution(many, blocks, 0.0)
-    for k in range(n):
-        if work.tried[k] != INSIDE:
-            continue
-        r = n + k
-        N = -contact_way(many.x, blocks, places, k) / laws.compliance[k]
-        after.force[k] += N
-        after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
-        if work.tried[r] != INSIDE:
-            after.force[r] += work.tried[r] * laws.friction[k] * N
-            after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
-        elif not is_smooth(laws, k):
-            way = contact_way(many.x, blocks, places, r) + many.kappa[k] * N
-            after.force[r] -= way * work.beta[k] / laws.compliance[r]
+    take_solution(many, blocks)
+    add_forces(many, blocks, places, laws, work, after, 0.0)
+    for r in range(2 * n):
+        if after.force[r] != 0.0:
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
 
 
