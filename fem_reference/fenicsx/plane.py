@@ -32,7 +32,8 @@ class PlaneBody(Meshed):
 
     def _on(self, edge: Any) -> np.ndarray:
         """Boundary facets on a straight piece of the outline."""
-        return facets_between(self.mesh, *np.asarray(edge, float), 1e-9 * self.size)
+        start, end = np.asarray(edge, float)
+        return facets_between(self.mesh, start, end, 1e-9 * self.size)
 
     def _over(self, facets: np.ndarray) -> Any:
         """Measure of some facets."""
