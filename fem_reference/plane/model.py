@@ -21,8 +21,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_reference.contact import compilation
 from fem_reference.contact.columns import ENERGY_COLUMNS, LOSS_COLUMNS, energies_of
-from fem_reference.contact.driver import OUTCOMES, Cut, make_steps
-from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.driver import OUTCOMES, Cut, histories
 from fem_reference.contact.law import AT_LOWER, INSIDE
 from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.stepper import ContactStepper
@@ -32,7 +31,7 @@ from fem_reference.plane.contact import PatchContact, points_of
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.motion import Motion as BaseMotion
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.problem.result import Mode, Result
+from fem_reference.problem.result import Mode, Result, just_ended
 from fem_reference.scheme.eigen import eigenvalues, largest_frequency
 from fem_reference.scheme.newmark import Work
 from fem_reference.scheme.stage import Motion
@@ -59,7 +58,6 @@ class Rest:
 class BodiesResult(Result):
     """Histories of the steps that were reached; row 0 is step 1, and a contact has a column of its arrays."""
 
-    outcome: str  # "completed", or why the history ends early
     normal: Array  # force out of the second body on the first [N]
     shear: Array  # force on the first body clockwise of that [N]
     gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
@@ -216,33 +214,22 @@ class PlaneModel:
             Greatest number of solutions of the open-close iteration before its fallback.
         """
         began = time.perf_counter()
-        system = self._system(scheme, rows)
-        modal = system.C is None and len(self.F) <= compilation.MODES and steps >= compilation.LONG
-        compiled, note = compilation.march(modal, steps)
-        stepper = ContactStepper(
-            system.in_modes() if modal else system, scheme, limit, energies=True, losses=True, compiled=compiled
-        )
+        system, compiled, notes = compilation.prepared(self._system(scheme, rows), steps)
+        stepper = ContactStepper(system, scheme, limit, energies=True, losses=True, compiled=compiled)
         state = self._start(stepper, settled)
         ready = time.perf_counter()
         cut = None if scheme.staggered or system.C is not None else CUT
-        outcome = CONVERGED
-        pieces = [self._kept(stepper.record(0))]
-        for record, marched in make_steps(stepper, state, steps, cut):
-            pieces.append(self._kept(record))
-            outcome = marched.outcome
-        kept: dict[str, Any] = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+        kept, marched = histories(stepper, state, steps, cut, self._kept)
         observed = kept.pop("observed")
         rates = kept.pop("rates")
         energy = {name: kept.pop(name) for name in (*ENERGY_COLUMNS, *LOSS_COLUMNS)}
         return BodiesResult(
-            time=np.asarray(scheme.step * np.arange(1, len(observed) + 1), dtype=np.float64),
+            **just_ended(scheme.step, len(observed), began, ready),
             columns={str(i): values for i, values in enumerate(observed.T)},
             unknowns=len(self.F),
             **vars(stepper.work),
-            notes=(note,) if len(self.points.gap) else (),
-            setup_seconds=ready - began,
-            stepping_seconds=time.perf_counter() - ready,
-            outcome=OUTCOMES[outcome],
+            notes=notes if len(self.points.gap) else (),
+            outcome=OUTCOMES[marched.outcome],
             rates={str(i): values for i, values in enumerate(rates.T)},
             energy=energy,
             **kept,
