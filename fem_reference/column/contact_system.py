@@ -182,7 +182,7 @@ def _at_rest(system: ContactSystem, base: float, gap: Array) -> tuple[Array, Arr
     """Displacements and forces under the weight with all contacts closed: K D - B' N = F,  B D + c N = -gap."""
     K = system.K if system.to_modes is None else diags_array(system.K)
     B = csr_array(system.B)
-    scale = float(abs(K).max())  # so that both equations are of one size
+    scale = float(abs(K.diagonal()).max())  # so that both equations are of one size
     compliance = diags_array(scale**2 * system.rows.compliance)
     matrix = block_array([[K, -scale * B.T], [scale * B, compliance]], format="csc")
     moved = base * system.ground[:, 0] - gap
