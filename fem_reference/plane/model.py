@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag as dense_block_diag
 from scipy.linalg import null_space
-from scipy.sparse import block_array, block_diag, csr_array, diags_array
+from scipy.sparse import block_array, block_diag, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh, splu
 
 from fem_reference.contact import compilation
@@ -25,7 +25,7 @@ from fem_reference.contact.driver import OUTCOMES, Cut, histories
 from fem_reference.contact.law import AT_LOWER, INSIDE
 from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.stepper import ContactStepper
-from fem_reference.contact.system import ContactSystem
+from fem_reference.contact.system import ContactSystem, with_springs
 from fem_reference.plane.body import PlaneBody, Point
 from fem_reference.plane.contact import PatchContact, points_of
 from fem_reference.plane.elements import BodyElements
@@ -301,8 +301,7 @@ class PlaneModel:
 
     def _stiffness(self, closed: NDArray[np.bool_]) -> csr_array:
         """K with the springs of the closed rows [N/m]."""
-        B = self.points.B[closed]
-        return csr_array(self.K + B.T @ diags_array(1 / self.points.rows.compliance[closed]) @ B)
+        return with_springs(self.K, self.points.B[closed], self.points.rows.compliance[closed])
 
     def _unheld(self, closed: NDArray[np.bool_]) -> Array:
         """Rigid motions that neither clamps nor closed springs hold, orthonormal, shape (unknowns, 0 or more)."""
