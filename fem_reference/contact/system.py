@@ -107,10 +107,12 @@ class ContactSystem:
         begin = 0
         for motions in self.motions:
             body = slice(begin, begin + len(motions))
+            begin += len(motions)
+            if not motions.shape[1]:  # which LAPACK may refuse
+                continue
             inertia = motions.T @ (self.M[body, body] @ motions)
             R = solve_triangular(cholesky(inertia, lower=True), motions.T, lower=True)
             rigid.append((body, R, np.ascontiguousarray((self.M[body, body] @ R.T).T)))
-            begin += len(motions)
 
         def forces(D: Array) -> Array:
             strained = D.copy()

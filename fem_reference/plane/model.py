@@ -306,6 +306,8 @@ class PlaneModel:
     def _unheld(self, closed: NDArray[np.bool_]) -> Array:
         """Rigid motions that neither clamps nor closed springs hold, orthonormal, shape (unknowns, 0 or more)."""
         motions, _ = np.linalg.qr(self.motions)
+        if not motions.shape[1]:  # which LAPACK may refuse
+            return np.asarray(motions)
         springs = np.sqrt(1 / self.points.rows.compliance[closed])[:, None] * (self.points.B[closed] @ motions)
         return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
 
