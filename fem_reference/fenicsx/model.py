@@ -95,7 +95,7 @@ def vector_space(mesh: Any, degree: int) -> Any:
     return dolfinx.fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
 
 
-def facets_between(mesh: Any, start: np.ndarray, end: np.ndarray, slack: float) -> np.ndarray:
+def facets_on(mesh: Any, start: np.ndarray, end: np.ndarray, slack: float) -> np.ndarray:
     """Boundary facets on a straight piece of the outline."""
     length = float(np.hypot(*(end - start)))
     along = (end - start) / length
@@ -235,7 +235,7 @@ class Block(Meshed):
     def _facets(self, index: int, low: float, high: float) -> np.ndarray:
         """Facets of an edge between two arc lengths."""
         start, along, _ = self.outline.side(index)
-        return facets_between(self.mesh, start + low * along, start + high * along, 1e-9 * self.outline.size)
+        return facets_on(self.mesh, start + low * along, start + high * along, 1e-9 * self.outline.size)
 
     def _measures(self) -> None:
         """Mark what carries springs and what is loaded."""

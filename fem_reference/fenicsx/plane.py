@@ -14,7 +14,7 @@ import numpy as np
 import ufl
 
 from .factor import Factor
-from .model import COMM, Inapplicable, Meshed, Request, assembled, constant, facets_between, joined, lame, strain
+from .model import COMM, Inapplicable, Meshed, Request, assembled, constant, facets_on, joined, lame, strain
 
 
 class PlaneBody(Meshed):
@@ -33,7 +33,7 @@ class PlaneBody(Meshed):
     def _on(self, edge: Any) -> np.ndarray:
         """Boundary facets on a straight piece of the outline."""
         start, end = np.asarray(edge, float)
-        return facets_between(self.mesh, start, end, 1e-9 * self.size)
+        return facets_on(self.mesh, start, end, 1e-9 * self.size)
 
     def _over(self, facets: np.ndarray) -> Any:
         """Measure of some facets."""

@@ -20,7 +20,8 @@ from scipy.sparse import csr_array, eye_array, vstack
 
 from fem_reference.contact.system import ContactRows, opening_rows, point_rows
 from fem_reference.mesh import elasticity
-from fem_reference.plane.body import Point, facets_along
+from fem_reference.mesh.mesh import facets_along
+from fem_reference.plane.body import Point
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
