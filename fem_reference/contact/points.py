@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
-from skfem import Basis, Mesh
+from skfem import Basis
 
 from fem_reference.contact.system import ContactSystem, point_rows
 from fem_reference.mesh import elasticity
@@ -170,7 +170,7 @@ def whole(problem: Problem) -> ContactModel:
     """
     assembled = assemble(problem)
     basis = assembled.basis
-    rule = base_rule(problem, basis.mesh, block_mesh(problem).base)
+    rule = base_rule(problem, basis, block_mesh(problem).base)
     rule, weights = merged(problem, basis, rule)
     u, v = elasticity.values(basis, rule.points, rule.cells)
     n = problem.normal
@@ -195,11 +195,11 @@ def whole(problem: Problem) -> ContactModel:
     )
 
 
-def base_rule(problem: Problem, mesh: Mesh, facets: NDArray[np.int64]) -> elasticity.Rule:
+def base_rule(problem: Problem, basis: Basis, facets: NDArray[np.int64]) -> elasticity.Rule:
     """Points of the base with weights; a node that two facets share comes twice."""
     if problem.foundation != "distributed":
-        return elasticity.foundation_rule(problem, mesh, facets)
-    ends = elasticity.node_rule(mesh, facets)
+        return elasticity.foundation_rule(problem, basis, facets)
+    ends = elasticity.node_rule(basis.mesh, facets)
     if problem.degree == 1:
         return ends
     count = len(facets)

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag as dense_block_diag
 from scipy.linalg import null_space
 from scipy.sparse import block_array, block_diag, csr_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import splu
 
 from fem_reference.contact import compilation
 from fem_reference.contact.columns import ENERGY_COLUMNS, LOSS_COLUMNS, energies_of
@@ -32,7 +32,7 @@ from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.motion import Motion as BaseMotion
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Mode, Result, just_ended
-from fem_reference.scheme.eigen import eigenvalues, largest_frequency
+from fem_reference.scheme.eigen import as_modes, largest_frequency, lowest
 from fem_reference.scheme.newmark import Work
 from fem_reference.scheme.stage import Motion
 
@@ -181,20 +181,9 @@ class PlaneModel:
         reach = float(np.max(first.extent[1] - first.extent[0]))
         shift = SHIFT * first.shear_modulus / first.density * (np.pi / reach) ** 2
         rigid = self._unheld(closed).shape[1]
-        inverse = Work().factor(csr_array(K + shift * self.M))
-        start = np.random.default_rng(0).standard_normal(len(self.F))
-        operator = LinearOperator(K.shape, matvec=inverse, dtype=float)
-        squares, shapes = eigsh(K, count + rigid, self.M, sigma=-shift, OPinv=operator, v0=start)
-        order = np.argsort(squares)[rigid:]
-        squares = squares[order]
-        shapes = shapes[:, order]
+        squares, shapes = lowest(K, self.M, count + rigid, shift)
         work = float(self.F @ self._rest_of(closed))
-        shares = (shapes.T @ self.F) ** 2 / (squares * work) if work else np.zeros(count)
-        frequencies = np.sqrt(squares)
-        return tuple(
-            Mode(float(w), float(share), eigenvalues(float(w), scheme))
-            for w, share in zip(frequencies, shares, strict=True)
-        )
+        return as_modes(squares[rigid:], shapes[:, rigid:], self.F, work, scheme)
 
     def history(
         self, scheme: Scheme, steps: int, rows: Array, *, settled: bool = False, limit: int = 6
