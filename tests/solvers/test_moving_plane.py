@@ -97,3 +97,12 @@ def test_contacts_that_are_found_are_those_that_a_scene_may_state():
     assert second.displacement == pytest.approx(first.displacement, abs=1e-13)
     order = [second.contacts.index(contact) for contact in first.contacts]
     assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)
+
+
+def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
+    block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
+    traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
+    plane = {"young": 1e9, "density": MASS, "block": [block], "load": [traction]}
+    scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
+    (load,) = scene.plane.assembly.loads
+    assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]
