@@ -9,14 +9,13 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis import causes, evidence, families, schemes, sentences
+from validation.diagnosis import causes, evidence, families, schemes, sentences, slopes
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.forces import answer as of_friction
 from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, not_installed, ranking, rivals, row_of
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
@@ -178,7 +177,7 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
                 value=", ".join(_beyond(scene)),
             )
         if is_frictional:
-            of_friction.refuse_other_scenes(scene)
+            slopes.refuse_other_scenes(scene)
     features.refuse_sweep(scene)
 
 
@@ -207,12 +206,12 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         return compare_column(scene, foreign, tolerance)
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
-        reading = of_friction.read(scene, foreign)
-        if not of_friction.is_scene(scene, reading):
-            swapped = of_friction.read(scene, exchanged(foreign, *pair))
-            if of_friction.is_scene(scene, swapped):
+        reading = slopes.read(scene, foreign)
+        if not slopes.is_scene(scene, reading):
+            swapped = slopes.read(scene, exchanged(foreign, *pair))
+            if slopes.is_scene(scene, swapped):
                 return _of_swapped(scene, foreign, pair, tolerance)
-        return of_friction.answer_of(scene, foreign, reading)
+        return slopes.answer_of(scene, foreign, reading)
     column = rectangle_of(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
