@@ -36,7 +36,6 @@ from validation.diagnosis.one_change import (
     of_numbers,
     of_schemes,
 )
-from validation.diagnosis.other_solvers import row_of
 from validation.diagnosis.reading import SAME_STEP, SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import Slip, remedy_of, words_of_slips
 from validation.diagnosis.variant import GRAVITY, upright
@@ -638,10 +637,8 @@ def answer_of(scene: Scene, foreign: Foreign, reading: SlopeReading) -> Answer:
         nearest_causes = {"causes": list(verdict.causes), "values": values, "left": left}
         subject = sentences.Subject("", {}, None, "", others)
         sentence = sentences.not_explained(subject, nearest_causes, left, evidence)
-    ranking = row_of(DDA, t.alpha, t.delta, t.discount, verdict.run.left, values.get("base-compliance", 0.0))
     return Answer(
         scheme={"alpha": t.alpha, "delta": t.delta, "gg": t.discount},
-        ranking=[ranking],
         departure=departure,
         causes=ids,
         opened=_opened(verdict.best) if verdict.explained else None,
