@@ -47,7 +47,7 @@ from dda.plane.elimination import (
     order_blocks,
     solve_blocks,
 )
-from dda.plane.places import Places, contact_way, push_contacts
+from dda.plane.places import Places, contact_way, flexibility_of, push_contacts
 
 TOGETHER = 8  # solves in which all states are updated at once
 RESTARTS = 6  # of sweeps, each longer than the last one
@@ -103,16 +103,16 @@ def set_pattern(many: Many, places: Places) -> bool:
     number = many.matrix.number
     known = many.known[0] > 0
     for k in range(places.count[0]):
-        i = many.body[places.block[k]]
-        j = many.body[places.on[k]]
+        i = many.body[places.sides[k][0]]
+        j = many.body[places.sides[k][1]]
         if i >= 0 and j >= 0 and number[i][j] == MISSING:
             known = False
     if known:
         return True
     clear_pattern(many.matrix)
     for k in range(places.count[0]):
-        i = many.body[places.block[k]]
-        j = many.body[places.on[k]]
+        i = many.body[places.sides[k][0]]
+        j = many.body[places.sides[k][1]]
         if i >= 0 and j >= 0:
             number[i][j] = 0
             number[j][i] = 0
@@ -300,7 +300,7 @@ def add_row(
     """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         body = many.body[i]
         if body < 0:
             continue
@@ -310,7 +310,7 @@ def add_row(
         for e in range(modes):
             right[e] += F[e] * constant
         for opposite in range(2):
-            j = places.block[k] if opposite == 0 else places.on[k]
+            j = places.sides[k][opposite]
             other = many.body[j]
             if other < 0:
                 continue
@@ -431,14 +431,14 @@ def sweep(
             k = step if number % 2 == 0 else n - 1 - step
             r = n + k
             gap = work.q[k] + contact_way(many.x, blocks, places, k)
-            own = own_flexibility(blocks, places, length, k, k)
+            own = flexibility_of(blocks, places, length, k, k)
             N = (own * after.force[k] - gap) / (own + laws.compliance[k])
             if laws.opens[k] == 1 and laws.lower[k] > N:
                 N = 0.0
             T = 0.0
             if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
                 way = work.q[r] + contact_way(many.x, blocks, places, r)
-                own = own_flexibility(blocks, places, length, k, r)
+                own = flexibility_of(blocks, places, length, r, r)
                 limit = shear_limit(laws, k, N)
                 T = min(max((own * after.force[r] - way) / (own + laws.compliance[r]), -limit), limit)
             push(many, blocks, places, length, k, N, after)
@@ -455,17 +455,6 @@ def sweep(
             work.tried[r] = UPPER if after.force[r] > 0 else LOWER
 
 
-def own_flexibility(blocks: Blocks, places: Places, length: Length, k: int, r: int) -> float:
-    """Return what a unit force of a row adds to its own opening [m/N]."""
-    total = 0.0
-    for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
-        first = blocks.first[i]
-        for e in range(blocks.first[i + 1] - first):
-            total += places.B[r][side][e] * length.inverse[first + e] * places.F[r][side][e]
-    return float(length.numbers[3] * total)
-
-
 def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, force: float, after: Rows) -> None:
     """Set the force of a row, and what it moves."""
     change = force - after.force[r]
@@ -475,7 +464,7 @@ def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, for
     n = places.count[0]
     k = r if r < n else r - n
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         first = blocks.first[i]
         for e in range(blocks.first[i + 1] - first):
             mode = first + e

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Rows
+from dda.march.step import Length
 from dda.plane.bodies import Blocks, Poses, by_modes, direction, moved, point, strained, stretched
 
 AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
@@ -30,8 +31,7 @@ class Places(NamedTuple):
 
     count: Any  # (2,) how many there are, and how many of these are stated
     law: Any  # (c,) number of its springs
-    block: Any  # (c,) that of the corner
-    on: Any  # (c,) that of the edge
+    sides: Any  # (c, 2) blocks: that of the corner, and that of the edge
     bonded: Any  # (c,) 1 of two points that are glued
     at: Matrix  # (c, 2) the corner, from the centroid of its block, unstrained [m]
     edge: Matrix  # (c, 4) both ends of the edge, from the centroid of its block [m]
@@ -47,8 +47,8 @@ class Places(NamedTuple):
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
     """Write feet and normals of contacts for where the blocks are."""
     for k in range(places.count[0]):
-        i = places.block[k]
-        j = places.on[k]
+        i = places.sides[k][0]
+        j = places.sides[k][1]
         edge = places.edge[k]
         tx, ty = point(ends, j, edge[2] - edge[0], edge[3] - edge[1])
         length = math.hypot(tx, ty)
@@ -68,8 +68,8 @@ def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> No
 
 def gap_of(blocks: Blocks, q: Matrix, ends: Poses, places: Places, k: int) -> float:
     """Return the gap of a contact by the places of its blocks [m]."""
-    i = places.block[k]
-    j = places.on[k]
+    i = places.sides[k][0]
+    j = places.sides[k][1]
     px, py = point(ends, i, places.at[k][0], places.at[k][1])
     sx, sy = point(ends, j, places.foot[k][0], places.foot[k][1])
     dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
@@ -93,8 +93,8 @@ def write_rows(
     force_i = places.row[2]
     force_j = places.row[3]
     for k in range(n):
-        i = places.block[k]
-        j = places.on[k]
+        i = places.sides[k][0]
+        j = places.sides[k][1]
         at = places.at[k]
         foot = places.foot[k]
         edge = places.edge[k]
@@ -170,7 +170,7 @@ def contact_way(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
     k = r if r < n else r - n
     total = 0.0
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         first = blocks.first[i]
         B = places.B[r][side]
         for e in range(blocks.first[i + 1] - first):
@@ -186,11 +186,34 @@ def push_contacts(blocks: Blocks, places: Places, force: Vector, out: Vector) ->
             continue
         k = r if r < n else r - n
         for side in range(2):
-            i = places.block[k] if side == 0 else places.on[k]
+            i = places.sides[k][side]
             first = blocks.first[i]
             F = places.F[r][side]
             for e in range(blocks.first[i + 1] - first):
                 out[first + e] += F[e] * force[r]
+
+
+def flexibility_of(blocks: Blocks, places: Places, length: Length, r: int, s: int) -> float:
+    """Return what a unit force of a row s adds to the opening of a row r, weight B s^-1 F', by the blocks of both."""
+    n = places.count[0]
+    of = places.sides[r if r < n else r - n]
+    by = places.sides[s if s < n else s - n]
+    total = 0.0
+    for side in range(2):
+        i = of[side]
+        first = blocks.first[i]
+        modes = blocks.first[i + 1] - first
+        if modes == 0:
+            continue
+        for opposite in range(2):
+            if by[opposite] == i:
+                B = places.B[r][side]
+                F = places.F[s][opposite]
+                shared = 0.0
+                for e in range(modes):
+                    shared += B[e] * length.inverse[first + e] * F[e]
+                total += length.numbers[3] * shared
+    return total
 
 
 def turn_with(

@@ -97,7 +97,7 @@ def solve_plane(
         course = course_of(model)
         start = start_of(model, scheme, march, course)
     kept = steps // every
-    c = len(march.method.places.block)
+    c = len(march.method.places.law)
     b = len(model.blocks)
     history = History(
         motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
@@ -147,7 +147,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     most = 0 if model.found is None else ROOM * b + ROOM
     places = places_of(model, most)
     springs, pairs = springs_of(model)
-    c = len(places.block)
+    c = len(places.law)
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
     detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
@@ -341,8 +341,7 @@ def places_of(model: PlaneModel, most: int) -> Places:
     return Places(
         count=np.array([stated, stated]),
         law=law_numbers,
-        block=block,
-        on=on,
+        sides=np.column_stack([block, on]),
         bonded=bonded,
         at=at.reshape(-1, 2),
         edge=edge.reshape(-1, 4),
@@ -367,7 +366,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     plane = march.method
     blocks = plane.blocks
     places = plane.places
-    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.block)))
+    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     for k, contact in enumerate(model.contacts):
