@@ -21,7 +21,6 @@ from dda import (
     named_scheme,
     opening_subdivided,
     response,
-    solve_opening_system,
     solve_unilateral,
 )
 from dda.bodies.bonded_column import Drive, solve_column
@@ -157,7 +156,7 @@ def test_one_sub_block_is_the_block(name, values):
     law = Unilateral(2e8, 1e8, friction=0.3)
     model = UnilateralModel(block(0.25, 1.5), law, Load(1e5, 0.0, 5e4, 9.81), velocity=-0.01)
     one = solve_unilateral(model, scheme, 150, COLUMNS, ENERGIES)
-    sub = solve_opening_system(opening_subdivided(model, 1, 1, 1e12), scheme, 150, COLUMNS, ENERGIES)
+    sub = solve_unilateral(opening_subdivided(model, 1, 1, 1e12), scheme, 150, COLUMNS, ENERGIES)
     for column in COLUMNS:
         assert np.max(np.abs(one.columns[column] - sub.columns[column])) < 1e-11 * np.max(np.abs(one.columns[column]))
     assert sub.solves == one.solves and sub.slip[-1] == pytest.approx(one.slip[-1], rel=1e-11) and one.slip[-1] > 0

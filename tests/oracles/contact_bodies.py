@@ -18,7 +18,6 @@ from oracles.unilateral_checks import DT, random_model
 import dda.bodies.turning_block as rotation
 import dda.bodies.unilateral as one_block
 from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme
-from dda.bodies.turning_block import RollingOptions
 from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
@@ -131,7 +130,7 @@ class TurningBlock:
 
     @staticmethod
     def solve(model, scheme, steps, options):
-        return rotation.solve_rolling(model, scheme, steps, options=RollingOptions(**options))
+        return one_block.solve_unilateral(model, scheme, steps, options=UnilateralOptions(**options))
 
     @staticmethod
     def velocities(model, result):
