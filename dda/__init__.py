@@ -10,7 +10,7 @@ from dda.bodies.diagnostics import Diagnostics, diagnostics
 from dda.bodies.gap_form import UNKNOWNS, GapForm, ModalForm, modal_form
 from dda.bodies.glued_blocks import GluedBlocks, Traction, glued_blocks
 from dda.bodies.joints import FIXED, Joint, shared_edges
-from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve, solve_adaptive
+from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve
 from dda.bodies.locked_system import solve_system
 from dda.bodies.opening_system import OpeningSystem, opening_subdivided
 from dda.bodies.subdivision import subdivided
@@ -85,7 +85,6 @@ __all__ = [
     "roots",
     "shared_edges",
     "solve",
-    "solve_adaptive",
     "solve_plane",
     "solve_system",
     "solve_textbook",
