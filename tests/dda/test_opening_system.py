@@ -1,13 +1,10 @@
 """Sub-blocks on a base that opens: one is the block, a base that stays closed is locked; invariants of each step."""
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.frictional import rubbing_model
-from oracles.unilateral_checks import complementarity, energy, momentum, random_model, size, sums
 
 import dda.bodies.glued_step as step
 from dda import (
@@ -53,23 +50,6 @@ def test_a_base_that_never_opens_is_the_locked_one(eccentricity, pattern):
         assert np.max(np.abs(one.columns[name] - other.columns[name])) <= 1e-10 * np.max(
             np.abs(one.columns[name]), initial=1e-4
         ), name
-
-
-SCHEMES = [CONSTANT, Scheme(0.25, 0.5, 1.0, 1e-4, "consistent"), Scheme(0.7, 0.8, 0.99, 3e-4)]
-
-
-@pytest.mark.parametrize(("seed", "scheme"), thinned(product([1, 2, 5, 8], SCHEMES), 5))
-def test_random_blocks_keep_the_invariants(seed, scheme):
-    model = random_model(seed)
-    young = model.block.material.young
-    result = run(model, (3, 2), scheme, 100, 1e4 * young)
-    assert result.outcome == "completed" and np.count_nonzero(np.diff(result.closed)) > 1
-    complementarity(model, result)
-    if not np.any(result.step_cuts):
-        momentum(model, scheme, result, 1e-11)
-    energy(model, result, 1e-10)
-    if scheme.delta == 1:
-        assert np.max(np.diff(sums(result)[0])) < 1e-12 * size(result)
 
 
 def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
