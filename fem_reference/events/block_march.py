@@ -20,7 +20,7 @@ from fem_reference.events.contacts import NORMAL, OPEN, STICKS, States
 from fem_reference.events.enclosure import ball, is_blank, precision, radius_of
 from fem_reference.events.flow import SIZE, UNIT
 from fem_reference.events.march import March, Node
-from fem_reference.events.series import Start, column, floats
+from fem_reference.events.series import INFLATION, Start, column, floats
 from fem_reference.events.switches import (
     AccumulationError,
     Cascade,
@@ -30,7 +30,6 @@ from fem_reference.events.switches import (
     TooMuchWorkError,
     Work,
 )
-from fem_reference.events.watching import INFLATION
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array
 

@@ -15,7 +15,6 @@ All unknowns are numbered from the base upwards, so that the mass is tridiagonal
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -23,9 +22,9 @@ import numpy as np
 from flint import arb, arb_mat, ctx
 
 from fem_reference.events.column_drive import ANGLE, Drive, still
-from fem_reference.events.contacts import STICKS, Contact, States
+from fem_reference.events.contacts import STICKS, Contact
 from fem_reference.events.enclosure import precision
-from fem_reference.events.series import System, column, floats
+from fem_reference.events.series import INFLATION, System, column, floats
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 
@@ -122,7 +121,6 @@ class ColumnModel(System):
     def __init__(self, problem: ColumnProblem) -> None:
         super().__init__()
         self.problem = problem
-        self.rates: dict[States, float] = {}
         self.unilateral = problem.law == "unilateral"
         self.faces: list[tuple[int, int]] = []  # unknowns of foot and top of each block
         joints: list[tuple[int, int, ColumnJoint]] = []  # those with a spring, and their unknowns above and below
@@ -146,8 +144,6 @@ class ColumnModel(System):
         self.top = previous
         if count == 0:
             raise ValueError("blocks: must have a face that moves of itself, got a column welded to its base")
-        self.sizes = [1.0] * count
-        self.row_sizes = [2.0] * len(joints)
         self.inputs = self._assemble(count)
         self.rows = arb_mat(len(joints), count)
         self.offsets = arb_mat(len(joints), 1)
@@ -210,20 +206,9 @@ class ColumnModel(System):
         """Stiffness k of a contact [Pa/m]."""
         return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
 
-    def rate(self, states: States) -> float:
-        """Return a bound of the rates of the motion while the contacts keep their states [rad/s]."""
-        if states not in self.rates:
-            acts = np.array([state == STICKS for state in states], dtype=bool)
-            self.rates[states] = math.sqrt(self.bounds.squared_rate(acts)) + self.bounds.damping
-        return self.rates[states]
-
     def least_rate(self) -> float:
         """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
         return self.bounds.soft
-
-    def norm(self, x: Sequence[arb]) -> arb:
-        """Return the greatest displacement."""
-        return max((abs(c).upper() for c in x), default=arb(0))
 
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
@@ -266,49 +251,34 @@ class ColumnModel(System):
     @cached_property
     def bounds(self) -> Bounds:
         """What bounds the motion and its error."""
+        rate = self.rate((STICKS,) * len(self.contacts))
         with precision(min(ctx.prec, BOUND_BITS)):
-            return Bounds(self)
+            return Bounds(self, rate)
 
 
 class Bounds:
-    """Upper bounds in floats, rounded up by `MARGIN`, which covers the rounding of so short sums."""
+    """Upper bounds in floats."""
 
-    MARGIN = 1 + 1e-9
-
-    def __init__(self, model: ColumnModel) -> None:
+    def __init__(self, model: ColumnModel, rate: float) -> None:
         signed = floats(model.mobility)
         elastic = floats(model.stiffness)
         B = floats(model.rows)
         inputs = np.abs(floats(model.inputs))
         k = np.array([float(model.spring(c)) for c in range(len(model.contacts))])
         self.stiffness = k
-        # |M^-1 K| row by row, of the blocks and of each contact, so that they bound every choice of closed contacts
-        self.elastic_rows = np.abs(signed @ elastic).sum(axis=1) * self.MARGIN
-        self.contact_rows = (np.abs(signed @ B.T) * k * np.abs(B).sum(axis=1)).T * self.MARGIN
-        self.damping = 0.0
-        if model.damping is not None:
-            self.damping = float(np.abs(signed @ floats(model.damping)).max()) * self.MARGIN
-        self.compliance = np.einsum("ji,ik,jk->j", B, signed, B) * self.MARGIN  # b M^-1 b'
-        self.mobility = np.diag(signed) * self.MARGIN  # diagonal of M^-1
-        highest = self.squared_rate(np.ones(len(k), dtype=bool))
-        self.rate = math.sqrt(highest) + self.damping  # of the motion and of its error, greatest [rad/s]
+        self.compliance = np.einsum("ji,ik,jk->j", B, signed, B) * INFLATION  # b M^-1 b'
+        self.mobility = np.diag(signed) * INFLATION  # diagonal of M^-1
+        self.rate = rate  # of the motion and of its error, greatest [rad/s]
         # the metric e' M e' + e (K + soft^2 M) e gives each unknown a spring, also where its contacts are open
         self.soft = self.rate * SOFT_PART[model.problem.law] or 1.0
         K = np.abs(elastic) + np.abs(B.T) @ (k[:, None] * np.abs(B))
         mass = np.abs(floats(model.mass)).sum(axis=1)
         # of a displacement and of a velocity of one in each unknown, in that metric
-        self.displacement_norm = math.sqrt((K.sum(axis=1) + self.soft**2 * mass).sum()) * self.MARGIN
-        self.velocity_norm = math.sqrt(mass.sum()) * self.MARGIN
+        self.displacement_norm = math.sqrt((K.sum(axis=1) + self.soft**2 * mass).sum()) * INFLATION
+        self.velocity_norm = math.sqrt(mass.sum()) * INFLATION
         # rates of the error by what is left out of the base's displacement, rate and acceleration, and of the pressure
         inputs[:, 0] += np.abs(B.T) @ (k * floats(model.on_base)[:, 0])
-        self.pushes = (np.sqrt(self.mobility) @ inputs * self.MARGIN).tolist()
-
-    def squared_rate(self, active: Array) -> float:
-        """Norm of M^-1 K with some of the contacts [1/s2]."""
-        rows = self.elastic_rows
-        if len(self.stiffness):
-            rows = rows + self.contact_rows[active].sum(axis=0)
-        return float(rows.max()) * self.MARGIN
+        self.pushes = (np.sqrt(self.mobility) @ inputs * INFLATION).tolist()
 
     def displacement_reach(self) -> Array:
         """Greatest displacement of each unknown of an error of norm one [m]."""

@@ -19,8 +19,8 @@ from flint import arb, arb_mat
 
 from fem_reference.events.column_model import ColumnModel
 from fem_reference.events.contacts import OPEN, States, Watch
-from fem_reference.events.series import Segment
-from fem_reference.events.watching import INFLATION, Change, Reach
+from fem_reference.events.series import INFLATION, Segment
+from fem_reference.events.watching import Change, Reach
 from fem_reference.problem.problem import Array
 
 

@@ -177,5 +177,5 @@ def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -
     """
     facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
     if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
-        raise ValueError(f"edge: must begin and end at corners of elements, got {start} to {end}")
+        raise ValueError(f"edge: must begin and end at corners of elements, got {np.array([start, end]).tolist()}")
     return facets
