@@ -107,9 +107,8 @@ class System:
     @cached_property
     def root(self) -> tuple[Array, Array]:
         """L' and its inverse in floats, M = L L'."""
-        upper: Array = np.linalg.cholesky(floats(self.mass)).T
-        inverse: Array = np.linalg.inv(upper)
-        return upper, inverse
+        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T, dtype=np.float64)
+        return upper, np.asarray(np.linalg.inv(upper), dtype=np.float64)
 
     @cached_property
     def sizes(self) -> Array:
