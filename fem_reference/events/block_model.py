@@ -44,7 +44,7 @@ from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
 from fem_reference.events.flow import Flow
-from fem_reference.events.series import Start, System, column
+from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 
@@ -272,14 +272,6 @@ class RigidContact:
     def impulse(self, approach: arb) -> arb:
         """Impulse on both corners of an impact at which the gap closes at a speed, (1 + e) |w'| / C [N s]."""
         return (1 + self.restitution) * approach / self.compliance
-
-
-def diagonal(entries: Sequence[arb]) -> arb_mat:
-    """A diagonal matrix."""
-    matrix = arb_mat(len(entries), len(entries))
-    for i, entry in enumerate(entries):
-        matrix[i, i] = entry
-    return matrix
 
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:

@@ -141,8 +141,7 @@ class ColumnMotion(ProvenMotion):
         pressure = report.series[0, model.size + 1]
         face_force = self._face_force(of_joints[0], (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0])
         errors = np.array([float(node.error.upper()) for node in self.nodes])[report.node]
-        reach = float(model.bounds.displacement_reach().max(initial=0.0))
-        radius = errors * np.exp(model.bounds.soft * report.passed / 2) * reach
+        radius = errors * np.exp(model.soft * report.passed / 2) * (model.sizes.max() / model.soft)
         return ColumnHistory(
             time=t,
             foot=foot,
@@ -221,8 +220,8 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     """
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
-        rate = model.bounds.rate
-        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.bounds.soft)
+        rate = model.rate((STICKS,) * len(model.contacts))
+        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.soft)
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 

@@ -18,20 +18,16 @@ import math
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from fem_reference.events.column_drive import ANGLE, Drive, still
 from fem_reference.events.contacts import STICKS, Contact
-from fem_reference.events.enclosure import precision
-from fem_reference.events.series import INFLATION, System, column, floats
+from fem_reference.events.series import System, column, diagonal
 from fem_reference.problem.checks import require
-from fem_reference.problem.problem import Array
 
 LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
-BOUND_BITS = 96  # of matrices that only bound
 # Part of the highest rate that the metric of the error gives to an unknown without a spring: the error grows with it,
 # and the less by each contact that closes the higher it is, while contacts that slip make no error grow.
 SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
@@ -159,22 +155,19 @@ class ColumnModel(System):
     def _assemble(self, count: int) -> arb_mat:
         """Take masses, stiffnesses and loads of the blocks; return the forces of what drives them."""
         problem = self.problem
-        mass = arb_mat(count + 1, count + 1)
-        stiffness = arb_mat(count + 1, count + 1)
-        load = arb_mat(count + 1, 1)
-        # the last row and column of a matrix are those of the base
-        faces = [tuple(count if face == BASE else face for face in of_block) for of_block in self.faces]
-        for (foot, top), block in zip(faces, problem.blocks, strict=True):
-            m = arb(block.density) * arb(block.height)
-            k = arb(block.modulus) / arb(block.height) if foot != top else arb(0)
-            for face, other in ((foot, top), (top, foot)):
-                load[face, 0] = load[face, 0] - m * arb(problem.gravity) / 2
-                # 1/3 and 1/6 of an elastic block, which make up the whole mass of a rigid one
-                mass[face, face] = mass[face, face] + m / (3 if foot != top else 2)
-                stiffness[face, face] = stiffness[face, face] + k
-                if foot != top:
-                    mass[face, other] = mass[face, other] + m / 6
-                    stiffness[face, other] = stiffness[face, other] - k
+        # Faces of the blocks over the unknowns; the last row and column of a matrix are those of the base.
+        foot, top = (arb_mat(len(self.faces), count + 1) for _ in range(2))
+        for i, faces in enumerate(self.faces):
+            for incidence, face in zip((foot, top), faces, strict=True):
+                incidence[i, face % (count + 1)] = 1
+        masses = [arb(block.density) * arb(block.height) for block in problem.blocks]
+        springs = [arb(b.modulus) / arb(b.height) if math.isfinite(b.modulus) else arb(0) for b in problem.blocks]
+        both = foot + top
+        weighted = both.transpose() * diagonal([m / 6 for m in masses])
+        mass = weighted * both + foot.transpose() * diagonal([m / 6 for m in masses]) * foot
+        mass = mass + top.transpose() * diagonal([m / 6 for m in masses]) * top
+        stiffness = (top - foot).transpose() * diagonal(springs) * (top - foot)
+        load = weighted * column([arb(-3) * arb(problem.gravity)] * len(masses))
         own = range(count)
         self.mass = arb_mat([mass.tolist()[i][:count] for i in own])
         self.stiffness = arb_mat([stiffness.tolist()[i][:count] for i in own])
@@ -206,9 +199,14 @@ class ColumnModel(System):
         """Stiffness k of a contact [Pa/m]."""
         return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
 
+    @cached_property
+    def soft(self) -> float:
+        """Rate that the metric of the error gives to an unknown without a spring [rad/s]."""
+        return self.rate((STICKS,) * len(self.contacts)) * SOFT_PART[self.problem.law]
+
     def least_rate(self) -> float:
         """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
-        return self.bounds.soft
+        return self.soft
 
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
@@ -233,53 +231,5 @@ class ColumnModel(System):
         u = arb_mat(self.size, 1)
         if not self.problem.at_rest:
             return u
-        contacts = {contact.number: c for c, contact in enumerate(self.contacts)}
-        gravity = arb(self.problem.gravity)
-        weights = [arb(block.density) * arb(block.height) * gravity for block in self.problem.blocks]
-        level = base
-        for i, ((foot, top), block) in enumerate(zip(self.faces, self.problem.blocks, strict=True)):
-            above = sum(weights[i:], arb(0))
-            if i in contacts:
-                level = level - above / self.spring(contacts[i]) - self.offsets[contacts[i], 0]
-            if foot != BASE:
-                u[foot, 0] = level
-            if top != foot:
-                level = level - (above - weights[i] / 2) * arb(block.height) / arb(block.modulus)
-                u[top, 0] = level
-        return u
-
-    @cached_property
-    def bounds(self) -> Bounds:
-        """What bounds the motion and its error."""
-        rate = self.rate((STICKS,) * len(self.contacts))
-        with precision(min(ctx.prec, BOUND_BITS)):
-            return Bounds(self, rate)
-
-
-class Bounds:
-    """Upper bounds in floats."""
-
-    def __init__(self, model: ColumnModel, rate: float) -> None:
-        signed = floats(model.mobility)
-        elastic = floats(model.stiffness)
-        B = floats(model.rows)
-        inputs = np.abs(floats(model.inputs))
-        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))])
-        self.stiffness = k
-        self.compliance = np.einsum("ji,ik,jk->j", B, signed, B) * INFLATION  # b M^-1 b'
-        self.mobility = np.diag(signed) * INFLATION  # diagonal of M^-1
-        self.rate = rate  # of the motion and of its error, greatest [rad/s]
-        # the metric e' M e' + e (K + soft^2 M) e gives each unknown a spring, also where its contacts are open
-        self.soft = self.rate * SOFT_PART[model.problem.law] or 1.0
-        K = np.abs(elastic) + np.abs(B.T) @ (k[:, None] * np.abs(B))
-        mass = np.abs(floats(model.mass)).sum(axis=1)
-        # of a displacement and of a velocity of one in each unknown, in that metric
-        self.displacement_norm = math.sqrt((K.sum(axis=1) + self.soft**2 * mass).sum()) * INFLATION
-        self.velocity_norm = math.sqrt(mass.sum()) * INFLATION
-        # rates of the error by what is left out of the base's displacement, rate and acceleration, and of the pressure
-        inputs[:, 0] += np.abs(B.T) @ (k * floats(model.on_base)[:, 0])
-        self.pushes = (np.sqrt(self.mobility) @ inputs * INFLATION).tolist()
-
-    def displacement_reach(self) -> Array:
-        """Greatest displacement of each unknown of an error of norm one [m]."""
-        return np.asarray(np.sqrt(self.mobility) / self.soft)
+        closed = self.motion((STICKS,) * len(self.contacts))
+        return closed.A.solve((closed.f + closed.E * column([base, *[arb(0)] * 3])) * -1)

@@ -262,6 +262,14 @@ def column(entries: Sequence[arb]) -> arb_mat:
     return arb_mat(len(entries), 1, list(entries))
 
 
+def diagonal(entries: Sequence[arb]) -> arb_mat:
+    """A diagonal matrix."""
+    matrix = arb_mat(len(entries), len(entries))
+    for i, entry in enumerate(entries):
+        matrix[i, i] = entry
+    return matrix
+
+
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
     """Return the longest step; infinite where nothing bounds it [s]."""
     rate = max(system.rate(states), system.least_rate())

@@ -290,7 +290,7 @@ def test_the_energy_norm_bounds_what_the_terms_of_a_function_are_off(law: str, s
         u, v = (column(rng.normal(size=model.size).tolist()) for _ in range(2))
         springs = [model.spring(c) if state == contacts.STICKS else arb(0) for c, state in enumerate(states)]
         stretches = (model.rows * u).entries()
-        soft = model.stiffness + model.mass * arb(model.bounds.soft) ** 2
+        soft = model.stiffness + model.mass * arb(model.soft) ** 2
         square = (v.transpose() * model.mass * v + u.transpose() * soft * u)[0, 0]
         square += sum((k * y * y for k, y in zip(springs, stretches, strict=True)), arb(0))
         transport = EnergyNorm(model)
