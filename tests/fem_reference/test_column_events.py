@@ -275,6 +275,29 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
                     assert left_out <= segment.tail
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_the_norm_of_the_mass_bounds_unknowns_rows_and_rates(seed: int) -> None:
+    """Both sides of each bound, for a column above a half-space; the greatest ones are nearly reached."""
+    blocks_of_two = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, 3e8))
+    problem = ColumnProblem(blocks_of_two, (None, ColumnJoint(1e9)), base="transmitting", impedance=1e6)
+    rng = np.random.default_rng(seed)
+    with precision(100):
+        model = ColumnModel(problem)
+        rates = model.bounds_of((contacts.STICKS,))
+        motion = model.motion((contacts.STICKS,))
+        x = column(rng.normal(size=model.size).tolist())
+        size = model.norm(x.entries())
+        assert all(abs(x[i, 0]) <= size * float(model.sizes[i]) for i in range(model.size))
+        assert abs((model.rows * x)[0, 0]) <= size * float(model.row_sizes[0])
+        for _ in range(60):
+            x = motion.A * x * (1 / size)
+            size = model.norm(x.entries())
+            assert size <= rates.frequency**2
+        assert size >= rates.frequency**2 * (1 - 1e-6)
+        damped = model.norm((motion.D * x).entries()) / size
+        assert damped <= rates.motion - rates.frequency**2 / rates.motion
+
+
 @pytest.mark.parametrize("law", ["unilateral", "frictional"])
 @pytest.mark.parametrize("seed", range(4))
 def test_the_energy_norm_bounds_what_the_terms_of_a_function_are_off(law: str, seed: int) -> None:
