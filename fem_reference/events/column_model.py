@@ -23,7 +23,7 @@ from flint import arb, arb_mat
 from fem_reference.events.column_drive import ANGLE, Drive, still
 from fem_reference.events.contacts import STICKS, Contact
 from fem_reference.events.series import System, column, diagonal
-from fem_reference.problem.checks import require
+from fem_reference.problem.checks import require, require_numbers
 
 LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
@@ -35,21 +35,39 @@ SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
 
 @dataclass(frozen=True)
 class ColumnBlock:
-    """A block of a column, per unit of area."""
+    """A block of a column, per unit of area.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
 
     height: float  # h [m]
     density: float  # rho [kg/m3]
     modulus: float = math.inf  # of a plane wave [Pa]; inf: rigid
     velocity: float = 0.0  # at t = 0 [m/s], upwards, or towards + in shear
 
+    def __post_init__(self) -> None:
+        require_numbers(self, positive=("height", "density", "modulus"), infinite=("modulus",))
+
 
 @dataclass(frozen=True)
 class ColumnJoint:
-    """A spring at the foot of a block, per unit of area."""
+    """A spring at the foot of a block, per unit of area.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
 
     stiffness: float  # k [Pa/m]
     gap: float = 0.0  # of a unilateral joint at t = 0 [m]
     strength: float | None = None  # greatest shear stress s of a frictional joint [Pa]; None: it never slips
+
+    def __post_init__(self) -> None:
+        require_numbers(self, positive=("stiffness",), unsigned=("gap", "strength"))
 
 
 @dataclass(frozen=True)
@@ -80,13 +98,7 @@ class ColumnProblem:
         require(self.base in BASES, "base", f"must be one of {BASES}", self.base)
         alike = 0 < len(self.blocks) == len(self.joints)
         require(alike, "joints", f"must be one for each of {len(self.blocks)} blocks", len(self.joints))
-        for i, block in enumerate(self.blocks):
-            for name in ("height", "density", "modulus"):
-                value = getattr(block, name)
-                finite = name == "modulus" or value < math.inf
-                require(value > 0 and finite, f"blocks[{i}].{name}", "must be positive", value)
-            require(math.isfinite(block.velocity), f"blocks[{i}].velocity", "must be finite", block.velocity)
-        require(math.isfinite(self.gravity), "gravity", "must be finite", self.gravity)
+        require_numbers(self)
         carried = self.base != "transmitting" or 0 < self.impedance < math.inf
         require(carried, "impedance", "must be positive", self.impedance)
         supported = self.base == "rigid"
@@ -94,19 +106,11 @@ class ColumnProblem:
         footless = supported or self.joints[0] is None
         require(footless, "joints[0]", f"must be None on a base that is {self.base}", self.joints[0])
         for j, joint in enumerate(self.joints):
-            if joint is not None:
-                self._check_joint(f"joints[{j}]", joint)
-
-    def _check_joint(self, name: str, joint: ColumnJoint) -> None:
-        require(0 < joint.stiffness < math.inf, f"{name}.stiffness", "must be positive and finite", joint.stiffness)
-        require(0 <= joint.gap < math.inf, f"{name}.gap", "must not be negative", joint.gap)
-        opens = self.law == "unilateral"
-        require(opens or not joint.gap, f"{name}.gap", f"must be 0 in a column that is {self.law}", joint.gap)
-        strength = joint.strength
-        if strength is not None:
-            require(0 <= strength < math.inf, f"{name}.strength", "must not be negative", strength)
-            slips = self.law == "frictional"
-            require(slips, f"{name}.strength", f"must be None in a column that is {self.law}", strength)
+            if joint is not None and self.law != "unilateral":
+                require(not joint.gap, f"joints[{j}].gap", f"must be 0 in a column that is {self.law}", joint.gap)
+            if joint is not None and self.law != "frictional":
+                rule = f"must be None in a column that is {self.law}"
+                require(joint.strength is None, f"joints[{j}].strength", rule, joint.strength)
 
 
 class ColumnModel(System):

@@ -191,15 +191,13 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.Monke
 @pytest.mark.parametrize(
     ("change", "field"),
     [
-        ({"joints": (ColumnJoint(math.inf), None)}, "joints[0].stiffness"),
-        ({"joints": (ColumnJoint(1e9, -0.1), None)}, "joints[0].gap"),
         ({"joints": (ColumnJoint(1e9, strength=1.0), None)}, "joints[0].strength"),
+        ({"law": "frictional", "joints": (ColumnJoint(1e9, 0.1), None)}, "joints[0].gap"),
+        ({"gravity": math.inf}, "gravity"),
         ({"joints": (ColumnJoint(1e9), None), "base": "free"}, "joints[0]"),
         ({"joints": (None,)}, "joints"),
         ({"law": "glued"}, "law"),
         ({"base": "transmitting", "joints": (None, None)}, "impedance"),
-        ({"blocks": (ColumnBlock(1.0, 1.0), ColumnBlock(1.0, -1.0))}, "blocks[1].density"),
-        ({"blocks": (ColumnBlock(1.0, 1.0), ColumnBlock(1.0, 1.0, 1e9, math.nan))}, "blocks[1].velocity"),
     ],
 )
 def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field: str) -> None:
@@ -207,6 +205,22 @@ def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field:
     with pytest.raises(ValueError, match="must") as error:
         replace(problem, **change)
     assert str(error.value).startswith(f"{field}: ")
+
+
+@pytest.mark.parametrize(
+    ("of", "change", "field"),
+    [
+        (ColumnBlock(1.0, 1.0), {"density": -1.0}, "density"),
+        (ColumnBlock(1.0, 1.0), {"height": math.inf}, "height"),
+        (ColumnBlock(1.0, 1.0), {"velocity": math.nan}, "velocity"),
+        (ColumnJoint(1e9), {"stiffness": math.inf}, "stiffness"),
+        (ColumnJoint(1e9), {"gap": -0.1}, "gap"),
+        (ColumnJoint(1e9), {"strength": -1.0}, "strength"),
+    ],
+)
+def test_parts_of_a_column_refuse_what_cannot_be(of: ColumnBlock | ColumnJoint, change: dict, field: str) -> None:
+    with pytest.raises(ValueError, match=rf"^{field}: must"):
+        replace(of, **change)
 
 
 def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
