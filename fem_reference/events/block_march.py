@@ -71,7 +71,7 @@ class BlockMarch(March):
     def take_drives(self, moment: float) -> None:
         """Take the path of the base from a row of its record on, from which the block is seen."""
         before = self.drives
-        self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
+        self.drives = tuple(course.piece_at(moment) for course in self.courses)
         if before:
             time = self.start.time
             old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))

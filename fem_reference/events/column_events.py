@@ -203,7 +203,7 @@ class ColumnMarch(March):
     def take_drives(self, moment: float) -> None:
         """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
         before = self.pieces
-        self.pieces = self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
+        self.pieces = self.drives = tuple(course.piece_at(moment) for course in self.courses)
         if not before:
             return
         time = self.start.time

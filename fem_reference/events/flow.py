@@ -23,12 +23,6 @@ EXPONENTIAL_ERROR = 1e-13
 """Part of the greatest entry of exp(G s), in the units of the flow, by which floats of it may be wrong."""
 EXPONENTIAL_TERMS = 14
 """Terms of its series: what follows is below 0.5^15 / 15!, 2e-17."""
-REGULAR = 8
-"""Moves after which the axes of the box are made orthogonal again."""
-TABLE_ERROR = 1e-13
-"""Part of their size by which floats of the terms of a function may be wrong."""
-DIFFERENCE_ERROR = 1e-14
-"""Part of its terms by which a difference of floats may be wrong."""
 
 
 class Flow:

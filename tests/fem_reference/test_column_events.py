@@ -239,7 +239,7 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
         for value, integral in pairs:
             series = []
             for drive in (value, integral):
-                piece, _ = drive().piece_at(0.41)
+                piece = drive().piece_at(0.41)
                 series.append(piece.series(arb(0.41), 0.05, 40))
                 # the series at its end is that of the piece from there on, but for what the tail bounds
                 there = piece.series(arb(0.41) + arb(0.05), 0.05, 1)[0]
@@ -270,8 +270,8 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
         with precision(bits):
             model = ColumnModel(problem)
             states = (contacts.STICKS,) * 2
-            base, _ = drive().piece_at(0.0)
-            pressure, _ = drives.still().piece_at(0.0)
+            base = drive().piece_at(0.0)
+            pressure = drives.still().piece_at(0.0)
             pieces = base, pressure
             length = step_length(model, states, pieces)
             for moment in (0.0, 0.02, 0.0331, 0.1):
