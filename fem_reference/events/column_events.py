@@ -114,8 +114,8 @@ class ColumnMotion(ProvenMotion):
         # slips of the contacts at each node, and the ways that they have gone until it
         slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
         ways = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
-        k = np.array([[float(model.spring(c))] for c in range(len(model.contacts))])
-        strength = np.array([[float(contact.cohesion or 0)] for contact in model.contacts])
+        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))]).reshape(-1, 1)
+        strength = np.array([float(contact.cohesion or 0) for contact in model.contacts]).reshape(-1, 1)
         # one that slips takes its reference along, so that its spring keeps the strength
         sign = np.sign(report.states) * (np.abs(report.states) == RIGHT)
         held = np.where(sign == 0, report.held, sign * strength / k)

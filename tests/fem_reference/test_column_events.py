@@ -223,6 +223,18 @@ def test_parts_of_a_column_refuse_what_cannot_be(of: ColumnBlock | ColumnJoint, 
         replace(of, **change)
 
 
+def test_a_column_that_is_welded_throughout_is_the_bonded_one() -> None:
+    """Without any contact it goes as the springs between its faces do, and no instant has a motion of no length."""
+    drive = drives.integrated(drives.half_sine(0.1, 0.02))
+    pair = blocks(2, 2500, 1e9)
+    welded = solve(ColumnProblem(pair, (None, None), base_motion=drive), 0.01)
+    stiff = solve(ColumnProblem(pair, (ColumnJoint(1e12), ColumnJoint(1e12)), "frictional", base_motion=drive), 0.01)
+    times = np.linspace(0.0, 0.01, 7)
+    assert not welded.switches
+    assert welded.at(times).top[-1] == pytest.approx(stiff.at(times).top[-1], abs=4e-6)
+    assert welded.at([]).top.shape == (2, 0)
+
+
 def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
     pairs = [
         (drives.half_sine(2.0, 0.7), drives.integrated(drives.half_sine(2.0, 0.7))),
