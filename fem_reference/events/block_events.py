@@ -135,7 +135,7 @@ class BlockMotion(ProvenMotion):
         slips = np.where(sign == 0, 0.0, report.held - stretch)
         T = 0.0 - ps * stretch
         ledgers = np.array(self._ledgers)[node].T
-        mass = np.array([float(m) for m in model.mass])
+        mass = np.array([float(m) for m in model.masses])
         load = floats(model.load)[:, 0]
         radius = np.empty((6, len(t)))
         work = ledgers[4].copy()
@@ -220,7 +220,7 @@ class BlockMotion(ProvenMotion):
                 v = following.start.v + column([*jump, *[arb(0)] * 4])
                 end = following.start._replace(v=v, references=node.start.references)
                 span = end.time - node.start.time
-                gained = [model.mass[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
+                gained = [model.masses[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
                 work += base[0] * gained[0] + base[1] * gained[1]
                 if self._dissipates(node.states):
                     dissipated += model.energy(node.states, node.start) - model.energy(node.states, end)

@@ -186,11 +186,9 @@ class Course:
     breaks: tuple[float, ...]  # where the second and each further piece begins, increasing [s]
     pieces: tuple[Piece, ...]
 
-    def piece_at(self, time: float) -> tuple[Piece, float | None]:
-        """Return the piece from an instant on, and where it ends; None: it does not."""
-        index = bisect_right(self.breaks, time)
-        end = self.breaks[index] if index < len(self.breaks) else None
-        return self.pieces[index], end
+    def piece_at(self, time: float) -> Piece:
+        """Return the piece from an instant on."""
+        return self.pieces[bisect_right(self.breaks, time)]
 
     def parts(self) -> list[tuple[float, Piece]]:
         """Return the pieces from t = 0 on, each with its beginning [s]."""

@@ -114,8 +114,8 @@ class ColumnMotion(ProvenMotion):
         # slips of the contacts at each node, and the ways that they have gone until it
         slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
         ways = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
-        k = np.array([[float(model.spring(c))] for c in range(len(model.contacts))])
-        strength = np.array([[float(contact.cohesion or 0)] for contact in model.contacts])
+        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))]).reshape(-1, 1)
+        strength = np.array([float(contact.cohesion or 0) for contact in model.contacts]).reshape(-1, 1)
         # one that slips takes its reference along, so that its spring keeps the strength
         sign = np.sign(report.states) * (np.abs(report.states) == RIGHT)
         held = np.where(sign == 0, report.held, sign * strength / k)
@@ -141,8 +141,7 @@ class ColumnMotion(ProvenMotion):
         pressure = report.series[0, model.size + 1]
         face_force = self._face_force(of_joints[0], (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0])
         errors = np.array([float(node.error.upper()) for node in self.nodes])[report.node]
-        reach = float(model.bounds.displacement_reach().max(initial=0.0))
-        radius = errors * np.exp(model.bounds.soft * report.passed / 2) * reach
+        radius = errors * np.exp(model.soft * report.passed / 2) * (model.sizes.max() / model.soft)
         return ColumnHistory(
             time=t,
             foot=foot,
@@ -204,7 +203,7 @@ class ColumnMarch(March):
     def take_drives(self, moment: float) -> None:
         """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
         before = self.pieces
-        self.pieces = self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
+        self.pieces = self.drives = tuple(course.piece_at(moment) for course in self.courses)
         if not before:
             return
         time = self.start.time
@@ -221,8 +220,8 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     """
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
-        rate = model.bounds.rate
-        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.bounds.soft)
+        rate = model.rate((STICKS,) * len(model.contacts))
+        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.soft)
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 

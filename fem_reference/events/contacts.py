@@ -34,7 +34,6 @@ NORMAL = 0
 FORCE = 3
 """Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction."""
 States = tuple[int, ...]
-Series = Sequence[arb]
 
 
 def direction(state: int) -> int:

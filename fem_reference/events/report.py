@@ -56,12 +56,14 @@ def sampled(
     series_of
         Series that are reported, as many of each part, over the share of the part.
     """
+    if not len(t):
+        return Sampled(*(part[..., :0] for part in sampled(model, nodes, np.zeros(1), digits, series_of)))
     with precision(bits_of(digits)):
         begun = np.searchsorted([float(node.start.time) for node in nodes], t, side="right") - 1
         passed = np.array(
             [float(arb(s) - nodes[i].start.time) for i, s in zip(begun.tolist(), t.tolist(), strict=True)]
         )
-        states = np.array([nodes[i].states for i in begun.tolist()], dtype=int).reshape(len(t), -1).T
+        states = np.array([nodes[i].states for i in begun.tolist()], dtype=int).reshape(len(t), len(model.contacts)).T
         values: Array = np.zeros((0, 0, 0))
         for index in np.unique(begun).tolist():
             node = nodes[index]

@@ -175,9 +175,7 @@ def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -
     ValueError
         They do not cover it.
     """
-    first = np.array(start, float)
-    last = np.array(end, float)
-    facets, places = facets_along(mesh, first, last, slack)
-    if places.min() < -slack or places.max() > float(np.hypot(*(last - first))) + slack:
-        raise ValueError(f"edge: must begin and end at corners of elements, got {first.tolist()} to {last.tolist()}")
+    facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
+    if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
+        raise ValueError(f"edge: must begin and end at corners of elements, got {np.array([start, end]).tolist()}")
     return facets

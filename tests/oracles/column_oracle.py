@@ -33,7 +33,7 @@ def value_of(drive: drives.Drive) -> Callable[[float, int], float]:
     course = drive()
 
     def value(t: float, order: int) -> float:
-        piece, _ = course.piece_at(t)
+        piece = course.piece_at(t)
         return float(piece.series(arb(t), 1.0, 3)[order]) * math.factorial(order)
 
     return value

@@ -230,7 +230,7 @@ class ColumnEventMotion(Motion):
         values = []
         course = drive_of(self.scene, "top", integral=True)()
         for moment in (0.0, time):
-            piece, _ = course.piece_at(moment)
+            piece = course.piece_at(moment)
             values.append(float(piece.series(arb(moment), 1.0, 1)[0]))
         return values[1] - values[0]
 
