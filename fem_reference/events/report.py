@@ -35,9 +35,7 @@ class Sampled(NamedTuple):
     states: NDArray[np.int64]  # of the contacts, shape (contacts, times)
     series: Array  # values, rates and second derivatives of the series that were asked for, shape (3, series, times)
     rows: Array  # the same of the rows, shape (3, rows, times)
-    held: (
-        Array  # row of each contact less its reference at the node, that of a slide where it has one, (contacts, times)
-    )
+    held: Array  # row of each contact less its reference at the node, or that of a slide, shape (contacts, times)
 
 
 def sampled(
@@ -57,7 +55,7 @@ def sampled(
         Series that are reported, as many of each part, over the share of the part.
     """
     if not len(t):
-        return Sampled(*(part[..., :0] for part in sampled(model, nodes, np.zeros(1), digits, series_of)))
+        return Sampled._make(part[..., :0] for part in sampled(model, nodes, np.zeros(1), digits, series_of))
     with precision(bits_of(digits)):
         begun = np.searchsorted([float(node.start.time) for node in nodes], t, side="right") - 1
         passed = np.array(
