@@ -128,16 +128,16 @@ class Scene(SceneTables):
             excluded = _excluded(field, value)
             if both := [other for other in excluded if other in values]:
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
-            # set ``section.key`` in place; exclusive partners of the key are taken out
+            # set ``section.key``, or a key of a table in it, in place; exclusive partners of the key are taken out
             where = self.name
-            section, _, key = field.partition(".")
-            if not key:
-                section, key = "", section
+            *places, key = field.split(".")
             if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
                 raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
-            table = data.setdefault(section, {}) if section else data
-            if not isinstance(table, dict):
-                raise InputError("must be section.key", source=where, field=field, value=repr(field))
+            table: Any = data
+            for place in places:
+                table = table.setdefault(place, {})
+                if not isinstance(table, dict):
+                    raise InputError("must be section.key", source=where, field=field, value=repr(field))
             for partner in _excluded(field, value):
                 table.pop(partner.partition(".")[2], None)
             table[key] = value

@@ -125,7 +125,7 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES, features.PLANE, features.MOVING_BLOCKS}
+        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.PLANE, features.MOVING_BLOCKS}
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.COURSES

@@ -18,8 +18,11 @@ class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
     def refusal(self, scene: Scene, solver: str) -> str | None:
-        """Return what of moving blocks elements do not take."""
+        """Return what of moving blocks a solver does not take."""
         plane = scene.table(PlaneSection)
+        if plane.contact is not None and plane.contact.restitution not in (None, 1.0):
+            why = "no coefficient of restitution below 1: its springs give back everything"
+            return f"{solver} has {why}, got {plane.contact.restitution:g}"
         return refusal_of(scene, plane) if plane.moves and solver == "fem" else None
 
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
