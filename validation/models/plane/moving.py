@@ -14,7 +14,7 @@ from validation.errors import InputError
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.history import ENERGY, GAP, OF_BLOCK, OF_MOMENTUM, contact_column, numbers_of, place_of
 from validation.models.plane.joints import PlaneContactSection
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes.outline import area
@@ -23,8 +23,6 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
 from validation.solvers.translation import naming
 
-OWN_STIFFNESS = 1.0e9  # N/m, of a corner: DDA's springs where a scene has rigid contact
-OWN_STEP = 2.0e-3  # s: and its longest step there, that of the damping study that this suite began with
 ROUNDING = 1e-9
 
 
