@@ -25,7 +25,8 @@ from dda.model.material import Material
 from dda.model.polygon import Section
 from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
 from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
-from dda.plane.solution import PlaneContact, PlaneResult, solve_plane
+from dda.plane.outcomes import PlaneContact
+from dda.plane.solution import PlaneResult, solve_plane
 from dda.result.contact_result import ContactResult
 from dda.result.result import COLUMNS, Result
 from dda.scheme import roots, spectral

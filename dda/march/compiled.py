@@ -48,7 +48,7 @@ logger = logging.getLogger("dda")
 def run_loop(
     loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], steps: int
 ) -> tuple[Any, tuple[Any, ...], str]:
-    """Run a loop over steps; return what it returns, the records that it left, and whether it was compiled, in words.
+    """Run a loop over steps; return what it returns, the records and series that it left, and how it ran, in words.
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def run_loop(
     records
         Named tuples of numbers and of arrays of always the same sizes; it works on copies.
     series
-        Named tuples of arrays of any length, which it reads.
+        Named tuples of arrays of any length; compiled code works on them, plain Python on copies.
     rows
         Arrays that it fills, and numbers.
     steps
@@ -69,9 +69,9 @@ def run_loop(
             arguments = (*converted, *series, *rows)
             machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
             if machine_code is not None:
-                return machine_code(*arguments), converted, COMPILED
-        converted = tuple(as_lists(part) for part in records)
-        return loop(*converted, *(as_lists(part) for part in series), *rows), converted, PLAIN
+                return machine_code(*arguments), (*converted, *series), COMPILED
+        left = tuple(as_lists(part) for part in (*records, *series))
+        return loop(*left, *rows), left, PLAIN
 
 
 def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, tuple[Any, ...]] | None:

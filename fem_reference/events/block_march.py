@@ -73,7 +73,7 @@ class BlockMarch(March):
         """Take the path of the base from a row of its record on, from which the block is seen."""
         before = self.drives
         self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
-        if before is not None:
+        if before:
             time = self.start.time
             old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
             jump = column([*(one - other for one, other in zip(old, new, strict=True)), *[arb(0)] * 4])
@@ -217,7 +217,7 @@ class BlockMarch(March):
         flow = self.block.flow((OPEN, OPEN))
         error = self.transport.record()
         error[:12] += float(rest.reach) * flow.units[:12] * INFLATION
-        self.nodes.append(Node(self.start, self.states, self.drives, error))
+        self.nodes.append(Node(self.start, self.states, self.drives, (), error))
         time = time + rest.length
         state = hops.after(state, difference(time.mid(), self.start.time))
         state = hops.pushed(state, rest.speeds, rest.length.upper() + 2 * time.rad())

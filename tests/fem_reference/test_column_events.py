@@ -129,7 +129,7 @@ def test_a_joint_without_strength_lets_its_block_coast() -> None:
         blocks(1, 2500, RIGID, 0.5),
         (ColumnJoint(1e8, strength=0.0),),
         law="frictional",
-        base_motion=drives.sine(1.0, 10.0, integral=True),
+        base_motion=drives.integrated(drives.sine(1.0, 10.0)),
     )
     motion = solve(problem, 0.2)
     assert labels(motion)[:2] == ["0-", "0+"]
@@ -139,7 +139,7 @@ def test_a_joint_without_strength_lets_its_block_coast() -> None:
 
 def test_a_welded_foot_passes_a_jump_of_the_base_on() -> None:
     # a record that begins at once: the far face gets half of the jump, the wrong way, by the consistent mass
-    record = drives.recorded([0.001, 0.004], [1.0, 1.0], integrals=1)
+    record = drives.integrated(drives.recorded([0.001, 0.004], [1.0, 1.0]))
     problem = ColumnProblem(
         (ColumnBlock(1.0, 2500, 1e9), ColumnBlock(1.0, 2500, 1e9)),
         (None, ColumnJoint(1e9, 0.5)),
@@ -211,12 +211,15 @@ def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field:
 
 def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
     pairs = [
-        (drives.half_sine(2.0, 0.7), drives.half_sine(2.0, 0.7, integral=True)),
-        (drives.sine(1.5, 3.0), drives.sine(1.5, 3.0, integral=True)),
-        (drives.sine(1.5, 3.0, quarters=1), drives.sine(1.5, 3.0, integral=True, quarters=1)),
-        (drives.triangle(2.0, 0.9), drives.triangle(2.0, 0.9, integral=True)),
-        (drives.ricker(2.0, 3.0), drives.ricker(2.0, 3.0, integral=True)),
-        (drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0]), drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0], 1)),
+        (drives.half_sine(2.0, 0.7), drives.integrated(drives.half_sine(2.0, 0.7))),
+        (drives.sine(1.5, 3.0), drives.integrated(drives.sine(1.5, 3.0))),
+        (drives.sine(1.5, 3.0, quarters=1), drives.integrated(drives.sine(1.5, 3.0, quarters=1))),
+        (drives.triangle(2.0, 0.9), drives.integrated(drives.triangle(2.0, 0.9))),
+        (drives.ricker(2.0, 3.0), drives.integrated(drives.ricker(2.0, 3.0))),
+        (
+            drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0]),
+            drives.integrated(drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0])),
+        ),
     ]
     with precision(200):
         for value, integral in pairs:
@@ -237,7 +240,7 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
 @pytest.mark.parametrize(
     ("drive", "size"),  # the greatest value
     [
-        (drives.ricker(0.3, 60.0, integral=True), 0.3 / (math.pi * 60)),
+        (drives.integrated(drives.ricker(0.3, 60.0)), 0.3 / (math.pi * 60)),
         (drives.ricker(2e5, 60.0), 2e5),
         (drives.sine(0.1, 60.0), 0.1),
         (drives.still, 0.0),

@@ -98,9 +98,7 @@ def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
     from validation.solvers.registry import solve
 
     for lift in np.linspace(0.9, 1.1, 23):
-        ground_table, box = scene_of("bouncing").definition()["plane"]["block"]
-        lifted = [ground_table, box | {"at": [0.0, 0.25 + float(lift)]}]
-        scene = scene_of("bouncing", **{"plane.block": lifted, "time.steps": 200})
+        scene = scene_of("bouncing", **{"plane.block.1.at": [0.0, 0.25 + float(lift)], "time.steps": 200})
         history = solve(scene, "rigid-exact").history
         assert history is not None
         ground = boxes_of(scene)

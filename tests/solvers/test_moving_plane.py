@@ -1,15 +1,18 @@
 """Moving blocks by `dda`: columns of blocks and contacts, refusals, fields, and where contact forces are drawn."""
 
 import math
+import re
 
 import meshio
 import numpy as np
 import pytest
 
 import dda
+from dda.contact.rows import OUTCOMES
 from validation.models.plane.figure import frames_figure
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.moving import model_of
+from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver, solve
 
@@ -99,6 +102,23 @@ def test_contacts_that_are_found_are_those_that_a_scene_may_state():
     assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)
 
 
+def test_a_step_that_does_not_end_names_the_contacts_that_flip():
+    """Stones on springs whose period is a tenth of the step land with friction: no state of one corner agrees."""
+    floor = {"name": "floor", "rectangle": [9.0, 1.0], "at": [2.0, -0.5], "fixed": True}
+    stones = {"name": "stone", "count": 4, "seed": 5, "radii": [0.4, 0.5], "across": 4, "at": [0.0, 0.02]}
+    contact = {"stiffness": 1e10, "shear_stiffness": 4e9, "friction": 60.0}
+    plane = {"young": "inf", "density": MASS, "gravity": [0.0, -9.81], "contact": contact}
+    tables = {"plane": plane | {"block": [floor], "random": [stones]}, "time": {"step": 0.03, "steps": 20}}
+    run = solve(parse_scene(tables, "stones"), "dda")
+    assert run.outcome is Outcome.NO_CONTACT_STATE and 0 < len(run.history.time) < 20
+    flipping = re.findall(r"corner (\d+) of (\w+) on edge (\d+) of (\w+)", run.notes[-1])
+    assert flipping and all(block.startswith("stone_") for _, block, _, _ in flipping)
+
+
+def test_every_outcome_of_the_plane_is_one_of_scenes():
+    assert {Outcome(words) for words in OUTCOMES.values()}
+
+
 DRIVEN = {"stiffness": STIFFNESS, "frequency": 12.0, "amplitude": 1e-4}  # p [N/m], Hz, m: less than opens it
 
 
@@ -154,3 +174,12 @@ def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(tmp_path, hori
     # average acceleration shortens the frequency of the free part by w0^3 dt^2 / 12
     lag = own**3 * step**2 / 12 * 0.3
     assert errors[-1] == pytest.approx(lag * DRIVEN["amplitude"] * r / (1 - r**2), rel=0.1)
+
+
+def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
+    block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
+    traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
+    plane = {"young": 1e9, "density": MASS, "block": [block], "load": [traction]}
+    scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
+    (load,) = scene.plane.assembly.loads
+    assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]

@@ -12,6 +12,7 @@ from oracles.box_scenes import box_scene
 from validation.gates.gate import Status
 from validation.models.plane.boxes import boxes_of
 from validation.models.plane.problems import BoxCase, box_problems
+from validation.models.plane.tables import PlaneSection
 from validation.problems.numbered import measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
@@ -103,9 +104,9 @@ def test_a_box_about_its_right_corner_is_the_mirror_image() -> None:
     np.testing.assert_allclose(
         left.columns["box-ground.normal"][1:-1] / boxes_of(scene).boxes[0].mass, 9.81 + upwards, rtol=1e-4
     )
-    ground, box = scene.definition()["plane"]["block"]
-    mirrored = box | {"spin": -box["spin"], "velocity": [-box["velocity"][0], box["velocity"][1]]}
-    right = motion(scene.with_values({"plane.block": [ground, mirrored]}))
+    box = scene.table(PlaneSection).block[1]
+    mirrored = {"plane.block.1.spin": -box.spin, "plane.block.1.velocity": [-box.velocity[0], box.velocity[1]]}
+    right = motion(scene.with_values(mirrored))
     for part, sign in (("box.x", -1), ("box.y", 1), ("box.angle", -1)):
         np.testing.assert_allclose(right.columns[part], sign * left.columns[part], atol=1e-9)
 

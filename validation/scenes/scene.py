@@ -130,16 +130,13 @@ class Scene(SceneTables):
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
             # set ``section.key``, or a key of a table in it, in place; exclusive partners of the key are taken out
             where = self.name
-            *places, key = field.split(".")
             if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
                 raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
-            table: Any = data
-            for place in places:
-                table = table.setdefault(place, {})
-                if not isinstance(table, dict):
-                    raise InputError("must be section.key", source=where, field=field, value=repr(field))
+            table, key = _table_of(data, field)
+            if table is data and "." in field:
+                raise InputError("must be section.key", source=where, field=field, value=repr(field))
             for partner in _excluded(field, value):
-                table.pop(partner.partition(".")[2], None)
+                table.pop(partner.rpartition(".")[2], None)
             table[key] = value
             replaced_keys |= set(excluded)
         sweep = {f: v for f, v in self.sweep.items() if f not in replaced_keys}
@@ -153,6 +150,27 @@ class Scene(SceneTables):
         """Return the scene as plain data (what a file would state)."""
         data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
         return data
+
+
+def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
+    """Return the table that a dotted key stands in, made where it is absent, and what of the key is left there.
+
+    ``plane.block.1.at`` stands in the second entry of a list of tables. What is inside of no table is left whole.
+    """
+    table = data
+    key = field
+    while "." in key:
+        section, _, remainder = key.partition(".")
+        inside = table.setdefault(section, {})
+        if isinstance(inside, list):
+            number, _, remainder = remainder.partition(".")
+            is_entry = remainder and number.isdecimal() and int(number) < len(inside)
+            inside = inside[int(number)] if is_entry else None
+        if not isinstance(inside, dict):
+            break
+        table = inside
+        key = remainder
+    return table, key
 
 
 def _short(value: object) -> str:

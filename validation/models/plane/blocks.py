@@ -100,6 +100,8 @@ class PlaneBlockSection(Section):
                 raise ValueError(f"{self.label}motion and {apart[0]} exclude each other, got both")
         if self.fixed and (self.spin or any(self.velocity)):
             raise ValueError(f"{self.label}must not move where it is fixed, got a velocity")
+        if self.fixed and self.subdivide is not None:
+            raise ValueError(f"{self.label}fixed and subdivide exclude each other, got both")
         try:
             check_polygon(self.outline, 0, 1)
         except ValueError as error:

@@ -38,6 +38,7 @@ from validation.theory.rocking import Rectangle
 
 FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 PREFIX = "rigid-"  # of the scenes of problems
+BOX = "plane.block.1"  # the first box of a scene, after its ground
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
 EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
@@ -108,12 +109,6 @@ class BoxProblem:
 @functools.cache
 def _scene(name: str) -> Scene:
     return load_scene(PREFIX + name)
-
-
-def _changed(name: str, **values: Any) -> dict[str, Any]:
-    """Return the blocks of a problem's own scene, the last one with other values, as a value of a scene."""
-    blocks = _scene(name).definition()["plane"]["block"]
-    return {"plane.block": [*blocks[:-1], blocks[-1] | values]}
 
 
 # ---- standing -------------------------------------------------------------------------------------------------------
@@ -198,7 +193,7 @@ def _restitution_cases() -> tuple[BoxCase, ...]:
         for speed in SPEEDS:
             if (e, speed) == (0.5, 1.0):  # the problem's own scene
                 continue
-            thrown = _changed("restitution", at=[0.0, half_height + LANDING * speed], velocity=[0.0, -speed])
+            thrown = {f"{BOX}.at": [0.0, half_height + LANDING * speed], f"{BOX}.velocity": [0.0, -speed]}
             cases.append(BoxCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown}))
     return tuple(cases)
 
@@ -322,7 +317,7 @@ RATIOS = (1, 10, 1000)  # of the mass of the upper box to that of the lower one;
 
 
 def _heavy_top_cases() -> tuple[BoxCase, ...]:
-    return tuple(BoxCase(f"mass ratio {ratio}", _changed("heavy-top", density=LIGHT * ratio)) for ratio in RATIOS)
+    return tuple(BoxCase(f"mass ratio {ratio}", {"plane.block.2.density": LIGHT * ratio}) for ratio in RATIOS)
 
 
 # ---- toppling -------------------------------------------------------------------------------------------------------
@@ -389,8 +384,9 @@ def _toppling_cases() -> tuple[BoxCase, ...]:
     cases = []
     for factor in SPINS:
         spin = factor * critical_spin(box)
-        started = _changed("toppling", velocity=[-spin * box.height / 2, spin * box.width / 2], spin=spin)
-        cases.append(BoxCase(f"spin {factor:g} of critical", {**started, "time.steps": DECIDED}, overturning))
+        velocity = [-spin * box.height / 2, spin * box.width / 2]
+        started = {f"{BOX}.velocity": velocity, f"{BOX}.spin": spin, "time.steps": DECIDED}
+        cases.append(BoxCase(f"spin {factor:g} of critical", started, overturning))
     return tuple(cases)
 
 
