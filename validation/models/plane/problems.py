@@ -1,4 +1,4 @@
-"""The problems of rigid boxes: what is measured on an answer, its exact value, and the band around it.
+"""The problems of boxes on a ground: what is measured on an answer, its exact value, and the band around it.
 
 An answer is positions. Its numbers are held against closed forms (`validation.theory.boxes`), and the bands are what
 one per cent of a datum changes: data of a body and its contact are not known to better than that, an error below it
@@ -18,11 +18,12 @@ import numpy as np
 
 from validation.diagnosis.numbers import Values
 from validation.errors import InputError
-from validation.models.rigid import measures
-from validation.models.rigid.tables import FORCE, POSE, RigidSection
+from validation.models.plane import measures
+from validation.models.plane.boxes import BoxesOnGround, boxes_of
+from validation.models.plane.tables import PlaneSection
 from validation.problems.numbered import UNKNOWN, JudgedNumber, around
 from validation.problems.problem import Problem, ProblemHooks
-from validation.runs.columns import split, unit_of
+from validation.runs.columns import unit_of
 from validation.runs.history import Array, History
 from validation.runs.units import ratios
 from validation.scenes.scene import Scene, load_scene
@@ -37,6 +38,7 @@ from validation.theory.rocking import Rectangle
 
 FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
 PREFIX = "rigid-"  # of the scenes of problems
+BOX = "plane.block.1"  # the first box of a scene, after its ground
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
 EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
@@ -63,7 +65,7 @@ class BoxCase:
 
 @dataclass(frozen=True)
 class BoxProblem:
-    """A problem of rigid boxes.
+    """A problem of boxes on a ground.
 
     Attributes
     ----------
@@ -76,7 +78,7 @@ class BoxProblem:
     forces
         Whether forces are asked for where a program reports them.
     changeable
-        Keys of `[rigid]` that may be others than in the problem's scene, so that the same numbers answer the question.
+        Keys of `[plane]` that may be others than in the problem's scene, so that the same numbers answer the question.
     """
 
     name: str
@@ -101,7 +103,7 @@ class BoxProblem:
     def _with_forces(self, scene: Scene) -> Scene:
         if not self.forces:
             return scene
-        return scene.with_values({"run.columns": list(scene.table(RigidSection).columns)})
+        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
 
 
 @functools.cache
@@ -114,9 +116,9 @@ def _scene(name: str) -> Scene:
 
 def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the creep of a box that stands on a slope, or how far one slides that does not."""
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
-    if rigid.friction > rigid.slope:
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
+    if ground.friction > ground.slope:
         allowed = 1e3 * UNKNOWN * box.width / MINUTE
         return (
             JudgedNumber(
@@ -128,14 +130,14 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
                 scale=allowed / UNKNOWN,
                 reason="it stands exactly; the place of a block is known to one per cent of its width, and a creep "
                 "that moves it further in a minute changes the answer",
-                measure=lambda history: 1e3 * measures.creep(history),
+                measure=lambda history: 1e3 * measures.creep(history, box),
             ),
         )
     duration = scene.time.duration
     distances = []
     for factor in (1.0, *EITHER_WAY):
-        friction = math.degrees(math.atan(factor * rigid.friction_coefficient))
-        distances.append(sliding_acceleration(rigid.slope, friction, rigid.gravity) * duration**2 / 2)
+        friction = math.degrees(math.atan(factor * ground.friction_coefficient))
+        distances.append(sliding_acceleration(ground.slope, friction, ground.gravity) * duration**2 / 2)
     return (
         around(
             "distance slid",
@@ -143,14 +145,15 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
             distances[0],
             distances[1:],
             "one per cent of tan(phi), which is not known better, moves it as far",
-            measure=lambda history: float(measures.column(history, "x")[-1] - box.x),
+            measure=lambda history: float(measures.column(history, box, "x")[-1] - box.x),
         ),
     )
 
 
 FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
 STANDING_CASES = tuple(
-    BoxCase(f"friction {friction:g} deg", {"rigid.friction": friction, "time.steps": 40}) for friction in FRICTIONS
+    BoxCase(f"friction {friction:g} deg", {"plane.contact.friction": friction, "time.steps": 40})
+    for friction in FRICTIONS
 )
 
 
@@ -159,20 +162,21 @@ STANDING_CASES = tuple(
 
 def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the rebound over the speed of a landing without weight."""
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
     speed = -box.velocity[1]
     landing = box.lift / speed
+    rebound = ground.rebound
     return (
         JudgedNumber(
             "restitution",
             "1",
-            exact=rigid.restitution,
-            low=rigid.restitution - UNKNOWN,
-            high=rigid.restitution + UNKNOWN,
+            exact=rebound,
+            low=rebound - UNKNOWN,
+            high=rebound + UNKNOWN,
             scale=1.0,
             reason="one per cent of the speed of landing: no rebound is known better",
-            measure=lambda history: measures.speed_between(history, "y", landing + SETTLED) / speed,
+            measure=lambda history: measures.speed_between(history, box, "y", landing + SETTLED) / speed,
         ),
     )
 
@@ -184,19 +188,19 @@ LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of th
 
 def _restitution_cases() -> tuple[BoxCase, ...]:
     cases = []
-    own_box = {"width": 1.0, "height": 1.0, "density": 2500.0}
+    half_height = boxes_of(_scene("restitution")).boxes[0].height / 2
     for e in RESTITUTIONS:
         for speed in SPEEDS:
             if (e, speed) == (0.5, 1.0):  # the problem's own scene
                 continue
-            box = own_box | {"lift": LANDING * speed, "velocity": [0.0, -speed]}
-            cases.append(BoxCase(f"e = {e:g}, {speed:g} m/s", {"rigid.restitution": e, "rigid.box": [box]}))
+            thrown = {f"{BOX}.at": [0.0, half_height + LANDING * speed], f"{BOX}.velocity": [0.0, -speed]}
+            cases.append(BoxCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown}))
     return tuple(cases)
 
 
 def _energy(scene: Scene) -> tuple[JudgedNumber, JudgedNumber]:
-    rigid = scene.table(RigidSection)
-    first = measures.first_energy(rigid)
+    ground = boxes_of(scene)
+    first = measures.first_energy(ground)
     reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
     return (
         JudgedNumber(
@@ -207,7 +211,7 @@ def _energy(scene: Scene) -> tuple[JudgedNumber, JudgedNumber]:
             high=1.0 + UNKNOWN,
             scale=1.0,
             reason=reason,
-            measure=lambda history: measures.last_energy(history, rigid) / first,
+            measure=lambda history: measures.last_energy(history, ground) / first,
         ),
         JudgedNumber(
             "largest gain of energy",
@@ -217,7 +221,7 @@ def _energy(scene: Scene) -> tuple[JudgedNumber, JudgedNumber]:
             high=UNKNOWN,
             scale=1.0,
             reason=reason,
-            measure=lambda history: measures.largest_gain(history, rigid),
+            measure=lambda history: measures.largest_gain(history, ground),
         ),
     )
 
@@ -232,9 +236,9 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
 
     Its motion is chaotic; these are not.
     """
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
-    landing_speed = math.sqrt(2 * rigid.gravity * box.lift)
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
+    landing_speed = math.sqrt(2 * ground.gravity * box.lift)
     return (
         *_energy(scene),
         JudgedNumber(
@@ -247,7 +251,7 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
             reason="without friction nothing acts along the ground; one per cent of the speed of landing is what a "
             "coefficient of friction of 0.01 takes in one impact",
             measure=lambda history: abs(
-                measures.speed_between(history, "x", scene.time.duration - measures.LATE) - box.velocity[0]
+                measures.speed_between(history, box, "x", scene.time.duration - measures.LATE) - box.velocity[0]
             ),
         ),
     )
@@ -258,17 +262,16 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far the uppermost of some boxes at rest moves, and the force below the lowest."""
-    rigid = scene.table(RigidSection)
-    top = len(rigid.box)
-    start = rigid.starts[-1]
-    height = start[1] + rigid.box[-1].reach
-    width = min(box.width for box in rigid.box)
-    weight = sum(box.mass for box in rigid.box) * rigid.gravity
+    ground = boxes_of(scene)
+    top = ground.boxes[-1]
+    height = top.y + top.reach
+    width = min(box.width for box in ground.boxes)
+    weight = sum(box.mass for box in ground.boxes) * ground.gravity
     drift = 1e3 * UNKNOWN * width
     sinking = 1e3 * UNKNOWN * height
 
     def force(history: History) -> float | None:
-        values = history.columns.get(f"{FORCE}_1")
+        values = history.columns.get(ground.force_columns[0])
         if values is None or not np.isfinite(values).all():
             return None
         late = -max(1, len(values) // 10)
@@ -283,7 +286,7 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
             high=drift,
             scale=drift / UNKNOWN,
             reason="it stands exactly; the place of a block is known to one per cent of its width",
-            measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, "x", top) - start[0]))),
+            measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, top, "x") - top.x))),
         ),
         JudgedNumber(
             "sinking of the top",
@@ -293,7 +296,7 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
             high=sinking,
             scale=sinking / UNKNOWN,
             reason="rigid boxes do not sink; the height of what is piled up is known to one per cent",
-            measure=lambda history: 1e3 * float(start[1] - measures.column(history, "y", top)[-1]),
+            measure=lambda history: 1e3 * float(top.y - measures.column(history, top, "y")[-1]),
         ),
         JudgedNumber(
             "force below the lowest box",
@@ -309,44 +312,37 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     )
 
 
-LIGHT = {"width": 1.0, "height": 1.0, "density": 10.0}
+LIGHT = 10.0  # kg/m3, of the lower box
 RATIOS = (1, 10, 1000)  # of the mass of the upper box to that of the lower one; 100 is the problem's own
-HEAVY_TOP_CASES = tuple(
-    BoxCase(f"mass ratio {ratio}", {"rigid.box": [LIGHT, LIGHT | {"density": LIGHT["density"] * ratio}]})
-    for ratio in RATIOS
-)
+
+
+def _heavy_top_cases() -> tuple[BoxCase, ...]:
+    return tuple(BoxCase(f"mass ratio {ratio}", {"plane.block.2.density": LIGHT * ratio}) for ratio in RATIOS)
 
 
 # ---- toppling -------------------------------------------------------------------------------------------------------
 
 
-def rectangle_of(scene: Scene) -> Rectangle:
-    """Return the first box of a scene."""
-    rigid = scene.table(RigidSection)
-    return Rectangle(rigid.box[0].width, rigid.box[0].height, rigid.gravity)
+def rectangle_of(ground: BoxesOnGround) -> Rectangle:
+    """Return the lowest box."""
+    box = ground.boxes[0]
+    return Rectangle(box.width, box.height, ground.gravity)
 
 
-def started_about_corner(scene: Scene, spin: float) -> dict[str, Any]:
-    """Return the first box of a scene, which lies flat, with a spin about its lower left corner, as keys of a box."""
-    box = scene.table(RigidSection).box[0]
-    sign = math.copysign(1.0, spin)  # to the right it turns about the right one
-    velocity = [-spin * box.height / 2, sign * spin * box.width / 2]
-    return {"width": box.width, "height": box.height, "density": box.density, "velocity": velocity, "spin": spin}
-
-
-def _rotation(scene: Scene) -> Callable[[History], float]:
-    start = scene.table(RigidSection).starts[0][2]
-    return lambda history: measures.peak(np.abs(measures.column(history, "angle") - start))
+def _rotation(ground: BoxesOnGround) -> Callable[[History], float]:
+    box = ground.boxes[0]
+    return lambda history: measures.peak(np.abs(measures.column(history, box, "angle") - box.angle))
 
 
 def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
-    box = rectangle_of(scene)
-    spin = abs(scene.table(RigidSection).box[0].spin)
+    ground = boxes_of(scene)
+    box = rectangle_of(ground)
+    spin = abs(ground.boxes[0].spin)
     widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
     if spin >= min(critical_spin(changed_box) for changed_box in widths):
         return overturning(scene)
-    rotation = _rotation(scene)
+    rotation = _rotation(ground)
     return (
         around(
             "greatest rotation",
@@ -361,9 +357,10 @@ def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return whether a box overturns."""
-    box = rectangle_of(scene)
-    rotation = _rotation(scene)
-    exact = float(abs(scene.table(RigidSection).box[0].spin) > critical_spin(box))
+    ground = boxes_of(scene)
+    box = rectangle_of(ground)
+    rotation = _rotation(ground)
+    exact = float(abs(ground.boxes[0].spin) > critical_spin(box))
     return (
         JudgedNumber(
             "overturns",
@@ -383,12 +380,13 @@ DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has don
 
 
 def _toppling_cases() -> tuple[BoxCase, ...]:
-    scene = _scene("toppling")
-    critical = critical_spin(rectangle_of(scene))
+    box = rectangle_of(boxes_of(_scene("toppling")))
     cases = []
     for factor in SPINS:
-        box = started_about_corner(scene, factor * critical)
-        cases.append(BoxCase(f"spin {factor:g} of critical", {"rigid.box": [box], "time.steps": DECIDED}, overturning))
+        spin = factor * critical_spin(box)
+        velocity = [-spin * box.height / 2, spin * box.width / 2]
+        started = {f"{BOX}.velocity": velocity, f"{BOX}.spin": spin, "time.steps": DECIDED}
+        cases.append(BoxCase(f"spin {factor:g} of critical", started, overturning))
     return tuple(cases)
 
 
@@ -397,23 +395,23 @@ def _toppling_cases() -> tuple[BoxCase, ...]:
 
 def shaken_box(scene: Scene, factor: float = 1.0) -> ShakenBox:
     """Return the first box of a scene on its moving ground, tan(phi) multiplied by a factor."""
-    rigid = scene.table(RigidSection)
-    friction = factor * rigid.friction_coefficient
-    return ShakenBox(rigid.base_amplitude, rigid.base_frequency, friction, rigid.gravity)
+    ground = boxes_of(scene)
+    friction = factor * ground.friction_coefficient
+    return ShakenBox(ground.base_amplitude, ground.base_frequency, friction, ground.gravity)
 
 
 def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box slips on shaken ground."""
-    rigid = scene.table(RigidSection)
+    box = boxes_of(scene).boxes[0]
     time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
     exact = shaken_box(scene).slip(time)
     changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
-    ground = shaken_box(scene).ground(time)
+    base = shaken_box(scene).ground(time)
     why = "one per cent of tan(phi), which is not known better, changes it by as much"
     width = {"scale": 1e3 * float(np.max(np.abs(exact)))}
 
     def slip(history: History) -> Array:
-        moved: Array = measures.column(history, "x") - rigid.box[0].x - ground
+        moved: Array = measures.column(history, box, "x") - box.x - base
         return moved
 
     return (
@@ -449,42 +447,43 @@ def impact_of(scene: Scene, stiffness: float = 1.0, mass: float = 1.0) -> Spring
     InputError
         The scene gives no stiffness.
     """
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
-    if rigid.stiffness is None:
-        raise InputError("must be given in this problem", source=scene.name, field="rigid.stiffness", value="nothing")
-    speed = math.sqrt(box.velocity[1] ** 2 + 2 * rigid.gravity * box.lift)
-    return SpringImpact(mass * box.mass, stiffness * rigid.stiffness, rigid.gravity, speed)
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
+    if ground.stiffness is None:
+        rule = "must be finite in this problem"
+        raise InputError(rule, source=scene.name, field="plane.contact.stiffness", value="inf")
+    speed = math.sqrt(box.velocity[1] ** 2 + 2 * ground.gravity * box.lift)
+    return SpringImpact(mass * box.mass, stiffness * ground.stiffness, ground.gravity, speed)
 
 
 def impact(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return force, duration and rebound of a landing on a spring."""
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
     exact = impact_of(scene)
     factors = [(factor, 1.0) for factor in EITHER_WAY] + [(1.0, factor) for factor in EITHER_WAY]
     changed = [impact_of(scene, *pair) for pair in factors]
     why = "one per cent of stiffness or density, which are not known better, changes it by as much"
 
     def gap(history: History) -> Array:
-        lifted: Array = measures.column(history, "y") - box.reach
+        lifted: Array = measures.column(history, box, "y") - box.reach
         return lifted
 
     def reported(history: History) -> float | None:
-        values = history.columns.get(f"{FORCE}_1")
+        values = history.columns.get(ground.force_columns[0])
         return None if values is None else measures.peak(values)
 
     def rebound(history: History) -> float | None:
-        flying = measures.in_flight(history, rigid)
+        flying = measures.in_flight(history, ground)
         flying &= history.time > lands + exact.duration
         if not flying.any():
             return None
-        energy = float(np.median(measures.energies(history, rigid)[flying])) + rigid.gravity * (
+        energy = float(np.median(measures.energies(history, ground)[flying])) + ground.gravity * (
             measures.lowest_centre(box) - box.reach
         )
         return math.sqrt(max(0.0, 2 * energy))
 
-    lands = (exact.speed + box.velocity[1]) / rigid.gravity
+    lands = (exact.speed + box.velocity[1]) / ground.gravity
     force = [1e-3 * changed_impact.peak_force for changed_impact in changed]
     return (
         around(
@@ -529,14 +528,14 @@ def _times(factor: float, value: float | None) -> float | None:
 
 @functools.cache
 def box_problems() -> Mapping[str, BoxProblem]:
-    """Return the problems of rigid boxes by name."""
+    """Return the problems of boxes by name."""
     problems = (
-        BoxProblem("standing", standing, STANDING_CASES, changeable=("friction", "slope")),
-        BoxProblem("restitution", restitution, _restitution_cases(), changeable=("restitution",)),
+        BoxProblem("standing", standing, STANDING_CASES, changeable=("contact.friction", "gravity")),
+        BoxProblem("restitution", restitution, _restitution_cases(), changeable=("contact.restitution",)),
         BoxProblem("bouncing", bouncing),
         BoxProblem("tumbling", tumbling),
         BoxProblem("pile", pile, forces=True),
-        BoxProblem("heavy-top", pile, HEAVY_TOP_CASES, forces=True),
+        BoxProblem("heavy-top", pile, _heavy_top_cases(), forces=True),
         BoxProblem("toppling", toppling, _toppling_cases()),
         BoxProblem("shaken", shaken),
         BoxProblem("impact", impact, forces=True),
@@ -558,31 +557,36 @@ ASKS = {
 
 
 def problem_posed(scene: Scene) -> BoxProblem:
-    """Return the problem that a scene of rigid boxes poses: one of the suite's, some of its data perhaps changed.
+    """Return the problem that a scene of blocks poses: one of the suite's, some of its data perhaps changed.
 
     Raises
     ------
     InputError
-        It is none of them; what is measured on any other scene of boxes, and against what, nobody has said.
+        It is none of them; what is measured on any other scene of blocks, and against what, nobody has said.
     """
     name = scene.name.removeprefix(PREFIX).partition("[")[0]
-    names = ", ".join(ASKS)
     if name not in ASKS or not scene.name.startswith(PREFIX):
-        rule = f"must be one of {names}: rigid boxes are judged by the numbers of a problem"
-        raise InputError(rule, source=scene.name, field="rigid", advice="name the problem, and use --set")
+        rule = f"must be one of {', '.join(ASKS)}: blocks that move are judged by the numbers of a problem"
+        raise InputError(rule, source=scene.name, field="plane", advice="name the problem, and use --set")
     problem = box_problems()[name]
     own_scene = problem.scene()
-    rigid = scene.table(RigidSection)
-    for field_name in RigidSection.model_fields:
-        is_changed = getattr(rigid, field_name) != getattr(own_scene.table(RigidSection), field_name)
-        if is_changed and field_name not in (*problem.changeable, "refine"):
-            free = " and ".join(f"rigid.{key}" for key in problem.changeable) or "nothing"
+    stated = _flat(scene)
+    for field_name, value in _flat(own_scene).items():
+        if stated.get(field_name) != value and field_name not in problem.changeable:
+            free = " and ".join(f"plane.{key}" for key in problem.changeable) or "nothing"
             rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
-            raise InputError(rule, source=scene.name, field=f"rigid.{field_name}")
+            raise InputError(rule, source=scene.name, field=f"plane.{field_name}")
     same_time = (scene.time.step, scene.time.steps) == (own_scene.time.step, own_scene.time.steps)
     if not same_time:
         raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
     return problem
+
+
+def _flat(scene: Scene) -> dict[str, Any]:
+    """Return the keys of a scene's table of the plane, those of its contact as ``contact.friction``."""
+    data = scene.table(PlaneSection).model_dump()
+    contact = data.pop("contact")
+    return data | {f"contact.{name}": value for name, value in (contact or {}).items()}
 
 
 def _problem(name: str, posed: BoxProblem, case: BoxCase) -> Problem:
@@ -603,13 +607,13 @@ class HOOKS(ProblemHooks):
                 yield name, functools.partial(_problem, name, posed, case)
 
     def answer_columns(self, scene: Scene) -> tuple[str, ...]:
-        """Return the poses of all boxes."""
-        count = len(scene.table(RigidSection).box)
-        return tuple(f"{part}_{number}" for number in range(1, count + 1) for part in POSE)
+        """Return the poses of all blocks that move; of glued ones what is observed."""
+        plane = scene.table(PlaneSection)
+        return plane.assembly.pose_columns if plane.moves else scene.run.columns
 
     def judged_numbers(self, scene: Scene) -> tuple[JudgedNumber, ...]:
         """Return the numbers of the problem that a scene poses."""
-        return problem_posed(scene).quantities(scene)
+        return problem_posed(scene).quantities(scene) if scene.table(PlaneSection).moves else ()
 
     def changes(self, scene: Scene) -> dict[str, Values]:
         """Return none: the bands are those of the numbers."""
@@ -617,10 +621,10 @@ class HOOKS(ProblemHooks):
 
     def other_units(self, scene: Scene, history: History) -> Iterator[tuple[str, str]]:
         """Yield heights that begin in another unit."""
-        for column, values in history.columns.items():
-            part, box = split(column)
-            start = scene.table(RigidSection).starts[int(box) - 1][1] if part == "y" else 0.0
+        starts = {f"{box.name}.y": box.y for box in boxes_of(scene).boxes}
+        for column, start in starts.items():
+            values = history.columns.get(column, np.array([start]))
             for ratio, other_unit in ratios(unit_of(column, scene.kind.columns)).items():
-                if start and abs(values[0] / start / ratio - 1) < FIRST_ROW:
+                if abs(values[0] / start / ratio - 1) < FIRST_ROW:
                     rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
                     yield column, rule

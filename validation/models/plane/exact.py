@@ -1,4 +1,4 @@
-"""The exact motion of rigid boxes, where it is known; every other scene of them is refused by name."""
+"""The exact motion of rigid boxes on a ground, where it is known; every other scene of the plane is refused by name."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from time import perf_counter
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.models.rigid.tables import FORCE, POSE, BoxSection, RigidSection
+from validation.models.plane.boxes import LANDS_BY, Box, BoxesOnGround, boxes_of
+from validation.models.plane.history import POSE
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
@@ -35,7 +36,7 @@ class RigidExact(Solver):
     """Exact motions of rigid boxes, with Coulomb's friction and Newton's restitution."""
 
     name = "rigid-exact"
-    handles = features.SCHEMES | {features.RIGID_BOXES}
+    handles = features.SCHEMES | {features.PLANE, features.MOVING_BLOCKS}
     sources = ("validation.theory.boxes", "validation.theory.rocking", "fem_reference.exact.rocking")
     role = Role.TRUTH
     rank = 3.0
@@ -76,25 +77,28 @@ class ExactBoxes(Prepared):
 
 
 def motion_of(scene: Scene) -> Motion | str:
-    """Return the motion of a scene of rigid boxes, or why none is known."""
-    rigid = scene.rigid
-    if rigid is None:
-        return "it is of rigid boxes only"
-    box = rigid.box[0]
-    if len(rigid.box) > 1:
-        return _why_pile_moves(rigid) or partial(_pile, rigid)
-    if rigid.base_amplitude:
-        return _why_not_shaken(rigid) or partial(_shaken, rigid)
-    if rigid.stiffness is not None:
-        return _why_not_on_spring(rigid) or partial(_on_spring, rigid)
-    if box.tilt == 0 and box.spin == 0:
+    """Return the motion of a scene of boxes on a ground, or why none is known."""
+    try:
+        ground = boxes_of(scene)
+    except ValueError as error:
+        return str(error)
+    if others := [name for name in scene.run.columns if name not in ground.columns]:
+        return f"it has positions, angles and the normal forces below boxes, {ground.force_columns[0]}, not {others[0]}"
+    box = ground.boxes[0]
+    if len(ground.boxes) > 1:
+        return _why_pile_moves(ground) or partial(_pile, ground)
+    if ground.base_amplitude:
+        return _why_not_shaken(ground) or partial(_shaken, ground)
+    if ground.stiffness is not None:
+        return _why_not_on_spring(ground) or partial(_on_spring, ground)
+    if box.angle == 0 and box.spin == 0:
         if box.lift == 0 and box.velocity[1] == 0:
-            return _why_tips(rigid) or partial(_on_plane, rigid)
-        return _why_not_flat(rigid) or partial(_bouncing, rigid)
-    if box.tilt == 0 and box.lift == 0 and not _turns_off(rigid, box):
-        return _why_not_about_corner(scene, rigid) or partial(_about_corner, rigid)
-    if rigid.friction == 0 and rigid.restitution == 1:
-        return _why_not_tumbling(rigid) or partial(_tumbling, rigid)
+            return _why_tips(ground) or partial(_on_plane, ground)
+        return _why_not_flat(ground) or partial(_bouncing, ground)
+    if box.angle == 0 and box.lift == 0 and not _turns_off(ground, box):
+        return _why_not_about_corner(scene, ground) or partial(_about_corner, ground)
+    if ground.friction == 0 and ground.restitution == 1:
+        return _why_not_tumbling(ground) or partial(_tumbling, ground)
     return (
         "the motion is not known of a box that turns, apart from turning about the corner on which it stands at t = 0, "
         "and from tumbling with friction = 0 and restitution = 1"
@@ -104,71 +108,72 @@ def motion_of(scene: Scene) -> Motion | str:
 # ---- at rest --------------------------------------------------------------------------------------------------------
 
 
-def _why_pile_moves(rigid: RigidSection) -> str | None:
-    if any(box.lift or box.spin or any(box.velocity) for box in rigid.box):
+def _why_pile_moves(ground: BoxesOnGround) -> str | None:
+    if any(box.lift or box.spin or any(box.velocity) for box in ground.boxes):
         return "the motion is not known of several boxes that move at t = 0 or do not touch"
-    if rigid.base_amplitude or rigid.stiffness is not None:
+    if ground.base_amplitude or ground.stiffness is not None:
         return "the motion is not known of several boxes on moving ground, or on contact of given stiffness"
-    if rigid.slope and abs(rigid.slope) >= rigid.friction:
+    if ground.slope and abs(ground.slope) >= ground.friction:
         return "the motion is not known of several boxes that slide"
-    for lowest in range(len(rigid.box)):
-        if not _is_supported(rigid, lowest):
+    for lowest in range(len(ground.boxes)):
+        if not _is_supported(ground, lowest):
             return f"the motion is not known of boxes that overturn, and those from number {lowest + 1} up do"
     return None
 
 
-def _is_supported(rigid: RigidSection, lowest: int) -> bool:
+def _is_supported(ground: BoxesOnGround, lowest: int) -> bool:
     """Whether the resultant weight of all boxes from one up meets what that box stands on."""
-    above = rigid.box[lowest:]
-    starts = rigid.starts[lowest:]
-    foot = starts[0][1] - above[0].reach
+    above = ground.boxes[lowest:]
+    foot = above[0].y - above[0].reach
     mass = sum(box.mass for box in above)
-    x = sum(box.mass * start[0] for box, start in zip(above, starts, strict=True)) / mass
-    height = sum(box.mass * (start[1] - foot) for box, start in zip(above, starts, strict=True)) / mass
-    meets = x + height * math.tan(math.radians(rigid.slope))
+    x = sum(box.mass * box.x for box in above) / mass
+    height = sum(box.mass * (box.y - foot) for box in above) / mass
+    meets = x + height * math.tan(math.radians(ground.slope))
     low = above[0].x - above[0].width / 2
     high = above[0].x + above[0].width / 2
     if lowest:
-        below = rigid.box[lowest - 1]
+        below = ground.boxes[lowest - 1]
         low = max(low, below.x - below.width / 2)
         high = min(high, below.x + below.width / 2)
     return low < meets < high
 
 
-def _pile(rigid: RigidSection, time: Array) -> dict[str, Array]:
+def _pile(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
     columns: dict[str, Array] = {}
-    for number, start in enumerate(rigid.starts, start=1):
-        for part, value in zip(POSE, start, strict=True):
-            columns[f"{part}_{number}"] = np.full(len(time), value)
-        weight = -rigid.pull[1] * sum(box.mass for box in rigid.box[number - 1 :])
-        columns[f"{FORCE}_{number}"] = np.full(len(time), weight)
+    for number, (box, force_column) in enumerate(zip(ground.boxes, ground.force_columns, strict=True)):
+        for part, value in zip(POSE, (box.x, box.y, box.angle), strict=True):
+            columns[f"{box.name}.{part}"] = np.full(len(time), value)
+        weight = -ground.pull[1] * sum(above.mass for above in ground.boxes[number:])
+        columns[force_column] = np.full(len(time), weight)
     return columns
 
 
-def _poses(rigid: RigidSection, time: Array, **moved: Array) -> dict[str, Array]:
+def _poses(ground: BoxesOnGround, time: Array, force: Array | None = None, **moved: Array) -> dict[str, Array]:
     """Return the columns of a box alone: those that are given, the others as they are at t = 0."""
-    x, y, angle = (np.full(len(time), value) for value in rigid.starts[0])
-    columns = {"x": x, "y": y, "angle": angle, FORCE: np.zeros(len(time)), **moved}
-    return {f"{part}_1": values for part, values in columns.items()}
+    box = ground.boxes[0]
+    still = dict.fromkeys(ground.columns, 0.0) | {f"{box.name}.{part}": getattr(box, part) for part in POSE}
+    changed = {f"{box.name}.{part}": values for part, values in moved.items()}
+    columns = {name: np.full(len(time), value) for name, value in still.items()} | changed
+    return columns if force is None else columns | {ground.force_columns[0]: force}
 
 
 # ---- on the plane ---------------------------------------------------------------------------------------------------
 
 
-def _why_tips(rigid: RigidSection) -> str | None:
-    box = rigid.box[0]
-    slides = box.velocity[0] != 0 or abs(rigid.slope) > rigid.friction
-    needed_friction = rigid.friction_coefficient if slides else abs(math.tan(math.radians(rigid.slope)))
+def _why_tips(ground: BoxesOnGround) -> str | None:
+    box = ground.boxes[0]
+    slides = box.velocity[0] != 0 or abs(ground.slope) > ground.friction
+    needed_friction = ground.friction_coefficient if slides else abs(math.tan(math.radians(ground.slope)))
     if needed_friction >= box.width / box.height:
         return "the motion is not known of a box that friction overturns: tan(phi) must be below width / height"
     return None
 
 
-def _on_plane(rigid: RigidSection, time: Array) -> dict[str, Array]:
+def _on_plane(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
     """Stand, slide until friction stops it, or slide on."""
-    box = rigid.box[0]
-    along, across = rigid.pull
-    grip = rigid.friction_coefficient * -across
+    box = ground.boxes[0]
+    along, across = ground.pull
+    grip = ground.friction_coefficient * -across
     velocity = box.velocity[0]
     moved = np.zeros(len(time))
     stop = 0.0
@@ -182,23 +187,25 @@ def _on_plane(rigid: RigidSection, time: Array) -> dict[str, Array]:
     if excess and not math.isinf(stop):  # from rest down the slope, also after it has come to rest
         moved = moved + math.copysign(excess, along) * np.maximum(0.0, time - stop) ** 2 / 2
     force = np.full(len(time), -box.mass * across)
-    return _poses(rigid, time, x=box.x + moved, force=force)
+    return _poses(ground, time, x=box.x + moved, force=force)
 
 
 # ---- flights --------------------------------------------------------------------------------------------------------
 
 
-def _why_not_flat(rigid: RigidSection) -> str | None:
-    box = rigid.box[0]
-    if rigid.friction and (rigid.slope or box.velocity[0]):
+def _why_not_flat(ground: BoxesOnGround) -> str | None:
+    box = ground.boxes[0]
+    if ground.restitution is None:
+        return LANDS_BY
+    if ground.friction and (ground.slope or box.velocity[0]):
         return "the motion is not known of a box that lands with friction while it moves along the ground"
     return None
 
 
-def _bouncing(rigid: RigidSection, time: Array) -> dict[str, Array]:
-    box = rigid.box[0]
-    along, across = rigid.pull
-    flights = _flights(box.lift, box.velocity[1], -across, rigid.restitution, float(time[-1]))
+def _bouncing(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
+    box = ground.boxes[0]
+    along, across = ground.pull
+    flights = _flights(box.lift, box.velocity[1], -across, ground.rebound, float(time[-1]))
     index = np.searchsorted([flight[0] for flight in flights], time, side="right") - 1
     start, lift, velocity = np.array(flights)[index].T
     since = time - start
@@ -206,7 +213,7 @@ def _bouncing(rigid: RigidSection, time: Array) -> dict[str, Array]:
     height = np.where(resting, 0.0, lift + velocity * since + across * since**2 / 2)
     force = np.where(resting, -box.mass * across, 0.0)
     x = box.x + box.velocity[0] * time + along * time**2 / 2
-    return _poses(rigid, time, x=x, y=box.reach + height, force=force)
+    return _poses(ground, time, x=x, y=box.reach + height, force=force)
 
 
 def _flights(
@@ -239,23 +246,21 @@ def _flights(
 # ---- on a spring ----------------------------------------------------------------------------------------------------
 
 
-def _why_not_on_spring(rigid: RigidSection) -> str | None:
-    box = rigid.box[0]
-    if box.tilt or box.spin:
+def _why_not_on_spring(ground: BoxesOnGround) -> str | None:
+    box = ground.boxes[0]
+    if box.angle or box.spin:
         return "the motion is not known of a box that turns on contact of given stiffness"
-    if rigid.restitution != 1:
+    if ground.restitution != 1:
         return "on contact of given stiffness the motion is known with restitution = 1: what loses energy has many laws"
-    if rigid.gravity == 0 or box.velocity[1] > 0:
+    if ground.gravity == 0 or box.velocity[1] > 0:
         return "the motion is not known on contact of given stiffness without weight, or upwards from t = 0 on"
-    return _why_not_flat(rigid)
+    return _why_not_flat(ground)
 
 
-def _on_spring(rigid: RigidSection, time: Array) -> dict[str, Array]:
-    box = rigid.box[0]
-    stiffness = rigid.stiffness
-    if stiffness is None:
-        raise ValueError("rigid.stiffness: must be given, got none")
-    along, across = rigid.pull
+def _on_spring(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
+    box = ground.boxes[0]
+    stiffness = ground.stiffness or math.inf
+    along, across = ground.pull
     gravity = -across
     speed = math.sqrt(box.velocity[1] ** 2 + 2 * gravity * box.lift)
     landing = SpringImpact(box.mass, stiffness, gravity, speed)
@@ -270,37 +275,37 @@ def _on_spring(rigid: RigidSection, time: Array) -> dict[str, Array]:
     height = np.where(pressed, -landing.sinking(cycle), rising * aloft - gravity * aloft**2 / 2)
     force = np.where(pressed, -stiffness * height, 0.0)
     x = box.x + box.velocity[0] * time + along * time**2 / 2
-    return _poses(rigid, time, x=x, y=box.reach + height, force=force)
+    return _poses(ground, time, x=x, y=box.reach + height, force=force)
 
 
 # ---- on moving ground -----------------------------------------------------------------------------------------------
 
 
-def _why_not_shaken(rigid: RigidSection) -> str | None:
-    box = rigid.box[0]
-    if rigid.slope or rigid.gravity == 0 or rigid.stiffness is not None or box.tilt or box.spin:
+def _why_not_shaken(ground: BoxesOnGround) -> str | None:
+    box = ground.boxes[0]
+    if ground.slope or ground.gravity == 0 or ground.stiffness is not None or box.angle or box.spin:
         return "on moving ground the motion is known of a box that lies flat on level, rigid ground"
     if box.lift or any(box.velocity):
         return "on moving ground the motion is known of a box at rest on it at t = 0"
-    peak = abs(rigid.base_amplitude) * (2 * math.pi * rigid.base_frequency) ** 2
-    if min(rigid.friction_coefficient, peak / rigid.gravity) >= box.width / box.height:
+    peak = abs(ground.base_amplitude) * (2 * math.pi * ground.base_frequency) ** 2
+    if min(ground.friction_coefficient, peak / ground.gravity) >= box.width / box.height:
         return "the motion is not known of a box that friction overturns: tan(phi) must be below width / height"
     return None
 
 
-def _shaken(rigid: RigidSection, time: Array) -> dict[str, Array]:
-    box = rigid.box[0]
-    force = np.full(len(time), box.mass * rigid.gravity)
-    if rigid.friction == 0:
-        return _poses(rigid, time, force=force)
-    motion = ShakenBox(rigid.base_amplitude, rigid.base_frequency, rigid.friction_coefficient, rigid.gravity)
-    return _poses(rigid, time, x=box.x + motion.displacement(time), force=force)
+def _shaken(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
+    box = ground.boxes[0]
+    force = np.full(len(time), box.mass * ground.gravity)
+    if ground.friction == 0:
+        return _poses(ground, time, force=force)
+    motion = ShakenBox(ground.base_amplitude, ground.base_frequency, ground.friction_coefficient, ground.gravity)
+    return _poses(ground, time, x=box.x + motion.displacement(time), force=force)
 
 
 # ---- about a corner -------------------------------------------------------------------------------------------------
 
 
-def _turns_off(rigid: RigidSection, box: BoxSection) -> bool:
+def _turns_off(ground: BoxesOnGround, box: Box) -> bool:
     """Whether the velocity at t = 0 is another one than that of a rotation about a lower corner."""
     across = -box.spin * box.height / 2
     upwards = abs(box.spin) * box.width / 2
@@ -308,26 +313,26 @@ def _turns_off(rigid: RigidSection, box: BoxSection) -> bool:
     return abs(box.velocity[0] - across) > allowed or abs(box.velocity[1] - upwards) > allowed
 
 
-def _why_not_about_corner(scene: Scene, rigid: RigidSection) -> str | None:
-    box = rigid.box[0]
-    if rigid.slope or rigid.gravity == 0:
+def _why_not_about_corner(scene: Scene, ground: BoxesOnGround) -> str | None:
+    box = ground.boxes[0]
+    if ground.slope or ground.gravity == 0:
         return "the motion about a corner is known on level ground, under weight"
-    rectangle = Rectangle(box.width, box.height, rigid.gravity)
+    rectangle = Rectangle(box.width, box.height, ground.gravity)
     if abs(box.spin) >= critical_spin(rectangle):
         return "the motion is not known of a box that overturns, beyond the impact at its end"
     end = return_time(rectangle, abs(box.spin))
     if scene.time.duration >= end:
         return f"the motion about a corner is known until the box comes back after {end:.4g} s"
     needed_friction = friction_needed(box.width, box.height, greatest_rotation(rectangle, abs(box.spin)))
-    if rigid.friction_coefficient <= needed_friction:
+    if ground.friction_coefficient <= needed_friction:
         return f"the corner slips: friction must be above {math.degrees(math.atan(needed_friction)):.4g} deg"
     return None
 
 
-def _about_corner(rigid: RigidSection, time: Array) -> dict[str, Array]:
+def _about_corner(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
     """Integrate psi'' = P^2 sin(psi), psi the angle of the centre beyond the vertical through the corner."""
-    box = rigid.box[0]
-    rectangle = Rectangle(box.width, box.height, rigid.gravity)
+    box = ground.boxes[0]
+    rectangle = Rectangle(box.width, box.height, ground.gravity)
     radius = math.hypot(box.width, box.height) / 2
     sign = math.copysign(1.0, box.spin)
 
@@ -343,9 +348,9 @@ def _about_corner(rigid: RigidSection, time: Array) -> dict[str, Array]:
     x = -radius * np.sin(psi)
     y = radius * np.cos(psi)
     falling = -radius * (np.cos(psi) * rate**2 + np.sin(psi) * rectangle.rate2 * np.sin(psi))
-    force = box.mass * (rigid.gravity + falling)
+    force = box.mass * (ground.gravity + falling)
     centre = box.x + sign * (x - box.width / 2)
-    return _poses(rigid, time, x=centre, y=y, angle=sign * (psi + rectangle.alpha), force=force)
+    return _poses(ground, time, x=centre, y=y, angle=sign * (psi + rectangle.alpha), force=force)
 
 
 # ---- tumbling -------------------------------------------------------------------------------------------------------
@@ -360,15 +365,15 @@ class TumblingHorizonError(ArithmeticError):
         self.reason = reason
 
 
-def _why_not_tumbling(rigid: RigidSection) -> str | None:
+def _why_not_tumbling(ground: BoxesOnGround) -> str | None:
     try:
-        _start_of_tumbling(rigid).next_impact(0.0)
+        _start_of_tumbling(ground).next_impact(0.0)
     except TumblingHorizonError as error:
         return f"the motion is not known of a box that at t = 0 does this: {error.reason}"
     return None
 
 
-def _tumbling(rigid: RigidSection, time: Array) -> dict[str, Array]:
+def _tumbling(ground: BoxesOnGround, time: Array) -> dict[str, Array]:
     """From impact to impact of a corner, without friction or loss.
 
     Raises
@@ -376,9 +381,9 @@ def _tumbling(rigid: RigidSection, time: Array) -> dict[str, Array]:
     TumblingHorizonError
         If the box does not go on from impact to impact, or these are more than `MOST_IMPACTS`.
     """
-    box = rigid.box[0]
-    along, across = rigid.pull
-    flight = _start_of_tumbling(rigid)
+    box = ground.boxes[0]
+    along, across = ground.pull
+    flight = _start_of_tumbling(ground)
     heights = np.empty(len(time))
     angles = np.empty(len(time))
     written = 0
@@ -391,23 +396,22 @@ def _tumbling(rigid: RigidSection, time: Array) -> dict[str, Array]:
         written = until
         if impact is None:
             x = box.x + box.velocity[0] * time + along * time**2 / 2
-            return _poses(rigid, time, x=x, y=heights, angle=angles)
+            return _poses(ground, time, x=x, y=heights, angle=angles)
         flight = flight.after(*impact)
     raise TumblingHorizonError(flight.start, f"more than {MOST_IMPACTS} impacts")
 
 
-def _start_of_tumbling(rigid: RigidSection) -> _CornerFlight:
-    box = rigid.box[0]
+def _start_of_tumbling(ground: BoxesOnGround) -> _CornerFlight:
+    box = ground.boxes[0]
     corners = tuple((sx * box.width / 2, sy * box.height / 2) for sx in (-1, 1) for sy in (-1, 1))
-    _, y, angle = rigid.starts[0]
     return _CornerFlight(
         corners=corners,
         inverse_mass=1 / box.mass,
         inverse_inertia=1 / box.inertia,
-        gravity=rigid.pull[1],
+        gravity=ground.pull[1],
         start=0.0,
-        y=y,
-        angle=angle,
+        y=box.y,
+        angle=box.angle,
         velocity=box.velocity[1],
         spin=box.spin,
     )
