@@ -20,7 +20,7 @@ from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
-from dda.plane.outcomes import PlaneContact, sentence, unsettled_contacts
+from dda.plane.outcomes import PlaneContact, found_contact, sentence, stated_contacts, unsettled_contacts
 from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
 from dda.plane.taken import Memory, Springs, write_laws
@@ -478,12 +478,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
     plane = march.method
     springs = plane.springs
     stated = int(plane.places.count[1])
-    contacts = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
-    contacts += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
+    contacts = stated_contacts(model)
     laws = list(plane.places.law[:stated])
     columns: dict[tuple[int, int], int] = {}
     places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
-    corners = plane.detection.corners
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
     present = identity[:, 0] if plane.finds else np.full(kept, stated)
     for row in range(kept):
@@ -492,13 +490,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
             if (corner, edge) not in columns:
                 if history.state[row, k] != INSIDE:
                     continue
-                i = int(corners.block[corner])
-                j = int(corners.block[edge])
                 columns[corner, edge] = len(contacts)
-                contacts.append(
-                    PlaneContact(i, corner - int(corners.start[corner]), j, edge - int(corners.start[edge]))
-                )
-                laws.append(plane.detection.law[i * len(model.blocks) + j])
+                contact = found_contact(march, corner, edge)
+                contacts.append(contact)
+                laws.append(plane.detection.law[contact.block * len(model.blocks) + contact.on])
             places.append((row, k, columns[corner, edge]))
     normal, shear, slip = np.zeros((3, kept, len(contacts)))
     gap = np.full((kept, len(contacts)), np.nan)
