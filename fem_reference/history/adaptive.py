@@ -19,7 +19,7 @@ import numpy as np
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.digits import bounded, front
 from fem_reference.problem.problem import Array, Problem, Scheme
-from fem_reference.problem.result import COLUMNS, Result, check_request
+from fem_reference.problem.result import COLUMNS, Result, check_request, just_ended
 from fem_reference.scheme.newmark import Stepper
 
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")
@@ -68,13 +68,11 @@ def solve_adaptive(
     every = dict(zip(COLUMNS, bounded(history, size), strict=True))
     every |= dict(zip(ADAPTIVE_COLUMNS, (discount, loss), strict=True))
     return Result(
-        time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
+        **just_ended(scheme.step, steps, began, ready),
         columns={name: every[name] for name in columns},
         unknowns=len(model.F),
         **vars(stepper.work),
         notes=(*model.notes, *front(problem, scheme.step), f"stepped: adaptive discount from {floor:g} to 1"),
-        setup_seconds=ready - began,
-        stepping_seconds=time.perf_counter() - ready,
     )
 
 

@@ -49,6 +49,6 @@ def _frequencies(problem: Problem, model: Model) -> Array:
     if len(model.F) <= DENSE:
         squares: Array = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)
     else:
-        squares = np.append(lowest(model, 6)[0], highest_frequency(problem, model=model) ** 2)
+        squares = np.append(lowest(model.K, model.M, 6)[0], highest_frequency(problem, model=model) ** 2)
     frequencies: Array = np.sqrt(np.abs(squares))
     return frequencies
