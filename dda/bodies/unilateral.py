@@ -103,9 +103,6 @@ class UnilateralModel(LoadedBlock):
         for name, moved in carried(motion, step_times(scheme, reached)).items():
             if name in values:
                 values[name] = values[name] + moved
-        impulses = None
-        if options.rule == IMPACT:
-            impulses = np.broadcast_to(scheme.step * history.force[1:].T / block.multiplicity, (2, reached))
         notes = [f"stepped, {ran.how}: contact opens and closes"]
         if n < 6:
             notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
@@ -125,7 +122,6 @@ class UnilateralModel(LoadedBlock):
             base_contacts=(0, 1),
             make_slide=lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
             make_velocity=velocity,
-            impulses=impulses,
             step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
             balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
         )
