@@ -57,7 +57,7 @@ def sampled(
         Series that are reported, as many of each part, over the share of the part.
     """
     if not len(t):
-        return Sampled(*(part[..., :0] for part in sampled(model, nodes, np.zeros(1), digits, series_of)))
+        return Sampled._make(part[..., :0] for part in sampled(model, nodes, np.zeros(1), digits, series_of))
     with precision(bits_of(digits)):
         begun = np.searchsorted([float(node.start.time) for node in nodes], t, side="right") - 1
         passed = np.array(
