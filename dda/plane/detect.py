@@ -16,6 +16,9 @@ At that edge the other part's lowest corner is a contact if it lies over the edg
 belongs to is nearly parallel, the other end of it and those ends of the first edge that lie strictly inside. So of
 corners that coincide one is taken. Cuts of a polygon that is not convex, and corners into which it turns, carry none.
 
+A corner that is behind that edge came there in the last step, or is as deep as springs let the two blocks be pressed.
+One that is deeper than both together was inside before and nothing held it: the history ends by name.
+
 Numbers of corners, sides and parts are those of `dda.plane.polygons`. All is written for arrays or lists, as
 `dda.march.compiled` takes them.
 """
@@ -38,7 +41,7 @@ SAME = 1e-9  # of that size: what rounding leaves of a touch
 SOFT = 1e-4  # of that size: what the springs of parts that touch at an edge may give, where they give no more now
 PRESSED = 2.0  # times as deep as a block is pressed now it may be pressed where it comes to the next one
 NEAR = 1e-3  # of that size, within which a contact inherits from one of other features
-DEEP = 0.25  # of that size: a corner that is pressed deeper has lost its block
+DEEP = 0.25  # of that size: a corner that is deeper has lost its block, even if a step brought it there
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
 NONE = -1
 TOO_MANY = -2  # contacts, for the records that were given
@@ -69,6 +72,8 @@ class Detection(NamedTuple):
     moves: Any  # (b,) 0 of blocks that cannot
     head: Any  # (b,) work: first contact of the step before of a block
     depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
+    before: Matrix  # (n, 2) where the corners were when the last step that was accepted began [m]
+    way: Vector  # (b,) how far the corners of each moved in it, at most [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
     previous: FoundContacts
@@ -94,6 +99,8 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         moves=movable,
         head=np.full(len(polygons), NONE),
         depth=np.zeros(len(polygons)),
+        before=np.full((sum(map(len, polygons)), 2), math.inf),
+        way=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=found_contacts(most),
         previous=found_contacts(most),
@@ -112,6 +119,10 @@ def keep_contacts(detection: Detection) -> None:
     """Take the contacts of a step that was accepted for those of the step before."""
     contacts = detection.contacts
     previous = detection.previous
+    corners = detection.corners
+    for corner in range(len(corners.block)):
+        for axis in range(2):
+            detection.before[corner][axis] = corners.now[corner][axis]
     detection.count[1] = detection.count[0]
     for number in range(detection.count[0]):
         previous.corner[number] = contacts.corner[number]
@@ -134,6 +145,15 @@ def find_contacts(detection: Detection) -> int:
     for block in range(blocks):
         head[block] = NONE
         detection.depth[block] = 0.0
+        detection.way[block] = 0.0
+    for corner in range(len(corners.block)):
+        x = corners.now[corner][0] - detection.before[corner][0]
+        y = corners.now[corner][1] - detection.before[corner][1]
+        block = corners.block[corner]
+        way = math.hypot(x, y)
+        if way == math.inf:  # before the first step
+            way = REACH * detection.size / 2
+        detection.way[block] = max(detection.way[block], way)
     for number in range(detection.count[1] - 1, -1, -1):
         corner = previous.corner[number]
         start = previous.edge[number]
@@ -229,11 +249,12 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     margin = REACH * size
     i = parts.block[p]
     j = parts.block[r]
-    soft = min(max(SOFT * size, PRESSED * max(detection.depth[i], detection.depth[j])), margin)
+    pressed = max(SOFT * size, PRESSED * max(detection.depth[i], detection.depth[j]))
+    soft = min(pressed, margin)
+    deepest = min(pressed + detection.way[i] + detection.way[j], DEEP * size)
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
-    deepest = margin
     old = detection.head[keeper_of(detection, i, j)]
     while old >= 0:
         number = previous.corner[old]
@@ -244,7 +265,6 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
             and min(corners.block[number], on) == min(i, j)
             and max(corners.block[number], on) == max(i, j)
         ):
-            deepest = DEEP * size  # they touched: how deep they are, they were pressed
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
                 end = sides.end[edge]
@@ -351,6 +371,9 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                 continue
             if gap < -deepest:
                 if attempt == 0 and late == 0:
+                    contacts.corner[0] = corner
+                    contacts.edge[0] = start
+                    contacts.gap[0] = gap
                     return TOO_DEEP
                 continue
             if (parts.alone[p] == 0 or parts.alone[r] == 0) and is_known(detection, found, corner, start):

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass
-from typing import NamedTuple
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.rows import FOUND, INSIDE, LOWER, OUTCOMES, Laws, rows_of
+from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
 from dda.march.compiled import ANEW, run_loop
 from dda.march.energy import SUMS, energies_of
 from dda.march.step import Body, Course, History, March, march_of
@@ -21,6 +20,7 @@ from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
+from dda.plane.outcomes import PlaneContact, sentence, unsettled_contacts
 from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
 from dda.plane.taken import Memory, Springs, write_laws
@@ -31,15 +31,6 @@ ROOM = 8  # contacts found of a block for which there is room
 DENSE = 24  # contacts up to which the equations are those of their forces
 TOUCH = 1e-12  # of a block's size, by which a corner that lies on an edge at t = 0 may be beside it
 STICKS, SLIPS = 1, 2
-
-
-class PlaneContact(NamedTuple):
-    """A corner of a block and the edge of another that it may touch, by numbers."""
-
-    block: int
-    corner: int
-    on: int
-    edge: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +52,8 @@ class PlaneResult:
     bond: Array  # (k, bonds, 2, 2) forces of glue: of either end of a bond N and T [N]
     energy: Mapping[str, Array]  # [J], (k,) each: those of `dda.march.energy`, and the balance that their sum leaves
     momentum: Array  # (k, 3) linear in x and y [N s], angular about the origin [N m s]
-    outcome: str  # "completed", or why the history ends early, in words
+    outcome: str  # "completed", or why the history ends early and by which contacts, in words
+    unsettled: tuple[PlaneContact, ...]  # the contacts that ended it: whose states come and go, or whose corner is deep
     reached: int  # steps
     solves: NDArray[np.int64]  # (k,) solves of the open-close iteration since the row before
     cuts: NDArray[np.int64]  # (k,) cuts since the row before
@@ -105,7 +97,7 @@ def solve_plane(
         course = course_of(model)
         start = start_of(model, scheme, march, course)
     kept = steps // every
-    c = len(march.method.places.block)
+    c = len(march.method.places.law)
     b = len(model.blocks)
     history = History(
         motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
@@ -119,11 +111,14 @@ def solve_plane(
         sums=np.zeros((steps + 1, SUMS)),
     )
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
-    # what compiling takes, some 90 s, is a million steps of a block or a contact in plain Python
-    weight = steps * (b + touching) // 50 if compiled is None else compiled * ANEW
+    # what compiling takes, some 20 s, is 200,000 steps of a block or a contact in plain Python
+    weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
     arguments = (march, start, deepcopy(start), course), (history, steps, cut)
-    (reached, outcome), _, how = run_loop(make_steps, (), *arguments, weight)
-    return result_of(model, scheme, march, history, every, reached, outcome, how)
+    (reached, outcome), left, how = run_loop(make_steps, (), *arguments, weight)
+    with np.errstate(all="ignore"):
+        unsettled = unsettled_contacts(model, left[0], history, reached, outcome)
+    result = result_of(model, scheme, march, history, every, reached, how)
+    return replace(result, outcome=sentence(model, reached, outcome, unsettled), unsettled=unsettled)
 
 
 def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
@@ -152,7 +147,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     most = 0 if model.found is None else ROOM * b + ROOM
     places = places_of(model, most)
     springs, pairs = springs_of(model)
-    c = len(places.block)
+    c = len(places.law)
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
     detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
@@ -346,8 +341,7 @@ def places_of(model: PlaneModel, most: int) -> Places:
     return Places(
         count=np.array([stated, stated]),
         law=law_numbers,
-        block=block,
-        on=on,
+        sides=np.column_stack([block, on]),
         bonded=bonded,
         at=at.reshape(-1, 2),
         edge=edge.reshape(-1, 4),
@@ -372,7 +366,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     plane = march.method
     blocks = plane.blocks
     places = plane.places
-    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.block)))
+    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     for k, contact in enumerate(model.contacts):
@@ -413,9 +407,9 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
 
 
 def result_of(
-    model: PlaneModel, scheme: Scheme, march: March, history: History, every: int, reached: int, outcome: int, how: str
+    model: PlaneModel, scheme: Scheme, march: March, history: History, every: int, reached: int, how: str
 ) -> PlaneResult:
-    """Return the result of so many steps."""
+    """Return the result of so many steps that are not said to have ended early."""
     kept = reached // every + 1
     b = len(model.blocks)
     stated = len(model.contacts)
@@ -435,7 +429,6 @@ def result_of(
     repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
     energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
     total = np.sum(list(energy.values()), axis=0)
-    early = "" if outcome == FOUND else f" at step {reached + 1}"
     bonded = np.arange(len(table.contacts)) >= stated
     bonded[stated + 2 * len(model.bonds) :] = False
     bonds = np.stack([table.normal[:, bonded], table.shear[:, bonded]], axis=-1).reshape(kept, -1, 2, 2)
@@ -457,7 +450,8 @@ def result_of(
         bond=bonds,
         energy=energy | {"balance": total - total[0]},
         momentum=inertia.momentum(centroid),
-        outcome=OUTCOMES[outcome] + early,
+        outcome="",
+        unsettled=(),
         reached=reached,
         solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
         cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),

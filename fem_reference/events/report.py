@@ -35,9 +35,7 @@ class Sampled(NamedTuple):
     states: NDArray[np.int64]  # of the contacts, shape (contacts, times)
     series: Array  # values, rates and second derivatives of the series that were asked for, shape (3, series, times)
     rows: Array  # the same of the rows, shape (3, rows, times)
-    held: (
-        Array  # row of each contact less its reference at the node, that of a slide where it has one, (contacts, times)
-    )
+    held: Array  # row of each contact less its reference at the node, or that of a slide, shape (contacts, times)
 
 
 def sampled(

@@ -9,7 +9,7 @@ import pytest
 from conftest import refused, typed
 
 from validation import load_scene, solve
-from validation.advice.draft import KINDS, draft
+from validation.advice.draft import KINDS, MOVING, draft
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
@@ -23,7 +23,8 @@ def default(question: str, value: float) -> float:
 @pytest.mark.parametrize("rock", ["granite", "shale"])
 def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock: str, tmp_path: Path) -> None:
     done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
-    assert done.returncode == 0 and "next: dda-validate advise mine.toml" in done.stdout
+    following = "show" if kind in MOVING else "advise"
+    assert done.returncode == 0 and f"next: dda-validate {following} mine.toml" in done.stdout
     scene = load_scene(tmp_path / "mine.toml")
     assert not [*plausibility_warnings(scene)]
     short = scene.with_values({"time.steps": 3})
@@ -46,6 +47,23 @@ def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path:
     assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
 
 
+@pytest.mark.parametrize("kind", MOVING)
+def test_a_drawn_scene_does_what_it_is_called(kind: str, tmp_path: Path) -> None:
+    """What is to stand stands on its springs, one thousandth of a block's height each under all; the others move."""
+    path = tmp_path / "drawn.toml"
+    path.write_text(draft({"kind": kind, "blocks": 3}, default))
+    scene = load_scene(path).with_values({"time.steps": 200})
+    run = solve(scene, "dda")
+    assert run.outcome is Outcome.COMPLETED and run.history is not None
+    names = [block.name for block in scene.plane.assembly.blocks if not block.held]
+    assert len(names) == {"wall": 3 * 3 + 1}.get(kind, 3)
+    for name in names:
+        x = run.history.columns[f"{name}.x"]
+        y = run.history.columns[f"{name}.y"]
+        way = math.hypot(x[-1] - x[0], y[-1] - y[0])
+        assert (way < 0.01) == (kind in ("stack", "wall", "arch"))
+
+
 def test_what_no_option_says_is_asked() -> None:
     questions: list[str] = []
 
@@ -60,7 +78,10 @@ def test_what_no_option_says_is_asked() -> None:
 @pytest.mark.parametrize(
     ("options", "field"),
     [
-        ({"kind": "wall"}, "--kind"),
+        ({"kind": "castle"}, "--kind"),
+        ({"kind": "wall", "blocks": 101}, "--blocks"),
+        ({"kind": "pile", "blocks": 1}, "--blocks"),
+        ({"kind": "arch", "slope": 10.0}, "--slope"),
         ({"rock": "cheese"}, "--rock"),
         ({"width": -1.0}, "--width"),
         ({"kind": "slope", "slope": 90.0}, "--slope"),

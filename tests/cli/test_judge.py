@@ -391,7 +391,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("none",), "source: must be a solver, module:attribute, ./program, a file of a history or a directory"),
+        (("none",), "SOLVER: must be a solver, module:attribute, ./program, a file of a history or a directory"),
         (("empty",), "empty: must be a directory with PROBLEM.csv"),
         (("dda", "locked", "--keep", "kept"), "must be a folder of answers, to be kept"),
         (("bar-events", "locked"), "does not apply: it requires contact.law"),

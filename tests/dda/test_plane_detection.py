@@ -136,6 +136,8 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
     deep = [floor, at(DIAMOND, -1e-3, -5e-3)]  # five times as deep under the top as it lies within the side
     assert scene.step((0, -1e-3), deep) == [(1, 0, 0, TOP)]
     assert scene.detection.contacts.same[0] == 1
+    scene = Scene([floor, at(DIAMOND, -1e-3, 5e-4)])
+    scene.step((0, -1e-3))
     scene.press(0.0)
     assert scene.step((0, -1e-3), deep) == [(0, 2, 1, 3)]  # the least way out, through which it did not come
 
@@ -199,13 +201,31 @@ def test_more_contacts_than_there_is_room_for():
     assert few.count == TOO_MANY
 
 
-@pytest.mark.parametrize(("sunk", "pressed", "deep"), [(0.019, 0, 0), (0.021, 0, 1), (0.2, 1, 0), (0.3, 1, 1)])
-def test_a_corner_deeper_than_a_step_can_bring_it(sunk, pressed, deep):
-    scene = Scene([SQUARE * 4 - (1, 4), STEEP])
-    found = scene.step((0, -0.01))
-    scene.press(*[float(pressed)] * len(found))
-    scene.step((0, -0.01), [SQUARE * 4 - (1, 4), STEEP - (0, sunk)])
-    assert (scene.count == TOO_DEEP) == bool(deep)
+@pytest.mark.parametrize(
+    ("depths", "pressed", "deep"),
+    [
+        ((0.019,), 0, False),  # of the size of the smallest block, at t = 0
+        ((0.021,), 0, True),
+        ((-0.01, 0.1), 0, False),  # the step brought it
+        ((0.009, 0.009), 0, True),  # it was inside, and nothing held it
+        ((0.009, 0.0095), 1, False),
+        ((-0.01, 0.1, 0.19), 1, False),
+        ((-0.01, 0.26), 0, True),  # a step that brings it through a block
+    ],
+)
+def test_a_corner_deeper_than_a_step_can_bring_it(depths, pressed, deep):
+    floor = SQUARE * 4 - (1, 4)
+    scene = Scene([floor, STEEP])
+    for number, depth in enumerate(depths):
+        if number > 0:
+            scene.press(*[float(pressed)] * scene.count)
+        found = scene.step((0, -0.02), [floor, STEEP - (0, depth)])
+    assert (scene.count == TOO_DEEP) == deep
+    if deep:  # and which corner on which edge
+        assert scene.named(scene.detection.contacts, 1) == [(1, 0, 0, TOP)]
+        assert scene.detection.contacts.gap[0] == pytest.approx(-depths[-1])
+    else:
+        assert (1, 0, 0, TOP) in found
 
 
 def random_scene(seed):
@@ -245,6 +265,7 @@ def test_compiled_and_plain_find_the_same():
     found = scene.step((0.003, -0.004))
     scene.press(*np.arange(len(found)) % 3)
     scene.detection.count[0] = 0
+    scene.detection.before[:] -= 0.01  # as what is open and yet inside has come
     record = as_record(scene.detection)
     lists = as_lists(scene.detection)
     count = find_contacts(lists)

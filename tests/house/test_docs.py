@@ -138,7 +138,7 @@ def test_python_blocks_run(page: str, capsys: pytest.CaptureFixture[str]) -> Non
         assert 1e-4 < form < 1e-2 and mesh < 1e-3 * form and pressure == pytest.approx(5e6, rel=1e-3)
 
 
-@pytest.mark.parametrize("page", ["loads.md", "subblocks.md"])
+@pytest.mark.parametrize("page", ["loads.md", "plane.md", "subblocks.md"])
 def test_tables_of_scenes_load(page: str, tmp_path: Path) -> None:
     (tmp_path / "record.csv").write_text("time,x\n0,0\n1,0.001\n")
     for text in [text for language, _, text in blocks(DOCS / page) if language == "toml"]:

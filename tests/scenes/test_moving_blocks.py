@@ -27,6 +27,7 @@ PLANE = {
     "contact": {"stiffness": 1e9, "friction": 30.0},
     "block": [FLOOR, SQUARE],
 }
+HELD = {"block": [FLOOR, SQUARE | {"fixed": True}, SQUARE | {"name": "loose", "at": [0.0, 1.5]}]}
 L_SHAPE = ((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0))
 
 
@@ -54,13 +55,30 @@ def square(**changes):
             "edges 0 and 2 that do",
         ),
         (square(sides=6), "plane.block.1", "rectangle and sides"),
-        (square(fixed=True), "plane.block", "2 that are fixed"),
+        (square(fixed=True), "plane.block", "2 that are fixed or driven"),
+        (square(motion="shake.csv", fixed=True), "plane.block.1", "both"),
+        (square(motion="shake.csv", velocity=[1.0, 0.0]), "plane.block.1", "both"),
+        (square(motion="shake.csv", spin=0.0), "plane.block.1", "both"),
+        (square(motion="shake.csv", subdivide=[2, 1]), "plane.block.1", "both"),
+        (square(motion="shake.csv"), "plane.block", "2 that are fixed or driven"),
+        (square(motion=1.0), "plane.block.1.motion", "1.0"),
         (square(subdivide=[2, 2]), "plane.block.1", "inf"),
         (square(name="energy"), "plane.block", "'energy'"),
         (square(at=[0.0, 2.0]) | {"gravity": [0.0, 0.0]}, "plane.block", "no load and no velocity"),
         ({"contact": {"stiffness": 1e3}}, "plane.contact.stiffness", "24.5 m"),
         (square(velocity=[0.0, -1e3]), "plane.contact.stiffness", "1.58 m"),
         ({"contact": {"stiffness": 1e9, "cohesion": 1.0}}, "plane.contact", "1 without it"),
+        ({"contact": {"stiffness": 1e9, "friction": 30.0, "tension": 2.0}}, "plane.contact", "2"),
+        ({"pair": [{"blocks": ["square", "floor"], "tension": 2.0}]}, "plane.pair.0", "2"),
+        ({"pair": [{"blocks": ["square", "floor"], "stiffness": 1e3}]}, "plane.pair.0.stiffness", "24.5 m"),
+        ({"pair": [{"blocks": ["square", "square"], "friction": 1.0}]}, "plane.pair.0.blocks", "'square' twice"),
+        ({"block": [FLOOR | {"subdivide": [2, 1]}, SQUARE]}, "plane.block.0", "both"),
+        (
+            HELD | {"bond": [{"blocks": ["square", "floor"], "stiffness": 1e9}]},
+            "plane.bond.0.blocks",
+            "square and floor",
+        ),
+        (HELD | {"touch": [TOUCH]}, "plane.touch.0", "square and floor"),
         ({"pair": [{"blocks": ["square", "flor"], "friction": 1.0}]}, "plane.pair.0.blocks", "'flor'"),
         ({"touch": [TOUCH | {"on": "florr"}]}, "plane.touch.0.on", "'florr'"),
         ({"touch": [TOUCH | {"corner": 4}]}, "plane.touch.0.corner", "4"),
@@ -99,6 +117,22 @@ def test_a_bad_scene_is_refused_by_field_and_value(changes, field, value):
     with pytest.raises(InputError) as caught:
         scene(changes)
     assert (caught.value.field, caught.value.value) == (field, value)
+
+
+@pytest.mark.parametrize(
+    ("field", "advice"),
+    [
+        ("plane.contact.stifness", "did you mean plane.contact.stiffness?"),
+        ("plane.block.1.turnd", "did you mean plane.block.turned?"),
+    ],
+)
+def test_a_key_inside_of_a_table_is_set_or_its_name_is_told(field, advice):
+    changed = scene().with_values({"plane.contact.stiffness": 2e9, "plane.block.1.at": [0.0, 0.7]})
+    assert (changed.plane.contact.stiffness, changed.plane.block[1].at) == (2e9, (0.0, 0.7))
+    assert changed.plane.contact.friction == 30.0
+    with pytest.raises(InputError) as caught:
+        scene().with_values({field: 1.0})
+    assert (caught.value.field, caught.value.advice) == (field, advice)
 
 
 @pytest.mark.parametrize(

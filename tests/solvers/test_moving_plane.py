@@ -1,15 +1,18 @@
 """Moving blocks by `dda`: columns of blocks and contacts, refusals, fields, and where contact forces are drawn."""
 
 import math
+import re
 
 import meshio
 import numpy as np
 import pytest
 
 import dda
+from dda.contact.rows import OUTCOMES
 from validation.models.plane.figure import frames_figure
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.moving import model_of
+from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver, solve
 
@@ -97,3 +100,86 @@ def test_contacts_that_are_found_are_those_that_a_scene_may_state():
     assert second.displacement == pytest.approx(first.displacement, abs=1e-13)
     order = [second.contacts.index(contact) for contact in first.contacts]
     assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)
+
+
+def test_a_step_that_does_not_end_names_the_contacts_that_flip():
+    """Stones on springs whose period is a tenth of the step land with friction: no state of one corner agrees."""
+    floor = {"name": "floor", "rectangle": [9.0, 1.0], "at": [2.0, -0.5], "fixed": True}
+    stones = {"name": "stone", "count": 4, "seed": 5, "radii": [0.4, 0.5], "across": 4, "at": [0.0, 0.02]}
+    contact = {"stiffness": 1e10, "shear_stiffness": 4e9, "friction": 60.0}
+    plane = {"young": "inf", "density": MASS, "gravity": [0.0, -9.81], "contact": contact}
+    tables = {"plane": plane | {"block": [floor], "random": [stones]}, "time": {"step": 0.03, "steps": 20}}
+    run = solve(parse_scene(tables, "stones"), "dda")
+    assert run.outcome is Outcome.NO_CONTACT_STATE and 0 < len(run.history.time) < 20
+    flipping = re.findall(r"corner (\d+) of (\w+) on edge (\d+) of (\w+)", run.notes[-1])
+    assert flipping and all(block.startswith("stone_") for _, block, _, _ in flipping)
+
+
+def test_every_outcome_of_the_plane_is_one_of_scenes():
+    assert {Outcome(words) for words in OUTCOMES.values()}
+
+
+DRIVEN = {"stiffness": STIFFNESS, "frequency": 12.0, "amplitude": 1e-4}  # p [N/m], Hz, m: less than opens it
+
+
+def shaken(directory, step, horizontal):
+    """Return a square that stands on a base which shakes up and down, or is glued between two walls that shake along.
+
+    It has one frequency: four springs of glue are symmetric about its centroid, two under its weight never open.
+    """
+    time = step * np.arange(round(0.3 / step) + 1)
+    moved = DRIVEN["amplitude"] * np.sin(2 * np.pi * DRIVEN["frequency"] * time)
+    record = "\n".join(f"{t!r},{u!r}" for t, u in zip(time.tolist(), moved.tolist(), strict=True))
+    (directory / "shake.csv").write_text(f"time,{'x' if horizontal else 'y'}\n{record}\n")
+    square = {"name": "square", "rectangle": [1.0, 1.0]}
+    walls = [{"name": f"wall_{k}", "rectangle": [1.0, 1.0], "at": [x, 0.0]} for k, x in enumerate((-1.0, 1.0))]
+    sink = MASS * 9.81 / (2 * STIFFNESS)
+    base = {"name": "base", "rectangle": [3.0, 1.0], "at": [0.0, sink - 1.0]}
+    touch = [{"block": "square", "corner": corner, "on": "base", "edge": 2} for corner in (0, 1)]
+    plane = {"young": "inf", "density": MASS}
+    if horizontal:
+        plane["bond"] = [{"blocks": ["square", wall["name"]], "stiffness": STIFFNESS} for wall in walls]
+    else:
+        plane |= {"contact": {"stiffness": STIFFNESS, "friction": 30.0}, "touch": touch, "gravity": [0.0, -9.81]}
+    held = [block | {"motion": str(directory / "shake.csv")} for block in (walls if horizontal else [base])]
+    columns = ["square.x", "square.y", f"{held[0]['name']}.x", f"{held[0]['name']}.y", "energy.balance"]
+    stepping = {"step": step, "steps": len(time) - 1, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
+    return parse_scene(
+        {"plane": plane | {"block": [*held, square]}, "time": stepping, "run": {"columns": columns}}, "s"
+    )
+
+
+@pytest.mark.parametrize("horizontal", [False, True], ids=["pressed", "glued"])
+def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(tmp_path, horizontal):
+    """Its motion is u = a / (1 - r^2) (sin w t - r sin w0 t), r = w / w0; the scheme is of second order."""
+    w = 2 * np.pi * DRIVEN["frequency"]
+    own = math.sqrt((4 if horizontal else 2) * STIFFNESS / MASS)
+    r = w / own
+    errors = []
+    for step in (5e-4, 2.5e-4, 1.25e-4):
+        history = solve(shaken(tmp_path, step, horizontal), "dda").history
+        time = history.time
+        exact = DRIVEN["amplitude"] / (1 - r**2) * (np.sin(w * time) - r * np.sin(own * time))
+        along, across = ("x", "y") if horizontal else ("y", "x")
+        base = next(name for name in history.columns if name.startswith(("base", "wall")))[:-2]
+        driven = DRIVEN["amplitude"] * np.sin(w * time)
+        assert history.columns[f"{base}.{along}"] - history.columns[f"{base}.{along}"][-1] == pytest.approx(
+            driven - driven[-1], abs=1e-9 * DRIVEN["amplitude"]
+        )
+        assert history.columns[f"square.{across}"] == pytest.approx(0.0, abs=1e-9 * DRIVEN["amplitude"])
+        assert np.max(np.abs(history.columns["energy.balance"])) < 1e-9 * MASS * (w * DRIVEN["amplitude"]) ** 2
+        errors.append(np.max(np.abs(history.columns[f"square.{along}"] - exact)))
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx(2.0, abs=0.15)
+    # average acceleration shortens the frequency of the free part by w0^3 dt^2 / 12
+    lag = own**3 * step**2 / 12 * 0.3
+    assert errors[-1] == pytest.approx(lag * DRIVEN["amplitude"] * r / (1 - r**2), rel=0.1)
+
+
+def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
+    block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
+    traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
+    plane = {"young": 1e9, "density": MASS, "block": [block], "load": [traction]}
+    scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
+    (load,) = scene.plane.assembly.loads
+    assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]

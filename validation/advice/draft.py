@@ -15,13 +15,19 @@ from validation.runs.numbers import significant
 TABLES: dict[str, Any] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 ROCKS: dict[str, dict[str, float]] = TABLES["rock"]
 KINDS = tuple(TABLES["text"])
+MOVING = tuple(TABLES["moving"]["title"])  # kinds of blocks in the plane that move
 SPRING_SHARE = 0.05  # of what the block shortens to its middle, by which springs give way
 FIRST_OMEGA_DT = 0.2  # w dt of the first mode, at which constant acceleration damps it at w dt / 4 = 5 %
 BLOCKS_OF_WAVELENGTH = 10
 STEPS_OF_PERIOD = 40
+SINK_SHARE = 1e-3  # of a block's height, by which one spring gives way under the weight of all blocks
+RADIANS_OF_STEP = 1.0  # of a block on one spring
+GRAVITY = 9.81  # m/s2
+MOST_BLOCKS = 100  # of a wall's rows, so that 10,000 are drawn
 LIMITS = {  # of the numbers that may be no arbitrary positive ones
     "pressure": Limit("--pressure", "must be finite", above=-math.inf),
     "slope": Limit("--slope", "must be above -90 and below 90 degrees", above=-90.0, below=90.0),
+    "blocks": Limit("--blocks", f"must be from 2 to {MOST_BLOCKS}", above=1, below=MOST_BLOCKS + 1),
     "friction": Limit("--friction", "must be from 0 to below 90 degrees", below=90.0, ends=(0.0,)),
 }
 
@@ -50,14 +56,20 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
         if name not in ("kind", "rock", *questions):
             listed = ", ".join(f"--{question}" for question in questions)
             raise InputError(f"does not go with --kind {kind}, which takes {listed}", field=f"--{name}")
-    numbers: dict[str, float] = {}
+    numbers: dict[str, Any] = {}
     for name, (question, default) in questions.items():
         numbers[name] = float(options[name]) if name in options else ask(question, default)
         LIMITS.get(name, Limit(f"--{name}")).check(numbers[name])
+    if "blocks" in numbers:
+        numbers["blocks"] = round(numbers["blocks"])
     material = ROCKS[rock]
-    numbers |= material | _derived(kind, numbers, material)
+    derived = _of_moving_blocks if kind in MOVING else _derived
+    numbers |= material | derived(kind, numbers, material)
     words = {name: _written(value) for name, value in numbers.items()}
     text: str = TABLES["text"][kind]
+    if kind in MOVING:
+        moving = TABLES["moving"]
+        text = f'title = "{moving["title"][kind]}"\n\n{moving["head"]}\n{text}\n{moving["tail"]}'
     return text.lstrip().format(rock=rock, **words)
 
 
@@ -79,6 +91,47 @@ def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, flo
     first = math.sqrt(3 * young / material["density"]) / height  # of one strain on a rigid base
     stiffness = young * width / (height * SPRING_SHARE)
     return {"stiffness": significant(stiffness, 2), "step": significant(FIRST_OMEGA_DT / first, 2)}
+
+
+def _of_moving_blocks(kind: str, numbers: Mapping[str, Any], material: Mapping[str, float]) -> dict[str, Any]:
+    """Return what follows for blocks in the plane that move: places, springs by their weight, and steps."""
+    width = numbers["width"]
+    height = numbers.get("height", width)
+    blocks = numbers["blocks"]
+    count = blocks**2 if kind == "wall" else blocks
+    size = width * height
+    places: dict[str, Any] = {}
+    ramp = 0.1
+    steps = 500
+    if kind == "stack":
+        places = {"floor": 4 * width, "middle": height / 2}
+    elif kind == "wall":
+        places = {"floor": (blocks + 4) * width, "centre": blocks * width / 2, "middle": height / 2}
+    elif kind == "arch":
+        places = {"radius": width / 2}
+        size = math.pi * width / 2 * height / blocks
+    elif kind == "blocks-on-slope":
+        places = {"length": (blocks + 3) * width, "rectangles": [[width, height]] * blocks}
+    else:  # a box so wide that the pile is about as high, in whose lower half the blocks begin
+        across = math.ceil(math.sqrt(blocks))
+        inner = across * width
+        places = {
+            "across": across,
+            "least": 0.35 * width,
+            "middle": width / 2,
+            "floor": inner + 2 * width,
+            "centre": inner / 2,
+            "box": 2 * inner,
+            "inside": inner,
+            "right": inner + width / 2,
+        }
+        ramp = 0.0
+        steps = 2000
+    mass = material["density"] * size
+    stiffness = significant(count * mass * GRAVITY / (SINK_SHARE * height), 2)
+    step = significant(RADIANS_OF_STEP * math.sqrt(mass / stiffness), 1)
+    rounded = {name: significant(value, 6) if isinstance(value, float) else value for name, value in places.items()}
+    return rounded | {"stiffness": stiffness, "step": step, "steps": steps, "ramp": ramp}
 
 
 def _written(value: Any) -> str:

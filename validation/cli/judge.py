@@ -139,7 +139,7 @@ def _sources(named: Sequence[str]) -> list[str]:
     for name in named:
         sources += entry_points() if name == INSTALLED else [name]
     if not sources:
-        raise InputError("no other package brings a solver", field="source", value=repr(INSTALLED))
+        raise InputError("no other package brings a solver", field="SOLVER", value=repr(INSTALLED))
     return list(dict.fromkeys(sources))
 
 
@@ -182,7 +182,7 @@ def _answers(
         names_of_tables = HeaderNames(theirs_of(theirs, ours), factors_of(factors, ours))
         return [answers.read_tables(place, asked, names_of_tables)]
     rule = "must be a solver, module:attribute, ./program, a file of a history or a directory of answers"
-    raise InputError(rule, field="source", value=repr(source), advice=answers.EXPORT)
+    raise InputError(rule, field="SOLVER", value=repr(source), advice=answers.EXPORT)
 
 
 def _refuse_inapplicable(answer_set: AnswerSet) -> None:
@@ -315,7 +315,7 @@ def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json:
     if isinstance(solver, UserSolver):
         solver.check_module()
         if reason := solver.load_error():
-            raise InputError(f"cannot be loaded: {reason}", field="source", value=repr(source))
+            raise InputError(f"cannot be loaded: {reason}", field="SOLVER", value=repr(source))
     known = list(dict.fromkeys(study for study, _ in applying().values()))
     for name in studies:
         if name not in (*known, "all"):

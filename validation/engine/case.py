@@ -13,7 +13,7 @@ from typing import Any
 
 from validation.errors import InputError
 from validation.scenes.kinds import MODELS
-from validation.scenes.scene import FILES, Scene
+from validation.scenes.scene import Scene, named_files
 from validation.solvers.contract import Solver
 from validation.solvers.registry import FULL, get_solver
 
@@ -76,10 +76,8 @@ class Case:
             table_data.get(section, {}).pop(key, None)
         table_data["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
         del table_data["run"]["solvers"]  # which others run decides nothing
-        for field, role in FILES.items():
-            section, _, key = field.partition(".")
-            if path := table_data.get(section, {}).get(key):
-                table_data[field] = _file_digest(Path(path), role)
+        for place, role, table, key in [*named_files(table_data)]:
+            table_data[f"{place}.{key}"] = _file_digest(Path(table[key]), role)
         return table_data
 
 

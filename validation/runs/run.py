@@ -53,6 +53,15 @@ class Outcome(WordWithSentence):
         "several consistent contact states",
         "Several contact states are consistent, even over a hundredth of the step; use a smaller step.",
     )
+    TOO_MANY_CONTACTS = (
+        "more contacts than there is room for",
+        "Blocks touch at more places than there is room for, eight of a block; cut their outlines into fewer corners.",
+    )
+    TOO_DEEP = (
+        "a corner deeper in a block than a step can bring it",
+        "A corner lies deeper in a block than a step can bring it and springs let it be pressed; use a smaller step or "
+        "stiffer springs.",
+    )
     SOLVE_LIMIT = (
         "solve limit exceeded",
         "The open-close iteration of a step needs more solves than its limit; allow one more than there are contacts.",

@@ -68,6 +68,7 @@ class Kind:
     columns: OwnColumns = NO_OWN  # numbered columns of histories that only this kind has, without their numbers
     greatest_number: int = 0  # of these
     solvers: ClassVar[Mapping[str, str]] = {}  # that the folder brings, each as ``module:class``
+    files: ClassVar[Mapping[str, str]] = {}  # keys of its tables that name files, and what these are
     refuses: Collection[str] = ()  # common tables that do not go with it
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
 

@@ -22,6 +22,7 @@ from pydantic import Field, ValidationError, model_validator
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs
+from validation.scenes.kinds import kinds
 from validation.scenes.places import scene_files
 from validation.scenes.tabled import SceneTables
 from validation.scenes.tables import GateSection, RunSection, TimeSection
@@ -67,16 +68,14 @@ class Scene(SceneTables):
         return self
 
     def _check_files(self) -> None:
-        for field in FILES:
-            section, _, key = field.partition(".")
-            name = getattr(self.tables().get(section), key, None)
-            if name is not None and "\0" in name:
-                raise ValueError(f"{section}: {key}: must not hold a NUL, got {name!r}")
+        for place, _, table, key in named_files(self.tables()):
+            name = getattr(table, key)
+            if "\0" in name:
+                raise ValueError(f"{place}: {key}: must not hold a NUL, got {name!r}")
             try:
-                if name is not None:
-                    regular(Path(name))
+                regular(Path(name))
             except InputError as error:
-                raise ValueError(f"{section}: {key}: {error}") from None
+                raise ValueError(f"{place}: {key}: {error}") from None
             except (OSError, ValueError):  # that it cannot be read is said where it is read
                 continue
 
@@ -131,16 +130,13 @@ class Scene(SceneTables):
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
             # set ``section.key`` in place; exclusive partners of the key are taken out
             where = self.name
-            section, _, key = field.partition(".")
-            if not key:
-                section, key = "", section
             if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
                 raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))
-            table = data.setdefault(section, {}) if section else data
-            if not isinstance(table, dict):
+            table, key = _table_of(data, field)
+            if table is data and "." in field:
                 raise InputError("must be section.key", source=where, field=field, value=repr(field))
             for partner in _excluded(field, value):
-                table.pop(partner.partition(".")[2], None)
+                table.pop(partner.rpartition(".")[2], None)
             table[key] = value
             replaced_keys |= set(excluded)
         sweep = {f: v for f, v in self.sweep.items() if f not in replaced_keys}
@@ -154,6 +150,27 @@ class Scene(SceneTables):
         """Return the scene as plain data (what a file would state)."""
         data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
         return data
+
+
+def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
+    """Return the table that a dotted key stands in, made where it is absent, and what of the key is left there.
+
+    ``plane.block.1.at`` stands in the second entry of a list of tables. What is inside of no table is left whole.
+    """
+    table = data
+    key = field
+    while "." in key:
+        section, _, remainder = key.partition(".")
+        inside = table.setdefault(section, {})
+        if isinstance(inside, list):
+            number, _, remainder = remainder.partition(".")
+            is_entry = remainder and number.isdecimal() and int(number) < len(inside)
+            inside = inside[int(number)] if is_entry else None
+        if not isinstance(inside, dict):
+            break
+        table = inside
+        key = remainder
+    return table, key
 
 
 def _short(value: object) -> str:
@@ -208,7 +225,7 @@ def _sweepable() -> set[str]:
 
 
 OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
-FILES = {  # keys that name files, and what these are
+FILES = {  # keys that name files, and what these are; `Kind.files` has more
     "fem.mesh": "mesh file",
     "load.base_motion": "record of the base's motion",
     "input.record": "record of the input",
@@ -333,13 +350,38 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
     def beside(value: object) -> object:
         return str(directory / value) if isinstance(value, str) else value
 
+    for _, _, table, key in named_files(data):
+        table[key] = beside(table[key])
+    sweep = data.get("sweep")
     for field in FILES:
-        section, _, key = field.partition(".")
-        table, sweep = data.get(section), data.get("sweep")
-        if isinstance(table, dict) and key in table:
-            table[key] = beside(table[key])
         if isinstance(sweep, dict) and isinstance(sweep.get(field), list):
             sweep[field] = [beside(value) for value in sweep[field]]
+
+
+def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
+    """Yield where tables name a file: the place, what the file is, the table and the key that has its name.
+
+    A table of a list, as ``[[plane.block]]``, has a place for each of its entries.
+    """
+    of_kinds = [kind.files for kind in kinds().values()]
+    for field, role in itertools.chain(FILES.items(), *(files.items() for files in of_kinds)):
+        *parts, key = field.split(".")
+        holders: list[tuple[str, Any]] = [("", tables)]
+        for part in parts:
+            inner = [(f"{place}.{part}".lstrip("."), _value(holder, part)) for place, holder in holders]
+            holders = []
+            for place, value in inner:
+                if isinstance(value, list | tuple):
+                    holders += [(f"{place}.{number}", entry) for number, entry in enumerate(value)]
+                else:
+                    holders.append((place, value))
+        for place, holder in holders:
+            if _value(holder, key) is not None:
+                yield place, role, holder, key
+
+
+def _value(table: Any, key: str) -> Any:
+    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
 def _read_toml(path: Path) -> dict[str, Any]:

@@ -64,10 +64,8 @@ class OneBlock(Prepared):
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps; a discount may follow the kinetic energy."""
-        if features.ADAPTIVE in features.of(self.scene):
-            floor = self.scene.damping.floor
-            return dda.solve_adaptive(self.model, self.scheme, steps, columns, floor, self.full)
-        return dda.solve(self.model, self.scheme, steps, columns, self.full)
+        floor = self.scene.damping.floor if features.ADAPTIVE in features.of(self.scene) else None
+        return dda.solve(self.model, self.scheme, steps, columns, self.full, floor)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency that the load reaches, joints included [rad/s]."""

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from pydantic import ValidationError
 
 from validation.models.plane import geometry
 from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, thickness
@@ -74,12 +75,12 @@ class Assembly:
     @property
     def thinnest(self) -> float:
         """Return the least thickness of a block that moves [m]."""
-        return min(thickness(block.vertices) for block in self.blocks if not block.fixed)
+        return min(thickness(block.vertices) for block in self.blocks if not block.held)
 
     @property
     def pose_columns(self) -> tuple[str, ...]:
         """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
-        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.fixed for part in POSE)
+        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.held for part in POSE)
 
 
 def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], dict[str, tuple[int, ...]]]:
@@ -131,10 +132,15 @@ def assembled(plane: PlaneContents) -> Assembly:
     for number, pair in enumerate(plane.pair):
         if plane.contact is None:
             raise ValueError("contact: is required with pair, got none")
-        springs = pair.over(plane.contact)
+        try:
+            springs = pair.over(plane.contact)
+        except ValidationError as error:
+            raise ValueError(f"pair.{number}: {error.errors()[0]['ctx']['error']}") from None
         first, second = (_named(members, name, f"pair.{number}.blocks") for name in pair.blocks)
-        for i, j in itertools.product(first, second):
-            springs_of_pairs[min(i, j), max(i, j)] = springs
+        pairs = [(min(i, j), max(i, j)) for i, j in itertools.product(first, second) if i != j]
+        if not pairs:
+            raise ValueError(f"pair.{number}.blocks: must name two blocks, got {pair.blocks[0]!r} twice")
+        springs_of_pairs.update(dict.fromkeys(pairs, springs))
     assembly = Assembly(
         blocks=blocks,
         members=members,
@@ -169,9 +175,12 @@ def _bonds(
     """Yield the bonds that a scene states, and the glue of blocks that are cut."""
     for number, bond in enumerate(plane.bond):
         firsts, seconds = (_named(members, name, f"bond.{number}.blocks") for name in bond.blocks)
+        if all(blocks[i].held for i in (*firsts, *seconds)):
+            raise ValueError(f"bond.{number}.blocks: one of two must move, got {' and '.join(bond.blocks)}")
         bonds = [
             Bond(i, j, edge, bond.stiffness, bond.shear)
             for i, j in itertools.product(firsts, seconds)
+            if not (blocks[i].held and blocks[j].held)
             for edge in _shared_edges(blocks, i, j)
         ]
         if not bonds:
@@ -224,7 +233,9 @@ def _edge_parts(block: PlacedBlock, edge: Segment) -> Iterator[Segment]:
     for side in (across, -across):  # a strip whose long side is the line, on one side of it and on the other
         strip = (start, end, end + side, start + side) if side is across else (end, start, start + side, end + side)
         corners = tuple((float(x), float(y)) for x, y in strip)
-        yield from geometry.shared_edges(block.vertices, corners, tolerance / 2)
+        for part in geometry.shared_edges(block.vertices, corners, tolerance / 2):
+            if math.dist(*part) > 2 * tolerance:  # not the strip's short sides, which lie on joints of its neighbours
+                yield part
 
 
 def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContact]:
@@ -241,6 +252,8 @@ def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContac
                 raise ValueError(f"{field}.{key}: must be from 0 to {len(corners) - 1} of {name}, got {index}")
         if block == on:
             raise ValueError(f"{field}.on: must be another block, got {touch.on!r}")
+        if assembly.blocks[block].held and assembly.blocks[on].held:
+            raise ValueError(f"{field}: one of two blocks must move, got {touch.block} and {touch.on}")
         share, outside = geometry.corner_on_edge(outline[touch.corner], other, touch.edge)
         size = min(thickness(outline), thickness(other))
         place = f"corner {touch.corner} of {touch.block}"
@@ -265,8 +278,8 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
         "field: rule, got value".
     """
     blocks = assembly.blocks
-    if all(block.fixed for block in blocks):
-        raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed")
+    if all(block.held for block in blocks):
+        raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed or driven")
     sizes = np.array([thickness(block.vertices) for block in blocks])
     joined = {number for bond in assembly.bonds for number in (bond.first, bond.second)}
     joined |= {number for contact in assembly.contacts for number in (contact.block, contact.on)}
@@ -275,21 +288,21 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
         for i, j in geometry.near_pairs(outlines, TOUCHING * sizes):
             size = min(sizes[i], sizes[j])
             depth = geometry.overlap(outlines[i], outlines[j])
-            if depth > OVERLAP * size and not (blocks[i].fixed and blocks[j].fixed):
+            if depth > OVERLAP * size and not (blocks[i].held and blocks[j].held):
                 raise ValueError(f"block: {blocks[i].name} and {blocks[j].name} must not overlap, got {depth:.3g} m")
             if depth > 0 or geometry.gap(outlines[i], outlines[j]) <= TOUCHING * size:
                 joined |= {i, j}
     loaded = {load.block for load in assembly.loads}
     weighty = any(plane.gravity)
     for number, block in enumerate(blocks):
-        if block.fixed or number in joined:
+        if block.held or number in joined:
             continue
         if assembly.contacts or (assembly.bonds and assembly.springs is None):
             raise ValueError(f"block: {block.name} must be in a touch or a bond as others are, got neither")
         if not (weighty or number in loaded or block.spin or any(block.velocity)):
             raise ValueError(f"block: {block.name} touches nothing and nothing moves it, got no load and no velocity")
     for number, block in enumerate(blocks):
-        if not block.fixed and assembly.springs is not None:
+        if not block.held and assembly.springs is not None:
             _check_springs(plane, assembly, number, float(sizes[number]))
 
 
@@ -298,6 +311,7 @@ def _check_springs(plane: PlaneContents, assembly: Assembly, number: int, size: 
     block = assembly.blocks[number]
     pairs = [springs for pair, springs in assembly.springs_of_pairs.items() if number in pair]
     stiffness = min(springs.stiffness for springs in (*pairs, assembly.springs) if springs is not None)
+    softest = [f"pair.{k}" for k, pair in enumerate(plane.pair) if pair.stiffness == stiffness] or ["contact"]
     mass = block.density * area(block.vertices)
     for cause, depth in (
         ("weight", mass * math.hypot(*plane.gravity) / stiffness),
@@ -305,6 +319,6 @@ def _check_springs(plane: PlaneContents, assembly: Assembly, number: int, size: 
     ):
         if depth > size:
             raise ValueError(
-                f"contact.stiffness: must stop {block.name}, which is {size:.3g} m thick, and {stiffness:g} N/m lets "
-                f"its {cause} through, got {depth:.3g} m"
+                f"{softest[0]}.stiffness: must stop {block.name}, which is {size:.3g} m thick, and {stiffness:g} N/m "
+                f"lets its {cause} through, got {depth:.3g} m"
             )

@@ -34,9 +34,15 @@ class PlacedBlock:
     poisson: float
     hypothesis: Hypothesis
     fixed: bool
+    motion: str | None  # file of the record by which it is driven
     velocity: tuple[float, float]  # of the centroid [m/s]
     spin: float  # rad/s
     angle: float  # from the outline as it is stated [rad]
+
+    @property
+    def held(self) -> bool:
+        """Whether nothing moves it but a record, if that."""
+        return self.fixed or self.motion is not None
 
 
 class PlaneMaterialSection(Section):
@@ -63,6 +69,10 @@ class PlaneBlockSection(Section):
     velocity: Annotated[tuple[Real, Real], Key("m/s", "of the centroid at t = 0")] = (0.0, 0.0)
     spin: Annotated[Real, Key("rad/s", "at t = 0, counter-clockwise")] = 0.0
     fixed: Annotated[Flag, Key("", "whether it does not move")] = False
+    motion: Annotated[
+        str | None,
+        Key("", "of a block that is driven: CSV file with the header time,x or time,y or time,x,y, in s and m"),
+    ] = None
     density: Annotated[Positive | None, Key("kg/m3", "that of plane if absent", "ρ")] = None
     young: Annotated[Stiffness | None, Key("Pa", "that of plane if absent; inf: rigid", "E")] = None
     poisson: Annotated[PoissonRatio | None, Key("", "that of plane if absent", "μ")] = None
@@ -84,8 +94,14 @@ class PlaneBlockSection(Section):
             raise ValueError(f"{self.label}sides and radius go together, got one of them")
         if self.subdivide is not None and self.rectangle is None:
             raise ValueError(f"{self.label}subdivide goes with rectangle only, got {shapes[0]}")
+        if self.motion is not None:
+            apart = [name for name in ("fixed", "velocity", "spin", "subdivide") if name in self.model_fields_set]
+            if apart:
+                raise ValueError(f"{self.label}motion and {apart[0]} exclude each other, got both")
         if self.fixed and (self.spin or any(self.velocity)):
             raise ValueError(f"{self.label}must not move where it is fixed, got a velocity")
+        if self.fixed and self.subdivide is not None:
+            raise ValueError(f"{self.label}fixed and subdivide exclude each other, got both")
         try:
             check_polygon(self.outline, 0, 1)
         except ValueError as error:
@@ -126,6 +142,7 @@ class PlaneBlockSection(Section):
                 poisson=material.poisson if self.poisson is None else self.poisson,
                 hypothesis=material.hypothesis,
                 fixed=self.fixed,
+                motion=self.motion,
                 velocity=(self.velocity[0] - self.spin * float(arm[1]), self.velocity[1] + self.spin * float(arm[0])),
                 spin=self.spin,
                 angle=math.radians(self.turned),

@@ -72,8 +72,11 @@ def _draw_tractions(sketch: Sketch, loads: Sequence[tuple[Segment, tuple[float, 
 def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
     """Draw what is fixed, stated contacts, forces, tractions and velocities."""
     for block in assembly.blocks:
-        if block.fixed:
+        if block.held:
             sketch.polygon(block.vertices, **FIXED)
+        if block.motion is not None:
+            travel = np.array([LONGEST * sketch.size, 0.0])
+            sketch.arrow(centroid(block.vertices) - travel / 2, travel, head="<|-|>")
     for contact in assembly.contacts:
         sketch.dot(assembly.blocks[contact.block].vertices[contact.corner])
     _draw_tractions(sketch, [(load.edge, load.vector) for load in assembly.loads if load.edge is not None])
@@ -124,7 +127,7 @@ def frames_figure(
         figure, ((*row,),) = axes_grid([(height, 0.0)], len(steps), MARGINS)
         for number, (axes, step) in enumerate(zip(row, steps, strict=True)):
             for block, outline in zip(assembly.blocks, outlines[step], strict=True):
-                axes.fill(*outline.T, **(FIXED if block.fixed else MOVING))
+                axes.fill(*outline.T, **(FIXED if block.held else MOVING))
             for place, force in forces[step]:
                 tail = place - LONGEST * size * force / (largest or 1.0)
                 if np.any(force):
@@ -144,7 +147,7 @@ def _limits(assembly: Assembly, frames: Sequence[Sequence[Array]]) -> tuple[Arra
         outline
         for outlines in frames
         for block, outline in zip(assembly.blocks, outlines, strict=True)
-        if not block.fixed
+        if not block.held
     ]
     corners = np.vstack(moving or frames[0])
     low, high = corners.min(axis=0), corners.max(axis=0)

@@ -6,7 +6,7 @@ import difflib
 from typing import Any, ClassVar
 
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.history import PlaneColumns, numbers_of, place_of
+from validation.models.plane.history import RATES, PlaneColumns, numbers_of, place_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.kinds import Kind
 
@@ -20,6 +20,7 @@ class BlocksInThePlane(Kind):
     rank = 3.0
     tables: ClassVar = {"plane": PlaneSection}
     columns = PlaneColumns()
+    files: ClassVar = {"plane.block.motion": "record of a block's motion"}
     fem_keys = ("elements", "degree", "foundation", "patch_width")
 
     def run(self, table: PlaneSection) -> dict[str, Any]:
@@ -60,7 +61,8 @@ def _is_column(column: str, assembly: Assembly) -> bool:
             return False
         stated = [(one.block, one.corner, one.on, one.edge) for one in assembly.contacts]
         return not stated or numbers_of(place.contact, [*corners]) in stated
-    return bool(place.whole) or place.block in corners
+    rate_of_driven = place.part in RATES and place.block in {block.name for block in assembly.blocks if block.motion}
+    return bool(place.whole) or (place.block in corners and not rate_of_driven)
 
 
 KIND = BlocksInThePlane

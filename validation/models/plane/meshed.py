@@ -50,8 +50,10 @@ def refusal_of(scene: Scene, plane: PlaneSection) -> str | None:
         return "corner springs need a patch: fem.foundation = 'patch' with patch_width (or 'corner')"
     if plane.ramp or any(load.ramp for load in assembly.loads):
         return "loads must come on at once"
-    if any(np.isinf(block.young) for block in assembly.blocks if not block.fixed):
+    if any(np.isinf(block.young) for block in assembly.blocks if not block.held):
         return "blocks must be elastic, got young = inf"
+    if any(block.motion is not None for block in assembly.blocks):
+        return "blocks must be fixed or move by themselves, got one that is driven"
     if any(contact.springs.tension for contact in assembly.contacts):
         return "contacts must carry no tension"
     return None
@@ -66,7 +68,7 @@ class MovingMesh(Prepared):
         self.scene = scene
         self.scheme = scheme
         self.assembly = plane.assembly
-        self.moving = [i for i, block in enumerate(self.assembly.blocks) if not block.fixed]
+        self.moving = [i for i, block in enumerate(self.assembly.blocks) if not block.held]
         width = scene.fem.patch_width or 0.0
         with naming(scene):
             bodies = [self._body(i, plane) for i in self.moving]
@@ -127,7 +129,7 @@ class MovingMesh(Prepared):
         """Return what a block does; a fixed one nothing."""
         block = self.assembly.blocks[number]
         start = dict(zip(MEANS, (*centroid(block.vertices), block.angle), strict=False)).get(part, 0.0)
-        if block.fixed:
+        if block.held:
             return np.full(len(result.time), start)
         row = str(len(MEANS) * self.moving.index(number) + MEANS.index(RATES.get(part, part)))
         return np.asarray(result.rates[row] if part in RATES else start + result.columns[row])
@@ -158,7 +160,7 @@ def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, widt
     if abs(gap) <= TOUCHING * assembly.thinnest:
         gap = 0.0
     first, second = contact.block, contact.on
-    if assembly.blocks[first].fixed:
+    if assembly.blocks[first].held:
         corner = corner - gap * normal
         end = end - gap * normal
         first, second = second, first
@@ -166,7 +168,7 @@ def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, widt
     springs = contact.springs
     return PatchContact(
         moving.index(first),
-        None if assembly.blocks[second].fixed else moving.index(second),
+        None if assembly.blocks[second].held else moving.index(second),
         (float(corner[0]), float(corner[1])),
         (float(end[0]), float(end[1])),
         (float(normal[0]), float(normal[1])),
@@ -184,8 +186,8 @@ def _glue(assembly: Assembly, moving: list[int], width: float) -> list[PatchCont
 
     contacts = []
     for bond in assembly.bonds:
-        first, second = (bond.second, bond.first) if assembly.blocks[bond.first].fixed else (bond.first, bond.second)
-        below = None if assembly.blocks[second].fixed else moving.index(second)
+        first, second = (bond.second, bond.first) if assembly.blocks[bond.first].held else (bond.first, bond.second)
+        below = None if assembly.blocks[second].held else moving.index(second)
         for start, end in (_strip(bond.edge, width), _strip((bond.edge[1], bond.edge[0]), width)):
             along = np.subtract(*bond.edge) / np.hypot(*np.subtract(*bond.edge))
             normal = float(-along[1]), float(along[0])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes.outline import area
+from validation.scenes.record import read_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
 from validation.solvers.translation import naming
@@ -44,6 +46,7 @@ def model_of(plane: PlaneSection) -> dda.PlaneModel:
             poisson=block.poisson,
             hypothesis=block.hypothesis,
             fixed=block.fixed,
+            motion=None if block.motion is None else _driven(block.motion),
             velocity=block.velocity,
             spin=block.spin,
             name=block.name,
@@ -58,7 +61,7 @@ def model_of(plane: PlaneSection) -> dda.PlaneModel:
         for number, block in enumerate(assembly.blocks):
             mass = block.density * area(block.vertices)
             weight = mass * plane.gravity[0], mass * plane.gravity[1]
-            loads += [] if block.fixed else [dda.PlaneLoad(number, weight, ramp=plane.ramp)]
+            loads += [] if block.held else [dda.PlaneLoad(number, weight, ramp=plane.ramp)]
     return dda.PlaneModel(
         blocks,
         contacts=[
@@ -72,6 +75,11 @@ def model_of(plane: PlaneSection) -> dda.PlaneModel:
         gravity=(0.0, 0.0) if plane.ramp else plane.gravity,
         found=None if plane.touch else _found(assembly),
     )
+
+
+def _driven(path: str) -> dda.BaseMotion:
+    record = read_record(Path(path))
+    return dda.BaseMotion(record.time, np.column_stack([record.x, record.y]))
 
 
 def _found(assembly: Assembly) -> object:

@@ -6,6 +6,7 @@ import itertools
 import math
 import string
 from collections.abc import Collection, Iterator, Sequence
+from pathlib import Path
 
 import numpy as np
 
@@ -102,16 +103,19 @@ def _raster(assembly: Assembly) -> list[str]:
 def letters(assembly: Assembly) -> list[str]:
     """Return the character that each block is drawn by; after fifty-two of them they repeat."""
     moving = itertools.cycle(LETTERS)
-    return [FIXED if block.fixed else next(moving) for block in assembly.blocks]
+    return [FIXED if block.held else next(moving) for block in assembly.blocks]
 
 
 def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
     """Return what the blocks are, what joins them and what drives them, a line each."""
-    moving = [block for block in assembly.blocks if not block.fixed]
+    moving = [block for block in assembly.blocks if not block.held]
     legend = zip(assembly.blocks, letters(assembly), strict=True)
     names = ", ".join(f"{letter} {block.name}" for block, letter in legend) if len(moving) <= MOST_ROWS // 2 else ""
     material = "rigid" if math.isinf(plane.young) else TEXTS.text("elastic", plane)
-    lines = [names, TEXTS.text("blocks", len(moving), len(assembly.blocks) - len(moving), plane.density, material)]
+    driven = [block for block in assembly.blocks if block.motion is not None]
+    fixed = len(assembly.blocks) - len(moving) - len(driven)
+    lines = [names, TEXTS.text("blocks", len(moving), fixed, plane.density, material)]
+    lines += [TEXTS.text("driven", block.name, Path(str(block.motion)).name) for block in driven]
     if plane.contact is not None:
         keys = ", ".join(described(name, value, key) for name, value, key in stated(plane.contact))
         lines += [TEXTS.text("stated" if plane.touch else "found", len(plane.touch)), f"  {keys}"]
@@ -146,7 +150,7 @@ def glued_numbers(plane: PlaneSection) -> Iterator[Number]:
 def moving_numbers(plane: PlaneSection, step: float) -> Iterator[Number]:
     """Yield the numbers of moving blocks: a corner of the lightest one on the stiffest spring is the fastest motion."""
     assembly = plane.assembly
-    moving = [block for block in assembly.blocks if not block.fixed]
+    moving = [block for block in assembly.blocks if not block.held]
     masses = [block.density * area(block.vertices) for block in moving]
     yield Number("blocks", len(moving), "", "blocks that move")
     yield Number("m", sum(masses), "kg", "mass of all that move")

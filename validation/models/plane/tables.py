@@ -24,7 +24,7 @@ from validation.scenes.tables import Count, Positive, Real
 
 OF_MOTION = ("contact", "pair", "touch", "bond", "ramp", *GENERATORS)  # keys that go with moving blocks only
 OF_GLUED = ("stress", "clamp", "clamp_glue", "width", "height", "subdivide", "pattern")  # with glued ones only
-OF_MOVING_BLOCK = ("velocity", "spin", "fixed", "density", "young", "poisson", "subdivide")
+OF_MOVING_BLOCK = ("velocity", "spin", "fixed", "motion", "density", "young", "poisson", "subdivide")
 
 
 class ClampSection(Section):

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 import dda
-from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
+from dda.bodies.turning_block import RollingModel
 from validation.models.rigid.tables import RigidSection
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
@@ -61,7 +61,7 @@ class BlocksOfBoxes(Prepared):
             spin=box.spin,
         )
         steps = self.scene.time.steps * self.per_row
-        result = solve_rolling(model, self.scheme, steps, ("displacement", "horizontal_displacement"), RollingOptions())
+        result = dda.solve_unilateral(model, self.scheme, steps, ("displacement", "horizontal_displacement"))
         x, y, angle = self.rigid.starts[0]
         columns = {
             "x_1": x + result.columns["horizontal_displacement"],
