@@ -16,14 +16,12 @@ from fem_reference.column.mesh import LineMesh
 from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitation
 from fem_reference.column.stepping import Model, Observation, observed_by, row_of
 from fem_reference.contact import compilation
-from fem_reference.contact.driver import histories
-from fem_reference.contact.iteration import CONVERGED, OVERFLOW
+from fem_reference.contact.driver import OUTCOMES, histories
+from fem_reference.contact.iteration import CONVERGED, NONE, OVERFLOW
 from fem_reference.contact.march import Record
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result, just_ended
 
-COMPLETED = "completed"
-UNSOLVED = "no consistent contact state"
 OF_CONTACTS = ("force", "gap", "slip")
 
 
@@ -121,7 +119,7 @@ def solve_contacts(
         unknowns=len(model.free),
         **vars(stepper.work),
         notes=notes,
-        outcome=COMPLETED if completed else UNSOLVED,
+        outcome=OUTCOMES[CONVERGED if completed else NONE],
         step_solves=record.solves,
         states=record.states.T,
         openings=openings.T,

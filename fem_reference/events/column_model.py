@@ -166,9 +166,9 @@ class ColumnModel(System):
                 incidence[i, face % (count + 1)] = 1
         masses = [arb(block.density) * arb(block.height) for block in problem.blocks]
         springs = [arb(b.modulus) / arb(b.height) if math.isfinite(b.modulus) else arb(0) for b in problem.blocks]
-        both = foot + top
-        weighted = both.transpose() * diagonal([m / 6 for m in masses])
-        mass = weighted * both + foot.transpose() * diagonal([m / 6 for m in masses]) * foot
+        self.both = foot + top
+        weighted = self.both.transpose() * diagonal([m / 6 for m in masses])
+        mass = weighted * self.both + foot.transpose() * diagonal([m / 6 for m in masses]) * foot
         mass = mass + top.transpose() * diagonal([m / 6 for m in masses]) * top
         stiffness = (top - foot).transpose() * diagonal(springs) * (top - foot)
         load = weighted * column([arb(-3) * arb(problem.gravity)] * len(masses))
@@ -221,14 +221,11 @@ class ColumnModel(System):
                 by_face.setdefault(face, []).append(arb(block.velocity))
         if all(speed == speeds[0] for speeds in by_face.values() for speed in speeds):
             return column([by_face[i][0] for i in range(self.size)])
-        momentum = arb_mat(self.size, 1)
-        for (foot, top), block in zip(self.faces, blocks, strict=True):
-            share = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
-            for face in (foot, top):
-                if face != BASE:
-                    momentum[face, 0] = momentum[face, 0] + share
-        momentum[0, 0] = momentum[0, 0] - self.base_coupling * base
-        return self.mobility * momentum
+        halves = [arb(block.density) * arb(block.height) * arb(block.velocity) / 2 for block in blocks]
+        momentum = self.both.transpose() * column(halves)
+        own = column(momentum.entries()[: self.size])
+        own[0, 0] = own[0, 0] - self.base_coupling * base
+        return self.mobility * own
 
     def displacements(self, base: arb) -> arb_mat:
         """Displacement of each unknown at t = 0, where the base is."""

@@ -84,14 +84,10 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
         raise ValueError(f"scheme: must be 'newmark' where the discount adapts, got {scheme.name!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
-    if scheme.damped or problem.motion is not None or problem.ramp:
-        present = {
-            "viscous damping": scheme.damped,
-            "a moving base": problem.motion is not None,
-            "a ramp": problem.ramp,
-        }
-        excluded = next(name for name, is_there in present.items() if is_there)
-        raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {excluded}")
+    moves = problem.motion is not None
+    for name, is_there in (("viscous damping", scheme.damped), ("a moving base", moves), ("a ramp", problem.ramp)):
+        if is_there:
+            raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {name}")
 
 
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:
