@@ -378,7 +378,7 @@ def _size_of(habits: Habits, scene: Scene, reading: SlopeReading, steps: int) ->
 def _nearest(start: Habits, scene: Scene, reading: SlopeReading) -> Habits:
     """Return habits with the weight, the springs and the dead band at which they come nearest to a history."""
     before_landing = [_before_landing(replace(start, along=along), scene, reading) for along in (True, False)]
-    banded = _with_band(min(before_landing, key=lambda habits: _nearness(habits, scene, reading)), scene, reading)
+    banded = _with_band(min(before_landing, key=lambda habits: _early_size(habits, scene, reading)), scene, reading)
     habits = _fitted(banded, (True, True), scene, reading, STAGES[-1])
     nearest_habits = _run(habits, scene, reading)
     has_weight = abs(habits.weight) > NONE
@@ -397,6 +397,12 @@ def _before_landing(habits: Habits, scene: Scene, reading: SlopeReading) -> Habi
             break
         habits = trial
     return habits
+
+
+def _early_size(habits: Habits, scene: Scene, reading: SlopeReading) -> float:
+    """Return the mean logarithm of what a run leaves of the first stages, of which a landing spoils the last alone."""
+    sizes = [_size_of(habits, scene, reading, stage) for stage in STAGES[:-1]]
+    return float(np.mean(np.log(np.maximum(sizes, ROUNDED**2))))
 
 
 def _run(habits: Habits, scene: Scene, reading: SlopeReading) -> Habits:
