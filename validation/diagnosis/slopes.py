@@ -74,6 +74,7 @@ WHOLE, NONE = 0.05, 0.02  # how near a fitted weight is to the block's own, or t
 YIELDS = 5e-4  # share of the static displacement, that counts as a base
 BANDS = (0.1, 10.0, 16)  # dead bands that are tried first, over the mean penetration
 BAND_ROUNDS = 4  # times that as many are tried between the neighbours of the best: to a thousandth
+LANDING = 8  # share of the rows up to the first that departs, in which a corner is open if a landing is the reason
 LANDED = 1e-3  # of the largest displacement: what a landing a step late leaves at least
 REOPENS = 1e-3  # gap at which a contact with a dead band opens, over the band, as in ntdda
 BAND_GAIN = 3.0  # times less that a dead band must leave, to be there
@@ -359,12 +360,15 @@ class Habits:
 
 
 def habits_of(scene: Scene, reading: SlopeReading) -> list[Habits]:
-    """Return the habits that come nearest to a history under each law of friction, the nearest first."""
-    scene_habits = Habits(scene.contact.rules)
-    starts = [replace(scene_habits, weight=weight, softness=soft) for weight in WEIGHTS for soft in SOFTNESSES]
+    """Return the habits that come nearest to a history, under each law of friction till the scene's own explains it."""
+    starts = [Habits(scene.contact.rules, None, weight, soft) for weight in WEIGHTS for soft in SOFTNESSES]
     start = min(starts, key=lambda habits: _size_of(habits, scene, reading, STAGES[0]))
-    rules = dict.fromkeys([scene.contact.rules, "lagged"])
-    return sorted((_nearest(replace(start, rules=law), scene, reading) for law in rules), key=lambda h: h.run.left)
+    nearest_habits: list[Habits] = []
+    for rules in dict.fromkeys([scene.contact.rules, "lagged"]):
+        if nearest_habits and nearest_habits[0].run.same and nearest_habits[0].is_usual:
+            break
+        nearest_habits.append(_nearest(replace(start, rules=rules), scene, reading))
+    return nearest_habits
 
 
 def _size_of(habits: Habits, scene: Scene, reading: SlopeReading, steps: int) -> float:
@@ -374,21 +378,15 @@ def _size_of(habits: Habits, scene: Scene, reading: SlopeReading, steps: int) ->
 def _nearest(start: Habits, scene: Scene, reading: SlopeReading) -> Habits:
     """Return habits with the weight, the springs and the dead band at which they come nearest to a history."""
     before_landing = [_before_landing(replace(start, along=along), scene, reading) for along in (True, False)]
-    banded = _with_band(min(before_landing, key=lambda habits: _nearness(habits, scene, reading)), scene, reading)
-    trials = []
-    for along in (True, False):
-        habits = replace(banded, along=along)
-        for stage in STAGES[2:]:
-            habits = _fitted(habits, (True, True), scene, reading, stage)
-        has_weight = abs(habits.weight) > NONE
-        has_springs = abs(habits.compliance(scene)) > YIELDS
-        trials.append(_run(habits, scene, reading))
-        if not (has_weight and has_springs):
-            fewer = _fitted(habits, (has_weight, has_springs), scene, reading, STAGES[-1])
-            trials.append(_run(fewer, scene, reading))
-        if trials[-1].run.same:
-            return trials[-1]
-    return min(trials, key=lambda h: (not h.run.same, h.run.left))
+    banded = _with_band(min(before_landing, key=lambda habits: _early_size(habits, scene, reading)), scene, reading)
+    habits = _fitted(banded, (True, True), scene, reading, STAGES[-1])
+    nearest_habits = _run(habits, scene, reading)
+    has_weight = abs(habits.weight) > NONE
+    has_springs = abs(habits.compliance(scene)) > YIELDS
+    if has_weight and has_springs:
+        return nearest_habits
+    fewer = _run(_fitted(habits, (has_weight, has_springs), scene, reading, STAGES[-1]), scene, reading)
+    return min(fewer, nearest_habits, key=lambda h: (not h.run.same, h.run.left * (not h.run.same)))
 
 
 def _before_landing(habits: Habits, scene: Scene, reading: SlopeReading) -> Habits:
@@ -399,6 +397,12 @@ def _before_landing(habits: Habits, scene: Scene, reading: SlopeReading) -> Habi
             break
         habits = trial
     return habits
+
+
+def _early_size(habits: Habits, scene: Scene, reading: SlopeReading) -> float:
+    """Return the mean logarithm of what a run leaves of the first stages, of which a landing spoils the last alone."""
+    sizes = [_size_of(habits, scene, reading, stage) for stage in STAGES[:-1]]
+    return float(np.mean(np.log(np.maximum(sizes, ROUNDED**2))))
 
 
 def _run(habits: Habits, scene: Scene, reading: SlopeReading) -> Habits:
@@ -435,7 +439,8 @@ def _fitted(habits: Habits, free: tuple[bool, bool], scene: Scene, reading: Slop
 def _with_band(habits: Habits, scene: Scene, reading: SlopeReading) -> Habits:
     """Return habits with the dead band that comes nearest, if corners open and it leaves far less than none."""
     states = columns_of(habits.of(scene), "state_m", "state_n")
-    if states is None or np.all(states):
+    first = -_nearness(habits, scene, reading)[0]
+    if states is None or np.all(states[first - first // LANDING : first + 1]):  # it departs otherwise than by a landing
         return habits
     penetration = abs(float(model_of(habits.of(scene)).force[1])) / (2 * scene.contact.stiffness)
     low, high, number = BANDS
@@ -583,8 +588,8 @@ def verdict_of(scene: Scene, reading: SlopeReading) -> SlopeVerdict:
     if run.same:
         rules = scene.contact.rules
         return SlopeVerdict({}, True, run, run, {rules: run.left}, Habits(rules), scene)
-    ranked = sorted(habits_of(scene, reading), key=lambda h: (not h.run.same, len(h.causes(scene)) * h.run.same))
-    best = ranked[0] if ranked[0].run.same else min(ranked, key=lambda h: h.run.left)
+    ranked = habits_of(scene, reading)
+    best = min(ranked, key=lambda h: (not (h.run.same and h.is_usual), h.run.left))
     causes = best.causes(scene)
     by_rules = {habits.rules: habits.run.left for habits in ranked}
     verdict = SlopeVerdict(causes, best.is_usual, best.run, run, by_rules, best, best.of(scene))
