@@ -39,7 +39,7 @@ SHORT = 2_000  # steps from which a loop is run compiled where its code is at ha
 LONG = 20_000  # the same from which it is compiled and kept
 ANEW = 1_000_000  # the same from which it is compiled where code cannot be kept
 INLINED = 100  # functions of a loop up to which calls of the upper ones are replaced by what they call: 89 of one that
-# turns, 126 of blocks in the plane, which compile a third longer with it and are no faster
+# turns, 126 of blocks in the plane, which compile a fifth longer with it and are no faster
 MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
 PLAIN = "plain Python"
 COMPILED = "compiled"
