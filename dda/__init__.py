@@ -10,9 +10,9 @@ from dda.bodies.diagnostics import Diagnostics, diagnostics
 from dda.bodies.gap_form import UNKNOWNS, GapForm, ModalForm, modal_form
 from dda.bodies.glued_blocks import GluedBlocks, Traction, glued_blocks
 from dda.bodies.joints import FIXED, Joint, shared_edges
-from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve, solve_adaptive
+from dda.bodies.locked_block import ADAPTIVE_COLUMNS, solve
 from dda.bodies.locked_system import solve_system
-from dda.bodies.opening_system import OpeningSystem, opening_subdivided, solve_opening_system
+from dda.bodies.opening_system import OpeningSystem, opening_subdivided
 from dda.bodies.subdivision import subdivided
 from dda.bodies.two_block import TwoBlockModel
 from dda.bodies.unilateral import UnilateralModel, UnilateralOptions, solve_unilateral
@@ -86,8 +86,6 @@ __all__ = [
     "roots",
     "shared_edges",
     "solve",
-    "solve_adaptive",
-    "solve_opening_system",
     "solve_plane",
     "solve_system",
     "solve_textbook",

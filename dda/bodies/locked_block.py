@@ -16,7 +16,7 @@ from dda.bodies.two_block import TwoBlockModel, carried
 from dda.model.arrays import Array
 from dda.model.checks import check_damping, check_share
 from dda.model.load import at_once, load_share
-from dda.result.result import COLUMNS, Result, bound_overflow, check_request, linear_result, step_times
+from dda.result.result import Result, bound_overflow, check_request, linear_result, step_times
 from dda.scheme.adaptive import adapted_modes
 from dda.scheme.blocked import blocked_modes, why_stepped
 from dda.scheme.newmark import Scheme, stepped_modes
@@ -30,6 +30,7 @@ def solve(
     steps: int,
     columns: Sequence[str] = ("displacement", "contact_pressure"),
     full: bool = False,
+    floor: float | None = None,
 ) -> Result:
     """Step the two-block model from rest and return the asked columns.
 
@@ -46,44 +47,58 @@ def solve(
     steps : int
         Number of steps.
     columns : sequence of str
-        Any of `dda.COLUMNS`.
+        Any of `dda.COLUMNS`; of self-adaptive damping also "discount" (that each step starts with) and
+        "kinetic_damping_loss" (energy taken up to the end of a step, J per metre of thickness).
     full : bool
         Keep all six unknowns, also those that the load cannot reach, and step.
+    floor : float, optional
+        Least discount, 0 to 1, of self-adaptive damping, with 1 nothing is damped: while the kinetic energy T grows a
+        step keeps the velocity of the one before; once it has fallen in step n, step n + 1 starts with the share
+        gg = max(floor, sqrt(T_n / T_(n-1))) of it (`dda.scheme.adaptive`). None: the scheme's own discount.
 
     Raises
     ------
     ValueError
-        If the number of steps is not positive or a column is unknown.
+        If the number of steps is not positive, a column is unknown, or the discount is adaptive and the scheme has a
+        damping of its own, or the base moves.
     """
-    check_request(steps, columns)
+    names = [name for name in columns if floor is None or name not in ADAPTIVE_COLUMNS]
+    check_request(steps, names)
     check_damping(scheme.damped, model.load.motion is not None)
+    if floor is not None:
+        _check_adaptive(model, scheme, floor)
     began = perf_counter()
     form = model.equations if full else model.reached
+    size = model.load_size
+    damping = {}
     with np.errstate(all="ignore"):
         modal = modal_form(form)
-        rows = np.array([form.observers[name] @ modal.shapes for name in columns])
-        stepped = _why_stepped(model, scheme, modal, full)
+        rows = np.array([form.observers[name] @ modal.shapes for name in names]).reshape(-1, len(modal.load))
+        stepped = _why_stepped(model, scheme, modal, full, floor)
         ready = perf_counter()
-        if model.load.ramp:
+        if floor is not None:
+            adapted = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
+            observed = rows @ adapted.modes
+            damping = dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
+        elif model.load.ramp:
             shares = np.array([load_share(model.load.ramp, instant) for instant in scheme.instants(steps).tolist()])
             observed = rows @ stepped_modes(scheme, modal.frequencies, modal.load, steps, shares)
         else:
             observed = modal_histories(scheme, modal, rows, steps, blocked=stepped is None)
-        observed *= model.load_size
-        size = model.load_size
+        observed *= size
         motion = model.load.motion
         if motion is not None:  # what the base causes: its own displacement, and that of the block from it
             moved = modal.translation, motion.at(scheme.instants(steps))
             histories = stepped_modes(scheme, modal.frequencies, 0 * modal.load, steps, moved=moved)
             base_columns = carried(motion, step_times(scheme, steps))
-            own = np.array([base_columns.get(name, np.zeros(steps)) for name in columns])
+            own = np.array([base_columns.get(name, np.zeros(steps)) for name in names])
             bound_overflow(observed, size)
             observed += rows @ histories + own
             size = 1.0
-    return linear_result(
+    result = linear_result(
         scheme,
         (began, ready),
-        columns,
+        names,
         observed,
         size,
         unknowns=len(form.unknowns),
@@ -92,61 +107,7 @@ def solve(
         solves=steps * len(scheme.stages) if stepped else 0,
         notes=(*_savings(form), f"stepped: {stepped}" if stepped else "blocked"),
     )
-
-
-def solve_adaptive(
-    model: TwoBlockModel,
-    scheme: Scheme,
-    steps: int,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
-    floor: float = 0.0,
-    full: bool = False,
-) -> Result:
-    """Step the two-block model from rest with self-adaptive kinetic damping.
-
-    While the kinetic energy T grows a step keeps the velocity of the one before; once it has fallen in step n, step
-    n + 1 starts with the share gg = max(floor, sqrt(T_n / T_(n-1))) of it (`dda.scheme.adaptive`).
-
-    Parameters
-    ----------
-    scheme : Scheme
-        Without discount, gg = 1, and without viscous damping.
-    columns : sequence of str
-        Any of `dda.COLUMNS`, "discount" (that each step starts with) and "kinetic_damping_loss" (energy taken up to
-        the end of a step, J per metre of thickness).
-    floor : float
-        Least discount, 0 to 1; with 1 nothing is damped.
-    full : bool
-        Keep all six unknowns, also those that the load cannot reach.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of range, a column is unknown, the scheme has a damping of its own, or the base moves.
-    """
-    check_request(steps, [name for name in columns if name not in ADAPTIVE_COLUMNS])
-    _check_adaptive(model, scheme, floor)
-    began = perf_counter()
-    form = model.equations if full else model.reached
-    size = model.load_size
-    with np.errstate(all="ignore"):
-        modal = modal_form(form)
-        ready = perf_counter()
-        adapted = adapted_modes(scheme, modal.frequencies, modal.load, steps, floor)
-        observed = size * np.array([form.observers[name] @ modal.shapes @ adapted.modes for name in COLUMNS])
-    result = linear_result(
-        scheme,
-        (began, ready),
-        COLUMNS,
-        observed,
-        size,
-        unknowns=len(form.unknowns),
-        nonzeros=int(np.count_nonzero(form.M)),
-        factorisations=1,
-        solves=steps,
-        notes=(*_savings(form), f"stepped: self-adaptive damping, discount at least {floor:g}"),
-    )
-    every = result.columns | dict(zip(ADAPTIVE_COLUMNS, (adapted.discount, adapted.loss * size * size), strict=True))
+    every = result.columns | damping
     return replace(result, columns={name: every[name] for name in columns})
 
 
@@ -162,8 +123,10 @@ def _check_adaptive(model: TwoBlockModel, scheme: Scheme, floor: float) -> None:
         raise ValueError(f"adaptive discount: excludes viscous damping and a base of prescribed motion, got {excluded}")
 
 
-def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool) -> str | None:
+def _why_stepped(model: TwoBlockModel, scheme: Scheme, modal: ModalForm, full: bool, floor: float | None) -> str | None:
     """Return why the history is stepped, in words; None where it is blocked."""
+    if floor is not None:
+        return f"self-adaptive damping, discount at least {floor:g}"
     if full:
         return "all savings off"
     if model.load.ramp:

@@ -8,9 +8,9 @@ a sub-block has a contact point at each end, with its share p l / a of the corne
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from time import perf_counter
+from typing import ClassVar
 
 import numpy as np
 
@@ -19,7 +19,7 @@ from dda.bodies.glued_step import glued_march, run_glued
 from dda.bodies.joints import FIXED
 from dda.bodies.subdivision import Pattern, subdivided
 from dda.bodies.two_block import TwoBlockModel
-from dda.bodies.unilateral import NEWMARK, UnilateralModel, UnilateralOptions, check_scheme
+from dda.bodies.unilateral import NEWMARK, Request, UnilateralModel
 from dda.contact.rows import laws_of
 from dda.contact.springs import Contact, base_directions
 from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
@@ -29,8 +29,7 @@ from dda.march.step import course_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion
 from dda.result.contact_result import ContactResult, run_fields
-from dda.result.result import check_request, step_times
-from dda.scheme.newmark import Scheme
+from dda.result.result import step_times
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,12 +37,76 @@ class OpeningSystem:
     """Sub-blocks, glue and the points of the base, in their order from M to N."""
 
     system: BlockSystem  # without supports
-    law: Unilateral  # of a corner of the block
+    contact: Unilateral  # of a corner of the block
     share: float  # of it in the law of a point
-    contact: Array  # (2, points, unknowns) gap, and displacement along the base, by the unknowns of the blocks
+    rows: Array  # (2, points, unknowns) gap, and displacement along the base, by the unknowns of the blocks
     velocity: float  # at t = 0, upwards positive [m/s]
     axes: Array  # (2, 2) unit tangent of the base from M to N, and its normal into the blocks
     motion: BaseMotion | None  # of the base
+    rules: ClassVar[tuple[str, ...]] = (NEWMARK,)
+
+    def __post_init__(self) -> None:
+        """Check the law."""
+        law = self.contact
+        if law.damping:
+            raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {law.damping:g}")
+        if law.rules == LAGGED:
+            raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
+
+    def history(self, request: Request) -> ContactResult:
+        """Make the steps; all unknowns are kept."""
+        import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
+
+        began = perf_counter()
+        scheme = request.scheme
+        options = request.options
+        law = self.contact
+        equations = self.system.equations
+        points = self.rows.shape[1]
+        rows = np.concatenate(self.rows if law.shear else self.rows[:1])
+        laws = laws_of(law, points, len(rows), options.solve_limit, self.share)
+        load = self.system.load_size * equations.F
+        by_modes = np.concatenate([equations.rows(request.columns)[0], self.rows[1] @ equations.shapes, [load]])
+        observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
+        march = glued_march(
+            equations, self.system.load_size, scheme, laws, rows, observed, options.energies, request.steps
+        )
+        glue = march.method
+        nonzeros = glue.solver(march.last.numbers, 1.0).nonzeros
+        opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
+        upwards = self.velocity * equations.rigid[:, 1]
+        course = course_of(self.motion and self.motion.along(self.axes), 0.0)
+        ready = perf_counter()
+        history, outcome = run_glued(march, course, request.steps, opened, upwards, np.zeros(2), options.cut)
+        reached = len(history.solves) - 1
+        pressure = history.force[1:, :points].sum(axis=1) / self.system.base_length
+        mass = math.fsum(block.total_mass for block in self.system.blocks)
+        _, slides, done, momentum, stored = np.split(history.motion.T, np.cumsum([len(request.columns), points, 1, 2]))
+
+        def slide() -> Array:
+            base = 0.0 if self.motion is None else self.motion.at(step_times(scheme, reached)) @ self.axes[0]
+            return np.asarray(slides[:, 1:] - base)
+
+        def balance() -> dict[str, Array]:
+            springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
+            return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
+
+        how = COMPILED if glue.compiled else PLAIN
+        return ContactResult(
+            **run_fields(history, outcome, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
+            columns={
+                name: (pressure if name == "contact_pressure" else history.motion[1:, i]) + 0.0
+                for i, name in enumerate(request.columns)
+            },
+            unknowns=len(equations.F),
+            nonzeros=nonzeros,
+            factorisations=glue.solver.cache_info().misses,
+            contacts=points,
+            base_contacts=(0, -1),
+            make_slide=slide,
+            make_velocity=lambda: momentum[:, 1:] / (mass * scheme.step),
+            balance=balance if options.energies else None,
+        )
 
 
 def opening_subdivided(
@@ -68,85 +131,10 @@ def opening_subdivided(
         contact[:, i, number] = np.array([normal, tangent]) @ cut.blocks[number].T(*place)
     return OpeningSystem(
         system=replace(cut, joints=[joint for joint in cut.joints if joint.second != FIXED]),
-        law=model.contact,
+        contact=model.contact,
         share=supports[0].normal,  # a side that is cut evenly has edges of one length
-        contact=contact.reshape(2, len(ends), -1),
+        rows=contact.reshape(2, len(ends), -1),
         velocity=model.velocity,
         axes=np.array([tangent, normal]),
         motion=model.load.motion,
-    )
-
-
-def solve_opening_system(
-    opening: OpeningSystem,
-    scheme: Scheme,
-    steps: int,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
-    options: UnilateralOptions | None = None,
-) -> ContactResult:
-    """Step sub-blocks on points that open, from rest or from their starting velocity.
-
-    Parameters and outcomes are those of `dda.solve_unilateral`; the rule is "newmark", and all unknowns are kept.
-
-    Raises
-    ------
-    ValueError
-        If the number of steps is not positive, a column is unknown, or rule, scheme and contact exclude each other.
-    """
-    import scipy.sparse.linalg  # noqa: F401  (before the clock starts)
-
-    check_request(steps, columns)
-    options = options or UnilateralOptions()
-    if options.rule != NEWMARK:
-        raise ValueError(f"rule: sub-blocks take {NEWMARK} alone, got {options.rule!r}")
-    if opening.law.damping:
-        raise ValueError(f"damping: sub-blocks take springs without dashpots alone, got {opening.law.damping:g}")
-    law = opening.law
-    if law.rules == LAGGED:
-        raise ValueError(f"rules: sub-blocks take {CONSISTENT} friction alone, got {LAGGED!r}")
-    check_scheme(law, scheme)
-    began = perf_counter()
-    equations = opening.system.equations
-    points = opening.contact.shape[1]
-    rows = np.concatenate(opening.contact if law.shear else opening.contact[:1])
-    laws = laws_of(law, points, len(rows), options.solve_limit, opening.share)
-    load = opening.system.load_size * equations.F
-    by_modes = np.concatenate([equations.rows(columns)[0], opening.contact[1] @ equations.shapes, [load]])
-    observed = by_modes, np.zeros((len(by_modes), len(equations.pressure)))
-    march = glued_march(equations, opening.system.load_size, scheme, laws, rows, observed, options.energies, steps)
-    glue = march.method
-    nonzeros = glue.solver(march.last.numbers, 1.0).nonzeros
-    opened = np.where(np.arange(len(rows)) < points, law.gap, 0.0)
-    upwards = opening.velocity * equations.rigid[:, 1]
-    course = course_of(opening.motion and opening.motion.along(opening.axes), 0.0)
-    ready = perf_counter()
-    history, outcome = run_glued(march, course, steps, opened, upwards, np.zeros(2), options.cut)
-    reached = len(history.solves) - 1
-    pressure = history.force[1:, :points].sum(axis=1) / opening.system.base_length
-    mass = math.fsum(block.total_mass for block in opening.system.blocks)
-    _, slides, done, momentum, stored = np.split(history.motion.T, np.cumsum([len(columns), points, 1, 2]))
-
-    def slide() -> Array:
-        base = 0.0 if opening.motion is None else opening.motion.at(step_times(scheme, reached)) @ opening.axes[0]
-        return np.asarray(slides[:, 1:] - base)
-
-    def balance() -> dict[str, Array]:
-        springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
-        return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
-
-    how = COMPILED if glue.compiled else PLAIN
-    return ContactResult(
-        **run_fields(history, outcome, scheme, [f"stepped, {how}: contact opens and closes"], (began, ready)),
-        columns={
-            name: (pressure if name == "contact_pressure" else history.motion[1:, i]) + 0.0
-            for i, name in enumerate(columns)
-        },
-        unknowns=len(equations.F),
-        nonzeros=nonzeros,
-        factorisations=glue.solver.cache_info().misses,
-        contacts=points,
-        base_contacts=(0, -1),
-        make_slide=slide,
-        make_velocity=lambda: momentum[:, 1:] / (mass * scheme.step),
-        balance=balance if options.energies else None,
     )

@@ -5,16 +5,15 @@ A step is cut where the contacts have no single state.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from time import perf_counter
+from typing import ClassVar
 
 import numpy as np
 
 from dda.bodies.turning_body import (
     EXACT,
-    FIRST_ORDER,
     Body,
     RollingMotion,
     body,
@@ -24,7 +23,7 @@ from dda.bodies.turning_body import (
     turned,
 )
 from dda.bodies.turning_step import STATE, RollingState, make_steps, rolling_march
-from dda.bodies.unilateral import check_iteration, check_scheme
+from dda.bodies.unilateral import NEWMARK, Request
 from dda.contact.rows import INSIDE, LOWER, Laws, laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.energy import IMPULSE, energies_of
@@ -34,7 +33,7 @@ from dda.march.step import History, course_of, state_of
 from dda.model.arrays import Array
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.result.contact_result import ContactResult, run_fields
-from dda.result.result import COLUMNS, check_request
+from dda.result.result import COLUMNS
 from dda.scheme.newmark import Scheme, late_momentum
 
 
@@ -55,6 +54,7 @@ class RollingModel(LoadedBlock):
     tilt: float = 0.0  # counter-clockwise at t = 0, about the end of the base that stays down [rad]
     velocity: tuple[float, float] = (0.0, 0.0)  # of the centroid at t = 0, in x and y of the block's coordinates [m/s]
     spin: float = 0.0  # at t = 0, counter-clockwise [rad/s]
+    rules: ClassVar[tuple[str, ...]] = (NEWMARK,)
 
     def check(self) -> None:
         """Check the numbers and the edges."""
@@ -124,26 +124,65 @@ class RollingModel(LoadedBlock):
         state = state_of(6, opening, np.where(opening > 0, LOWER, INSIDE))
         return RollingState(*state._replace(p=p, a=a, R=R), q, Q)
 
+    def history(self, request: Request) -> RollingResult:
+        """Make the steps."""
+        began = perf_counter()
+        scheme = request.scheme
+        options = request.options
+        body = self.body
+        law = self.contact
+        with np.errstate(all="ignore"):  # overflow is an outcome
+            start = self.start(scheme)
+        corners = laws_of(law, len(body.xi), len(start.path), options.solve_limit)
+        base = base_motion(self)
+        weight = body.shapes[:2].T @ (body.M[0, 0] * self.weight)
+        rows = 4 if law.shear else 2
+        march = rolling_march(
+            ModalBody(
+                k=body.k,
+                loads=weight[None],
+                stored=np.ones(1),
+                first=np.zeros(rows, dtype=np.int64),
+                weight=np.zeros((rows, 6)),
+                ground=np.zeros((rows, 2)),
+                mobility=np.ones(6),
+            ),
+            laws_of(law, 2, rows, options.solve_limit),
+            corners,
+            scheme,
+            body.shapes,
+            body.xi,
+            *self.dead,
+            options.rotation,
+        )
+        ready = perf_counter()
+        ran = run(march, start, course_of(base, 0.0), request.steps, make_steps, STATE, energies=True, cut=options.cut)
+        history = ran.history
+        reached = len(history.solves) - 1
+        motion = motion_of(history.motion)
+        values = observed(body, motion, history)
 
-@dataclass(frozen=True)
-class RollingOptions:
-    """How the steps are made.
+        def slide() -> Array:
+            placed = motion.points(body.xi)[:, :, 0].T
+            if base is not None:
+                placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
+            return placed[:, 1:] - placed[:, :1]
 
-    Raises
-    ------
-    ValueError
-        If a value is out of its range.
-    """
-
-    rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
-    solve_limit: int = 6  # solves of the open-close iteration before all states are tried
-    cut: float = 0.3  # length of a cut step over that of the failed one
-
-    def __post_init__(self) -> None:
-        """Check the ranges."""
-        if self.rotation not in (EXACT, FIRST_ORDER):
-            raise ValueError(f"rotation: must be {EXACT!r} or {FIRST_ORDER!r}, got {self.rotation!r}")
-        check_iteration(self.solve_limit, self.cut)
+        note = f"stepped, {ran.how}: outline and contacts anew at every step, {options.rotation} rotation"
+        return RollingResult(
+            **run_fields(history, ran.outcome, scheme, [note], (began, ready)),
+            columns={name: values[name] for name in request.columns},
+            unknowns=6,
+            nonzeros=int(np.count_nonzero(body.M)),
+            factorisations=ran.lengths,
+            contacts=len(body.xi),
+            base_contacts=body.base,
+            make_slide=slide,
+            make_velocity=lambda: (motion.V[1:, :2] @ body.to_base).T,
+            balance=lambda: energies(self, options.rotation, corners, motion, history),
+            body=body,
+            motion=motion,
+        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -157,11 +196,6 @@ class RollingResult(ContactResult):
     def angle(self) -> Array:
         """Sum of the steps' rotations, (steps,) [rad]."""
         return self.motion.r[1:]
-
-    @property
-    def spin(self) -> Array:
-        """Rate of rotation [rad/s]."""
-        return self.motion.V[1:, 2]
 
     @property
     def impulse(self) -> Array:
@@ -194,83 +228,6 @@ class RollingResult(ContactResult):
 def base_motion(model: RollingModel) -> BaseMotion | None:
     """Return the motion of the base, along and away from it."""
     return model.load.motion and model.load.motion.along(model.body.to_base)
-
-
-def solve_rolling(
-    model: RollingModel,
-    scheme: Scheme,
-    steps: int,
-    columns: Sequence[str] = ("displacement", "contact_pressure"),
-    options: RollingOptions | None = None,
-) -> RollingResult:
-    """Step a block that slides, rocks, topples and rolls over its base.
-
-    Rotation counts from t = 0, strains are those along axes that turn with the block. Parameters and outcomes are those
-    of `dda.solve_unilateral`.
-
-    Raises
-    ------
-    ValueError
-        If the number of steps is not positive, a column is unknown, or scheme and contact exclude each other.
-    """
-    check_request(steps, columns)
-    check_scheme(model.contact, scheme)
-    options = options or RollingOptions()
-    began = perf_counter()
-    body = model.body
-    law = model.contact
-    with np.errstate(all="ignore"):  # overflow is an outcome
-        start = model.start(scheme)
-    corners = laws_of(law, len(body.xi), len(start.path), options.solve_limit)
-    base = base_motion(model)
-    weight = body.shapes[:2].T @ (body.M[0, 0] * model.weight)
-    rows = 4 if law.shear else 2
-    march = rolling_march(
-        ModalBody(
-            k=body.k,
-            loads=weight[None],
-            stored=np.ones(1),
-            first=np.zeros(rows, dtype=np.int64),
-            weight=np.zeros((rows, 6)),
-            ground=np.zeros((rows, 2)),
-            mobility=np.ones(6),
-        ),
-        laws_of(law, 2, rows, options.solve_limit),
-        corners,
-        scheme,
-        body.shapes,
-        body.xi,
-        *model.dead,
-        options.rotation,
-    )
-    ready = perf_counter()
-    ran = run(march, start, course_of(base, 0.0), steps, make_steps, STATE, energies=True, cut=options.cut)
-    history = ran.history
-    reached = len(history.solves) - 1
-    motion = motion_of(history.motion)
-    values = observed(body, motion, history)
-
-    def slide() -> Array:
-        placed = motion.points(body.xi)[:, :, 0].T
-        if base is not None:
-            placed = placed - base.at(scheme.step * np.arange(reached + 1.0))[:, 0]
-        return placed[:, 1:] - placed[:, :1]
-
-    note = f"stepped, {ran.how}: outline and contacts anew at every step, {options.rotation} rotation"
-    return RollingResult(
-        **run_fields(history, ran.outcome, scheme, [note], (began, ready)),
-        columns={name: values[name] for name in columns},
-        unknowns=6,
-        nonzeros=int(np.count_nonzero(body.M)),
-        factorisations=ran.lengths,
-        contacts=len(body.xi),
-        base_contacts=body.base,
-        make_slide=slide,
-        make_velocity=lambda: (motion.V[1:, :2] @ body.to_base).T,
-        balance=lambda: energies(model, options.rotation, corners, motion, history),
-        body=body,
-        motion=motion,
-    )
 
 
 def observed(body: Body, states: RollingMotion, history: History) -> dict[str, Array]:

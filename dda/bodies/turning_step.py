@@ -365,24 +365,21 @@ def settle(
 
 def take_pair(rolling: Rolling, before: RollingState, near: int) -> None:
     """Write the rows of the corners that may touch; where there is none, one that is far away."""
-    corners = len(rolling.xi)
-    ways = len(rolling.before.force) > 2
     for rows in (rolling.before, rolling.after):
-        for k in range(2):
-            if k < near:
-                copy_row(before.rows, rolling.at[k], rows, k)
-                if ways:
-                    copy_row(before.rows, corners + rolling.at[k], rows, 2 + k)
-                continue
-            set_open(rows, k)
-            if ways:
-                set_open(rows, 2 + k)
-                rows.state[2 + k] = INSIDE
+        for r in range(len(rows.force)):
+            clear_row(rows, r, r < 2)
+            if r % 2 < near:
+                copy_row(before.rows, row_of(rolling, r), rows, r)
 
 
-def set_open(rows: Rows, r: int) -> None:
-    """Write a row without force, open."""
-    rows.state[r] = LOWER
+def row_of(rolling: Rolling, r: int) -> int:
+    """Return the row among those of all corners of a row of two."""
+    return int(rolling.at[r % 2] + r // 2 * len(rolling.xi))
+
+
+def clear_row(rows: Rows, r: int, across: bool) -> None:
+    """Write a row without force, of an open contact."""
+    rows.state[r] = LOWER if across else INSIDE
     rows.opening[r] = 0.0
     rows.force[r] = 0.0
     rows.slip[r] = 0.0
@@ -503,16 +500,13 @@ def accept(
     copy_matrix(rolling.turn.end, after.Q)
     place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     rows = after.rows
-    for k in range(corners):
-        set_open(rows, k)
-        rows.opening[k] = rolling.place[k][1]
-    for r in range(corners, len(rows.force)):
-        set_open(rows, r)
-        rows.state[r] = INSIDE
-    for k in range(near):
-        copy_row(rolling.after, k, rows, rolling.at[k])
-        if len(rolling.after.force) > 2:
-            copy_row(rolling.after, 2 + k, rows, corners + rolling.at[k])
+    for r in range(len(rows.force)):
+        clear_row(rows, r, r < corners)
+        if r < corners:
+            rows.opening[r] = rolling.place[r][1]
+    for r in range(len(rolling.after.force)):
+        if r % 2 < near:
+            copy_row(rolling.after, r, rows, row_of(rolling, r))
     for r in range(corners, len(rows.force)):
         k = r - corners
         after.path[r] = before.path[r] + rows.slip[r]

@@ -8,14 +8,16 @@ follows, so that every interval ends at its own time.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from time import perf_counter
+from typing import Any, ClassVar, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 
 from dda.bodies.opening_block import OpeningBlock, observed, opening_block, start_of, unknowns_of
+from dda.bodies.turning_body import EXACT, FIRST_ORDER
 from dda.bodies.two_block import carried
 from dda.contact.rows import Laws, laws_of
 from dda.contact.unilateral import Unilateral
@@ -37,6 +39,7 @@ CONSERVING = "energy-conserving"
 IMPACT = "impact"
 AUGMENTED = "augmented"
 RULES = (NEWMARK, IMPLICIT, CONSERVING, IMPACT, AUGMENTED)
+AnyResult = TypeVar("AnyResult", bound=ContactResult, covariant=True)
 LOOPS = {CONSERVING: make_conserving_steps, IMPACT: make_impact_steps, AUGMENTED: make_augmented_steps}
 
 
@@ -46,6 +49,7 @@ class UnilateralModel(LoadedBlock):
 
     contact: Unilateral
     velocity: float = 0.0  # of the block at t = 0, upwards positive [m/s]
+    rules: ClassVar[tuple[str, ...]] = RULES
 
     def check(self) -> None:
         """Check the numbers and the edges."""
@@ -59,6 +63,68 @@ class UnilateralModel(LoadedBlock):
     def reduced(self) -> OpeningBlock:
         """The block in the unknowns that move."""
         return opening_block(self, self.velocity)
+
+    def history(self, request: Request) -> ContactResult:
+        """Make the steps."""
+        began = perf_counter()
+        scheme = request.scheme
+        options = request.options
+        model = self
+        law = model.contact
+        if frictionless(law, options):  # no corner slides, even if `full` keeps the unknowns that could
+            law = replace(law, shear=0.0)
+            model = replace(model, contact=law)
+        block = opening_block(model, model.velocity, full=True) if options.full else model.reduced
+        shape = block.contacts, len(block.B), options.solve_limit, block.multiplicity
+        springs = laws_of(law, *shape)
+        rigid = options.rule == AUGMENTED  # the limit of its passes
+        laws = laws_of(replace(law, stiffness=math.inf), *shape) if rigid else springs
+        with np.errstate(all="ignore"):  # overflow is an outcome
+            start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
+        march = march_of(
+            block.body,
+            laws,
+            scheme,
+            start.rows.opening,
+            Method(springs, options.penetration, options.pass_limit, options.restitution or 0.0),
+            averages=options.rule in (NEWMARK, AUGMENTED),
+            impulses=options.rule == IMPACT,
+        )
+        motion = model.load.motion
+        course = course_of(motion and motion.along(block.axes), block.ramp)
+        n = len(block.unknowns)
+        loop = LOOPS.get(options.rule, make_steps)
+        ready = perf_counter()
+        ran = run(march, start, course, request.steps, loop, 2 * n + rigid, options.energies, options.cut)
+        history = ran.history
+        reached = len(history.solves) - 1
+        with np.errstate(all="ignore"):
+            values = {name: column(model, block, history, name, scheme.step) for name in request.columns}
+        for name, moved in carried(motion, step_times(scheme, reached)).items():
+            if name in values:
+                values[name] = values[name] + moved
+        notes = [f"stepped, {ran.how}: contact opens and closes"]
+        if n < 6:
+            notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
+
+        def velocity() -> Array:
+            momentum: Array = block.axes.T @ block.momentum @ history.motion[1:, n : 2 * n].T
+            return momentum / (model.block.total_mass * scheme.step)
+
+        return ContactResult(
+            **run_fields(history, ran.outcome, scheme, notes, (began, ready)),
+            columns=values,
+            unknowns=n,
+            nonzeros=int(np.count_nonzero(block.M)),
+            factorisations=ran.lengths,
+            contacts=block.contacts,
+            multiplicity=block.multiplicity,
+            base_contacts=(0, 1),
+            make_slide=lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
+            make_velocity=velocity,
+            step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
+            balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
+        )
 
 
 @dataclass(frozen=True)
@@ -85,15 +151,17 @@ class UnilateralOptions:
     solve_limit: int = 6  # solves of the open-close iteration before all states are tried
     cut: float = 0.3  # length of a cut step over that of the failed one
     energies: bool = False  # keep what the energies of every step are made of
-    full: bool = False  # keep all six unknowns and both corners where the motion is symmetric
+    full: bool = False  # keep all six unknowns and both corners where the motion of one block is symmetric
     restitution: float | None = None  # e of the rule "impact" [-]
     penetration: float = 1e-9  # to which the passes of the rule "augmented" reduce it [m]
     pass_limit: int = 100_000  # these passes in a step, before the history ends
+    rotation: str = EXACT  # or "first-order": the outline of a step moves by x - r y, y + r x, and grows
 
     def __post_init__(self) -> None:
         """Check the ranges."""
-        if self.rule not in RULES:
-            raise ValueError(f"rule: must be among {', '.join(RULES)}, got {self.rule!r}")
+        for field, known in (("rule", RULES), ("rotation", (EXACT, FIRST_ORDER))):
+            if getattr(self, field) not in known:
+                raise ValueError(f"{field}: must be among {', '.join(known)}, got {getattr(self, field)!r}")
         if (self.rule == IMPACT) != (self.restitution is not None):
             raise ValueError(
                 f"restitution: goes with rule = {IMPACT!r}, which needs it, "
@@ -102,33 +170,50 @@ class UnilateralOptions:
         if self.restitution is not None and not 0 <= self.restitution <= 1:
             raise ValueError(f"restitution: must be from 0 to 1, got {self.restitution!r}")
         check_positive(penetration=self.penetration)
-        check_count(pass_limit=self.pass_limit)
-        check_iteration(self.solve_limit, self.cut)
+        check_count(pass_limit=self.pass_limit, solve_limit=self.solve_limit)
+        if not 0 < self.cut < 1:
+            raise ValueError(f"cut: must be between 0 and 1, got {self.cut!r}")
 
 
-def check_iteration(solve_limit: int, cut: float) -> None:
-    """Raise ValueError where the numbers of the open-close iteration are out of range."""
-    check_count(solve_limit=solve_limit)
-    if not 0 < cut < 1:
-        raise ValueError(f"cut: must be between 0 and 1, got {cut!r}")
+class Request(NamedTuple):
+    """What is asked of a body on contact that opens."""
+
+    scheme: Scheme
+    steps: int
+    columns: Sequence[str]
+    options: UnilateralOptions
+
+
+class OpeningBody(Protocol[AnyResult]):
+    """A body on contact that opens: one block, its sub-blocks, or a block that turns."""
+
+    rules: ClassVar[tuple[str, ...]]  # that it takes
+
+    @property
+    def contact(self) -> Unilateral:
+        """The law of its corners."""
+
+    def history(self, request: Request) -> AnyResult:
+        """Make the steps."""
 
 
 def solve_unilateral(
-    model: UnilateralModel,
+    model: OpeningBody[AnyResult],
     scheme: Scheme,
     steps: int,
     columns: Sequence[str] = ("displacement", "contact_pressure"),
     options: UnilateralOptions | None = None,
-) -> ContactResult:
-    """Step a block on corners that open, from rest or from its starting velocity.
+) -> AnyResult:
+    """Step blocks on contact that opens, from rest or from their starting velocity.
 
-    Displacements count from t = 0. A numerical failure is an outcome, not an exception: the history then
-    ends with the last step that was reached.
+    Displacements and rotation count from t = 0; strains of a block that turns are those along axes that turn with it.
+    A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached.
 
     Parameters
     ----------
     model, scheme
-        What moves and how it is stepped. The start "consistent" means M A0 = F, since no contact presses at t = 0.
+        What moves, a `UnilateralModel`, an `OpeningSystem` or a `RollingModel`, and how it is stepped. The start
+        "consistent" means M A0 = F, since no contact presses at t = 0.
     steps : int
         Number of steps.
     columns : sequence of str
@@ -143,67 +228,10 @@ def solve_unilateral(
     """
     check_request(steps, columns)
     options = options or UnilateralOptions()
-    check_combination(model, scheme, options)
-    began = perf_counter()
-    law = model.contact
-    if frictionless(law, options):  # no corner slides, even if `full` keeps the unknowns that could
-        law = replace(law, shear=0.0)
-        model = replace(model, contact=law)
-    block = opening_block(model, model.velocity, full=True) if options.full else model.reduced
-    shape = block.contacts, len(block.B), options.solve_limit, block.multiplicity
-    springs = laws_of(law, *shape)
-    rigid = options.rule == AUGMENTED  # the limit of its passes
-    laws = laws_of(replace(law, stiffness=math.inf), *shape) if rigid else springs
-    with np.errstate(all="ignore"):  # overflow is an outcome
-        start = start_of(block, scheme, law.gap, model.velocity, at_once=options.rule == CONSERVING)
-    march = march_of(
-        block.body,
-        laws,
-        scheme,
-        start.rows.opening,
-        Method(springs, options.penetration, options.pass_limit, options.restitution or 0.0),
-        averages=options.rule in (NEWMARK, AUGMENTED),
-        impulses=options.rule == IMPACT,
-    )
-    motion = model.load.motion
-    course = course_of(motion and motion.along(block.axes), block.ramp)
-    n = len(block.unknowns)
-    loop = LOOPS.get(options.rule, make_steps)
-    ready = perf_counter()
-    ran = run(march, start, course, steps, loop, 2 * n + rigid, options.energies, options.cut)
-    history = ran.history
-    reached = len(history.solves) - 1
-    with np.errstate(all="ignore"):
-        values = {name: column(model, block, history, name, scheme.step) for name in columns}
-    for name, moved in carried(motion, step_times(scheme, reached)).items():
-        if name in values:
-            values[name] = values[name] + moved
-    impulses = None
-    if options.rule == IMPACT:
-        impulses = np.broadcast_to(scheme.step * history.force[1:].T / block.multiplicity, (2, reached))
-    notes = [f"stepped, {ran.how}: contact opens and closes"]
-    if n < 6:
-        notes.insert(0, f"both corners as one, unknowns {', '.join(block.unknowns)}")
-
-    def velocity() -> Array:
-        momentum: Array = block.axes.T @ block.momentum @ history.motion[1:, n : 2 * n].T
-        return momentum / (model.block.total_mass * scheme.step)
-
-    return ContactResult(
-        **run_fields(history, ran.outcome, scheme, notes, (began, ready)),
-        columns=values,
-        unknowns=n,
-        nonzeros=int(np.count_nonzero(block.M)),
-        factorisations=ran.lengths,
-        contacts=block.contacts,
-        multiplicity=block.multiplicity,
-        base_contacts=(0, 1),
-        make_slide=lambda: block.slide @ unknowns_of(block, history, motion, scheme.step)[:, 1:],
-        make_velocity=velocity,
-        impulses=impulses,
-        step_passes=history.motion[1:, 2 * n].astype(int) if rigid else None,
-        balance=(lambda: energies(model, block, laws, scheme, history, options.rule)) if options.energies else None,
-    )
+    for field, holds, rule, value in requirements(model, scheme, options):
+        if not holds:
+            raise ValueError(f"{field}: {rule}, got {value}")
+    return model.history(Request(scheme, steps, columns, options))
 
 
 def column(model: UnilateralModel, block: OpeningBlock, history: History, name: str, step: float) -> Array:
@@ -251,70 +279,46 @@ def energies(
     return energies
 
 
-def check_combination(model: UnilateralModel, scheme: Scheme, options: UnilateralOptions) -> None:
-    """Raise ValueError where rule, scheme and contact exclude each other."""
+def requirements(model: Any, scheme: Scheme, options: UnilateralOptions) -> Iterator[tuple[str, bool, str, object]]:
+    """Yield what body, scheme, law and rule need of each other: field, whether it holds, the rule, what there is."""
     law = model.contact
-    if options.rule not in (NEWMARK, AUGMENTED) and scheme.table is not None:
-        raise ValueError(f"rule: {options.rule} contact goes with scheme newmark only, got {scheme.name!r}")
-    if law.damping and options.rule != NEWMARK:
-        raise ValueError(
-            f"damping: a dashpot goes with rule = {NEWMARK!r} only, got {law.damping:g} with rule = {options.rule!r}"
-        )
-    if frictionless(law, options) and len(model.reduced.B) > model.reduced.contacts:
-        subject = "damping: a dashpot" if law.damping else f"rule: {options.rule} contact"
-        raise ValueError(f"{subject} needs shear = 0 where the base can slide, got {law.shear:g}")
-    if options.rule == IMPACT:
-        check_impact(model, scheme)
-    if options.rule == AUGMENTED and (math.isinf(law.stiffness) or any(law.band) or scheme.alpha == 0):
-        raise ValueError(
-            f"rule: {AUGMENTED} contact needs a finite stiffness (that of its passes), no band and an implicit scheme, "
-            f"got stiffness = {law.stiffness:g}, band = {law.band} and alpha = {scheme.alpha:g}"
-        )
-    if options.rule in (IMPLICIT, CONSERVING) and (scheme.alpha, scheme.delta) != (0.25, 0.5):
-        weights = (scheme.alpha, scheme.delta)
-        raise ValueError(
-            f"rule: {options.rule} contact needs average acceleration, alpha = 1/4, delta = 1/2, got {weights}"
-        )
-    if options.rule == CONSERVING:
-        if math.isinf(law.stiffness) or any(law.band):
-            raise ValueError(
-                f"rule: {CONSERVING} contact needs a finite stiffness and no band, "
-                f"got stiffness = {law.stiffness:g} and band = {law.band}"
-            )
+    rule = options.rule
+    weights = scheme.alpha, scheme.delta
+    sprung = not math.isinf(law.stiffness)
+    needs = f"{rule} contact needs"
+    yield "rule", rule in model.rules, f"must be among {', '.join(model.rules)} for such a body", repr(rule)
+    if rule not in (NEWMARK, AUGMENTED):
+        yield "rule", scheme.table is None, f"{rule} contact goes with scheme newmark only", repr(scheme.name)
+    if law.damping:
+        yield "damping", rule == NEWMARK, f"a dashpot goes with rule = {NEWMARK!r} only", f"rule = {rule!r}"
+    if frictionless(law, options):
+        field = "damping" if law.damping else "rule"
+        slides = len(model.reduced.B) > model.reduced.contacts
+        yield field, not slides, "it needs shear = 0 where the base can slide", f"{law.shear:g}"
+    if rule in (IMPLICIT, CONSERVING):
+        yield "rule", weights == (0.25, 0.5), f"{needs} average acceleration, alpha = 1/4, delta = 1/2", weights
+    if rule in (CONSERVING, AUGMENTED):
+        yield "rule", sprung, f"{needs} a finite stiffness", f"{law.stiffness:g}"
+    if rule in LOOPS:
+        yield "rule", not any(law.band), f"{needs} no band", law.band
+    if rule == AUGMENTED:
+        yield "rule", scheme.alpha > 0, f"{needs} an implicit scheme", f"alpha = {scheme.alpha:g}"
+    if rule == CONSERVING:
         at_once(model.load, f"{CONSERVING} contact")
-        if model.load.motion is not None:
-            raise ValueError(f"rule: {CONSERVING} contact needs a base at rest, got one that moves")
-    check_scheme(law, scheme)
+    if rule in (CONSERVING, IMPACT):
+        yield "rule", model.load.motion is None, f"{needs} a base at rest", "one that moves"
+    if rule == IMPACT:
+        theta = (scheme.delta + 0.5) / 2
+        fits = 0 < theta <= 1 and math.isclose(scheme.alpha, theta * theta, rel_tol=1e-9)
+        yield "rule", fits, f"{needs} alpha = theta^2, delta = 2 theta - 1/2, e.g. 1/4 and 1/2, or 9/16 and 1", weights
+        yield "rule", not sprung, f"{needs} a rigid stop, stiffness = inf", f"{law.stiffness:g}"
+        yield "rule", law.friction is None, f"{needs} no friction", law.friction
+    damping = scheme.mass_damping, scheme.stiffness_damping
+    yield "mass_damping, stiffness_damping", not scheme.damped, "must be 0 where contact opens", damping
+    explicit = scheme.alpha == 0
+    yield "stiffness", sprung or not explicit, "must be finite in an explicit scheme (alpha = 0)", law.stiffness
 
 
 def frictionless(law: Unilateral, options: UnilateralOptions) -> bool:
     """Tell whether contact has no forces along the base, whatever its law has."""
     return bool(law.damping) or options.rule in LOOPS
-
-
-def check_impact(model: UnilateralModel, scheme: Scheme) -> None:
-    """Raise ValueError where impulses do not go with the scheme or the contact."""
-    law = model.contact
-    theta = (scheme.delta + 0.5) / 2
-    if not (0 < theta <= 1 and math.isclose(scheme.alpha, theta * theta, rel_tol=1e-9)):
-        raise ValueError(
-            f"rule: {IMPACT} contact needs alpha = theta^2, delta = 2 theta - 1/2, e.g. 1/4 and 1/2, or 9/16 and 1, "
-            f"got {(scheme.alpha, scheme.delta)}"
-        )
-    if not math.isinf(law.stiffness):
-        raise ValueError(f"rule: {IMPACT} contact needs a rigid stop, stiffness = inf, got {law.stiffness:g}")
-    if law.friction is not None or any(law.band):
-        raise ValueError(
-            f"rule: {IMPACT} contact needs no friction and no band, got friction = {law.friction} and band = {law.band}"
-        )
-    if model.load.motion is not None:
-        raise ValueError(f"rule: {IMPACT} contact needs a base at rest, got one that moves")
-
-
-def check_scheme(law: Unilateral, scheme: Scheme) -> None:
-    """Raise ValueError where an explicit scheme meets a rigid stop, or viscous damping a contact."""
-    if scheme.damped:
-        damping = (scheme.mass_damping, scheme.stiffness_damping)
-        raise ValueError(f"mass_damping, stiffness_damping: must be 0 where contact opens, got {damping}")
-    if math.isinf(law.stiffness) and scheme.alpha == 0:
-        raise ValueError(f"stiffness: must be finite in an explicit scheme (alpha = 0), got {law.stiffness}")

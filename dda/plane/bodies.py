@@ -246,11 +246,21 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
             inertia_of(blocks, i, ends.e[i], ends)
 
 
+def stretched(e: Vector, first: int, x: float, y: float) -> tuple[float, float]:
+    """Return E (x, y) of the strains that begin at a place of a vector [m]."""
+    half = e[first + 2] / 2
+    return e[first] * x + half * y, half * x + e[first + 1] * y
+
+
+def strained(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
+    """Return U (x, y) of a block, in its axes [m]."""
+    X, Y = stretched(poses.e[i], 0, x, y)
+    return x + X, y + Y
+
+
 def point(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
     """Return where a point of a block is from its centroid, for the poses of an end [m]."""
-    e = poses.e[i]
-    X = x + (e[0] * x + e[2] / 2 * y)
-    Y = y + (e[2] / 2 * x + e[1] * y)
+    X, Y = strained(poses, i, x, y)
     c = poses.cos[i]
     s = poses.sin[i]
     return c * X - s * Y, s * X + c * Y
@@ -258,12 +268,13 @@ def point(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
 
 def moved(poses: Poses, i: int, D: Vector, x: float, y: float) -> tuple[float, float]:
     """Return how far a step by D moves a point, for the poses of its chord [m]."""
-    e = poses.e[i]
     c = poses.cos[i]
     s = poses.sin[i]
     turn = poses.spin[i] * D[2]
-    X = -turn * (y + (e[2] / 2 * x + e[1] * y)) + poses.stretch[i] * (D[3] * x + D[5] / 2 * y)
-    Y = turn * (x + (e[0] * x + e[2] / 2 * y)) + poses.stretch[i] * (D[5] / 2 * x + D[4] * y)
+    U, V = strained(poses, i, x, y)
+    dU, dV = stretched(D, 3, x, y)
+    X = -turn * V + poses.stretch[i] * dU
+    Y = turn * U + poses.stretch[i] * dV
     return D[0] + (c * X - s * Y), D[1] + (s * X + c * Y)
 
 
@@ -271,12 +282,12 @@ def direction(poses: Poses, i: int, ax: float, ay: float, x: float, y: float, ou
     """Write a . dx/dD of a point, for a direction a in space."""
     c = poses.cos[i]
     s = poses.sin[i]
-    e = poses.e[i]
+    U, V = strained(poses, i, x, y)
     across = ax * c + ay * s
     along = ay * c - ax * s
     out[0] = ax
     out[1] = ay
-    out[2] = poses.spin[i] * (along * (x + (e[0] * x + e[2] / 2 * y)) - across * (y + (e[2] / 2 * x + e[1] * y)))
+    out[2] = poses.spin[i] * (along * U - across * V)
     stretch = poses.stretch[i]
     out[3] = stretch * across * x
     out[4] = stretch * along * y

@@ -47,7 +47,7 @@ from dda.plane.elimination import (
     order_blocks,
     solve_blocks,
 )
-from dda.plane.places import Places, contact_way, push_contacts
+from dda.plane.places import Places, contact_way, flexibility_of, push_contacts
 
 TOGETHER = 8  # solves in which all states are updated at once
 RESTARTS = 6  # of sweeps, each longer than the last one
@@ -103,16 +103,16 @@ def set_pattern(many: Many, places: Places) -> bool:
     number = many.matrix.number
     known = many.known[0] > 0
     for k in range(places.count[0]):
-        i = many.body[places.block[k]]
-        j = many.body[places.on[k]]
+        i = many.body[places.sides[k][0]]
+        j = many.body[places.sides[k][1]]
         if i >= 0 and j >= 0 and number[i][j] == MISSING:
             known = False
     if known:
         return True
     clear_pattern(many.matrix)
     for k in range(places.count[0]):
-        i = many.body[places.block[k]]
-        j = many.body[places.on[k]]
+        i = many.body[places.sides[k][0]]
+        j = many.body[places.sides[k][1]]
         if i >= 0 and j >= 0:
             number[i][j] = 0
             number[j][i] = 0
@@ -230,8 +230,8 @@ def solve_states(
         if not factor_blocks(many.matrix):
             return 0
         solve_blocks(many.matrix, many.right)
-        take_solution(many, blocks, 0.0)
-        write_forces(many, blocks, places, laws, work, after)
+        take_solution(many, blocks)
+        add_forces(many, blocks, places, laws, work, after, 1.0)
         settled = True
         for k in range(n):
             if not closing or not closes(laws, before, work, k):
@@ -300,7 +300,7 @@ def add_row(
     """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         body = many.body[i]
         if body < 0:
             continue
@@ -310,7 +310,7 @@ def add_row(
         for e in range(modes):
             right[e] += F[e] * constant
         for opposite in range(2):
-            j = places.block[k] if opposite == 0 else places.on[k]
+            j = places.sides[k][opposite]
             other = many.body[j]
             if other < 0:
                 continue
@@ -323,34 +323,35 @@ def add_row(
                         block[e][f] += push * B[f]
 
 
-def take_solution(many: Many, blocks: Blocks, share: float) -> None:
-    """Write the solution as increments of the modes, added to a share of what they were."""
+def take_solution(many: Many, blocks: Blocks) -> None:
+    """Write the solution as increments of the modes."""
     for i in range(len(many.body)):
         body = many.body[i]
         if body >= 0:
             first = blocks.first[i]
             for e in range(blocks.first[i + 1] - first):
-                many.x[first + e] = share * many.x[first + e] + many.right[body][e]
+                many.x[first + e] = many.right[body][e]
 
 
-def write_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Work, after: Rows) -> None:
-    """Write the forces that the increments make."""
+def add_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Work, after: Rows, whole: float) -> None:
+    """Write the forces that the increments make; where `whole` is zero, add what more increments add to them."""
     n = laws.contacts
     for k in range(n):
         r = n + k
-        after.force[k] = 0.0
-        after.force[r] = 0.0
+        if whole != 0:
+            after.force[k] = 0.0
+            after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
-        after.force[k] = N
+        N = -(whole * work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
+        after.force[k] += N
         if work.tried[r] != INSIDE:
-            after.force[r] = work.tried[r] * (laws.friction[k] * N + laws.upper[r])
+            after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            way = work.q[r] + contact_way(many.x, blocks, places, r)
+            way = whole * work.q[r] + contact_way(many.x, blocks, places, r)
             if many.kappa[k] != 0.0:
-                way += many.kappa[k] * (N - many.normal[k])
-            after.force[r] = -way * work.beta[k] / laws.compliance[r]
+                way += many.kappa[k] * (N - whole * many.normal[k])
+            after.force[r] -= way * work.beta[k] / laws.compliance[r]
 
 
 def write_openings(
@@ -392,20 +393,10 @@ def refine(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Lengt
             for e in range(blocks.first[i + 1] - first):
                 many.right[body][e] = many.residual[first + e]
     solve_blocks(many.matrix, many.right)
-    take_solution(many, blocks, 0.0)
-    for k in range(n):
-        if work.tried[k] != INSIDE:
-            continue
-        r = n + k
-        N = -contact_way(many.x, blocks, places, k) / laws.compliance[k]
-        after.force[k] += N
-        after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
-        if work.tried[r] != INSIDE:
-            after.force[r] += work.tried[r] * laws.friction[k] * N
-            after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
-        elif not is_smooth(laws, k):
-            way = contact_way(many.x, blocks, places, r) + many.kappa[k] * N
-            after.force[r] -= way * work.beta[k] / laws.compliance[r]
+    take_solution(many, blocks)
+    add_forces(many, blocks, places, laws, work, after, 0.0)
+    for r in range(2 * n):
+        if after.force[r] != 0.0:
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
 
 
@@ -440,14 +431,14 @@ def sweep(
             k = step if number % 2 == 0 else n - 1 - step
             r = n + k
             gap = work.q[k] + contact_way(many.x, blocks, places, k)
-            own = own_flexibility(blocks, places, length, k, k)
+            own = flexibility_of(blocks, places, length, k, k)
             N = (own * after.force[k] - gap) / (own + laws.compliance[k])
             if laws.opens[k] == 1 and laws.lower[k] > N:
                 N = 0.0
             T = 0.0
             if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
                 way = work.q[r] + contact_way(many.x, blocks, places, r)
-                own = own_flexibility(blocks, places, length, k, r)
+                own = flexibility_of(blocks, places, length, r, r)
                 limit = shear_limit(laws, k, N)
                 T = min(max((own * after.force[r] - way) / (own + laws.compliance[r]), -limit), limit)
             push(many, blocks, places, length, k, N, after)
@@ -464,17 +455,6 @@ def sweep(
             work.tried[r] = UPPER if after.force[r] > 0 else LOWER
 
 
-def own_flexibility(blocks: Blocks, places: Places, length: Length, k: int, r: int) -> float:
-    """Return what a unit force of a row adds to its own opening [m/N]."""
-    total = 0.0
-    for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
-        first = blocks.first[i]
-        for e in range(blocks.first[i + 1] - first):
-            total += places.B[r][side][e] * length.inverse[first + e] * places.F[r][side][e]
-    return float(length.numbers[3] * total)
-
-
 def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, force: float, after: Rows) -> None:
     """Set the force of a row, and what it moves."""
     change = force - after.force[r]
@@ -484,7 +464,7 @@ def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, for
     n = places.count[0]
     k = r if r < n else r - n
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         first = blocks.first[i]
         for e in range(blocks.first[i + 1] - first):
             mode = first + e

@@ -40,26 +40,29 @@ def unsettled_contacts(
     reached, outcome
         What the loop over steps returned.
     """
+    found = march.method.detection.contacts
     if outcome == TOO_DEEP:
-        return (found_contact(march, 0),)
+        return (found_contact(march, found.corner[0], found.edge[0]),)
     if outcome != NONE or march.scheme.stages > 1:  # of two stages nobody says which one failed
         return ()
-    stated = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
-    stated += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
     is_cut = history.cuts[reached + 1] > 0
-    numbers = flipping_contacts(march, is_cut)
-    return tuple(stated[k] if k < len(stated) else found_contact(march, k - len(stated)) for k in numbers)
+    present = stated_contacts(model)
+    present += [found_contact(march, *pair) for pair in zip(found.corner, found.edge, strict=True)]
+    return tuple(present[k] for k in flipping_contacts(march, is_cut))
 
 
-def found_contact(march: March, number: int) -> PlaneContact:
-    """Return a contact that was found, by the numbers of its blocks."""
-    detection = march.method.detection
-    corners = detection.corners
-    corner = int(detection.contacts.corner[number])
-    edge = int(detection.contacts.edge[number])
+def stated_contacts(model: PlaneModel) -> list[PlaneContact]:
+    """Return the contacts that are stated, then both ends of every bond."""
+    stated = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
+    return stated + [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
+
+
+def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
+    """Return a contact that was found, by numbers among all corners, with those of its blocks."""
+    corners = march.method.detection.corners
     block = int(corners.block[corner])
     on = int(corners.block[edge])
-    return PlaneContact(block, corner - int(corners.start[corner]), on, edge - int(corners.start[edge]))
+    return PlaneContact(block, int(corner - corners.start[corner]), on, int(edge - corners.start[edge]))
 
 
 def flipping_contacts(march: March, is_cut: bool) -> list[int]:

@@ -20,7 +20,8 @@ from typing import Any, NamedTuple
 
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Rows
-from dda.plane.bodies import Blocks, Poses, by_modes, direction, moved, point
+from dda.march.step import Length
+from dda.plane.bodies import Blocks, Poses, by_modes, direction, moved, point, strained, stretched
 
 AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
 
@@ -30,8 +31,7 @@ class Places(NamedTuple):
 
     count: Any  # (2,) how many there are, and how many of these are stated
     law: Any  # (c,) number of its springs
-    block: Any  # (c,) that of the corner
-    on: Any  # (c,) that of the edge
+    sides: Any  # (c, 2) blocks: that of the corner, and that of the edge
     bonded: Any  # (c,) 1 of two points that are glued
     at: Matrix  # (c, 2) the corner, from the centroid of its block, unstrained [m]
     edge: Matrix  # (c, 4) both ends of the edge, from the centroid of its block [m]
@@ -47,8 +47,8 @@ class Places(NamedTuple):
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
     """Write feet and normals of contacts for where the blocks are."""
     for k in range(places.count[0]):
-        i = places.block[k]
-        j = places.on[k]
+        i = places.sides[k][0]
+        j = places.sides[k][1]
         edge = places.edge[k]
         tx, ty = point(ends, j, edge[2] - edge[0], edge[3] - edge[1])
         length = math.hypot(tx, ty)
@@ -68,8 +68,8 @@ def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> No
 
 def gap_of(blocks: Blocks, q: Matrix, ends: Poses, places: Places, k: int) -> float:
     """Return the gap of a contact by the places of its blocks [m]."""
-    i = places.block[k]
-    j = places.on[k]
+    i = places.sides[k][0]
+    j = places.sides[k][1]
     px, py = point(ends, i, places.at[k][0], places.at[k][1])
     sx, sy = point(ends, j, places.foot[k][0], places.foot[k][1])
     dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
@@ -93,26 +93,22 @@ def write_rows(
     force_i = places.row[2]
     force_j = places.row[3]
     for k in range(n):
-        i = places.block[k]
-        j = places.on[k]
+        i = places.sides[k][0]
+        j = places.sides[k][1]
         at = places.at[k]
         foot = places.foot[k]
         edge = places.edge[k]
-        strained = blocks.first[j + 1] - blocks.first[j] > 3
+        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
         fixed_i = blocks.first[i + 1] == blocks.first[i]
         fixed_j = blocks.first[j + 1] == blocks.first[j]
         # the edge as it is strained, in the axes of its block, in the middle of the step and at its end
         tx = edge[2] - edge[0]
         ty = edge[3] - edge[1]
-        e = chords.e[j]
-        mx = tx + (e[0] * tx + e[2] / 2 * ty)
-        my = ty + (e[2] / 2 * tx + e[1] * ty)
+        mx, my = strained(chords, j, tx, ty)
         psi = D[j][2]
         across = 0.0
-        if strained:
-            d = D[j]
-            cx = d[3] * tx + d[5] / 2 * ty
-            cy = d[5] / 2 * tx + d[4] * ty
+        if has_strains:
+            cx, cy = stretched(D[j], 3, tx, ty)
             across = mx * mx + my * my  # |t0| |t1| but for the square of a strain's increment
             psi += (mx * cy - my * cx) / across
         half = psi / 2
@@ -136,31 +132,27 @@ def write_rows(
         dy += uy - vy
         for axis in range(2):
             r = k if axis == 0 else n + k
-            ax = cos * nx if axis == 0 else cos * ny
-            ay = cos * ny if axis == 0 else -cos * nx
-            turned = spin * (nx * mean_y - ny * mean_x) if axis == 0 else spin * (nx * mean_x + ny * mean_y)
+            ax = cos * nx
+            ay = cos * ny
+            turned = spin * (nx * mean_y - ny * mean_x)
             if not fixed_i or blocks.motion[i] >= 0:
                 direction(chords, i, ax, ay, at[0], at[1], chord_i)
             if not fixed_j or blocks.motion[j] >= 0:
                 direction(chords, j, -ax, -ay, foot[0], foot[1], chord_j)
-                turn_with(chord_j, turned, strained, mx, my, tx, ty, across)
+                turn_with(chord_j, turned, has_strains, mx, my, tx, ty, across)
             places.driven[r] = 0.0
             if blocks.motion[i] >= 0:
                 places.driven[r] += chord_i[0] * D[i][0] + chord_i[1] * D[i][1]
             if blocks.motion[j] >= 0:
                 places.driven[r] += chord_j[0] * D[j][0] + chord_j[1] * D[j][1]
             if late != 0:
-                bx = end_x if axis == 0 else end_y
-                by = end_y if axis == 0 else -end_x
                 if not fixed_i:
-                    direction(ends, i, bx, by, at[0], at[1], force_i)
+                    direction(ends, i, end_x, end_y, at[0], at[1], force_i)
                 if not fixed_j:
-                    e = ends.e[j]
-                    ex = tx + (e[0] * tx + e[2] / 2 * ty)
-                    ey = ty + (e[2] / 2 * tx + e[1] * ty)
-                    turned = end_x * dy - end_y * dx if axis == 0 else end_x * dx + end_y * dy
-                    direction(ends, j, -bx, -by, foot[0], foot[1], force_j)
-                    turn_with(force_j, turned, strained, ex, ey, tx, ty, ex * ex + ey * ey)
+                    ex, ey = strained(ends, j, tx, ty)
+                    turned = end_x * dy - end_y * dx
+                    direction(ends, j, -end_x, -end_y, foot[0], foot[1], force_j)
+                    turn_with(force_j, turned, has_strains, ex, ey, tx, ty, ex * ex + ey * ey)
             for m in range(6):
                 force_i[m] = (1 - late) * chord_i[m] + (late * force_i[m] if late != 0 else 0.0)
                 force_j[m] = (1 - late) * chord_j[m] + (late * force_j[m] if late != 0 else 0.0)
@@ -168,6 +160,8 @@ def write_rows(
             by_modes(blocks, j, chords, chord_j, False, places.B[r][1])
             by_modes(blocks, i, chords, force_i, True, places.F[r][0])
             by_modes(blocks, j, chords, force_j, True, places.F[r][1])
+            nx, ny = ny, -nx  # the way along the edge
+            end_x, end_y = end_y, -end_x
 
 
 def contact_way(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
@@ -176,7 +170,7 @@ def contact_way(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
     k = r if r < n else r - n
     total = 0.0
     for side in range(2):
-        i = places.block[k] if side == 0 else places.on[k]
+        i = places.sides[k][side]
         first = blocks.first[i]
         B = places.B[r][side]
         for e in range(blocks.first[i + 1] - first):
@@ -192,11 +186,34 @@ def push_contacts(blocks: Blocks, places: Places, force: Vector, out: Vector) ->
             continue
         k = r if r < n else r - n
         for side in range(2):
-            i = places.block[k] if side == 0 else places.on[k]
+            i = places.sides[k][side]
             first = blocks.first[i]
             F = places.F[r][side]
             for e in range(blocks.first[i + 1] - first):
                 out[first + e] += F[e] * force[r]
+
+
+def flexibility_of(blocks: Blocks, places: Places, length: Length, r: int, s: int) -> float:
+    """Return what a unit force of a row s adds to the opening of a row r, weight B s^-1 F', by the blocks of both."""
+    n = places.count[0]
+    of = places.sides[r if r < n else r - n]
+    by = places.sides[s if s < n else s - n]
+    total = 0.0
+    for side in range(2):
+        i = of[side]
+        first = blocks.first[i]
+        modes = blocks.first[i + 1] - first
+        if modes == 0:
+            continue
+        for opposite in range(2):
+            if by[opposite] == i:
+                B = places.B[r][side]
+                F = places.F[s][opposite]
+                shared = 0.0
+                for e in range(modes):
+                    shared += B[e] * length.inverse[first + e] * F[e]
+                total += length.numbers[3] * shared
+    return total
 
 
 def turn_with(

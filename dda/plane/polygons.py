@@ -157,6 +157,6 @@ def outlines(polygons: Sequence[Array]) -> tuple[Corners, Sides, Parts]:
         now=places.copy(),
         then=places.copy(),
     )
-    first, last, owner = np.transpose(parts)
+    first, last, owner = np.transpose(parts).copy()
     alone = (np.bincount(owner)[owner] == 1).astype(np.int64)
-    return corners, Sides(*np.transpose(sides)), Parts(first, last, owner, alone, np.zeros((n, 4)), np.arange(n))
+    return corners, Sides(*np.transpose(sides).copy()), Parts(first, last, owner, alone, np.zeros((n, 4)), np.arange(n))

@@ -20,7 +20,7 @@ from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
-from dda.plane.outcomes import PlaneContact, sentence, unsettled_contacts
+from dda.plane.outcomes import PlaneContact, found_contact, sentence, stated_contacts, unsettled_contacts
 from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
 from dda.plane.taken import Memory, Springs, write_laws
@@ -97,7 +97,7 @@ def solve_plane(
         course = course_of(model)
         start = start_of(model, scheme, march, course)
     kept = steps // every
-    c = len(march.method.places.block)
+    c = len(march.method.places.law)
     b = len(model.blocks)
     history = History(
         motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
@@ -111,8 +111,8 @@ def solve_plane(
         sums=np.zeros((steps + 1, SUMS)),
     )
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
-    # what compiling takes, some 90 s, is a million steps of a block or a contact in plain Python
-    weight = steps * (b + touching) // 50 if compiled is None else compiled * ANEW
+    # what compiling takes, some 20 s, is 200,000 steps of a block or a contact in plain Python
+    weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
     arguments = (march, start, deepcopy(start), course), (history, steps, cut)
     (reached, outcome), left, how = run_loop(make_steps, (), *arguments, weight)
     with np.errstate(all="ignore"):
@@ -147,7 +147,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     most = 0 if model.found is None else ROOM * b + ROOM
     places = places_of(model, most)
     springs, pairs = springs_of(model)
-    c = len(places.block)
+    c = len(places.law)
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
     detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
@@ -341,8 +341,7 @@ def places_of(model: PlaneModel, most: int) -> Places:
     return Places(
         count=np.array([stated, stated]),
         law=law_numbers,
-        block=block,
-        on=on,
+        sides=np.column_stack([block, on]),
         bonded=bonded,
         at=at.reshape(-1, 2),
         edge=edge.reshape(-1, 4),
@@ -367,7 +366,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     plane = march.method
     blocks = plane.blocks
     places = plane.places
-    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.block)))
+    state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     for k, contact in enumerate(model.contacts):
@@ -479,12 +478,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
     plane = march.method
     springs = plane.springs
     stated = int(plane.places.count[1])
-    contacts = [PlaneContact(part.block, part.corner, part.on, part.edge) for part in model.contacts]
-    contacts += [PlaneContact(bond.first, -1, bond.second, -1) for bond in model.bonds for _ in range(2)]
+    contacts = stated_contacts(model)
     laws = list(plane.places.law[:stated])
     columns: dict[tuple[int, int], int] = {}
     places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
-    corners = plane.detection.corners
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
     present = identity[:, 0] if plane.finds else np.full(kept, stated)
     for row in range(kept):
@@ -493,13 +490,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
             if (corner, edge) not in columns:
                 if history.state[row, k] != INSIDE:
                     continue
-                i = int(corners.block[corner])
-                j = int(corners.block[edge])
                 columns[corner, edge] = len(contacts)
-                contacts.append(
-                    PlaneContact(i, corner - int(corners.start[corner]), j, edge - int(corners.start[edge]))
-                )
-                laws.append(plane.detection.law[i * len(model.blocks) + j])
+                contact = found_contact(march, corner, edge)
+                contacts.append(contact)
+                laws.append(plane.detection.law[contact.block * len(model.blocks) + contact.on])
             places.append((row, k, columns[corner, edge]))
     normal, shear, slip = np.zeros((3, kept, len(contacts)))
     gap = np.full((kept, len(contacts)), np.nan)

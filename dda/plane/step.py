@@ -46,7 +46,7 @@ from dda.plane.bodies import (
 )
 from dda.plane.detect import Detection
 from dda.plane.many import Many, find_many
-from dda.plane.places import Places, contact_way, place_contacts, push_contacts, write_rows
+from dda.plane.places import Places, contact_way, flexibility_of, place_contacts, push_contacts, write_rows
 from dda.plane.taken import (
     Memory,
     Springs,
@@ -137,8 +137,6 @@ def make_stage(
     begin_step(march, start, length)
     free_modes(march, stage, length, before)
     for i in range(len(plane.D)):
-        for k in range(6):
-            plane.D[i][k] = 0.0
         column = blocks.motion[i]
         if column >= 0:
             for k in range(2):
@@ -150,7 +148,7 @@ def make_stage(
     else:
         copy_memory(before, plane.second)
     laws = laws_for(march.laws, places.count[0])
-    set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+    stand(plane, before.q)
     place_contacts(blocks, before.q, plane.ends, places)
     share = stage.numbers.end - stage.numbers.begin
     for i in range(len(plane.x)):
@@ -214,7 +212,7 @@ def take_contacts(march: March, before: AnyState) -> int:
     if plane.finds == 0:
         copy_memory(before, plane.first)
         return FOUND
-    set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
+    stand(plane, before.q)
     place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
     increments(blocks, before.q, march.room.x, plane.chords, plane.new)
     set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
@@ -305,32 +303,13 @@ def push_loads(march: March, after: AnyState) -> float:
 
 
 def write_contact_flexibility(march: March, length: Length) -> None:
-    """Write W = weight B s^-1 F', of all pairs of contacts that share a block."""
+    """Write W = weight B s^-1 F' of all pairs of rows."""
     plane = march.method
-    places = plane.places
     W = length.flexible.W
-    n = places.count[0]
-    first = plane.blocks.first
-    for k in range(n):
-        for m in range(n):
-            for axis in range(2):
-                for other in range(2):
-                    W[axis * n + k][other * n + m] = 0.0
-            for side in range(2):
-                i = places.block[k] if side == 0 else places.on[k]
-                if first[i + 1] == first[i]:
-                    continue
-                for opposite in range(2):
-                    if i != (places.block[m] if opposite == 0 else places.on[m]):
-                        continue
-                    for axis in range(2):
-                        B = places.B[axis * n + k][side]
-                        for other in range(2):
-                            F = places.F[other * n + m][opposite]
-                            total = 0.0
-                            for e in range(first[i + 1] - first[i]):
-                                total += B[e] * length.inverse[first[i] + e] * F[e]
-                            W[axis * n + k][other * n + m] += length.numbers[3] * total
+    rows = 2 * plane.places.count[0]
+    for r in range(rows):
+        for s in range(rows):
+            W[r][s] = flexibility_of(plane.blocks, plane.places, length, r, s)
 
 
 def free_contacts(march: March, memory: Memory) -> None:

@@ -93,8 +93,8 @@ def take_found(detection: Detection, blocks: Blocks, edge_end: Any, places: Plac
         k = stated + f
         corner = contacts.corner[f]
         edge = contacts.edge[f]
-        places.block[k] = corners.block[corner]
-        places.on[k] = corners.block[edge]
+        places.sides[k][0] = corners.block[corner]
+        places.sides[k][1] = corners.block[edge]
         places.law[k] = contacts.law[f]
         for axis in range(2):
             places.at[k][axis] = blocks.xi[corner][axis]

@@ -62,7 +62,6 @@ class ContactResult(MarchResult):
     base_contacts: tuple[int, int]  # rows of M and N
     make_slide: Callable[[], Array]
     make_velocity: Callable[[], Array]
-    impulses: Array | None = None  # P of the rule "impact", (contacts, steps) [N s]
     step_passes: NDArray[np.int_] | None = None  # of the augmented Lagrangian in each step
 
     def across(self, values: Array) -> Array:

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array
+from scipy.sparse import block_array, csr_array, diags_array
+from scipy.sparse.linalg import splu
 
 from fem_reference.column.contact_model import ContactColumn
 from fem_reference.column.mesh import LineMesh, line_mesh
@@ -114,16 +115,14 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, mesh: LineMe
     place = np.array([contact.gap for contact in column.contacts]) if opens else np.zeros(n)
     states = np.full(n, AT_LOWER if opens else INSIDE, dtype=np.int8)
     V = _velocities(column, mesh)[model.free]
+    if system.to_modes is not None:
+        V = system.to_modes @ V
     D = np.zeros_like(V)
     force = np.zeros(n)
     if column.settled:
-        at_rest, force = _static(column, mesh, float(system.start_parts[0]))
-        D = at_rest[model.free]
+        D, force = _at_rest(system, float(system.start_parts[0]), place)
         place = -force * system.rows.compliance
         states = np.zeros(n, dtype=np.int8)
-    if system.to_modes is not None:
-        V = system.to_modes @ V
-        D = system.to_modes @ D
     touching = np.flatnonzero((system.rows.compliance == 0) & (place == 0))
 
     def pull(mass: Any, A: Array) -> tuple[Array, Array]:
@@ -179,32 +178,13 @@ def _velocities(column: ContactColumn, mesh: LineMesh) -> Array:
     return V
 
 
-def _static(column: ContactColumn, mesh: LineMesh, base: float) -> tuple[Array, Array]:
-    """Displacements of all unknowns and forces at rest: each contact carries the weight above it."""
-    ground = column.ground
-    gravity = column.gravity
-    bottoms = ground.tops - [stratum.thickness for stratum in ground.strata]
-    densities = np.array([stratum.density for stratum in ground.strata])
-    moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])
-
-    def carried(height: float) -> float:
-        above = np.clip(ground.tops - height, 0.0, ground.tops - bottoms)
-        return gravity * float(densities @ above)
-
-    def shortening(height: float) -> float:
-        """Of the column between its foot and a height, its contacts apart."""
-        total = 0.0
-        for low, high, density, modulus in zip(bottoms, ground.tops, densities, moduli, strict=True):
-            length = min(max(height - low, 0.0), high - low)
-            total += (carried(low) - density * gravity * length / 2) * length / modulus
-        return total
-
-    force = np.array([carried(contact.height) for contact in column.contacts])
-    closing = np.array([N / one.stiffness + one.gap for N, one in zip(force, column.contacts, strict=True)])
-    D = np.zeros(mesh.size)
-    first = 0 if column.foot_contact else 1
-    for number, run in enumerate(mesh.parts):
-        below = float(closing[: number + 1 - first].sum())
-        heights = run.basis.doflocs[0]
-        D[run.first : run.first + run.size] = [base - below - shortening(float(height)) for height in heights]
-    return D, force
+def _at_rest(system: ContactSystem, base: float, gap: Array) -> tuple[Array, Array]:
+    """Displacements and forces under the weight with all contacts closed: K D - B' N = F,  B D + c N = -gap."""
+    K = system.K if system.to_modes is None else diags_array(system.K)
+    B = csr_array(system.B)
+    scale = float(abs(K.diagonal()).max())  # so that both equations are of one size
+    compliance = diags_array(scale**2 * system.rows.compliance)
+    matrix = block_array([[K, -scale * B.T], [scale * B, compliance]], format="csc")
+    moved = base * system.ground[:, 0] - gap
+    solution = splu(matrix).solve(np.concatenate([system.F + base * system.pushes[:, 0], scale * moved]))
+    return solution[: len(system.F)], scale * solution[len(system.F) :]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from time import perf_counter
 from typing import NamedTuple
 
@@ -16,26 +16,23 @@ from fem_reference.column.mesh import LineMesh
 from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitation
 from fem_reference.column.stepping import Model, Observation, observed_by, row_of
 from fem_reference.contact import compilation
-from fem_reference.contact.driver import make_steps
-from fem_reference.contact.iteration import CONVERGED, OVERFLOW
+from fem_reference.contact.driver import OUTCOMES, histories
+from fem_reference.contact.iteration import CONVERGED, NONE, OVERFLOW
 from fem_reference.contact.march import Record
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.problem.result import Result
+from fem_reference.problem.result import Result, just_ended
 
-COMPLETED = "completed"
-UNSOLVED = "no consistent contact state"
 OF_CONTACTS = ("force", "gap", "slip")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class ColumnContactResult(Result):
     """Histories of the steps that were reached; element 0 is step 1."""
 
-    outcome: str = COMPLETED  # or why the history ends early, in words
-    step_solves: Array = field(default_factory=lambda: np.zeros(0))  # of each step, the confirming one included
-    states: NDArray[np.int8] = field(default_factory=lambda: np.zeros((0, 0), np.int8))  # (contacts, steps)
-    openings: Array = field(default_factory=lambda: np.zeros((0, 0)))  # gap y, or slip r [m], (contacts, steps)
-    mean_velocity: Array = field(default_factory=lambda: np.zeros(0))  # of the centre of mass [m/s], (steps,)
+    step_solves: Array  # solutions of the contacts in each step, the confirming one included [-], shape (steps,)
+    states: NDArray[np.int8]  # (contacts, steps)
+    openings: Array  # gap y, or slip r [m], (contacts, steps)
+    mean_velocity: Array  # of the centre of mass [m/s], (steps,)
 
 
 class ColumnRow(NamedTuple):
@@ -86,55 +83,47 @@ def solve_contacts(
     none = np.zeros(mesh.size)
     mean = Observation(none, mass / mass.sum(), none, np.zeros(4))
     observed = observed_by(model, [*(row.motion for row in rows), mean])
-    system = system_of(column, mesh, model, scheme, excitation, observed)
     stages = len(scheme.stages)
     steps = (len(excitation.pressure) - 1) // stages
-    modal = system.C is None and len(model.free) <= compilation.MODES and steps >= compilation.LONG
-    compiled, _ = compilation.march(modal, steps)
-    stepper = stepper_of(column, system.in_modes() if modal else system, scheme, compiled)
+    system = system_of(column, mesh, model, scheme, excitation, observed)
+    system, compiled, _ = compilation.prepared(system, steps)
+    stepper = stepper_of(column, system, scheme, compiled)
     with np.errstate(all="ignore"):
         state = column_at_start(stepper, column, mesh, model)
     ready = perf_counter()
-    pieces = [stepper.record(0)]
-    outcome = CONVERGED
-    notes: tuple[str, ...] = ()
-    for record, marched in make_steps(stepper, state, steps, None):
-        pieces.append(record)
-        outcome = marched.outcome
-        solves = marched.solves
-    record = Record._make(np.concatenate(parts) for parts in zip(*pieces, strict=True))
+    kept, marched = histories(stepper, state, steps, None, Record._asdict)
+    record = Record(**kept)
     reached = len(record.solves)
-    if outcome != CONVERGED:
-        reason = f"the open-close iteration has not ended after {solves} solves"
-        if outcome == OVERFLOW:
+    completed = marched.outcome == CONVERGED
+    notes: tuple[str, ...] = ()
+    if not completed:
+        reason = f"the open-close iteration has not ended after {marched.solves} solves"
+        if marched.outcome == OVERFLOW:
             reason = "the forces of the contacts are no numbers"
         notes = (f"step {reached + 1}: {reason}",)
     openings = record.place if column.law == "unilateral" else record.slid
-    histories = record.displacements + record.velocities + record.accelerations
-    histories += excitation.parts[stages : reached * stages + 1 : stages] @ observed.excitation.T
+    rows_of_steps = record.displacements + record.velocities + record.accelerations
+    rows_of_steps += excitation.parts[stages : reached * stages + 1 : stages] @ observed.excitation.T
     for number, row in enumerate(rows):
         if row.of_contact == "force":
-            histories[:, number] += record.force[:, row.contact]
+            rows_of_steps[:, number] += record.force[:, row.contact]
         elif row.of_contact:
-            histories[:, number] += (
+            rows_of_steps[:, number] += (
                 np.maximum(openings[:, row.contact], 0.0) if row.of_contact == "gap" else openings[:, row.contact]
             )
         if columns[number] == PRESSURE and model.holds_base:
-            histories[:, number] += column.gravity * mass[model.base]
-    ended = perf_counter()
+            rows_of_steps[:, number] += column.gravity * mass[model.base]
     return ColumnContactResult(
-        time=scheme.step * np.arange(1.0, reached + 1),
-        columns=dict(zip(columns, histories.T[:-1], strict=True)),
+        **just_ended(scheme.step, reached, began, ready),
+        columns=dict(zip(columns, rows_of_steps.T[:-1], strict=True)),
         unknowns=len(model.free),
         **vars(stepper.work),
         notes=notes,
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
-        outcome=COMPLETED if outcome == CONVERGED else UNSOLVED,
+        outcome=OUTCOMES[CONVERGED if completed else NONE],
         step_solves=record.solves,
         states=record.states.T,
         openings=openings.T,
-        mean_velocity=histories[:, -1],
+        mean_velocity=rows_of_steps[:, -1],
     )
 
 

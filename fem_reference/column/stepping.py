@@ -17,7 +17,7 @@ from scipy.sparse import coo_array, csr_array
 from fem_reference.column.mesh import LineMesh, line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground, check_columns
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.problem.result import Result
+from fem_reference.problem.result import Result, just_ended
 from fem_reference.scheme.newmark import Stepper
 
 
@@ -63,16 +63,11 @@ def solve_line(
     ready = perf_counter()
     with np.errstate(all="ignore"):
         columns_of_steps = histories(model, stepper, excitation, rows)
-    ended = perf_counter()
-    steps = columns_of_steps.shape[1]
     return Result(
-        time=scheme.step * np.arange(1.0, steps + 1),
+        **just_ended(scheme.step, columns_of_steps.shape[1], began, ready),
         columns=dict(zip(columns, columns_of_steps, strict=True)),
         unknowns=len(free),
         **vars(stepper.work),
-        notes=(),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
     )
 
 

@@ -52,6 +52,28 @@ FUNCTIONS = {
 """Functions that are compiled, by the module and the name."""
 
 
+def prepared(
+    system: ContactSystem, steps: int, full: bool = False
+) -> tuple[ContactSystem, Callable[..., Any] | None, tuple[str, ...]]:
+    """A system for a history of so many steps, in natural modes where it is long; what is compiled of the march; notes.
+
+    Parameters
+    ----------
+    system
+        The bodies on their contacts.
+    steps
+        Number of steps.
+    full
+        Whether nothing is saved.
+    """
+    unknowns = len(system.F)
+    modal = not full and system.C is None and unknowns <= MODES and steps >= LONG
+    run, note = march(modal, steps)
+    if not modal:
+        return system, run, (note,)
+    return system.in_modes(), run, (f"stepped in its {unknowns} natural modes", note)
+
+
 def march(modal: bool, steps: int) -> tuple[Callable[..., Any] | None, str]:
     """What is compiled of the march for a history, None where it runs as it stands; a note that says which.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -14,7 +15,7 @@ from fem_reference.contact.stepper import ContactStepper, Marched
 OUTCOMES = ("completed", "no consistent contact state", "several consistent contact states", "overflow")
 """How a history ends, by the numbers of `fem_reference.contact.iteration`."""
 PIECE = 4096
-"""Steps whose rows are kept at a time."""
+"""Steps whose rows are recorded at a time."""
 
 
 @dataclass(frozen=True)
@@ -23,6 +24,17 @@ class Cut:
 
     factor: float  # on the piece that has none [-], between 0 and 1
     shortest: float  # piece over the step [-]
+
+
+def histories(
+    stepper: ContactStepper, state: ContactState, steps: int, cut: Cut | None, kept: Callable[[Record], dict[str, Any]]
+) -> tuple[dict[str, Any], Marched]:
+    """Make all steps; return what is kept of the records, joined, and how the last piece has ended."""
+    pieces = [kept(stepper.record(0))]
+    marched = Marched(state, 0, 0, CONVERGED)
+    for record, marched in make_steps(stepper, state, steps, cut):  # noqa: B007
+        pieces.append(kept(record))
+    return {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}, marched
 
 
 def make_steps(

@@ -328,7 +328,7 @@ def newmark_loss(now: ContactStage, state: ContactState, end: ContactState) -> f
     if state.is_out_of_balance:
         # The rows bear no forces at t = 0, and the bodies no strain.
         loss += (1 - now.stage.gamma) * (dD @ (now.F - body.M * state.A))
-    if c != 0:
+    if c != 0:  # a saving of two products: the term is zero where c is
         dA = end.A - state.A
         stored = (end.A @ (body.M * end.A) - state.A @ (body.M * state.A)) / 2
         loss += c * now.h**2 * (stored + over * (dA @ (body.M * dA)))

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
-from skfem import Basis, Mesh
+from skfem import Basis
 
-from fem_reference.contact.system import ContactSystem, opening_rows, slipping_rows, with_friction
+from fem_reference.contact.system import ContactSystem, point_rows
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
@@ -50,17 +50,11 @@ class ContactModel:
 
     def system(self, shear: str = "frictionless", friction: Friction | None = None) -> ContactSystem:
         """The block on rows that open, and on shear springs that hold them where ``shear`` is ``"glued"``."""
-        rows = opening_rows(1 / self.stiffness)
-        B = self.normal
-        ground = np.tile([1.0, 0.0], (len(self.share), 1))
-        if shear == "glued" and np.any(self.shear_stiffness > 0):
-            strength = np.full(len(self.share), math.inf)
-            if friction is not None:
-                strength = friction.cohesion * self.length * self.share
-            tangent = 0.0 if friction is None else friction.tangent
-            rows = with_friction(rows, slipping_rows(1 / self.shear_stiffness, strength), tangent)
-            B = vstack([self.normal, self.tangential])
-            ground = np.vstack([ground, ground[:, ::-1]])
+        shear_stiffness = self.shear_stiffness * (shear == "glued")
+        tangent = None if friction is None else friction.tangent
+        cohesion = 0.0 if friction is None else friction.cohesion
+        rows = point_rows(self.stiffness, shear_stiffness, tangent, cohesion * self.length * self.share)
+        sides = len(rows.compliance) // len(self.share)  # normal to the base, and along it where shear springs are
         names = ("displacement", "horizontal_displacement", "rotation")
         momentum = self.M @ self.upwards
         size = len(self.F)
@@ -68,7 +62,7 @@ class ContactModel:
             M=self.M,
             K=self.K,
             F=self.F,
-            B=csr_array(B),
+            B=csr_array(vstack([self.normal, self.tangential][:sides])),
             rows=rows,
             watch=Motion(
                 np.array([self.observers[name] for name in names]),
@@ -76,7 +70,7 @@ class ContactModel:
                 np.zeros((0, size)),
             ),
             pushes=np.zeros((size, 0)),
-            ground=ground,
+            ground=np.repeat(np.eye(2)[:sides], len(self.share), axis=0),
             prescribed=self._base,
             start_parts=np.zeros(2),
             motions=(self.motions,),
@@ -176,7 +170,7 @@ def whole(problem: Problem) -> ContactModel:
     """
     assembled = assemble(problem)
     basis = assembled.basis
-    rule = base_rule(problem, basis.mesh, block_mesh(problem).base)
+    rule = base_rule(problem, basis, block_mesh(problem).base)
     rule, weights = merged(problem, basis, rule)
     u, v = elasticity.values(basis, rule.points, rule.cells)
     n = problem.normal
@@ -201,11 +195,11 @@ def whole(problem: Problem) -> ContactModel:
     )
 
 
-def base_rule(problem: Problem, mesh: Mesh, facets: NDArray[np.int64]) -> elasticity.Rule:
+def base_rule(problem: Problem, basis: Basis, facets: NDArray[np.int64]) -> elasticity.Rule:
     """Points of the base with weights; a node that two facets share comes twice."""
     if problem.foundation != "distributed":
-        return elasticity.foundation_rule(problem, mesh, facets)
-    ends = elasticity.node_rule(mesh, facets)
+        return elasticity.foundation_rule(problem, basis, facets)
+    ends = elasticity.node_rule(basis.mesh, facets)
     if problem.degree == 1:
         return ends
     count = len(facets)

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky, eigh, solve_triangular
-from scipy.sparse import csr_array
+from scipy.sparse import csr_array, diags_array
 
 from fem_reference.problem.problem import Array
 from fem_reference.scheme.newmark import Operator
@@ -48,6 +48,36 @@ def with_friction(pressed: ContactRows, sliding: ContactRows, tangent: float) ->
     return ContactRows(*(np.concatenate(pair) for pair in zip(pressed, held, strict=True)))
 
 
+def point_rows(
+    stiffness: Array, shear_stiffness: Array, tangent: float | None, cohesion: Array, bonded: bool = False
+) -> ContactRows:
+    """Rows of points: normal ones, and where they have springs of shear those of these.
+
+    Parameters
+    ----------
+    stiffness, shear_stiffness
+        Of each point [N/m].
+    tangent
+        Of the angle of friction; None: what is closed never slips.
+    cohesion
+        Shear force that each point bears without pressure [N].
+    bonded
+        Whether they never open.
+    """
+    compliance = 1 / stiffness
+    unlimited = np.full(len(stiffness), np.inf)
+    normal = slipping_rows(compliance, unlimited) if bonded else opening_rows(compliance)
+    if not np.any(shear_stiffness):
+        return normal
+    strength = unlimited if tangent is None else cohesion
+    return with_friction(normal, slipping_rows(1 / shear_stiffness, strength), tangent or 0.0)
+
+
+def with_springs(K: csr_array, B: csr_array, compliance: Array) -> csr_array:
+    """K with the springs of rows that are closed and stick, K + B' c^-1 B [N/m]."""
+    return csr_array(K + B.T @ diags_array(1 / compliance) @ B)
+
+
 @dataclass(frozen=True)
 class ContactSystem:
     """M D'' + C D' + K D = F + pushes p(t) + B' N of bodies that no spring of K holds, and their contacts' rows."""
@@ -77,10 +107,12 @@ class ContactSystem:
         begin = 0
         for motions in self.motions:
             body = slice(begin, begin + len(motions))
+            begin += len(motions)
+            if not motions.shape[1]:  # which LAPACK may refuse
+                continue
             inertia = motions.T @ (self.M[body, body] @ motions)
             R = solve_triangular(cholesky(inertia, lower=True), motions.T, lower=True)
             rigid.append((body, R, np.ascontiguousarray((self.M[body, body] @ R.T).T)))
-            begin += len(motions)
 
         def forces(D: Array) -> Array:
             strained = D.copy()

@@ -11,8 +11,8 @@ from fem_reference.events.block_model import BlockModel
 from fem_reference.events.contacts import STICKS, States, Watch, direction
 from fem_reference.events.enclosure import radius_of
 from fem_reference.events.flow import SIZE, UNIT
-from fem_reference.events.series import Segment, floats
-from fem_reference.events.watching import INFLATION, Change, Reach
+from fem_reference.events.series import INFLATION, Segment, floats
+from fem_reference.events.watching import Change, Reach
 from fem_reference.problem.problem import Array
 
 REGULAR = 8
@@ -34,7 +34,7 @@ class Axes:
         self.model = model
         # In the metric of the energy of the closed block the motion of most states is nearly a rotation.
         closed = model.flow((STICKS, STICKS))
-        mass = np.array([float(m) for m in model.mass])
+        mass = np.array([float(m) for m in model.masses])
         rows = floats(model.rows)
         p = float(model.contacts[0].stiffness)
         ps = float(model.contacts[0].shear_stiffness)

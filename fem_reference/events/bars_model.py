@@ -42,11 +42,6 @@ class Bar:
         """Time T = L / c of a wave along the bar [s]."""
         return arb(self.length) * (arb(self.density) / arb(self.modulus)).sqrt()
 
-    @property
-    def mass(self) -> float:
-        """Mass of the unit area [kg/m2]."""
-        return self.density * self.length
-
 
 @dataclass(frozen=True)
 class BarJoint:

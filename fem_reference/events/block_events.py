@@ -26,11 +26,11 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
-from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, RELEASED, States, direction
+from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, RELEASED, RIGHT, STICKS, States, direction
 from fem_reference.events.enclosure import bits_of, check_request, precision
 from fem_reference.events.march import Node
-from fem_reference.events.report import Part, parts_of
-from fem_reference.events.series import column, floats, summed
+from fem_reference.events.report import ROUNDING, Part, sampled
+from fem_reference.events.series import column, floats
 from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -48,8 +48,6 @@ _UNKNOWNS[[3, 4], 2] = -1, 1
 _OUTPUTS = np.linalg.inv(_UNKNOWNS)
 REPORT_DIGITS = 40
 """Decimal digits in which the motion is evaluated where it is reported."""
-ROUNDING = 4 * np.finfo(float).eps
-"""Part of a displacement by which floats round it."""
 
 
 @dataclass(frozen=True)
@@ -109,46 +107,49 @@ class BlockMotion(ProvenMotion):
         t = instants(times, self.end)
         problem = self.problem
         model = self.model
-        outputs = np.empty((17, len(t)))  # see `_outputs`
-        rates = np.empty((17, len(t)))
-        states = np.empty((2, len(t)))
-        radius = np.empty((6, len(t)))
-        slipped = np.empty((2, len(t)))
-        released, dissipated, work = (np.empty(len(t)) for _ in range(3))
-        mass = np.array([float(m) for m in model.mass])
-        load = floats(model.load)[:, 0]
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            for part in parts_of(model, self.nodes, [()] * len(self.nodes), t):
-                node = self.nodes[part.node]
-                columns = part.columns
-                length = part.segment.length
-                values, slopes, _ = summed(self._outputs(node, part), part.shares, length)
-                outputs[:, columns] = values
-                rates[:, columns] = slopes
-                passed = part.begun + part.shares * length
-                ledger = self._ledgers[part.node]
-                states[:, columns] = [[OPEN if state == RELEASED else state] for state in node.states]
-                slipped[:, columns] = values[14:16] + np.array(ledger.slipped)[:, None]
-                released[columns] = ledger.released
-                dissipated[columns] = ledger.dissipated + values[16]
-                work[columns] = ledger.work
-                for i, speed in enumerate(self._base_velocity(node)):
-                    gained = mass[0] * (slopes[i] - float(node.start.v[i, 0] + speed)) - load[i] * passed
-                    work[columns] += float(speed) * gained
-                flow = model.flow(node.states)
-                radius[:, columns] = np.abs(_OUTPUTS) @ flow.growth(node.error, flow.rate * passed)
-        x = outputs[:6]
-        rate = rates[:6]
-        stretch = outputs[10:12]
-        N = outputs[12:14]
-        slips = problem.friction is not None
-        p = 0.0 if problem.rigid_contact else problem.stiffness
-        closed = np.asarray(states != OPEN, dtype=float)
-        gap = outputs[6:8]
+        contact = model.contacts[0]  # both have the same numbers
+        report = sampled(model, self.nodes, t, min(self.digits, REPORT_DIGITS), self._reported)
+        node = report.node
+        x = report.series[0, :6]
+        rate = report.series[1, :6]
+        gap, slide = np.split(report.rows[0, :4], 2)
+        gap_velocity = report.rows[1, :2]
+        states = np.where(report.states == RELEASED, OPEN, report.states)
+        closed = states != OPEN
+        p = float(contact.stiffness)
+        N = -p * gap - float(contact.damping) * gap_velocity
+        if problem.rigid_contact:
+            N = np.tile(report.rows[0, 4] / 2, (2, 1))
+        N = np.where(closed, N, 0.0)
+        pressed = gap
         if not problem.locked:
             N = np.maximum(0.0, N)
-        pressed = gap if problem.locked else np.minimum(0.0, gap)
-        T = 0.0 - problem.shear_stiffness * stretch
+            pressed = np.minimum(0.0, gap)
+        # the spring of one that slips keeps the friction, and its reference moves by the rest
+        sign = np.sign(states) * (np.abs(states) == RIGHT)
+        limit = (float(contact.cohesion or 0) - float(contact.friction * contact.stiffness) * gap) * sign
+        ps = problem.shear_stiffness
+        stretch = np.where(
+            states == STICKS, report.held, np.divide(limit, ps, out=np.zeros_like(limit), where=sign != 0)
+        )
+        slips = np.where(sign == 0, 0.0, report.held - stretch)
+        T = 0.0 - ps * stretch
+        ledgers = np.array(self._ledgers)[node].T
+        mass = np.array([float(m) for m in model.masses])
+        load = floats(model.load)[:, 0]
+        radius = np.empty((6, len(t)))
+        work = ledgers[4].copy()
+        for i in np.unique(node).tolist():
+            here = np.flatnonzero(node == i)
+            begun = self.nodes[i]
+            flow = model.flow(begun.states)
+            radius[:, here] = np.abs(_OUTPUTS) @ flow.growth(begun.error, flow.rate * report.passed[here])
+            for axis, speed in enumerate(self._base_velocity(begun)):
+                gained = mass[0] * (rate[axis, here] - float(begun.start.v[axis, 0] + speed))
+                work[here] += float(speed) * (gained - load[axis] * report.passed[here])
+        dissipated = ledgers[3] + report.series[0, 6]
+        nothing = np.zeros_like(t)
+        has_friction = problem.friction is not None
         strains = x[3:6]
         elastic = floats(model.stiffness)[np.ix_([2, 5, 3], [2, 5, 3])]
         return BlockHistory(
@@ -156,59 +157,48 @@ class BlockMotion(ProvenMotion):
             displacement=x,
             velocity=rate,
             gap=gap,
-            gap_velocity=rates[6:8],
+            gap_velocity=gap_velocity,
             normal_force=N,
             shear_force=T,
-            slide=outputs[8:10],
-            slipped=slipped,
-            states=states,
-            closed=closed,
+            slide=slide,
+            slipped=ledgers[:2] + slips,
+            states=states.astype(float),
+            closed=closed.astype(float),
             contact_pressure=N.sum(axis=0) / problem.width,
             kinetic=mass @ (_UNKNOWNS @ rate) ** 2 / 2,
             strain=(strains * (elastic @ strains)).sum(axis=0) / 2,
             springs=(p * pressed**2 - T * stretch).sum(axis=0) / 2,
             load=-load @ (_UNKNOWNS @ x) - work,
-            released=released,
-            friction=dissipated if slips else np.zeros_like(t),
-            damped=np.zeros_like(t) if slips else dissipated,
+            released=ledgers[2],
+            friction=dissipated if has_friction else nothing,
+            damped=nothing if has_friction else dissipated,
             displacement_radius=radius + ROUNDING * np.abs(x),
         )
 
-    def _outputs(self, node: Node, part: Part) -> list[arb_poly]:
-        """Series of what is reported over the share of a part of a step.
-
-        (u, v, r, ex, ey, gxy) of the block, gaps, slides, stretches and normal forces of M and N, the slip of each in
-        the step, and the energy lost in it by friction and in dashpots.
-        """
+    def _reported(self, part: Part) -> list[arb_poly]:
+        """Series of (u, v, r, ex, ey, gxy), and of the energy lost in a step by friction and in dashpots."""
+        node = part.node
         model = self.model
-        segment = part.segment
-        u, v, ux, uy, vx, vy = segment.unknowns()
-        span = arb(segment.length)
-        along, upwards = (arb_poly(piece.series(part.start.time, segment.length, 2)) for piece in node.drives)
-        half = arb(1) / 2
-        rows = [arb_poly(series) for series in segment.rows]
-        nothing = arb_poly([])
-        stretches = [nothing, nothing]
-        forces = [nothing, nothing]
-        slips = [nothing, nothing]
-        lost = nothing
+        u, v, ux, uy, vx, vy = part.segment.unknowns()
+        span = arb(part.segment.length)
+        along, upwards = (arb_poly(piece.series(part.start.time, part.segment.length, 2)) for piece in node.drives)
+        lost = arb_poly([])
         if self._dissipates(node.states):
             lost += model.energy(node.states, node.start) - model.energy(node.states, part.start)
         for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
-            gap = rows[c]
+            gap = part.rows[c]
             if state == RELEASED:
-                lost += (gap(arb(0)) ** 2 - gap * gap) * (contact.stiffness * half)
+                lost += (gap(arb(0)) ** 2 - gap * gap) * (contact.stiffness / 2)
             if state in CARRIES_NOTHING:
                 continue
             rate = gap.derivative() * (1 / span)
-            stretches[c] = model.stretch(c, state, rows, node.start.references[c])
-            forces[c] = contact.normal_force(gap, rate) if contact.force is None else rows[contact.force] * half
             lost += (rate * rate).integral() * (contact.damping * span)
             if direction(state):
-                slips[c] = contact.reference(state, rows) - node.start.references[c]
-                lost += (stretches[c] * slips[c].derivative()).integral() * contact.shear_stiffness
+                stretch = model.stretch(c, state, part.rows, node.start.references[c])
+                slip_rate = contact.reference(state, part.rows).derivative()
+                lost += (stretch * slip_rate).integral() * contact.shear_stiffness
         upwards -= arb(self.problem.gap)
-        return [u + along, v + upwards, (vx - uy) * half, ux, vy, uy + vx, *rows[:4], *stretches, *forces, *slips, lost]
+        return [u + along, v + upwards, (vx - uy) * (arb(1) / 2), ux, vy, uy + vx, lost]
 
     @staticmethod
     def _base_velocity(node: Node) -> list[arb]:
@@ -219,7 +209,7 @@ class BlockMotion(ProvenMotion):
     def _ledgers(self) -> list[Ledger]:
         """What has slipped and been lost until each node."""
         model = self.model
-        ledgers = [Ledger((0.0, 0.0), 0.0, 0.0, 0.0)]
+        ledgers = [Ledger(0.0, 0.0, 0.0, 0.0, 0.0)]
         slipped = [arb(0), arb(0)]
         released = dissipated = work = arb(0)
         with precision(bits_of(min(self.digits, REPORT_DIGITS))):
@@ -230,7 +220,7 @@ class BlockMotion(ProvenMotion):
                 v = following.start.v + column([*jump, *[arb(0)] * 4])
                 end = following.start._replace(v=v, references=node.start.references)
                 span = end.time - node.start.time
-                gained = [model.mass[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
+                gained = [model.masses[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
                 work += base[0] * gained[0] + base[1] * gained[1]
                 if self._dissipates(node.states):
                     dissipated += model.energy(node.states, node.start) - model.energy(node.states, end)
@@ -241,8 +231,7 @@ class BlockMotion(ProvenMotion):
                     if state not in CARRIES_NOTHING and following.states[c] in CARRIES_NOTHING:
                         stretch = model.stretch(c, state, rows, end.references[c])
                         released += contact.shear_stiffness * stretch * stretch / 2
-                slips = float(slipped[0]), float(slipped[1])
-                ledgers.append(Ledger(slips, float(released), float(dissipated), float(work)))
+                ledgers.append(Ledger(*map(float, (*slipped, released, dissipated, work))))
         return ledgers
 
     def _dissipates(self, states: States) -> bool:
@@ -258,7 +247,8 @@ class BlockMotion(ProvenMotion):
 class Ledger(NamedTuple):
     """What has slipped and been lost until a node."""
 
-    slipped: tuple[float, float]  # movement of the references of M and N by slipping [m]
+    slipped_m: float  # movement of the reference of M by slipping [m]
+    slipped_n: float  # of that of N
     released: float  # energy of the shear springs lost by opening [J]
     dissipated: float  # energy lost by friction, in dashpots or by impacts [J]
     work: float  # work of the base [J]

@@ -20,7 +20,7 @@ from fem_reference.events.contacts import NORMAL, OPEN, STICKS, States
 from fem_reference.events.enclosure import ball, is_blank, precision, radius_of
 from fem_reference.events.flow import SIZE, UNIT
 from fem_reference.events.march import March, Node
-from fem_reference.events.series import Start, column, floats
+from fem_reference.events.series import INFLATION, Start, column, floats
 from fem_reference.events.switches import (
     AccumulationError,
     Cascade,
@@ -30,7 +30,6 @@ from fem_reference.events.switches import (
     TooMuchWorkError,
     Work,
 )
-from fem_reference.events.watching import INFLATION
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array
 
@@ -72,8 +71,8 @@ class BlockMarch(March):
     def take_drives(self, moment: float) -> None:
         """Take the path of the base from a row of its record on, from which the block is seen."""
         before = self.drives
-        self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
-        if before is not None:
+        self.drives = tuple(course.piece_at(moment) for course in self.courses)
+        if before:
             time = self.start.time
             old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
             jump = column([*(one - other for one, other in zip(old, new, strict=True)), *[arb(0)] * 4])
@@ -217,7 +216,7 @@ class BlockMarch(March):
         flow = self.block.flow((OPEN, OPEN))
         error = self.transport.record()
         error[:12] += float(rest.reach) * flow.units[:12] * INFLATION
-        self.nodes.append(Node(self.start, self.states, self.drives, error))
+        self.nodes.append(Node(self.start, self.states, self.drives, (), error))
         time = time + rest.length
         state = hops.after(state, difference(time.mid(), self.start.time))
         state = hops.pushed(state, rest.speeds, rest.length.upper() + 2 * time.rad())

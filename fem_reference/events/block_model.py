@@ -44,7 +44,7 @@ from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
 from fem_reference.events.flow import Flow
-from fem_reference.events.series import Start, System, column, floats
+from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 
@@ -159,7 +159,8 @@ class BlockModel(System):
         b = arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
-        self.mass = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
+        self.masses = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
+        self.mass = diagonal(self.masses)
         self.stiffness = arb_mat(_elastic(problem, a * b))  # of the strained block [N/m, N m]
         self.load = column(_load(problem, a, b, m))  # of pressure, traction and weight [N, N m]
         self.mobility = self._mobility(problem.rigid)  # [1/kg, 1/(kg m2)]
@@ -194,19 +195,15 @@ class BlockModel(System):
             for c, name in enumerate(CORNERS)
         ]
         self.flows: dict[States, Flow] = {}
-        self.sizes = [float(m) ** -0.5 * (1 + 1e-9) for m in self.mass]
-        self.row_sizes = (np.abs(floats(self.rows)) @ self.sizes * (1 + 1e-9)).tolist()
 
     def _mobility(self, rigid: bool) -> arb_mat:
         """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
-        W = arb_mat(6, 6)
         if not rigid:
-            for i, m in enumerate(self.mass):
-                W[i, i] = 1 / m
-            return W
-        W[0, 0] = W[1, 1] = 1 / self.mass[0]
+            return diagonal([1 / m for m in self.masses])
+        W = arb_mat(6, 6)
+        W[0, 0] = W[1, 1] = 1 / self.masses[0]
         # a rotation has uy = -r and vx = r
-        turning = 1 / (self.mass[3] + self.mass[4])
+        turning = 1 / (self.masses[3] + self.masses[4])
         W[3, 3] = W[4, 4] = turning
         W[3, 4] = W[4, 3] = -turning
         return W
@@ -214,17 +211,8 @@ class BlockModel(System):
     def flow(self, states: States) -> Flow:
         """Return the motion in a state of the corners as what may be off of it moves."""
         if states not in self.flows:
-            self.flows[states] = Flow(self, self.mass, states)
+            self.flows[states] = Flow(self, states)
         return self.flows[states]
-
-    def rate(self, states: States) -> float:
-        """Return a bound of the rates of the motion while the corners keep their states [rad/s]."""
-        return self.flow(states).rate
-
-    def norm(self, x: Sequence[arb]) -> arb:
-        """Return the root of x' M x."""
-        squares = (m * c * c for m, c in zip(self.mass, x, strict=True))
-        return sum(squares, arb(0)).abs_upper().sqrt().upper()
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """Yield the functions that are positive as long as the corners keep their states."""
@@ -244,7 +232,7 @@ class BlockModel(System):
         """
         u = start.u
         twice = (u.transpose() * (self.stiffness * u - self.load * 2))[0, 0]
-        twice += sum((m * rate * rate for m, rate in zip(self.mass, start.v.entries(), strict=True)), arb(0))
+        twice += (start.v.transpose() * self.mass * start.v)[0, 0]
         rows = self.values(u)
         for c, (contact, state) in enumerate(zip(self.contacts, states, strict=True)):
             if state != OPEN:

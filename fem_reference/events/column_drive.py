@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
 from functools import cache
+from itertools import pairwise
 
 from flint import arb, arb_poly, arb_series, ctx
 
@@ -62,6 +63,12 @@ class Polynomial:
         """Bound of the terms from `count` on times the cube of their number."""
         return arb(0) if len(self.coefficients) <= count else arb("inf")
 
+    def antiderivative(self, start: arb, value: arb) -> Polynomial:
+        """Return the integral that has a value at an instant."""
+        powers = [arb(0), *(arb(c) / (k + 1) for k, c in enumerate(self.coefficients))]
+        powers[0] = value - arb_poly(powers)(start - arb(self.origin))
+        return Polynomial(tuple(powers), self.origin)
+
 
 @dataclass(frozen=True)
 class Sine:
@@ -102,6 +109,11 @@ class Sine:
         first = abs(self.amplitude) * step**count / arb(count).fac()
         return tail_sum(step / (count + 1)) * arb(count) ** 3 * first
 
+    def antiderivative(self, start: arb, value: arb) -> Sine:
+        """Return the integral that has a value at an instant, of a sine without an offset."""
+        turned = Sine(self.amplitude / self.rate, self.rate, arb(0), (self.quarters - 1) % 4, self.origin)
+        return replace(turned, offset=value - turned.series(start, 1.0, 1)[0])
+
 
 @dataclass(frozen=True)
 class Ricker:
@@ -109,7 +121,7 @@ class Ricker:
 
     size: float
     pulse_frequency: float  # f [Hz]
-    integral: bool
+    integral: bool = False
 
     def longest_step(self) -> float:
         """Return the longest step, of `RICKER_ANGLE` [s]."""
@@ -149,6 +161,10 @@ class Ricker:
         first = abs(arb(self.size)) * factor * (y * y).exp() / radius**count
         return tail_sum(1 / radius) * arb(count) ** 3 * first
 
+    def antiderivative(self, start: arb, value: arb) -> Ricker:
+        """Return the integral that is zero long before the pulse; at t = 0 it is e^(-4 pi^2) of its greatest values."""
+        return replace(self, integral=True)
+
 
 @cache
 def _ricker_term_count(angle: float, bits: int) -> int:
@@ -170,21 +186,26 @@ class Course:
     breaks: tuple[float, ...]  # where the second and each further piece begins, increasing [s]
     pieces: tuple[Piece, ...]
 
-    def piece_at(self, time: float) -> tuple[Piece, float | None]:
-        """Return the piece from an instant on, and where it ends; None: it does not."""
-        index = bisect_right(self.breaks, time)
-        end = self.breaks[index] if index < len(self.breaks) else None
-        return self.pieces[index], end
+    def piece_at(self, time: float) -> Piece:
+        """Return the piece from an instant on."""
+        return self.pieces[bisect_right(self.breaks, time)]
 
     def parts(self) -> list[tuple[float, Piece]]:
         """Return the pieces from t = 0 on, each with its beginning [s]."""
-        parts = []
-        start: float | None = 0.0
-        while start is not None:
-            piece, end = self.piece_at(start)
-            parts.append((start, piece))
-            start = end
-        return parts
+        first = bisect_right(self.breaks, 0.0)
+        return list(zip((0.0, *self.breaks[first:]), self.pieces[first:], strict=True))
+
+    def integral(self) -> Course:
+        """Return the integral that is zero where the first piece begins."""
+        value = arb(0)
+        start = arb(0)
+        pieces: list[Piece] = []
+        for number, piece in enumerate(self.pieces):
+            pieces.append(piece.antiderivative(start, value))
+            if number < len(self.breaks):
+                start = arb(self.breaks[number])
+                value = pieces[-1].series(start, 1.0, 1)[0]
+        return Course(self.breaks, tuple(pieces))
 
 
 Drive = Callable[[], Course]
@@ -201,94 +222,52 @@ def constant(size: float) -> Drive:
     return lambda: Course((), (Polynomial((size,)),))
 
 
-def half_sine(size: float, duration: float, integral: bool = False) -> Drive:
-    """Size sin(pi t / T) until T and nothing after it, or its integral."""
+def integrated(drive: Drive, times: int = 1) -> Drive:
+    """A drive that is integrated from t = 0, or from before the first row of a record, so many times."""
 
     def course() -> Course:
-        rate = arb.pi() / arb(duration)
-        amplitude = arb(size)
-        if not integral:
-            return Course((duration,), (Sine(amplitude, rate, arb(0)), NOTHING))
-        reach = amplitude / rate
-        return Course((duration,), (Sine(-reach, rate, reach, quarters=1), Polynomial((2 * reach,))))
+        integral = drive()
+        for _ in range(times):
+            integral = integral.integral()
+        return integral
 
     return course
 
 
-def sine(size: float, frequency: float, integral: bool = False, quarters: int = 0) -> Drive:
-    """Size sin(2 pi f t + quarters pi / 2) from t = 0 on, or its integral from t = 0."""
-
-    def course() -> Course:
-        rate = 2 * arb.pi() * arb(frequency)
-        if not integral:
-            return Course((), (Sine(arb(size), rate, arb(0), quarters),))
-        reach = arb(size) / rate
-        before = (quarters - 1) % 4
-        at_start = reach * (0, 1, 0, -1)[before]
-        return Course((), (Sine(reach, rate, -at_start, before),))
-
-    return course
+def half_sine(size: float, duration: float) -> Drive:
+    """Size sin(pi t / T) until T and nothing after it."""
+    return lambda: Course((duration,), (Sine(arb(size), arb.pi() / arb(duration), arb(0)), NOTHING))
 
 
-def triangle(size: float, duration: float, integral: bool = False) -> Drive:
-    """Size (1 - t/T) until T and nothing after it, or its integral."""
-
-    def course() -> Course:
-        p = arb(size)
-        T = arb(duration)
-        if not integral:
-            return Course((duration,), (Polynomial((p, -p / T)), NOTHING))
-        return Course((duration,), (Polynomial((arb(0), p, -p / (2 * T))), Polynomial((p * T / 2,))))
-
-    return course
+def sine(size: float, frequency: float, quarters: int = 0) -> Drive:
+    """Size sin(2 pi f t + quarters pi / 2) from t = 0 on."""
+    return lambda: Course((), (Sine(arb(size), 2 * arb.pi() * arb(frequency), arb(0), quarters),))
 
 
-def ricker(size: float, frequency: float, integral: bool = False) -> Drive:
-    """Return a Ricker pulse about 2/f, or its integral."""
-    return lambda: Course((), (Ricker(size, frequency, integral),))
+def triangle(size: float, duration: float) -> Drive:
+    """Size (1 - t/T) until T and nothing after it."""
+    return lambda: Course((duration,), (Polynomial((arb(size), -arb(size) / arb(duration))), NOTHING))
 
 
-def recorded(times: Sequence[float], values: Sequence[float], integrals: int = 0) -> Drive:
-    """A record that is linear between its rows and zero outside of them, integrated 0, 1 or 2 times.
+def ricker(size: float, frequency: float) -> Drive:
+    """Return a Ricker pulse about 2/f."""
+    return lambda: Course((), (Ricker(size, frequency),))
 
-    Parameters
-    ----------
-    times
-        Instants of the rows, increasing [s].
-    values
-        What is recorded.
-    integrals
-        How often it is integrated; its integrals are zero before the first row.
-    """
 
-    def course() -> Course:
-        pieces: list[Piece] = [NOTHING]
-        at_row = [arb(0)] * integrals  # the first integral and the second
-        for i, start in enumerate(times):
-            polynomial = [arb(0)]
-            span = arb(0)
-            if i + 1 < len(times):
-                span = arb(times[i + 1]) - arb(start)
-                value = arb(values[i])
-                polynomial = [value, (arb(values[i + 1]) - value) / span]
-            for level in range(integrals):
-                polynomial = [at_row[level], *(c / (k + 1) for k, c in enumerate(polynomial))]
-                at_row[level] = arb_poly(polynomial)(span)
-            pieces.append(Polynomial(tuple(polynomial), start))
-        return Course(tuple(times), tuple(pieces))
-
-    return course
+def recorded(times: Sequence[float], values: Sequence[float]) -> Drive:
+    """A record that is linear between its rows and zero outside of them."""
+    return lambda: Course(tuple(times), (NOTHING, *_lines(times, values), NOTHING))
 
 
 def path(times: Sequence[float], values: Sequence[float]) -> Drive:
     """A record that is linear between its rows, and stays where it is before and after them."""
+    before = Polynomial((values[0],))
+    after = Polynomial((values[-1],))
+    return lambda: Course(tuple(times), (before, *_lines(times, values), after))
 
-    def course() -> Course:
-        pieces = [Polynomial((values[0],))]
-        for i in range(1, len(times)):
-            first = arb(values[i - 1])
-            slope = (arb(values[i]) - first) / (arb(times[i]) - arb(times[i - 1]))
-            pieces.append(Polynomial((first, slope), times[i - 1]))
-        return Course(tuple(times), (*pieces, Polynomial((values[-1],))))
 
-    return course
+def _lines(times: Sequence[float], values: Sequence[float]) -> Iterator[Polynomial]:
+    """Yield what is between the rows of a record."""
+    for (start, end), (first, last) in zip(pairwise(times), pairwise(values), strict=True):
+        slope = (arb(last) - arb(first)) / (arb(end) - arb(start))
+        yield Polynomial((arb(first), slope), start)

@@ -17,12 +17,12 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
-from fem_reference.events.contacts import OPEN, RIGHT, STICKS, States, direction
+from fem_reference.events.contacts import OPEN, RIGHT, STICKS, States
 from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
 from fem_reference.events.energy_norm import EnergyNorm
 from fem_reference.events.march import March, Node
-from fem_reference.events.report import parts_of
-from fem_reference.events.series import Start, summed
+from fem_reference.events.report import ROUNDING, Part, sampled
+from fem_reference.events.series import Start
 from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -35,8 +35,6 @@ PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
 REPORT_DIGITS = 28
 """Decimal digits in which the series are summed where the motion is reported."""
-ROUNDING = 4 * np.finfo(float).eps
-"""Part of a displacement by which floats round it."""
 
 
 @dataclass(frozen=True)
@@ -110,108 +108,57 @@ class ColumnMotion(ProvenMotion):
         """
         t = instants(times, self.end)
         model = self.model
-        contacts = len(model.contacts)
-        motion = np.empty((3, model.size, len(t)))
-        base = np.empty((3, len(t)))
-        pressure = np.empty(len(t))
-        stretch, held, reference, travel = (np.zeros((contacts, len(t))) for _ in range(4))
-        states = np.zeros((contacts, len(t)), dtype=int)
-        radius = np.empty(len(t))
-        reach = float(model.bounds.displacement_reach().max(initial=0.0))
-        # slips of the contacts until each node
-        slips = [np.array([float(r) for r in node.start.references]) for node in self.nodes]
-        travels = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            for part in parts_of(model, self.nodes, [node.drives for node in self.nodes], t):
-                node = self.nodes[part.node]
-                columns = part.columns
-                segment = part.segment
-                rows = [arb_poly(terms) for terms in segment.rows]
-                springs = [row - r for row, r in zip(rows, node.start.references, strict=True)]
-                drives = [arb_poly(terms) for terms in segment.drives]
-                values = summed([*segment.unknowns(), *drives, *rows, *springs], part.shares, segment.length)
-                motion[:, :, columns] = [of_order[: model.size] for of_order in values]
-                base[:, columns] = [of_order[model.size] for of_order in values]
-                pressure[columns] = values[0][model.size + 1]
-                stretch[:, columns], held[:, columns] = np.split(values[0][model.size + 2 :], 2)
-                states[:, columns] = np.array(node.states).reshape(-1, 1)
-                reference[:, columns] = slips[part.node][:, None]
-                for c, contact in enumerate(model.contacts):
-                    side = direction(node.states[c])
-                    if side and contact.cohesion is not None:
-                        spring = side * float(contact.cohesion / contact.shear_stiffness)
-                        moved = held[c, columns] - spring
-                        held[c, columns] = spring
-                        reference[c, columns] += moved
-                        travel[c, columns] = np.abs(moved)
-                travel[:, columns] += travels[part.node][:, None]
-                passed = part.begun + part.shares * segment.length
-                error = float(node.error.upper()) * np.exp(model.bounds.soft * passed / 2)
-                radius[columns] = error * reach + ROUNDING * np.abs(motion[0][:, columns]).max(axis=0)
-        return self._history(t, motion, base, pressure, (stretch, held, reference, travel), states, radius)
-
-    def _history(
-        self,
-        t: Array,
-        motion: Array,
-        base: Array,
-        pressure: Array,
-        joints: tuple[Array, ...],
-        states: Array,
-        radius: Array,
-    ) -> ColumnHistory:
-        """Put what the unknowns do into faces and joints."""
-        model = self.model
         problem = self.problem
-        stretch, held, reference, travel = joints
-        shape = len(problem.blocks), len(t)
+        report = sampled(model, self.nodes, t, min(self.digits, REPORT_DIGITS), _unknowns_and_drives)
+        base = report.series[:, model.size]
+        # slips of the contacts at each node, and the ways that they have gone until it
+        slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
+        ways = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
+        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))]).reshape(-1, 1)
+        strength = np.array([float(contact.cohesion or 0) for contact in model.contacts]).reshape(-1, 1)
+        # one that slips takes its reference along, so that its spring keeps the strength
+        sign = np.sign(report.states) * (np.abs(report.states) == RIGHT)
+        held = np.where(sign == 0, report.held, sign * strength / k)
+        moved = report.held - held
+        force = np.where(report.states == OPEN, 0.0, -k * held)
+        if model.unilateral:
+            force = np.maximum(force, 0.0)
+        of_joints = np.zeros((4, len(problem.blocks), len(t)))  # forces, stretches, slips and states
+        of_contacts = force, report.rows[0], slips[report.node].T + moved, report.states
+        of_joints[:, [contact.number for contact in model.contacts]] = of_contacts
         # the last row is where `BASE` points to
-        u, v, a = (np.vstack([part, of_base]) for part, of_base in zip(motion, base, strict=True))
+        u, v, a = report.series[:, : model.size + 1]
         feet, tops = ([face[side] for face in model.faces] for side in (0, 1))
         foot = u[feet]
         top = u[tops]
         foot_velocity = v[feet]
         top_velocity = v[tops]
-        force, y, slip, joint_states = (np.zeros(shape) for _ in range(4))
-        springs = np.zeros(len(t))
-        friction = np.zeros(len(t))
-        for c, contact in enumerate(model.contacts):
-            k = float(model.spring(c))
-            j = contact.number
-            y[j] = stretch[c]
-            slip[j] = reference[c]
-            joint_states[j] = states[c]
-            force[j] = np.where(states[c] == OPEN, 0.0, -k * held[c])
-            if model.unilateral:
-                force[j] = np.maximum(force[j], 0.0)
-            springs += force[j] ** 2 / (2 * k)
-            if contact.cohesion is not None:
-                slips = np.abs(states[c]) == RIGHT
-                force[j] = np.where(slips, -np.sign(states[c]) * float(contact.cohesion), force[j])
-                friction += float(contact.cohesion) * travel[c]
-        mass = np.array([block.density * block.height for block in problem.blocks])[:, None]
-        moduli = np.array([block.modulus / block.height for block in problem.blocks])[:, None]
-        stretched = top - foot
-        strain = np.where(np.isinf(moduli), 0.0, moduli) * stretched**2 / 2
+        mass = np.array([[block.density * block.height] for block in problem.blocks])
+        moduli = np.array([[block.modulus / block.height] for block in problem.blocks])
+        strain = np.where(np.isinf(moduli), 0.0, moduli) * (top - foot) ** 2 / 2
         kinetic = mass / 6 * (foot_velocity**2 + foot_velocity * top_velocity + top_velocity**2)
         potential = mass * problem.gravity * (foot + top) / 2
+        pressure = report.series[0, model.size + 1]
+        face_force = self._face_force(of_joints[0], (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0])
+        errors = np.array([float(node.error.upper()) for node in self.nodes])[report.node]
+        radius = errors * np.exp(model.soft * report.passed / 2) * (model.sizes.max() / model.soft)
         return ColumnHistory(
             time=t,
             foot=foot,
             top=top,
             foot_velocity=foot_velocity,
             top_velocity=top_velocity,
-            force=force,
-            stretch=y,
-            slip=slip,
-            states=joint_states,
-            face_force=self._face_force(force, (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0]),
+            force=of_joints[0],
+            stretch=of_joints[1],
+            slip=of_joints[2],
+            states=of_joints[3].astype(int),
+            face_force=face_force,
             kinetic=kinetic.sum(axis=0),
             strain=strain.sum(axis=0),
-            springs=springs,
+            springs=(force**2 / (2 * k)).sum(axis=0),
             potential=potential.sum(axis=0),
-            friction=friction,
-            displacement_radius=radius,
+            friction=(strength * (np.abs(moved) + ways[report.node].T)).sum(axis=0),
+            displacement_radius=radius + ROUNDING * np.abs(u[:-1]).max(axis=0),
         )
 
     def _face_force(self, force: Array, acceleration: Array, pressure: Array, outflow: Array) -> Array:
@@ -230,6 +177,10 @@ class ColumnMotion(ProvenMotion):
         elif problem.base == "transmitting":
             faces[0] = problem.impedance * outflow
         return faces
+
+
+def _unknowns_and_drives(part: Part) -> list[arb_poly]:
+    return [*part.segment.unknowns(), *(arb_poly(terms) for terms in part.segment.drives)]
 
 
 class ColumnMarch(March):
@@ -252,7 +203,7 @@ class ColumnMarch(March):
     def take_drives(self, moment: float) -> None:
         """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
         before = self.pieces
-        self.pieces = self.drives = tuple(course.piece_at(moment)[0] for course in self.courses)
+        self.pieces = self.drives = tuple(course.piece_at(moment) for course in self.courses)
         if not before:
             return
         time = self.start.time
@@ -269,8 +220,8 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     """
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
-        rate = model.bounds.rate
-        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.bounds.soft)
+        rate = model.rate((STICKS,) * len(model.contacts))
+        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.soft)
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 

@@ -15,24 +15,19 @@ All unknowns are numbered from the base upwards, so that the mass is tridiagonal
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from flint import arb, arb_mat, ctx
+from flint import arb, arb_mat
 
 from fem_reference.events.column_drive import ANGLE, Drive, still
-from fem_reference.events.contacts import STICKS, Contact, States
-from fem_reference.events.enclosure import precision
-from fem_reference.events.series import System, column, floats
-from fem_reference.problem.checks import require
-from fem_reference.problem.problem import Array
+from fem_reference.events.contacts import STICKS, Contact
+from fem_reference.events.series import System, column, diagonal
+from fem_reference.problem.checks import require, require_numbers
 
 LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
-BOUND_BITS = 96  # of matrices that only bound
 # Part of the highest rate that the metric of the error gives to an unknown without a spring: the error grows with it,
 # and the less by each contact that closes the higher it is, while contacts that slip make no error grow.
 SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
@@ -40,21 +35,39 @@ SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
 
 @dataclass(frozen=True)
 class ColumnBlock:
-    """A block of a column, per unit of area."""
+    """A block of a column, per unit of area.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
 
     height: float  # h [m]
     density: float  # rho [kg/m3]
     modulus: float = math.inf  # of a plane wave [Pa]; inf: rigid
     velocity: float = 0.0  # at t = 0 [m/s], upwards, or towards + in shear
 
+    def __post_init__(self) -> None:
+        require_numbers(self, positive=("height", "density", "modulus"), infinite=("modulus",))
+
 
 @dataclass(frozen=True)
 class ColumnJoint:
-    """A spring at the foot of a block, per unit of area."""
+    """A spring at the foot of a block, per unit of area.
+
+    Raises
+    ------
+    ValueError
+        For a value out of its range, naming field, rule and value.
+    """
 
     stiffness: float  # k [Pa/m]
     gap: float = 0.0  # of a unilateral joint at t = 0 [m]
     strength: float | None = None  # greatest shear stress s of a frictional joint [Pa]; None: it never slips
+
+    def __post_init__(self) -> None:
+        require_numbers(self, positive=("stiffness",), unsigned=("gap", "strength"))
 
 
 @dataclass(frozen=True)
@@ -85,13 +98,7 @@ class ColumnProblem:
         require(self.base in BASES, "base", f"must be one of {BASES}", self.base)
         alike = 0 < len(self.blocks) == len(self.joints)
         require(alike, "joints", f"must be one for each of {len(self.blocks)} blocks", len(self.joints))
-        for i, block in enumerate(self.blocks):
-            for name in ("height", "density", "modulus"):
-                value = getattr(block, name)
-                finite = name == "modulus" or value < math.inf
-                require(value > 0 and finite, f"blocks[{i}].{name}", "must be positive", value)
-            require(math.isfinite(block.velocity), f"blocks[{i}].velocity", "must be finite", block.velocity)
-        require(math.isfinite(self.gravity), "gravity", "must be finite", self.gravity)
+        require_numbers(self)
         carried = self.base != "transmitting" or 0 < self.impedance < math.inf
         require(carried, "impedance", "must be positive", self.impedance)
         supported = self.base == "rigid"
@@ -99,19 +106,11 @@ class ColumnProblem:
         footless = supported or self.joints[0] is None
         require(footless, "joints[0]", f"must be None on a base that is {self.base}", self.joints[0])
         for j, joint in enumerate(self.joints):
-            if joint is not None:
-                self._check_joint(f"joints[{j}]", joint)
-
-    def _check_joint(self, name: str, joint: ColumnJoint) -> None:
-        require(0 < joint.stiffness < math.inf, f"{name}.stiffness", "must be positive and finite", joint.stiffness)
-        require(0 <= joint.gap < math.inf, f"{name}.gap", "must not be negative", joint.gap)
-        opens = self.law == "unilateral"
-        require(opens or not joint.gap, f"{name}.gap", f"must be 0 in a column that is {self.law}", joint.gap)
-        strength = joint.strength
-        if strength is not None:
-            require(0 <= strength < math.inf, f"{name}.strength", "must not be negative", strength)
-            slips = self.law == "frictional"
-            require(slips, f"{name}.strength", f"must be None in a column that is {self.law}", strength)
+            if joint is not None and self.law != "unilateral":
+                require(not joint.gap, f"joints[{j}].gap", f"must be 0 in a column that is {self.law}", joint.gap)
+            if joint is not None and self.law != "frictional":
+                rule = f"must be None in a column that is {self.law}"
+                require(joint.strength is None, f"joints[{j}].strength", rule, joint.strength)
 
 
 class ColumnModel(System):
@@ -122,7 +121,6 @@ class ColumnModel(System):
     def __init__(self, problem: ColumnProblem) -> None:
         super().__init__()
         self.problem = problem
-        self.rates: dict[States, float] = {}
         self.unilateral = problem.law == "unilateral"
         self.faces: list[tuple[int, int]] = []  # unknowns of foot and top of each block
         joints: list[tuple[int, int, ColumnJoint]] = []  # those with a spring, and their unknowns above and below
@@ -146,8 +144,6 @@ class ColumnModel(System):
         self.top = previous
         if count == 0:
             raise ValueError("blocks: must have a face that moves of itself, got a column welded to its base")
-        self.sizes = [1.0] * count
-        self.row_sizes = [2.0] * len(joints)
         self.inputs = self._assemble(count)
         self.rows = arb_mat(len(joints), count)
         self.offsets = arb_mat(len(joints), 1)
@@ -163,22 +159,19 @@ class ColumnModel(System):
     def _assemble(self, count: int) -> arb_mat:
         """Take masses, stiffnesses and loads of the blocks; return the forces of what drives them."""
         problem = self.problem
-        mass = arb_mat(count + 1, count + 1)
-        stiffness = arb_mat(count + 1, count + 1)
-        load = arb_mat(count + 1, 1)
-        # the last row and column of a matrix are those of the base
-        faces = [tuple(count if face == BASE else face for face in of_block) for of_block in self.faces]
-        for (foot, top), block in zip(faces, problem.blocks, strict=True):
-            m = arb(block.density) * arb(block.height)
-            k = arb(block.modulus) / arb(block.height) if foot != top else arb(0)
-            for face, other in ((foot, top), (top, foot)):
-                load[face, 0] = load[face, 0] - m * arb(problem.gravity) / 2
-                # 1/3 and 1/6 of an elastic block, which make up the whole mass of a rigid one
-                mass[face, face] = mass[face, face] + m / (3 if foot != top else 2)
-                stiffness[face, face] = stiffness[face, face] + k
-                if foot != top:
-                    mass[face, other] = mass[face, other] + m / 6
-                    stiffness[face, other] = stiffness[face, other] - k
+        # Faces of the blocks over the unknowns; the last row and column of a matrix are those of the base.
+        foot, top = (arb_mat(len(self.faces), count + 1) for _ in range(2))
+        for i, faces in enumerate(self.faces):
+            for incidence, face in zip((foot, top), faces, strict=True):
+                incidence[i, face % (count + 1)] = 1
+        masses = [arb(block.density) * arb(block.height) for block in problem.blocks]
+        springs = [arb(b.modulus) / arb(b.height) if math.isfinite(b.modulus) else arb(0) for b in problem.blocks]
+        self.both = foot + top
+        weighted = self.both.transpose() * diagonal([m / 6 for m in masses])
+        mass = weighted * self.both + foot.transpose() * diagonal([m / 6 for m in masses]) * foot
+        mass = mass + top.transpose() * diagonal([m / 6 for m in masses]) * top
+        stiffness = (top - foot).transpose() * diagonal(springs) * (top - foot)
+        load = weighted * column([arb(-3) * arb(problem.gravity)] * len(masses))
         own = range(count)
         self.mass = arb_mat([mass.tolist()[i][:count] for i in own])
         self.stiffness = arb_mat([stiffness.tolist()[i][:count] for i in own])
@@ -210,20 +203,14 @@ class ColumnModel(System):
         """Stiffness k of a contact [Pa/m]."""
         return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
 
-    def rate(self, states: States) -> float:
-        """Return a bound of the rates of the motion while the contacts keep their states [rad/s]."""
-        if states not in self.rates:
-            acts = np.array([state == STICKS for state in states], dtype=bool)
-            self.rates[states] = math.sqrt(self.bounds.squared_rate(acts)) + self.bounds.damping
-        return self.rates[states]
+    @cached_property
+    def soft(self) -> float:
+        """Rate that the metric of the error gives to an unknown without a spring [rad/s]."""
+        return self.rate((STICKS,) * len(self.contacts)) * SOFT_PART[self.problem.law]
 
     def least_rate(self) -> float:
         """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
-        return self.bounds.soft
-
-    def norm(self, x: Sequence[arb]) -> arb:
-        """Return the greatest displacement."""
-        return max((abs(c).upper() for c in x), default=arb(0))
+        return self.soft
 
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
@@ -234,82 +221,16 @@ class ColumnModel(System):
                 by_face.setdefault(face, []).append(arb(block.velocity))
         if all(speed == speeds[0] for speeds in by_face.values() for speed in speeds):
             return column([by_face[i][0] for i in range(self.size)])
-        momentum = arb_mat(self.size, 1)
-        for (foot, top), block in zip(self.faces, blocks, strict=True):
-            share = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
-            for face in (foot, top):
-                if face != BASE:
-                    momentum[face, 0] = momentum[face, 0] + share
-        momentum[0, 0] = momentum[0, 0] - self.base_coupling * base
-        return self.mobility * momentum
+        halves = [arb(block.density) * arb(block.height) * arb(block.velocity) / 2 for block in blocks]
+        momentum = self.both.transpose() * column(halves)
+        own = column(momentum.entries()[: self.size])
+        own[0, 0] = own[0, 0] - self.base_coupling * base
+        return self.mobility * own
 
     def displacements(self, base: arb) -> arb_mat:
         """Displacement of each unknown at t = 0, where the base is."""
         u = arb_mat(self.size, 1)
         if not self.problem.at_rest:
             return u
-        contacts = {contact.number: c for c, contact in enumerate(self.contacts)}
-        gravity = arb(self.problem.gravity)
-        weights = [arb(block.density) * arb(block.height) * gravity for block in self.problem.blocks]
-        level = base
-        for i, ((foot, top), block) in enumerate(zip(self.faces, self.problem.blocks, strict=True)):
-            above = sum(weights[i:], arb(0))
-            if i in contacts:
-                level = level - above / self.spring(contacts[i]) - self.offsets[contacts[i], 0]
-            if foot != BASE:
-                u[foot, 0] = level
-            if top != foot:
-                level = level - (above - weights[i] / 2) * arb(block.height) / arb(block.modulus)
-                u[top, 0] = level
-        return u
-
-    @cached_property
-    def bounds(self) -> Bounds:
-        """What bounds the motion and its error."""
-        with precision(min(ctx.prec, BOUND_BITS)):
-            return Bounds(self)
-
-
-class Bounds:
-    """Upper bounds in floats, rounded up by `MARGIN`, which covers the rounding of so short sums."""
-
-    MARGIN = 1 + 1e-9
-
-    def __init__(self, model: ColumnModel) -> None:
-        signed = floats(model.mobility)
-        elastic = floats(model.stiffness)
-        B = floats(model.rows)
-        inputs = np.abs(floats(model.inputs))
-        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))])
-        self.stiffness = k
-        # |M^-1 K| row by row, of the blocks and of each contact, so that they bound every choice of closed contacts
-        self.elastic_rows = np.abs(signed @ elastic).sum(axis=1) * self.MARGIN
-        self.contact_rows = (np.abs(signed @ B.T) * k * np.abs(B).sum(axis=1)).T * self.MARGIN
-        self.damping = 0.0
-        if model.damping is not None:
-            self.damping = float(np.abs(signed @ floats(model.damping)).max()) * self.MARGIN
-        self.compliance = np.einsum("ji,ik,jk->j", B, signed, B) * self.MARGIN  # b M^-1 b'
-        self.mobility = np.diag(signed) * self.MARGIN  # diagonal of M^-1
-        highest = self.squared_rate(np.ones(len(k), dtype=bool))
-        self.rate = math.sqrt(highest) + self.damping  # of the motion and of its error, greatest [rad/s]
-        # the metric e' M e' + e (K + soft^2 M) e gives each unknown a spring, also where its contacts are open
-        self.soft = self.rate * SOFT_PART[model.problem.law] or 1.0
-        K = np.abs(elastic) + np.abs(B.T) @ (k[:, None] * np.abs(B))
-        mass = np.abs(floats(model.mass)).sum(axis=1)
-        # of a displacement and of a velocity of one in each unknown, in that metric
-        self.displacement_norm = math.sqrt((K.sum(axis=1) + self.soft**2 * mass).sum()) * self.MARGIN
-        self.velocity_norm = math.sqrt(mass.sum()) * self.MARGIN
-        # rates of the error by what is left out of the base's displacement, rate and acceleration, and of the pressure
-        inputs[:, 0] += np.abs(B.T) @ (k * floats(model.on_base)[:, 0])
-        self.pushes = (np.sqrt(self.mobility) @ inputs * self.MARGIN).tolist()
-
-    def squared_rate(self, active: Array) -> float:
-        """Norm of M^-1 K with some of the contacts [1/s2]."""
-        rows = self.elastic_rows
-        if len(self.stiffness):
-            rows = rows + self.contact_rows[active].sum(axis=0)
-        return float(rows.max()) * self.MARGIN
-
-    def displacement_reach(self) -> Array:
-        """Greatest displacement of each unknown of an error of norm one [m]."""
-        return np.asarray(np.sqrt(self.mobility) / self.soft)
+        closed = self.motion((STICKS,) * len(self.contacts))
+        return closed.A.solve((closed.f + closed.E * column([base, *[arb(0)] * 3])) * -1)

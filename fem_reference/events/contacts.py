@@ -34,7 +34,6 @@ NORMAL = 0
 FORCE = 3
 """Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction."""
 States = tuple[int, ...]
-Series = Sequence[arb]
 
 
 def direction(state: int) -> int:
@@ -57,9 +56,10 @@ class Contact:
     cohesion: arb | None = None  # C; None: it never slips
     force: int | None = None  # number of the row of N of both corners of a rigid contact, which has no springs
 
-    def normal_force(self, w: Any, rate: Any) -> Any:
-        """N of one that is closed, of numbers or series."""
-        return w * -self.stiffness - rate * self.damping
+    @property
+    def row(self) -> int:
+        """Number of the row s, of w where nothing slides."""
+        return (self.gap or 0) if self.slide is None else self.slide
 
     def reference(self, state: int, rows: Sequence[Any]) -> Any:
         """The r = s + T / p_s that one takes along that does not stick, from all rows, numbers or series."""

@@ -12,6 +12,7 @@ the motion by a term of second order only.
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -19,8 +20,8 @@ from flint import arb, arb_mat
 
 from fem_reference.events.column_model import ColumnModel
 from fem_reference.events.contacts import OPEN, States, Watch
-from fem_reference.events.series import Segment
-from fem_reference.events.watching import INFLATION, Change, Reach
+from fem_reference.events.series import INFLATION, Segment, floats
+from fem_reference.events.watching import Change, Reach
 from fem_reference.problem.problem import Array
 
 
@@ -29,8 +30,19 @@ class EnergyNorm:
 
     def __init__(self, model: ColumnModel) -> None:
         self.model = model
-        self.bounds = model.bounds
         self.error = arb(0)
+        self.stiffness = np.array([float(model.spring(c)) for c in range(len(model.contacts))])
+        self.compliance = model.row_sizes**2  # b M^-1 b'
+        B = np.abs(floats(model.rows))
+        K = np.abs(floats(model.stiffness)) + B.T @ (self.stiffness[:, None] * B)
+        mass = np.abs(floats(model.mass)).sum(axis=1)
+        # of a displacement and of a velocity of one in each unknown, in the metric
+        self.displacement_norm = math.sqrt((K.sum(axis=1) + model.soft**2 * mass).sum()) * INFLATION
+        self.velocity_norm = math.sqrt(mass.sum()) * INFLATION
+        # rates of the error by what is left out of the base's displacement, rate and acceleration, and of the pressure
+        inputs = np.abs(floats(model.inputs))
+        inputs[:, 0] += B.T @ (self.stiffness * floats(model.on_base)[:, 0])
+        self.pushes = (model.sizes @ inputs * INFLATION).tolist()
 
     def record(self) -> arb:
         """What a node keeps of it."""
@@ -38,9 +50,8 @@ class EnergyNorm:
 
     def take(self, u: arb_mat, v: arb_mat) -> None:
         """Take the radii of a state, which its centre leaves out."""
-        bounds = self.bounds
         radii = [max(x.rad().upper() for x in part.entries()) for part in (u, v)]
-        added = radii[0] * arb(bounds.displacement_norm) + radii[1] * arb(bounds.velocity_norm)
+        added = radii[0] * arb(self.displacement_norm) + radii[1] * arb(self.velocity_norm)
         self.error = (self.error + added).upper()
 
     def take_reference(self, contact: int, radius: arb) -> None:
@@ -49,29 +60,27 @@ class EnergyNorm:
 
     def begin(self, segment: Segment) -> None:
         """Let the error grow over a step, by itself and by what the series of the drives leaves out."""
-        bounds = self.bounds
         span = arb(segment.length)
         base, pressure = segment.drive_tails
         units = [base, base / span, base / (span * span), pressure]
-        pushes = (tail * arb(push) for tail, push in zip(units, bounds.pushes, strict=True))
-        self.error = (self.error * arb(bounds.soft * segment.length / 2).exp() + sum(pushes, arb(0)) * span).upper()
+        pushes = (tail * arb(push) for tail, push in zip(units, self.pushes, strict=True))
+        self.error = (self.error * arb(self.model.soft * segment.length / 2).exp() + sum(pushes, arb(0)) * span).upper()
 
     def reach(self, watch: Watch, states: States, segment: Segment, offset: float) -> Reach:
         """How far each term of a function may be off, where the instant of its start may be off too."""
-        bounds = self.bounds
         error = self.error
         if offset:
             speed, bend = (max(abs(x).upper() for x in term.entries()) for term in segment.terms[1:3])
             span = arb(segment.length)
-            rate = speed / span * arb(bounds.displacement_norm) + 2 * bend / (span * span) * arb(bounds.velocity_norm)
+            rate = speed / span * arb(self.displacement_norm) + 2 * bend / (span * span) * arb(self.velocity_norm)
             error = (error + 2 * rate * arb(offset)).upper()
-        speed_reach = bounds.compliance[watch.contact] ** 0.5
-        growth = max((self.model.rate(states) + bounds.soft) * segment.length, 1.0)
+        speed_reach = self.compliance[watch.contact] ** 0.5
+        growth = max((self.model.rate(states) + self.model.soft) * segment.length, 1.0)
         parts = speed_reach * segment.length * exponential_terms(growth, segment.count)[: segment.count - watch.rates]
         if not watch.rates:
-            position = speed_reach / bounds.soft
+            position = speed_reach / self.model.soft
             if states[watch.contact] != OPEN:
-                position = min(position, bounds.stiffness[watch.contact] ** -0.5)
+                position = min(position, self.stiffness[watch.contact] ** -0.5)
             parts[1:] /= growth
             parts[0] = position
         return Reach(error * abs(watch.parts[0].factor), parts * INFLATION)
@@ -81,7 +90,6 @@ class EnergyNorm:
 
     def switch(self, change: Change) -> None:
         """Take what the centre misses its switch by, the time in which states may differ, and springs that close."""
-        bounds = self.bounds
         watch = change.watch
         offset = arb(change.offset)
         if watch is not None:
@@ -92,16 +100,16 @@ class EnergyNorm:
                 miss = miss / k * (offset if watch.rates else 1)
                 self.error = (self.error + k.sqrt() * miss).upper()
             else:
-                compliance = arb(float(bounds.compliance[c]))
+                compliance = arb(float(self.compliance[c]))
                 speed = abs(change.slope).upper()
                 late = k * compliance.sqrt() * (miss + speed * offset) * offset * 2
-                spread = (k * compliance / arb(bounds.soft) * 2 * offset).exp()
+                spread = (k * compliance / arb(self.model.soft) * 2 * offset).exp()
                 self.error = ((self.error + late) * spread).upper()
         gain = 1.0
         if self.model.unilateral:
             for c, (was, now) in enumerate(zip(change.was, change.now, strict=True)):
                 if was == OPEN and now != OPEN:
-                    gain += bounds.stiffness[c] * bounds.compliance[c] / bounds.soft**2 * (1 + 1e-9)
+                    gain += self.stiffness[c] * self.compliance[c] / self.model.soft**2 * (1 + 1e-9)
         if gain > 1:
             self.error = (self.error * arb(gain).sqrt()).upper()
 

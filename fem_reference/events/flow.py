@@ -9,37 +9,26 @@ k-th term of a function g z over a length L is g G^k z L^k / k!, and at most |g|
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
-from flint import arb
 
 from fem_reference.events.contacts import States, Watch
-from fem_reference.events.series import System, floats
-from fem_reference.events.watching import INFLATION
+from fem_reference.events.series import INFLATION, System, floats
 from fem_reference.problem.problem import Array
 
 SIZE = 15
 """Entries of z: 6 unknowns, their rates, 2 references and a one."""
 UNIT = np.eye(SIZE)
-LEAST_RATE = 1.0
-"""Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
 EXPONENTIAL_ERROR = 1e-13
 """Part of the greatest entry of exp(G s), in the units of the flow, by which floats of it may be wrong."""
 EXPONENTIAL_TERMS = 14
 """Terms of its series: what follows is below 0.5^15 / 15!, 2e-17."""
-REGULAR = 8
-"""Moves after which the axes of the box are made orthogonal again."""
-TABLE_ERROR = 1e-13
-"""Part of their size by which floats of the terms of a function may be wrong."""
-DIFFERENCE_ERROR = 1e-14
-"""Part of its terms by which a difference of floats may be wrong."""
 
 
 class Flow:
     """The matrix of the block's motion in one state of its corners, in floats, and the norm in which it is bounded."""
 
-    def __init__(self, model: System, mass: Sequence[arb], states: States) -> None:
+    def __init__(self, model: System, states: States) -> None:
         self.rows = floats(model.rows)
         self.angle = model.angle  # of the longest step [rad]
         motion = model.motion(states)
@@ -50,12 +39,9 @@ class Flow:
             self.G[6:12, 6:12] = floats(motion.D)
         self.G[6:12, 12:14] = floats(motion.R)
         self.G[6:12, 14:] = floats(motion.f)
-        scale = np.sqrt([float(m) for m in mass])
-        omega = math.sqrt(float(np.linalg.norm(scale[:, None] * self.G[6:12, :6] / scale, 2))) or LEAST_RATE
-        dashpots = float(np.linalg.norm(scale[:, None] * self.G[6:12, 6:12] / scale, 2)) / 2
-        self.rate = (dashpots + math.hypot(dashpots, omega)) * (1 + 1e-9)
+        scale = np.diag(model.root[0])
+        omega, self.rate = model.bounds_of(states)
         # unknowns and rates of norm one, in which G has the norm `rate`; references and the one change them as slowly
-        omega *= 1 + 1e-9
         self.units = np.array([*(1 / (scale * omega)), *(1 / scale), *[1 / (scale[0] * omega)] * 2, 1.0])
         load = np.abs(self.G[6:12, 14] * scale).max() / self.rate
         self.units[14] = 1 / load if load else 1.0

@@ -50,7 +50,8 @@ class Node:
 
     start: Start
     states: States
-    drives: Any  # what drives the motion until the next break
+    drives: Sequence[Piece]  # what moves the base, or drives the motion, until the next break
+    pieces: Sequence[Piece]  # those of them that the model knows
     error: Any  # how far it may be off, see `axes` and `energy_norm`
 
 
@@ -65,8 +66,8 @@ class March:
         self.work = work
         self.states: States = ()
         self.breaks: Sequence[float] = ()  # instants at which the drives become others [s]
-        self.drives: Any = None  # as nodes keep them
-        self.pieces: Sequence[Piece] = ()  # as the model knows them: of the base and of the pressure, or none
+        self.drives: Sequence[Piece] = ()  # of the base and of the pressure, or of the base in two directions
+        self.pieces: Sequence[Piece] = ()  # those that the model knows: all, or none of what is seen from its base
         self.offset = 0.0  # what the instant of the last switch may be off, while the motion stands at it [s]
         self.watches: list[Watch] = []
         self.nodes: list[Node] = []
@@ -136,7 +137,7 @@ class March:
 
     def add_node(self) -> None:
         """Keep the state as the beginning of a step."""
-        self.nodes.append(Node(self.start, self.states, self.drives, self.transport.record()))
+        self.nodes.append(Node(self.start, self.states, self.drives, self.pieces, self.transport.record()))
 
     def step(self, limit: arb) -> None:
         """One step, up to a switch at most."""

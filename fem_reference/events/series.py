@@ -18,6 +18,7 @@ Where x = rate * length with w^2 + d rate <= rate^2, terms below M x^k / k! stay
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -35,6 +36,10 @@ LEAST_TERMS = 28
 """Terms of a step, at least."""
 FURTHER_TERMS = 6
 """Terms beyond those that the angle of the step needs: the tail bounds three derivatives too."""
+LEAST_RATE = 1.0
+"""Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
+INFLATION = 1 + 1e-9
+"""What covers the rounding of floats that bound radii and rates."""
 REPORT_ANGLE = 1.5
 """Angle over which floats sum a series [rad]."""
 REPORT_TERMS = 32
@@ -65,12 +70,23 @@ class Motion(NamedTuple):
         return a if self.D is None else a + self.D * v
 
 
+class Rates(NamedTuple):
+    """Bounds of the motion in the norm of the mass [rad/s]."""
+
+    frequency: float  # root of the norm of A
+    motion: float  # d/2 + sqrt(d^2/4 + w^2), d the norm of D
+
+
 class System:
-    """What moves: unknowns with a mass, rows of contacts, drives."""
+    """What moves: unknowns with a mass, rows of contacts, drives.
+
+    Its norm is that of the mass, |x|^2 = x' M x.
+    """
 
     angle: float  # length of a step times the rate, at most [rad]
     contacts: list[Contact]
-    mobility: arb_mat  # M^-1
+    mass: arb_mat  # M
+    mobility: arb_mat  # M^-1, of rigid bodies the sum of d d' / (d' M d) over their motions d
     stiffness: arb_mat  # K
     load: arb_mat  # what acts for ever
     rows: arb_mat  # B
@@ -78,20 +94,47 @@ class System:
     damping: arb_mat | None = None  # C
     on_base: arb_mat  # 1 for each row with a face on the base
     inputs: arb_mat  # forces of the base's displacement, rate and acceleration, and of the pressure
-    sizes: list[float]  # greatest value of each unknown of norm one
-    row_sizes: list[float]  # greatest value of each row where the unknowns have the norm one
 
     def __init__(self) -> None:
         self.motions: dict[States, Motion] = {}
+        self.rates: dict[States, Rates] = {}
 
     @property
     def size(self) -> int:
         """Number of unknowns."""
         return self.mobility.nrows()
 
+    @cached_property
+    def root(self) -> tuple[Array, Array]:
+        """L' and its inverse in floats, M = L L'."""
+        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T, dtype=np.float64)
+        return upper, np.asarray(np.linalg.inv(upper), dtype=np.float64)
+
+    @cached_property
+    def sizes(self) -> Array:
+        """Greatest value of each unknown of norm one."""
+        return np.asarray(np.linalg.norm(self.root[1], axis=1) * INFLATION)
+
+    @cached_property
+    def row_sizes(self) -> Array:
+        """Greatest value of each row where the unknowns have the norm one."""
+        return np.asarray(np.linalg.norm(floats(self.rows) @ self.root[1], axis=1) * INFLATION)
+
+    def bounds_of(self, states: States) -> Rates:
+        """Bounds of the rates of the motion while the contacts keep their states."""
+        if states not in self.rates:
+            motion = self.motion(states)
+            upper, inverse = self.root
+            frequency = math.sqrt(float(np.linalg.norm(upper @ floats(motion.A) @ inverse, 2))) or LEAST_RATE
+            half = 0.0
+            if motion.D is not None:
+                half = float(np.linalg.norm(upper @ floats(motion.D) @ inverse, 2)) / 2
+            self.rates[states] = Rates(frequency * INFLATION, (half + math.hypot(half, frequency)) * INFLATION)
+        return self.rates[states]
+
     def rate(self, states: States) -> float:
         """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
-        raise NotImplementedError
+        return self.bounds_of(states).motion
 
     def least_rate(self) -> float:
         """Rate that bounds the steps of a motion that has none [rad/s]."""
@@ -99,7 +142,8 @@ class System:
 
     def norm(self, x: Sequence[arb]) -> arb:
         """Norm of the unknowns, in which `rate` bounds the motion."""
-        raise NotImplementedError
+        vector = column(x)
+        return (vector.transpose() * self.mass * vector)[0, 0].abs_upper().sqrt().upper()
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """The functions that are positive as long as the contacts keep their states."""
@@ -159,7 +203,7 @@ class Segment:
 
     def row_tail(self, row: int) -> arb:
         """What the series leaves out of a row, and three derivatives of it."""
-        tail = self.tail * arb(self.system.row_sizes[row])
+        tail = self.tail * arb(float(self.system.row_sizes[row]))
         return tail + self.drive_tails[0] if self.system.on_base[row, 0] != 0 else tail
 
     def unknowns(self) -> list[arb_poly]:
@@ -173,7 +217,7 @@ class Segment:
         for term in reversed(self.terms[:-1]):  # Horner's scheme and its derivative
             v = v * share + u
             u = u * share + term
-        rest = column([ball((self.tail * arb(size)).upper()) for size in self.system.sizes])
+        rest = column([ball((self.tail * arb(size)).upper()) for size in self.system.sizes.tolist()])
         return u + rest, (v + rest) * (1 / arb(self.length))
 
     def function(self, watch: Watch) -> list[arb]:
@@ -216,6 +260,14 @@ class Segment:
 def column(entries: Sequence[arb]) -> arb_mat:
     """A matrix of one column."""
     return arb_mat(len(entries), 1, list(entries))
+
+
+def diagonal(entries: Sequence[arb]) -> arb_mat:
+    """A diagonal matrix."""
+    matrix = arb_mat(len(entries), len(entries))
+    for i, entry in enumerate(entries):
+        matrix[i, i] = entry
+    return matrix
 
 
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:

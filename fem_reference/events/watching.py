@@ -16,7 +16,7 @@ from flint import arb, arb_poly, ctx
 
 from fem_reference.events.contacts import States, Watch
 from fem_reference.events.enclosure import Fall, ball, first_fall, polynomial, radius_of
-from fem_reference.events.series import Segment, Start
+from fem_reference.events.series import INFLATION, Segment, Start
 from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
@@ -30,8 +30,6 @@ CUTS = 5
 """Times that it is cut: a fall is left in 1/32768 of a step."""
 ROUNDING = 400 * np.finfo(float).eps
 """Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms may be wrong after all cuts."""
-INFLATION = 1 + 1e-9
-"""What covers the rounding of the floats that bound radii."""
 LEAST_MARGIN = 1e-300
 """What a radius may be that floats round to zero."""
 MOST_LOOKS = 5000

@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitation, Ground, check_columns
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.problem.result import Result
+from fem_reference.problem.result import Result, just_ended
 
 Complex = NDArray[np.complex128]
 State = tuple[Complex, Complex]  # u and sigma
@@ -174,17 +174,11 @@ def solve_layers(
         largest = np.abs(finer).max(axis=1)
         error = float(np.max(np.abs(finer - histories).max(axis=1) / np.where(largest > 0, largest, 1.0)))
         histories = finer
-    ended = perf_counter()
     return Result(
-        time=scheme.step * np.arange(1.0, steps + 1),
+        **just_ended(scheme.step, steps, began, began),
         columns=dict(zip(columns, histories, strict=True)),
         unknowns=0,
-        nonzeros=0,
-        factorisations=0,
-        solves=0,
         notes=(f"{samples} samples",),
-        setup_seconds=0.0,
-        stepping_seconds=ended - began,
         estimate=error,
     )
 

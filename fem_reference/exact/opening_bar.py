@@ -31,6 +31,7 @@ from scipy.special import zeta
 from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.scheme import modal
+from fem_reference.scheme.stage import Motion, end_of_stage, predicted_change
 
 OVERSAMPLED = 16
 """Points of the circle for each step: its radius loses one digit to rounding and sixteen to aliasing."""
@@ -223,27 +224,22 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
     dt = scheme.step
     stage = scheme.stages[0]
     gg = scheme.gg
-    am = stage.am
-    af = stage.af
-    yielding = stage.compliance * dt**2
     surface = bar.density * bar.height
     compliance = bar.width / bar.base_stiffness
     load = -bar.pressure / surface - bar.gravity
-    D = 0.0
-    V = bar.velocity
-    A = load if scheme.start == "consistent" else 0.0
+    now = Motion(0.0, bar.velocity, load if scheme.start == "consistent" else 0.0)
     C = stage.stiffness_weight * dt**2 / surface + loaded[0]
     backwards = loaded[::-1].copy()
     rigid = np.zeros(count)
     N = np.zeros(count)
     gap = np.full(count, bar.gap)
     closed = np.zeros(count)
-    speed = np.full(count, V)
+    speed = np.full(count, bar.velocity)
     closed[0] = bar.gap == 0
     for n in range(1, count):
-        balanced = load + af * N[n - 1] / surface  # (1 - am) a1 + am a, but for the force at the end of the step
-        predicted = D + stage.d_u * gg * dt * V + dt**2 * stage.e_0 * A - yielding * am * A
-        ahead = predicted + yielding * balanced
+        predicted = predicted_change(stage, dt, gg, now, now)
+        e = load + stage.af * N[n - 1] / surface - stage.am * now.A  # but for the force at the end of the step
+        ahead = end_of_stage(stage, dt, gg, now, now, predicted, e, now.D).D
         past = N[1:n] @ backwards[count - n : -1]
         w = bar.gap + ahead + (free[n] + past)
         noise = NOTHING * (abs(ahead) + abs(free[n]) + abs(past))
@@ -255,13 +251,9 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
         if w < 0:
             N[n] = -w / (C + compliance)
         gap[n] = -compliance * N[n] if closed[n] else w
-        balanced += (1 - af) * N[n] / surface
-        new = (balanced - am * A) / (1 - am)
-        D = predicted + yielding * balanced
-        V = gg * V + dt * (stage.g_0 * A + stage.gamma * new)
-        A = new
-        rigid[n] = D
-        speed[n] = V
+        now = end_of_stage(stage, dt, gg, now, now, predicted, e + (1 - stage.af) * N[n] / surface, now.D)
+        rigid[n] = now.D
+        speed[n] = now.V
     return _Base(rigid, N, gap, closed, speed)
 
 

@@ -1,13 +1,13 @@
 """A rigid block that rocks on a rigid base about its lower corners.
 
 With a and h width and height, R half of the diagonal, alpha = atan(a / h), p^2 = 3 g / (4 R) and theta the rotation,
-positive about the right corner and towards +x, under an acceleration A(t) of the base towards +x::
+positive about the right corner and towards +x::
 
-    theta'' = -p^2 (sin(alpha s - theta) + A / g cos(alpha s - theta)),    s = sign(theta)
+    theta'' = -p^2 sin(alpha s - theta),    s = sign(theta)
 
-nothing being small. It rises from rest once |A| > g tan(alpha), and each time it comes down on the other corner its
-rate is multiplied by a restitution, Housner's 1 - 3/2 sin^2(alpha) where no other is given: the moment of momentum
-about the new corner is kept. Sliding and bouncing are left out.
+nothing being small. Each time it comes down on the other corner its rate is multiplied by a restitution, Housner's
+1 - 3/2 sin^2(alpha) where no other is given: the moment of momentum about the new corner is kept. Sliding and bouncing
+are left out.
 
 Sources: G. W. Housner, The behavior of inverted pendulum structures during earthquakes, Bulletin of the Seismological
 Society of America 53 (1963); the quarter period is the incomplete elliptic integral of an inverted pendulum.
@@ -33,8 +33,6 @@ ACCURACY = 1e-13
 """Relative tolerance of the integration."""
 STILL = 1e-9
 """Rate below which the block has come to rest, over p."""
-LONG = 60.0
-"""Time in which what is not at its balance to the last digit has left it, times p."""
 SWINGS = 10_000
 """Greatest number of swings."""
 FALLEN = math.pi / 2
@@ -72,11 +70,6 @@ class RockingBlock:
         return math.sqrt(1.5 * self.gravity / math.hypot(self.width, self.height))
 
     @property
-    def lifting(self) -> float:
-        """Acceleration of the base at which a corner lifts, g tan(alpha) = g a / h [m/s2]."""
-        return self.gravity * self.width / self.height
-
-    @property
     def ratio(self) -> float:
         """Rate after over rate before an impact [-]; its square is the share of energy that is left."""
         return 1 - 1.5 * math.sin(self.alpha) ** 2 if self.restitution is None else self.restitution
@@ -94,41 +87,6 @@ class RockingBlock:
         rise = math.sqrt(math.sin(self.alpha - tilt / 2) * math.sin(tilt / 2))
         angle = math.atan2(rise, math.cos(self.alpha / 2) * math.sin(psi / 2))
         return float(ellipkinc(angle, math.cos(psi / 2) ** 2)) / self.p
-
-
-@dataclass(frozen=True)
-class Pulse:
-    """Acceleration of the base towards +x from t = 0 on for a time, a half sine or a rectangle.
-
-    Raises
-    ------
-    ValueError
-        For a value out of its range, naming field, rule and value.
-    """
-
-    amplitude: float = 0.0  # A [m/s2]
-    duration: float = 0.0  # [s]
-    shape: str = "half-sine"  # ``"half-sine"`` or ``"rectangle"``
-
-    def __post_init__(self) -> None:
-        shapes = "half-sine", "rectangle"
-        require(self.shape in shapes, "shape", "must be 'half-sine' or 'rectangle'", self.shape)
-        require_numbers(self, unsigned=("duration",))
-
-    def __call__(self, time: float) -> float:
-        """Acceleration at an instant of the pulse [m/s2]."""
-        return self.amplitude * (math.sin(math.pi * time / self.duration) if self.shape == "half-sine" else 1.0)
-
-    def exceeds(self, acceleration: float) -> float | None:
-        """The first instant at which its size is beyond a positive acceleration [s], None if it never is."""
-        if not (self.duration and abs(self.amplitude) > acceleration):
-            return None
-        if self.shape == "rectangle":
-            return 0.0
-        return self.duration / math.pi * math.asin(acceleration / abs(self.amplitude))
-
-
-STILL_BASE = Pulse()
 
 
 @dataclass(frozen=True)
@@ -163,7 +121,7 @@ class RockingMotion:
         return motion[0], motion[1]
 
 
-def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STILL_BASE) -> RockingMotion:
+def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
     """The motion of a block that is released at rest, from impact to impact.
 
     Parameters
@@ -174,8 +132,6 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
         Last instant [s]; the motion ends earlier if the block falls on its side.
     tilt
         Rotation at t = 0 [rad], positive about the right corner.
-    pulse
-        Acceleration of the base.
 
     Raises
     ------
@@ -196,15 +152,11 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
         if len(swings) > SWINGS:
             raise ArithmeticError(f"more than {SWINGS} swings by {time:g} s")
         if angle == 0 and abs(rate) < STILL * block.p:
-            wakes = _wakes(block, pulse, time)
             swings.append(Swing(time, lambda t: np.zeros((2, len(t)))))
-            time = end if wakes is None else min(wakes, end)
-            rate = 0.0
-            if time == end:
-                break
-        side = _sign(angle) or _sign(rate) or -_sign(pulse.amplitude)
-        last = pulse.duration if time < pulse.duration < end else end
-        swing = _swing(block, pulse, side, (time, last), (angle, rate))
+            time = end
+            break
+        side = 1 if (angle or rate) > 0 else -1
+        swing = _swing(block, side, (time, end), (angle, rate))
         swings.append(Swing(time, swing.sol))
         time = float(swing.t[-1])
         angle = float(swing.y[0, -1])
@@ -217,28 +169,13 @@ def solve(block: RockingBlock, end: float, tilt: float = 0.0, pulse: Pulse = STI
     return RockingMotion(min(time, end), tuple(swings), tuple(impacts), fallen)
 
 
-def _sign(value: float) -> int:
-    return (value > 0) - (value < 0)
-
-
-def _wakes(block: RockingBlock, pulse: Pulse, time: float) -> float | None:
-    """When a block at rest begins to rock."""
-    first = pulse.exceeds(block.lifting)
-    if first is None or time >= pulse.duration - first:
-        return None
-    return max(first, time)
-
-
-def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, float], start: tuple[float, float]) -> Any:
+def _swing(block: RockingBlock, side: int, span: tuple[float, float], start: tuple[float, float]) -> Any:
     """The block on a corner until it comes down or falls, or to the end of a span."""
     alpha = block.alpha * side
     square = block.p**2
-    g = block.gravity
 
     def motion(t: float, y: Array) -> list[float]:
-        pushed = pulse(t) / g if span[1] <= pulse.duration else 0.0
-        lean = alpha - y[0]
-        return [y[1], -square * (math.sin(lean) + pushed * math.cos(lean))]
+        return [y[1], -square * math.sin(alpha - y[0])]
 
     def lands(t: float, y: Array) -> float:
         return side * float(y[0])
@@ -250,51 +187,3 @@ def _swing(block: RockingBlock, pulse: Pulse, side: int, span: tuple[float, floa
         event.terminal = True  # type: ignore[attr-defined]
         event.direction = -1  # type: ignore[attr-defined]
     return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=[lands, falls], dense_output=True)
-
-
-def overturns(block: RockingBlock, pulse: Pulse) -> bool:
-    """Whether a block at rest falls under a pulse, at whatever time: its energy at the end of the pulse decides."""
-    first = pulse.exceeds(block.lifting)
-    if first is None:
-        return False
-    motion = solve(block, pulse.duration, pulse=pulse)
-    if motion.overturned:
-        return True
-    angle, rate = (float(x[0]) for x in motion.at([motion.end]))
-    side = _sign(angle) or _sign(rate)
-    if rate**2 / 2 + block.p**2 * math.cos(block.alpha - abs(angle)) < block.p**2:
-        return abs(angle) > block.alpha
-    return rate * side >= 0 or solve(block, pulse.duration + LONG / block.p, pulse=pulse).overturned
-
-
-def overturning_amplitude(block: RockingBlock, duration: float, shape: str = "half-sine") -> float:
-    """The least amplitude of a pulse that overturns a block at rest [m/s2].
-
-    Closed forms of slender blocks, with x = A / (g alpha): a rectangle overturns at cosh(p T) = 1 + 1 / (2 x (x - 1)),
-    a half sine of rate w = pi / T, which lifts the block at sin(w t0) = 1 / x, at
-    x p (w e^(-p (T - t0)) + p sin(w t0) + w cos(w t0)) = p^2 + w^2.
-
-    Parameters
-    ----------
-    block
-        The block.
-    duration
-        Duration of the pulse [s].
-    shape
-        ``"half-sine"`` or ``"rectangle"``.
-
-    Raises
-    ------
-    ValueError
-        If the duration is not positive.
-    """
-    require(0 < duration < math.inf, "duration", "must be positive and finite", duration)
-    low = high = block.lifting
-    while not overturns(block, Pulse(high, duration, shape)):
-        low = high
-        high = 2 * high
-    while high - low > 1e-12 * high:
-        middle = (low + high) / 2
-        fell = overturns(block, Pulse(middle, duration, shape))
-        low, high = (low, middle) if fell else (middle, high)
-    return high

@@ -6,8 +6,8 @@ base towards +x (down the slope) and s the slide of the mass over the base::
     at rest on the base   |g sin b - a| <= Y
     sliding               s'' = g sin b - a - Y sign(s')
 
-Between the changes of a(t) the slide is a polynomial, with a sine where the base vibrates; the instants at which the
-mass sticks and slips are the roots of these. It is what a block on ever stiffer springs tends to.
+Between the changes of a(t) the slide is a polynomial; the instants at which the mass sticks and slips are the roots of
+its rate. It is what a block on ever stiffer springs tends to.
 
 Source: N. M. Newmark, Effects of earthquakes on dams and embankments, Geotechnique 15 (1965); a rectangular pulse of
 acceleration A g on level ground that gives the base the velocity V moves the mass by V^2 / (2 g N) (1 - N / A).
@@ -16,7 +16,6 @@ acceleration A g on level ground that gives the base the velocity V moves the ma
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -48,7 +47,6 @@ class SlidingBlock:
     friction: float  # angle phi of friction [deg]
     gravity: float = 9.81  # acceleration of gravity [m/s2]
     cohesion: float = 0.0  # C, cohesive force over mass [m/s2]
-    two_way: bool = True  # whether it also slides up the slope; Newmark's own analysis holds it there
 
     def __post_init__(self) -> None:
         require_numbers(self, unsigned=("gravity", "cohesion"))
@@ -72,76 +70,37 @@ class SlidingBlock:
 
 @dataclass(frozen=True)
 class Segment:
-    """The base's acceleration over a time, a0 + a1 s + A sin(w s + p), after a jump of its velocity."""
+    """The base's acceleration over a time, a0 + a1 s, after a jump of its velocity."""
 
     start: float  # first instant [s]
     end: float  # last instant [s]
     jump: float = 0.0  # jump of the base's velocity at the first instant [m/s]
     a0: float = 0.0  # acceleration at the first instant [m/s2]
     a1: float = 0.0  # its rate [m/s3]
-    amplitude: float = 0.0  # A [m/s2]
-    rate: float = 1.0  # w [rad/s]
-    phase: float = 0.0  # p [rad]
 
-    def acceleration(self, s: ArrayLike) -> Array:
+    def acceleration(self, s: float) -> float:
         """Acceleration a time s after the start [m/s2]."""
-        t = np.asarray(s, dtype=float)
-        return np.asarray(self.a0 + self.a1 * t + self.amplitude * np.sin(self.rate * t + self.phase))
+        return self.a0 + self.a1 * s
 
     def velocity(self, s: ArrayLike) -> Array:
         """Velocity gained since just after the start [m/s]."""
         t = np.asarray(s, dtype=float)
-        swing = math.cos(self.phase) - np.cos(self.rate * t + self.phase)
-        return np.asarray(self.a0 * t + self.a1 * t**2 / 2 + self.amplitude / self.rate * swing)
+        return np.asarray(self.a0 * t + self.a1 * t**2 / 2)
 
     def displacement(self, s: ArrayLike) -> Array:
         """Displacement since the start, of a base that is at rest just after it [m]."""
         t = np.asarray(s, dtype=float)
-        swing = t * math.cos(self.phase) - (np.sin(self.rate * t + self.phase) - math.sin(self.phase)) / self.rate
-        return np.asarray(self.a0 * t**2 / 2 + self.a1 * t**3 / 6 + self.amplitude / self.rate * swing)
-
-    @property
-    def grows(self) -> float:
-        """Rate of the acceleration at the start [m/s3]."""
-        return self.a1 + self.amplitude * self.rate * math.cos(self.phase)
+        return np.asarray(self.a0 * t**2 / 2 + self.a1 * t**3 / 6)
 
     def after(self, s: float) -> Segment:
         """What is left of the segment a time s later."""
-        phase = math.remainder(self.phase + self.rate * s, 2 * math.pi)
-        return replace(self, start=self.start + s, jump=0.0, a0=self.a0 + self.a1 * s, phase=phase)
+        return replace(self, start=self.start + s, jump=0.0, a0=self.acceleration(s))
 
     def reaches(self, value: float) -> list[float]:
-        """Times after the start at which the acceleration is a value [s], in their order, without the start."""
+        """Times after the start at which the acceleration is a value [s], none or one, without the start."""
         length = self.end - self.start
         crossings = [(value - self.a0) / self.a1] if self.a1 else []
-        if self.amplitude:
-            crossings = list(self._swings(value, length))
-        return [s for s in crossings if NOISE * min(length, 1 / self.rate) < s <= length]
-
-    def _swings(self, value: float, length: float) -> Iterator[float]:
-        ratio = value / self.amplitude
-        if abs(ratio) < 1:
-            first = math.asin(ratio)
-            for turn in range(-1, math.ceil((self.rate * length + abs(self.phase)) / (2 * math.pi)) + 1):
-                angles = sorted((first, math.pi - first))
-                yield from ((angle + 2 * math.pi * turn - self.phase) / self.rate for angle in angles)
-
-
-def harmonic(amplitude: float, rate: float, duration: float) -> tuple[Segment, ...]:
-    """A base that vibrates with the acceleration A sin(w t), and then goes on at its velocity.
-
-    Parameters
-    ----------
-    amplitude
-        A [m/s2].
-    rate
-        w [rad/s].
-    duration
-        How long it vibrates [s].
-    """
-    if not (math.isfinite(amplitude) and rate > 0 and duration > 0):
-        raise ValueError(f"harmonic: rate and duration must be positive, got {rate!r} and {duration!r}")
-    return (Segment(0.0, duration, amplitude=amplitude, rate=rate), Segment(duration, math.inf))
+        return [s for s in crossings if NOISE * min(length, 1.0) < s <= length]
 
 
 def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
@@ -253,7 +212,7 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
     block
         The mass and its slope.
     base
-        The base, by `harmonic`, `recorded` or `moved`.
+        The base, by `recorded` or `moved`.
     end
         Last instant [s].
 
@@ -282,34 +241,28 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
 def _begin(block: SlidingBlock, base: Segment, slide: float, velocity: float) -> Stretch:
     """The mass from an instant on."""
     direction = int(np.sign(velocity)) or _yields(block, base)
-    if direction < 0 and not block.two_way:
-        direction = 0
-        velocity = 0.0
     return Stretch(base, direction, slide, velocity if direction else 0.0, block.push(direction))
 
 
 def _yields(block: SlidingBlock, base: Segment) -> int:
     """The way in which a mass at rest on its base begins to slide, 0 if it stays."""
-    now = float(base.acceleration(0.0))
+    size = block.gravity + abs(base.a0)
     for direction in (1, -1):
-        excess = direction * (block.push(direction) - now)
-        size = block.gravity + abs(now)
-        if excess > NOISE * size or (abs(excess) <= NOISE * size and direction * base.grows < 0):
+        excess = direction * (block.push(direction) - base.a0)
+        if excess > NOISE * size or (abs(excess) <= NOISE * size and direction * base.a1 < 0):
             return direction
     return 0
 
 
 def _change(block: SlidingBlock, stretch: Stretch) -> float | None:
     """Time after the beginning at which the mass sticks or slips, None if it does not within the segment."""
-    return _slips(block, stretch.base) if stretch.way == 0 else _sticks(stretch)
-
-
-def _slips(block: SlidingBlock, base: Segment) -> float | None:
-    crossings = []
-    for direction in (1, -1) if block.two_way else (1,):
-        for s in base.reaches(block.push(direction)):
-            if direction * base.after(s).grows < 0:
-                crossings.append(s)
+    if stretch.way:
+        return _sticks(stretch)
+    base = stretch.base
+    crossings: list[float] = []
+    for direction in (1, -1):
+        if direction * base.a1 < 0:
+            crossings += base.reaches(block.push(direction))
     return min(crossings, default=None)
 
 

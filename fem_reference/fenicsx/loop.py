@@ -14,46 +14,24 @@ import dolfinx
 import numpy as np
 from mpi4py import MPI
 
-from .model import COMM, Block, Inapplicable, Request
-from .newmark import Factor, Newmark
+from .factor import Factor
+from .model import COMM, Block, Inapplicable, Meshed, Request
+from .newmark import Newmark
 from .opening import COLUMNS as OPENING
 from .opening import Opening
-from .plane import PlaneBody, statics
+from .plane import PlaneBody
 
 IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
 
 
 def run(request: Request) -> dict[str, Any]:
     """Answer one request; every rank runs this, and all return the same."""
-    if "tractions" in request:
-        return run_plane(request)
-    return run_open(request) if request["law"] == "unilateral" else run_locked(request)
-
-
-def run_plane(request: Request) -> dict[str, Any]:
-    """Answer a request for a plane body without springs."""
     Factor.factorisations = Factor.solves = 0
-    began = time.perf_counter()
-    body = PlaneBody(request)
-    scheme = Newmark(body, request)
-    ready = time.perf_counter()
-    (row,) = body.observers.values()
-    history = [float(row.dot(scheme.advance())) for _ in range(request["steps"])]
-    counted = _counted(began, ready, time.perf_counter())
-    return {
-        "outcome": "completed",
-        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
-        "columns": {"displacement": history},
-        "static": statics(body),
-        "unknowns": body.K.getSize()[0],
-        "nonzeros": scheme.nonzeros,
-        **counted,
-    }
+    return run_open(request) if request.get("law") == "unilateral" else run_locked(request)
 
 
 def run_open(request: Request) -> dict[str, Any]:
     """Answer a request for contact that carries no tension; a history may end early."""
-    Factor.factorisations = Factor.solves = 0
     began = time.perf_counter()
     block = Block(request | {"stiffness": 0.0, "shear_stiffness": 0.0})
     scheme = Opening(block, request)
@@ -64,51 +42,47 @@ def run_open(request: Request) -> dict[str, Any]:
         contact, failure = scheme.advance()
         observed = {name: float(row.dot(scheme.D)) for name, row in block.observers.items()}
         rows += [] if failure else [observed | dict(zip(OPENING, contact, strict=True))]
+    counted = _counted(block, scheme, began, ready)
     return {
         "outcome": failure or "completed",
         "time": (request["step"] * np.arange(1, len(rows) + 1)).tolist(),
         "columns": {name: [row[name] for row in rows] for name in request["columns"]},
         "pressed": [bool(row["contact_pressure"] > 0) for row in rows],
-        "unknowns": block.K.getSize()[0],
-        "nonzeros": scheme.nonzeros,
-        **_counted(began, ready, time.perf_counter()),
-    }
-
-
-def run_locked(request: Request) -> dict[str, Any]:
-    """Answer a request for locked springs."""
-    Factor.factorisations = Factor.solves = 0
-    began = time.perf_counter()
-    block = Block(request)
-    scheme = Newmark(block, request)
-    ready = time.perf_counter()
-    rows = [block.observers[name] for name in request["columns"]]
-    history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
-    counted = _counted(began, ready, time.perf_counter())
-    rest = Factor(block.K)(scheme.load(request["last"]))
-    static = {name: float(row.dot(rest)) for name, row in block.observers.items()}
-    static["contact_pressure"] += float(block.carried_pressure(request["last"]))
-    if request["moved"] and "contact_pressure" in request["columns"]:
-        history[:, request["columns"].index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
-    return {
-        "outcome": "completed",
-        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
-        "columns": {name: history[:, i].tolist() for i, name in enumerate(request["columns"])},
-        "static": static,
-        "unknowns": block.K.getSize()[0],
-        "nonzeros": scheme.nonzeros,
         **counted,
     }
 
 
-def _counted(began: float, ready: float, ended: float) -> dict[str, Any]:
-    """What a history has cost."""
+def run_locked(request: Request) -> dict[str, Any]:
+    """Answer a request for locked springs, or for a plane body without any."""
+    began = time.perf_counter()
+    block = PlaneBody(request) if "tractions" in request else Block(request)
+    scheme = Newmark(block, request)
+    ready = time.perf_counter()
+    names = request.get("columns", [*block.observers])
+    rows = [block.observers[name] for name in names]
+    history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
+    counted = _counted(block, scheme, began, ready)
+    if isinstance(block, Block) and request["moved"] and "contact_pressure" in names:
+        history[:, names.index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
+    return {
+        "outcome": "completed",
+        "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
+        "columns": {name: history[:, i].tolist() for i, name in enumerate(names)},
+        "static": block.statics(),
+        **counted,
+    }
+
+
+def _counted(block: Meshed, scheme: Newmark | Opening, began: float, ready: float) -> dict[str, Any]:
+    """What a history has cost, just after its last step."""
     peak = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
     return {
+        "unknowns": block.K.getSize()[0],
+        "nonzeros": scheme.nonzeros,
         "factorisations": Factor.factorisations,
         "solves": Factor.solves,
         "setup_seconds": ready - began,
-        "stepping_seconds": ended - ready,
+        "stepping_seconds": time.perf_counter() - ready,
         "memory": peak,
         "version": dolfinx.__version__,
     }

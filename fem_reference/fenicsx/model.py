@@ -14,6 +14,8 @@ import ufl
 from mpi4py import MPI
 from petsc4py import PETSc
 
+from .factor import Factor
+
 COMM = MPI.COMM_WORLD
 # the top without its pressed part, and that part
 BASE = 1
@@ -93,18 +95,23 @@ def vector_space(mesh: Any, degree: int) -> Any:
     return dolfinx.fem.VectorFunctionSpace(mesh, ("Lagrange", degree))
 
 
-def facets_on(mesh: Any, outline: Outline, index: int, low: float, high: float) -> np.ndarray:
-    """Boundary facets on an edge of the block between two arc lengths."""
-    start, along, _ = outline.side(index)
-    slack = 1e-9 * outline.size
+def facets_on(mesh: Any, start: np.ndarray, end: np.ndarray, slack: float) -> np.ndarray:
+    """Boundary facets on a straight piece of the outline."""
+    length = float(np.hypot(*(end - start)))
+    along = (end - start) / length
 
     def inside(x: np.ndarray) -> np.ndarray:
         away = x[:2] - start[:, None]
         s = along @ away
         off = along[0] * away[1] - along[1] * away[0]
-        return np.asarray((np.abs(off) <= slack) & (s >= low - slack) & (s <= high + slack))
+        return np.asarray((np.abs(off) <= slack) & (s >= -slack) & (s <= length + slack))
 
     return np.asarray(dolfinx.mesh.locate_entities_boundary(mesh, 1, inside), np.int32)
+
+
+def joined(parts: list[np.ndarray]) -> np.ndarray:
+    """Facets of all parts, each once."""
+    return np.unique(np.concatenate([*parts, np.empty(0, np.int32)])).astype(np.int32)
 
 
 def spring_intervals(request: Request, length: float) -> list[tuple[float, float]]:
@@ -121,132 +128,42 @@ def pressed_part(request: Request, length: float) -> tuple[float, float]:
     return max(0.0, 2 * shift), min(length, length + 2 * shift)
 
 
-class Block:
-    """M D'' + K D = F + pushes y, y the displacement of the base, and the rows that observe D."""
+class Meshed:
+    """M D'' + K D = F + pushes y of elements, y the displacement of the base, and the rows that observe D."""
 
-    def __init__(self, request: Request) -> None:
+    M: Any
+    K: Any
+    F: Any
+    pushes: list[Any]
+    observers: dict[str, Any]
+
+    def __init__(self, request: Request, outline: Any) -> None:
         self.request = request
-        self.outline = Outline(request)
-        self.mesh = make_mesh(request, self.outline)
+        self.outline = outline
+        self.mesh = make_mesh(request, outline)
         self.mesh.topology.create_connectivity(1, 2)
         self.space = vector_space(self.mesh, request["degree"])
-        self._measures()
-        self._check()
-        self._matrices()
-        self._rows()
+        # one order above 2 degree integrates the Jacobian of a bilinear cell exactly
+        self.rule = {"quadrature_degree": 2 * request["degree"] + 1}
+        self.dx = ufl.Measure("dx", domain=self.mesh, metadata=self.rule)
 
-    def _measures(self) -> None:
-        """Set dx and ds; one order above 2 degree integrates the Jacobian of a bilinear cell exactly."""
-        _, _, length = self.outline.side(0)
-        pieces = [facets_on(self.mesh, self.outline, 0, *span) for span in spring_intervals(self.request, length)]
-        springs = np.unique(np.concatenate([*pieces, np.empty(0, np.int32)])).astype(np.int32)
-        _, along, full = self.outline.side(self.outline.top)
-        self.request["along"] = 1.0 if along[0] > 0 or (along[0] == 0 and along[1] > 0) else -1.0
-        top = facets_on(self.mesh, self.outline, self.outline.top, 0.0, full)
-        pressed = facets_on(self.mesh, self.outline, self.outline.top, *pressed_part(self.request, full))
-        rest = np.setdiff1d(top, pressed).astype(np.int32)
-        facets = np.concatenate([springs, rest, pressed])
-        values = np.repeat(np.array([BASE, TOP, PRESSED], np.int32), [len(springs), len(rest), len(pressed)])
+    def edges(self, facets_by_tag: dict[int, np.ndarray]) -> Any:
+        """Measure of the outline whose facets have tags."""
+        facets = np.concatenate([*facets_by_tag.values()])
+        tags = np.repeat(np.array([*facets_by_tag], np.int32), [len(part) for part in facets_by_tag.values()])
         order = np.argsort(facets)
-        tags = dolfinx.mesh.meshtags(self.mesh, 1, facets[order], values[order])
-        rule = {"quadrature_degree": 2 * self.request["degree"] + 1}
-        self.dx = ufl.Measure("dx", domain=self.mesh, metadata=rule)
-        self.ds = ufl.Measure("ds", domain=self.mesh, subdomain_data=tags, metadata=rule)
+        data = dolfinx.mesh.meshtags(self.mesh, 1, facets[order], tags[order])
+        return ufl.Measure("ds", domain=self.mesh, subdomain_data=data, metadata=self.rule)
 
-    def _integral(self, measure: Any) -> float:
-        form = dolfinx.fem.form(constant(self.mesh, 1.0) * measure)
-        return float(COMM.allreduce(dolfinx.fem.assemble_scalar(form), MPI.SUM))
-
-    def _check(self) -> None:
-        """Refuse a mesh that is not the block's: area, perimeter, loaded and carried length."""
-        o = self.outline
-        request = self.request
-        perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
-        top = self.ds((TOP, PRESSED))
-        measures = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
-        for name, (measure, expected) in measures.items():
-            if abs(self._integral(measure) - expected) > 1e-9 * expected:
-                raise ValueError(f"mesh: outline must be the block's, but its {name} differs")
-        low, high = pressed_part(request, o.side(o.top)[2])
-        if abs(self._integral(self.ds(PRESSED)) - (high - low)) > 1e-9 * o.side(o.top)[2]:
-            raise Inapplicable(
-                "the pressed part of the top ends inside an element's edge, and fenicsx integrates whole edges only"
-            )
-        spans = spring_intervals(request, o.side(0)[2])
-        carried = sum(high - low for low, high in spans)
-        if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
-            if request["foundation"] == "patch":
-                raise Inapplicable("the patches end inside an element's edge, and fenicsx integrates whole edges only")
-            raise ValueError("mesh: the base must be covered by edges of elements exactly")
-        self.carried = carried if spans else 1.0
-
-    def _matrices(self) -> None:
-        """Assemble M and K from rho (u, v), lam (div u, div v) + 2 G (eps(u), eps(v)) and the springs."""
+    def _elastic(self, u: Any, v: Any) -> Any:
+        """Assemble M from rho (u, v); return the form lam (div u, div v) + 2 G (eps(u), eps(v))."""
         r = self.request
-        mesh = self.mesh
-        dx = self.dx
-        ds = self.ds
-        u = ufl.TrialFunction(self.space)
-        v = ufl.TestFunction(self.space)
-        t = self.outline.side(0)[1]
-        self.tangent = t
-        self.normal = np.array([-t[1], t[0]])
-        spread = 2 / self.carried  # over edges of the base; where springs stand at its corners no edge is marked
-        kn, kt = (constant(mesh, spread * r[name]) for name in ("stiffness", "shear_stiffness"))
-        lam, shear = (constant(mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
-        n = constant(mesh, self.normal)
-        t = constant(mesh, self.tangent)
-        elastic = (lam * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(strain(u), strain(v))) * dx
-        springs = (kn * ufl.dot(n, u) * ufl.dot(n, v) + kt * ufl.dot(t, u) * ufl.dot(t, v)) * ds(BASE)
-        self.M = assembled(ufl.dot(u, v) * dx)
+        self.M = assembled(ufl.dot(u, v) * self.dx)
         self.M.scale(r["density"])
-        self.K = assembled(elastic + springs, self._corner_springs if r["foundation"] == "corner" else None)
-        down, right = (constant(mesh, r[name]) for name in ("pressure", "traction"))
-        angle = np.radians(r["slope"])
-        weight = constant(mesh, r["density"] * r["gravity"] * np.array([np.sin(angle), -np.cos(angle)]))
-        load = right * v[0] * ds((TOP, PRESSED)) - down * v[1] * ds(PRESSED) + ufl.dot(weight, v) * dx
-        self.F = self._vector(load)
-        self.pushes = [self._push(kn, kt, n, t, v, np.eye(2)[i]) for i in (0, 1)]
-        self.pressure = self._vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))
+        lam, shear = (constant(self.mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
+        return (lam * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(strain(u), strain(v))) * self.dx
 
-    def _push(self, kn: Any, kt: Any, n: Any, t: Any, v: Any, direction: np.ndarray) -> Any:
-        """Load of a unit displacement of the base in one direction."""
-        across, along = (constant(self.mesh, float(axis @ direction)) for axis in (self.normal, self.tangent))
-        vector = self._vector((kn * across * ufl.dot(n, v) + kt * along * ufl.dot(t, v)) * self.ds(BASE))
-        if self.request["foundation"] == "corner":
-            for pair in self._corners():
-                vector.setValues(pair.astype(np.int32), self._spring() @ direction, addv=PETSc.InsertMode.ADD_VALUES)
-            vector.assemble()
-        return vector
-
-    def _spring(self) -> np.ndarray:
-        """Matrix of one corner spring."""
-        p = self.request["stiffness"]
-        ps = self.request["shear_stiffness"]
-        return np.asarray(p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent))
-
-    def _corners(self) -> list[np.ndarray]:
-        """Global numbers of the two unknowns of each end of the base that this rank owns."""
-        owned = []
-        for point in self.outline.corners[:2]:
-
-            def here(x: np.ndarray, point: np.ndarray = point) -> np.ndarray:
-                return np.asarray(np.hypot(x[0] - point[0], x[1] - point[1]) <= 1e-9 * self.outline.size)
-
-            local = dolfinx.fem.locate_dofs_geometrical(self.space, here)
-            local = local[local < self.space.dofmap.index_map.size_local]
-            owned += [2 * i + np.array([0, 1]) for i in self._global(local)]
-        return owned
-
-    def _corner_springs(self, K: Any) -> None:
-        """Add the two point springs to the stiffness."""
-        for pair in self._corners():
-            K.setValues(pair.astype(np.int32), pair.astype(np.int32), self._spring(), addv=PETSc.InsertMode.ADD_VALUES)
-
-    def _global(self, local: np.ndarray) -> np.ndarray:
-        return np.asarray(self.space.dofmap.index_map.local_to_global(np.asarray(local, np.int32)), np.int64)
-
-    def _vector(self, form: Any) -> Any:
+    def vector(self, form: Any) -> Any:
         """Assemble a linear form into a vector of the matrices' layout."""
         ghosted = dolfinx.fem.petsc.assemble_vector(dolfinx.fem.form(form))
         ghosted.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
@@ -254,26 +171,22 @@ class Block:
         vector.array[:] = ghosted.array
         return vector
 
-    def _rows(self) -> None:
-        """Set the observers of the columns."""
-        if self.request["foundation"] == "corner":
-            share = -self.request["stiffness"] / self.outline.side(0)[2]
-            for pair in self._corners():
-                self.pressure.setValues(pair.astype(np.int32), share * self.normal, addv=PETSc.InsertMode.ADD_VALUES)
-            self.pressure.assemble()
-        across, down = self._point_rows()
-        self.observers = {
-            "displacement": down,
-            "contact_pressure": self.pressure,
-            "horizontal_displacement": across,
-        }
+    def load(self, moved: Any) -> Any:
+        """The load where the base is displaced by (x, y)."""
+        x, y = moved
+        return self.F + x * self.pushes[0] + y * self.pushes[1] if x or y else self.F
 
-    def carried_pressure(self, moved: Any) -> np.ndarray:
-        """Contact pressure of a displaced base where the block is held, for each (x, y)."""
-        pressure: np.ndarray = (
-            np.asarray(moved) @ self.normal * (2 * self.request["stiffness"] / self.outline.side(0)[2])
-        )
-        return pressure
+    def rest(self) -> Any:
+        """Displacements at rest, where the base comes to rest."""
+        return Factor(self.K)(self.load(self.request["last"]))
+
+    def statics(self) -> dict[str, float]:
+        """What is observed at rest."""
+        D = self.rest()
+        return {name: float(row.dot(D)) for name, row in self.observers.items()}
+
+    def _global(self, local: np.ndarray) -> np.ndarray:
+        return np.asarray(self.space.dofmap.index_map.local_to_global(np.asarray(local, np.int32)), np.int64)
 
     def _point_rows(self) -> tuple[Any, Any]:
         """Rows that give u and v at the centroid: the basis functions of its cell, each evaluated there."""
@@ -307,6 +220,144 @@ class Block:
             if len(cells):
                 return int(cells[0])
         return None
+
+
+class Block(Meshed):
+    """The block on its springs."""
+
+    def __init__(self, request: Request) -> None:
+        super().__init__(request, Outline(request))
+        self._measures()
+        self._check()
+        self._matrices()
+        self._rows()
+
+    def _facets(self, index: int, low: float, high: float) -> np.ndarray:
+        """Facets of an edge between two arc lengths."""
+        start, along, _ = self.outline.side(index)
+        return facets_on(self.mesh, start + low * along, start + high * along, 1e-9 * self.outline.size)
+
+    def _measures(self) -> None:
+        """Mark what carries springs and what is loaded."""
+        _, _, length = self.outline.side(0)
+        springs = joined([self._facets(0, *span) for span in spring_intervals(self.request, length)])
+        _, along, full = self.outline.side(self.outline.top)
+        self.request["along"] = 1.0 if along[0] > 0 or (along[0] == 0 and along[1] > 0) else -1.0
+        top = self._facets(self.outline.top, 0.0, full)
+        pressed = self._facets(self.outline.top, *pressed_part(self.request, full))
+        self.ds = self.edges({BASE: springs, TOP: np.setdiff1d(top, pressed).astype(np.int32), PRESSED: pressed})
+
+    def _integral(self, measure: Any) -> float:
+        form = dolfinx.fem.form(constant(self.mesh, 1.0) * measure)
+        return float(COMM.allreduce(dolfinx.fem.assemble_scalar(form), MPI.SUM))
+
+    def _check(self) -> None:
+        """Refuse a mesh that is not the block's: area, perimeter, loaded and carried length."""
+        o = self.outline
+        request = self.request
+        perimeter = sum(o.side(i)[2] for i in range(len(o.corners)))
+        top = self.ds((TOP, PRESSED))
+        measures = {"area": (self.dx, o.area), "perimeter": (self.ds, perimeter), "top": (top, o.side(o.top)[2])}
+        for name, (measure, expected) in measures.items():
+            if abs(self._integral(measure) - expected) > 1e-9 * expected:
+                raise ValueError(f"mesh: outline must be the block's, but its {name} differs")
+        low, high = pressed_part(request, o.side(o.top)[2])
+        if abs(self._integral(self.ds(PRESSED)) - (high - low)) > 1e-9 * o.side(o.top)[2]:
+            raise Inapplicable(
+                "the pressed part of the top ends inside an element's edge, and fenicsx integrates whole edges only"
+            )
+        spans = spring_intervals(request, o.side(0)[2])
+        carried = sum(high - low for low, high in spans)
+        if spans and abs(self._integral(self.ds(BASE)) - carried) > 1e-9 * carried:
+            if request["foundation"] == "patch":
+                raise Inapplicable("the patches end inside an element's edge, and fenicsx integrates whole edges only")
+            raise ValueError("mesh: the base must be covered by edges of elements exactly")
+        self.carried = carried if spans else 1.0
+
+    def _matrices(self) -> None:
+        """Assemble M, K with the springs, the load and what a moving base adds."""
+        r = self.request
+        mesh = self.mesh
+        ds = self.ds
+        u = ufl.TrialFunction(self.space)
+        v = ufl.TestFunction(self.space)
+        t = self.outline.side(0)[1]
+        self.tangent = t
+        self.normal = np.array([-t[1], t[0]])
+        spread = 2 / self.carried  # over edges of the base; where springs stand at its corners no edge is marked
+        kn, kt = (constant(mesh, spread * r[name]) for name in ("stiffness", "shear_stiffness"))
+        n = constant(mesh, self.normal)
+        t = constant(mesh, self.tangent)
+        springs = (kn * ufl.dot(n, u) * ufl.dot(n, v) + kt * ufl.dot(t, u) * ufl.dot(t, v)) * ds(BASE)
+        self.K = assembled(self._elastic(u, v) + springs, self._corner_springs if r["foundation"] == "corner" else None)
+        down, right = (constant(mesh, r[name]) for name in ("pressure", "traction"))
+        angle = np.radians(r["slope"])
+        weight = constant(mesh, r["density"] * r["gravity"] * np.array([np.sin(angle), -np.cos(angle)]))
+        load = right * v[0] * ds((TOP, PRESSED)) - down * v[1] * ds(PRESSED) + ufl.dot(weight, v) * self.dx
+        self.F = self.vector(load)
+        self.pushes = [self._push(kn, kt, n, t, v, np.eye(2)[i]) for i in (0, 1)]
+        self.pressure = self.vector(-(kn / constant(mesh, self.outline.side(0)[2])) * ufl.dot(n, v) * ds(BASE))
+
+    def _push(self, kn: Any, kt: Any, n: Any, t: Any, v: Any, direction: np.ndarray) -> Any:
+        """Load of a unit displacement of the base in one direction."""
+        across, along = (constant(self.mesh, float(axis @ direction)) for axis in (self.normal, self.tangent))
+        vector = self.vector((kn * across * ufl.dot(n, v) + kt * along * ufl.dot(t, v)) * self.ds(BASE))
+        if self.request["foundation"] == "corner":
+            for pair in self.corners():
+                vector.setValues(pair, self._spring() @ direction, addv=PETSc.InsertMode.ADD_VALUES)
+            vector.assemble()
+        return vector
+
+    def _spring(self) -> np.ndarray:
+        """Matrix of one corner spring."""
+        p = self.request["stiffness"]
+        ps = self.request["shear_stiffness"]
+        return np.asarray(p * np.outer(self.normal, self.normal) + ps * np.outer(self.tangent, self.tangent))
+
+    def corners(self) -> list[np.ndarray]:
+        """Global numbers of the two unknowns of each end of the base that this rank owns."""
+        owned = []
+        for point in self.outline.corners[:2]:
+
+            def here(x: np.ndarray, point: np.ndarray = point) -> np.ndarray:
+                return np.asarray(np.hypot(x[0] - point[0], x[1] - point[1]) <= 1e-9 * self.outline.size)
+
+            local = dolfinx.fem.locate_dofs_geometrical(self.space, here)
+            local = local[local < self.space.dofmap.index_map.size_local]
+            owned += [(2 * i + np.array([0, 1])).astype(np.int32) for i in self._global(local)]
+        return owned
+
+    def _corner_springs(self, K: Any) -> None:
+        """Add the two point springs to the stiffness."""
+        for pair in self.corners():
+            K.setValues(pair, pair, self._spring(), addv=PETSc.InsertMode.ADD_VALUES)
+
+    def _rows(self) -> None:
+        """Set the observers of the columns."""
+        if self.request["foundation"] == "corner":
+            share = -self.request["stiffness"] / self.outline.side(0)[2]
+            for pair in self.corners():
+                self.pressure.setValues(pair, share * self.normal, addv=PETSc.InsertMode.ADD_VALUES)
+            self.pressure.assemble()
+        across, down = self._point_rows()
+        self.observers = {
+            "displacement": down,
+            "contact_pressure": self.pressure,
+            "horizontal_displacement": across,
+        }
+
+    def statics(self) -> dict[str, float]:
+        """What is observed at rest."""
+        static = super().statics()
+        static["contact_pressure"] += float(self.carried_pressure(self.request["last"]))
+        return static
+
+    def carried_pressure(self, moved: Any) -> np.ndarray:
+        """Contact pressure of a displaced base where the block is held, for each (x, y)."""
+        pressure: np.ndarray = (
+            np.asarray(moved) @ self.normal * (2 * self.request["stiffness"] / self.outline.side(0)[2])
+        )
+        return pressure
 
 
 def constant(mesh: Any, value: Any) -> Any:

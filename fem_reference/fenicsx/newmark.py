@@ -1,4 +1,4 @@
-"""The Newmark scheme on locked springs, and counted solutions with a factored matrix."""
+"""The Newmark scheme on locked springs."""
 
 from __future__ import annotations
 
@@ -6,32 +6,8 @@ from typing import Any
 
 from petsc4py import PETSc
 
-from .model import COMM, Block, Request
-
-
-class Factor:
-    """Counted solutions with a matrix that is factored once."""
-
-    factorisations = 0
-    solves = 0
-
-    def __init__(self, matrix: Any) -> None:
-        self.ksp = PETSc.KSP().create(COMM)
-        self.ksp.setOperators(matrix)
-        self.ksp.setType("preonly")
-        pc = self.ksp.getPC()
-        pc.setType("lu")
-        pc.setFactorSolverType("petsc" if COMM.size == 1 else "mumps")
-        self.ksp.setUp()
-        self.matrix = matrix
-        Factor.factorisations += 1
-
-    def __call__(self, right: Any) -> Any:
-        """Solve for one right-hand side."""
-        solution = self.matrix.createVecRight()
-        self.ksp.solve(right, solution)
-        Factor.solves += 1
-        return solution
+from .factor import Factor
+from .model import Meshed, Request
 
 
 class Newmark:
@@ -41,12 +17,11 @@ class Newmark:
     A1 = (D1 - D*) / (alpha dt^2), or M^-1 (F - K D1) for alpha = 0,  V1 = gg V + dt ((1 - delta) A + delta A1).
     """
 
-    def __init__(self, block: Block, request: Request) -> None:
+    def __init__(self, block: Meshed, request: Request) -> None:
         self.M = block.M
         self.K = block.K
         self.moved = request["moved"]
-        self.constant = block.F
-        self.pushes = block.pushes
+        self.load = block.load
         self.step = 0
         self.F = self.load(self.moved[0] if self.moved else (0.0, 0.0))
         self.dt = request["step"]
@@ -60,11 +35,6 @@ class Newmark:
         self.D, self.V, self.A = (self.K.createVecRight() for _ in range(3))
         if request["start"] == "consistent":
             self.A = (Factor(self.M) if self.alpha > 0 else self.solve)(self.F)
-
-    def load(self, moved: Any) -> Any:
-        """The load where the base is displaced by (x, y)."""
-        x, y = moved
-        return self.constant + x * self.pushes[0] + y * self.pushes[1] if x or y else self.constant
 
     def _residual(self) -> Any:
         r = self.K.createVecRight()

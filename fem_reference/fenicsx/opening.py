@@ -13,8 +13,8 @@ import numpy as np
 import ufl
 from petsc4py import PETSc
 
+from .factor import Factor
 from .model import BASE, COMM, Block, Inapplicable, Request, constant
-from .newmark import Factor
 from .small import Law, Small, Start
 
 KEPT = 8  # lengths of step of which the matrices are kept
@@ -62,11 +62,11 @@ class Base:
         first, end = owned.local_range
         share = np.zeros(end - first)
         if request["foundation"] == "corner":
-            for pair in block._corners():
+            for pair in block.corners():
                 share[pair[0] // 2 - first] = 0.5
         elif request["foundation"] == "distributed":
             functional = ufl.dot(constant(block.mesh, self.normal), ufl.TestFunction(block.space))
-            parts = block._vector(functional * block.ds(BASE)).array.reshape(-1, 2) @ self.normal
+            parts = block.vector(functional * block.ds(BASE)).array.reshape(-1, 2) @ self.normal
             share = np.where(parts > 1e-10 * self.length, parts / self.length, 0.0)
         else:
             raise Inapplicable(f"unilateral contact on a foundation {request['foundation']!r} is not in fenicsx")

@@ -13,25 +13,19 @@ import dolfinx
 import numpy as np
 import ufl
 
-from .model import COMM, Block, Inapplicable, Request, assembled, constant, lame, make_mesh, strain, vector_space
-from .newmark import Factor
+from .factor import Factor
+from .model import COMM, Inapplicable, Meshed, Request, assembled, constant, facets_on, joined, lame, strain
 
 
-class PlaneBody(Block):
+class PlaneBody(Meshed):
     """M D'' + K D = F of the body, and the row that observes D."""
 
     def __init__(self, request: Request) -> None:
         if COMM.size > 1:
             raise Inapplicable("blocks in the plane are solved on one rank")
-        self.request = request
-        points = np.asarray(request["points"], float)
-        self.size = float(np.ptp(points))
-        outline: Any = SimpleNamespace(origin=np.zeros(2), size=self.size, centroid=np.zeros(2))
-        self.outline = outline
-        self.mesh = make_mesh(request, outline)
-        self.mesh.topology.create_connectivity(1, 2)
-        self.space = vector_space(self.mesh, request["degree"])
-        self._edges()
+        self.size = float(np.ptp(np.asarray(request["points"], float)))
+        super().__init__(request, SimpleNamespace(origin=np.zeros(2), size=self.size, centroid=np.zeros(2)))
+        self.clamped = joined([self._on(edge) for edge in request["clamps"]])
         self._assemble()
         self.pushes = [self.K.createVecRight(), self.K.createVecRight()]
         self.observers = {"displacement": self._observed()}
@@ -39,53 +33,28 @@ class PlaneBody(Block):
     def _on(self, edge: Any) -> np.ndarray:
         """Boundary facets on a straight piece of the outline."""
         start, end = np.asarray(edge, float)
-        length = float(np.hypot(*(end - start)))
-        along = (end - start) / length
-        slack = 1e-9 * self.size
-
-        def inside(x: np.ndarray) -> np.ndarray:
-            away = x[:2] - start[:, None]
-            s = along @ away
-            off = along[0] * away[1] - along[1] * away[0]
-            return np.asarray((np.abs(off) <= slack) & (s >= -slack) & (s <= length + slack))
-
-        return np.asarray(dolfinx.mesh.locate_entities_boundary(self.mesh, 1, inside), np.int32)
-
-    def _boundary(self) -> np.ndarray:
-        return np.asarray(
-            dolfinx.mesh.locate_entities_boundary(self.mesh, 1, lambda x: np.ones(x.shape[1], bool)), np.int32
-        )
-
-    def _edges(self) -> None:
-        """Keep what acts on which facets, and the rules of integration."""
-        self.rule = {"quadrature_degree": 2 * self.request["degree"] + 1}
-        self.dx = ufl.Measure("dx", domain=self.mesh, metadata=self.rule)
-        clamps = [self._on(edge) for edge in self.request["clamps"]]
-        self.clamped = np.unique(np.concatenate([*clamps, np.empty(0, np.int32)])).astype(np.int32)
+        return facets_on(self.mesh, start, end, 1e-9 * self.size)
 
     def _over(self, facets: np.ndarray) -> Any:
         """Measure of some facets."""
-        tags = dolfinx.mesh.meshtags(self.mesh, 1, np.sort(facets), np.ones(len(facets), np.int32))
-        return ufl.Measure("ds", domain=self.mesh, subdomain_data=tags, metadata=self.rule)(1)
+        return self.edges({1: facets})(1)
 
     def _assemble(self) -> None:
         """Assemble M, K and F; clamped unknowns have an equation of their own, D = 0."""
         r = self.request
         u = ufl.TrialFunction(self.space)
         v = ufl.TestFunction(self.space)
-        lam, shear = (constant(self.mesh, value) for value in lame(r["young"], r["poisson"], r["hypothesis"]))
-        self.M = assembled(ufl.dot(u, v) * self.dx)
-        self.M.scale(r["density"])
-        self.K = assembled((lam * ufl.div(u) * ufl.div(v) + 2 * shear * ufl.inner(strain(u), strain(v))) * self.dx)
+        self.K = assembled(self._elastic(u, v))
         # Each part is a form of its own: a form takes the tags of one set of facets only.
-        F = self._vector(ufl.dot(constant(self.mesh, r["density"] * np.array(r["gravity"])), v) * self.dx)
+        F = self.vector(ufl.dot(constant(self.mesh, r["density"] * np.array(r["gravity"])), v) * self.dx)
         for edge, traction in r["tractions"]:
-            F += self._vector(ufl.dot(constant(self.mesh, np.array(traction)), v) * self._over(self._on(edge)))
+            F += self.vector(ufl.dot(constant(self.mesh, np.array(traction)), v) * self._over(self._on(edge)))
         if any(r["stress"]):
             s_xx, s_yy, s_xy = r["stress"]
             stress = constant(self.mesh, np.array([[s_xx, s_xy], [s_xy, s_yy]]))
-            outline = np.setdiff1d(self._boundary(), self.clamped).astype(np.int32)
-            F += self._vector(ufl.dot(ufl.dot(stress, ufl.FacetNormal(self.mesh)), v) * self._over(outline))
+            every = dolfinx.mesh.locate_entities_boundary(self.mesh, 1, lambda x: np.ones(x.shape[1], bool))
+            outline = np.setdiff1d(np.asarray(every, np.int32), self.clamped).astype(np.int32)
+            F += self.vector(ufl.dot(ufl.dot(stress, ufl.FacetNormal(self.mesh)), v) * self._over(outline))
         self.F = F
         nodes = dolfinx.fem.locate_dofs_topological(self.space, 1, self.clamped)
         self.fixed = np.concatenate([2 * nodes, 2 * nodes + 1]).astype(np.int32)
@@ -115,7 +84,7 @@ class PlaneBody(Block):
     def _mean_of(self, edge: Any, direction: tuple[float, float]) -> Any:
         v = ufl.TestFunction(self.space)
         length = float(np.hypot(*np.subtract(*edge)))
-        return self._vector(ufl.dot(constant(self.mesh, np.array(direction) / length), v) * self._over(self._on(edge)))
+        return self.vector(ufl.dot(constant(self.mesh, np.array(direction) / length), v) * self._over(self._on(edge)))
 
     def rest(self) -> Any:
         """Displacements at rest."""
@@ -144,6 +113,12 @@ class PlaneBody(Block):
         D.array[:] -= motions @ np.linalg.solve(momenta @ motions, momenta @ D.array)
         return D
 
+    def statics(self) -> dict[str, float]:
+        """Displacement and stress error at rest."""
+        D = self.rest()
+        values = {name: float(row.dot(D)) for name, row in self.observers.items()}
+        return values | ({"stress_error": self.stress_error(D)} if any(self.request["stress"]) else {})
+
     def stress_error(self, D: Any) -> float:
         """Largest error of a stress component in the cells, over the largest component of the loads' stress."""
         r = self.request
@@ -162,12 +137,3 @@ class PlaneBody(Block):
         except (TypeError, AttributeError):  # dolfinx up to 0.6
             values = expression.eval(cells)
         return float(np.max(np.abs(values)) / max(map(abs, r["stress"])))
-
-
-def statics(body: PlaneBody) -> dict[str, float]:
-    """Return displacement and stress error at rest."""
-    D = body.rest()
-    values = {name: float(row.dot(D)) for name, row in body.observers.items()}
-    if any(body.request["stress"]):
-        values["stress_error"] = body.stress_error(D)
-    return values

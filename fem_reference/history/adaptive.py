@@ -19,7 +19,7 @@ import numpy as np
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.digits import bounded, front
 from fem_reference.problem.problem import Array, Problem, Scheme
-from fem_reference.problem.result import COLUMNS, Result, check_request
+from fem_reference.problem.result import COLUMNS, Result, check_request, just_ended
 from fem_reference.scheme.newmark import Stepper
 
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")
@@ -68,13 +68,11 @@ def solve_adaptive(
     every = dict(zip(COLUMNS, bounded(history, size), strict=True))
     every |= dict(zip(ADAPTIVE_COLUMNS, (discount, loss), strict=True))
     return Result(
-        time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
+        **just_ended(scheme.step, steps, began, ready),
         columns={name: every[name] for name in columns},
         unknowns=len(model.F),
         **vars(stepper.work),
         notes=(*model.notes, *front(problem, scheme.step), f"stepped: adaptive discount from {floor:g} to 1"),
-        setup_seconds=ready - began,
-        stepping_seconds=time.perf_counter() - ready,
     )
 
 
@@ -86,14 +84,10 @@ def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...
         raise ValueError(f"scheme: must be 'newmark' where the discount adapts, got {scheme.name!r}")
     if scheme.gg != 1:
         raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
-    if scheme.damped or problem.motion is not None or problem.ramp:
-        present = {
-            "viscous damping": scheme.damped,
-            "a moving base": problem.motion is not None,
-            "a ramp": problem.ramp,
-        }
-        excluded = next(name for name, is_there in present.items() if is_there)
-        raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {excluded}")
+    moves = problem.motion is not None
+    for name, is_there in (("viscous damping", scheme.damped), ("a moving base", moves), ("a ramp", problem.ramp)):
+        if is_there:
+            raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {name}")
 
 
 def _stepped(stepper: Stepper, model: Model, steps: int, floor: float) -> tuple[Array, Array, Array]:

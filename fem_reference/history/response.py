@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh_tridiagonal, solve_banded
+from scipy.linalg import eigh_tridiagonal
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
@@ -81,25 +81,21 @@ def observed(model: Model, F: Array, rows: Array, W2: Complex) -> Complex:
     """Rows of D, shape (rows, frequencies)."""
     if not np.any(F):
         return np.zeros((len(rows), len(W2)), complex)
-    K = coo_array(model.K)
-    M = coo_array(model.M)
-    width = int(max(np.max(np.abs(K.row - K.col)), np.max(np.abs(M.row - M.col))))
+    matrices = [coo_array(part) for part in (model.K, model.M)]
+    width = max(int(np.max(np.abs(part.row - part.col))) for part in matrices)
     if len(F) * width**2 <= NARROW:
-        return np.stack([rows @ _eliminated(K, M, F, complex(w2), width) for w2 in W2], axis=1)
+        return np.stack([rows @ _eliminated(model, F, complex(w2)) for w2 in W2], axis=1)
     amplitudes, settled = _in_space(model, F, rows, W2)
     for i in np.flatnonzero(~settled):
-        amplitudes[:, i] = rows @ splu(csc_array(model.K - W2[i] * model.M)).solve(F.astype(complex))
+        amplitudes[:, i] = rows @ _eliminated(model, F, complex(W2[i]))
     return amplitudes
 
 
-def _eliminated(K: coo_array, M: coo_array, F: Array, w2: complex, width: int) -> Complex:
-    """D at one frequency by elimination of a band, infinite at a resonance that nothing damps."""
-    band = np.zeros((2 * width + 1, len(F)), complex)
-    band[width + K.row - K.col, K.col] = K.data
-    band[width + M.row - M.col, M.col] -= w2 * M.data
+def _eliminated(model: Model, F: Array, w2: complex) -> Complex:
+    """D at one frequency by elimination, infinite at a resonance that nothing damps."""
     try:
-        return np.asarray(solve_banded((width, width), band, F, check_finite=False))
-    except np.linalg.LinAlgError:
+        return np.asarray(splu(csc_array(model.K - w2 * model.M)).solve(F.astype(complex)))
+    except RuntimeError:
         return np.full(len(F), np.inf, complex)
 
 

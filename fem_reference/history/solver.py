@@ -12,7 +12,7 @@ from fem_reference.mesh.fields import FieldWriter
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.digits import bounded, front
 from fem_reference.problem.problem import Array, Problem, Scheme
-from fem_reference.problem.result import COLUMNS, Result, check_request
+from fem_reference.problem.result import COLUMNS, Result, check_request, just_ended
 from fem_reference.scheme.newmark import Stepper, Work
 
 
@@ -64,15 +64,12 @@ def solve(
         history = small.history
         estimate = small.estimate
     history = bounded(history, problem.load_size)
-    ended = time.perf_counter()
     return Result(
-        time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
+        **just_ended(scheme.step, steps, began, ready),
         columns=dict(zip(columns, history, strict=True)),
         unknowns=len(model.F),
         **vars(stepper.work),
         notes=(*model.notes, *front(problem, scheme.step), _note(small)),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
         estimate=estimate,
     )
 

@@ -9,15 +9,15 @@ import numpy as np
 
 from fem_reference.contact import compilation
 from fem_reference.contact.columns import COUNTS, ENERGY_COLUMNS, LOSS_COLUMNS, UNILATERAL_COLUMNS, columns_of
-from fem_reference.contact.driver import OUTCOMES, Cut, make_steps
-from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.driver import OUTCOMES, Cut, histories
 from fem_reference.contact.law import AT_LOWER, INSIDE
-from fem_reference.contact.march import ContactState
+from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.points import ContactModel, Friction, build
 from fem_reference.contact.stepper import ContactStepper
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.digits import front
 from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import Result, just_ended
 
 
 @dataclass(frozen=True)
@@ -51,21 +51,11 @@ class Unilateral:
         require(0 < self.shortest <= 1, "shortest", "must be above 0 and at most 1", self.shortest)
 
 
-@dataclass(frozen=True)
-class UnilateralResult:
-    """A history with its outcome and work counts; row 0 is step 1."""
+@dataclass(frozen=True, kw_only=True)
+class UnilateralResult(Result):
+    """A history that may have ended early, after fewer steps than were asked for."""
 
-    time: Array  # time of each row [s], shape (rows,): fewer than steps asked for where the outcome is not completed
-    columns: dict[str, Array]  # one array of shape (rows,) for each column that was asked for
-    outcome: str  # ``"completed"``, or why it ended early
-    unknowns: int  # number of unknowns that were integrated [-]
     points: int  # number of contact points of the base [-]
-    nonzeros: int  # stored entries of the matrix that was factorised last [-]
-    factorisations: int  # number of factorisations [-]: one for each length of step, one of M for a consistent start
-    solves: int  # number of solutions with a factorised matrix [-]
-    notes: tuple[str, ...]  # savings used and warnings, in words
-    setup_seconds: float  # time for assembly, factorisation and the forces' responses [s]
-    stepping_seconds: float  # time for the steps [s]
 
 
 def solve_unilateral(
@@ -106,13 +96,10 @@ def solve_unilateral(
     contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)
-    system = model.system(contact.shear, contact.friction)
-    unknowns = len(model.F)
-    modal = not full and unknowns <= compilation.MODES and steps >= compilation.LONG
-    compiled, compiled_note = compilation.march(modal, steps)
+    system, compiled, notes = compilation.prepared(model.system(contact.shear, contact.friction), steps, full)
     names = _kept_columns(columns)
     stepper = ContactStepper(
-        system.in_modes() if modal else system,
+        system,
         scheme,
         contact.limit,
         rule=contact.rule,
@@ -124,29 +111,22 @@ def solve_unilateral(
     state = block_at_start(stepper, model, contact)
     ready = time.perf_counter()
     cut = None if scheme.staggered else Cut(contact.cut, contact.shortest)
-    parts = {name: [np.zeros(0)] for name in names}
-    outcome = CONVERGED
-    rows = 0
-    for record, marched in make_steps(stepper, state, steps, cut):
+
+    def kept(record: Record) -> dict[str, Array]:
         of_piece = columns_of(record, model, system.rows)
-        for name in names:
-            parts[name].append(of_piece[name])
-        rows += len(record.solves)
-        outcome = marched.outcome
-    kept = {name: np.concatenate(values) for name, values in parts.items()}
-    ended = time.perf_counter()
+        return {name: of_piece[name] for name in (*names, "solves")}
+
+    columns_of_steps, marched = histories(stepper, state, steps, cut, kept)
+    rows = len(columns_of_steps["solves"])
     saving = ("one column of elements",) if model.kind == "column" else ()
-    modes_note = (f"stepped in its {unknowns} natural modes",) if modal else ()
     return UnilateralResult(
-        time=np.asarray(scheme.step * np.arange(1, rows + 1), dtype=np.float64),
-        columns=kept,
-        outcome=OUTCOMES[outcome],
-        unknowns=unknowns,
+        **just_ended(scheme.step, rows, began, ready),
+        columns={name: columns_of_steps[name] for name in names},
+        outcome=OUTCOMES[marched.outcome],
+        unknowns=len(model.F),
         points=len(model.share),
         **vars(stepper.work),
-        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *modes_note, compiled_note),
-        setup_seconds=ready - began,
-        stepping_seconds=ended - ready,
+        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *notes),
     )
 
 

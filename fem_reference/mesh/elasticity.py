@@ -155,21 +155,6 @@ def edge_rule(
     return Rule(np.hstack(reference), np.concatenate(cells), np.concatenate(w))
 
 
-def vertex_rule(mesh: Mesh, facets: NDArray[np.int64], points: Array) -> Rule:
-    """Unit weights at mesh nodes of an edge; `points` has shape (2, count)."""
-    ends = mesh.facets[:, facets]
-    reference = []
-    cells = []
-    for point in points.T:
-        distance = np.hypot(*(mesh.p[:, ends] - point[:, None, None]))
-        i, k = np.unravel_index(np.argmin(distance), distance.shape)
-        cell = mesh.f2t[0, facets[k]]
-        local = int(np.flatnonzero(mesh.t[:, cell] == ends[i, k])[0])
-        reference.append(mesh.elem.refdom.p[:, local])
-        cells.append(cell)
-    return Rule(np.array(reference, float).T, np.array(cells), np.ones(points.shape[1]))
-
-
 def node_rule(mesh: Mesh, facets: NDArray[np.int64]) -> Rule:
     """Half a facet's length at each of its two ends."""
     ends = mesh.facets[:, facets]
@@ -204,13 +189,14 @@ def _carried(problem: Problem) -> float:
     return problem.base_length if problem.patch_width is None else 2 * problem.patch_width
 
 
-def foundation_rule(problem: Problem, mesh: Mesh, base: NDArray[np.int64], half: bool = False) -> Rule:
+def foundation_rule(problem: Problem, basis: Basis, base: NDArray[np.int64], half: bool = False) -> Rule:
     """Rule of the foundation on the base; of its first half only if `half`."""
+    mesh = basis.mesh
     a = problem.base_length
     order = problem.degree + 1
     if problem.foundation == "corner":
-        ends = problem.outline[:1] if half else problem.outline[:2]
-        return vertex_rule(mesh, base, ends.T)
+        ends = [point_rule(basis, end) for end in problem.outline[: 1 if half else 2]]
+        return Rule(*(np.concatenate(parts, axis=-1) for parts in zip(*ends, strict=True)))
     if problem.foundation == "nodes":
         return node_rule(mesh, base)
     w = problem.patch_width

@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from skfem import Mesh, MeshQuad, MeshTri
 
 from fem_reference.mesh.files import read_mesh
@@ -120,28 +120,62 @@ def _read(path: str) -> Mesh:
 
 
 def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
-    """Every boundary node on the polygon, every corner a node, base and top covered in full."""
+    """Raise unless edges of elements make up each edge of the polygon, all of them, and base and top have their own."""
     corners = problem.outline
-    mesh = tagged.mesh
     slack = 1e-9 * float(np.ptp(corners, axis=0).max())
-    nodes = mesh.p[:, mesh.boundary_nodes()].T
-    if max(_distance(corners, point) for point in nodes) > slack:
-        raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has a boundary node off the polygon")
-    if max(np.hypot(*(nodes - corner).T).min() for corner in corners) > slack:
-        raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has no node at a corner")
-    top = (problem.top - problem.base) % len(corners)
-    for name, facets, edge in (("base", tagged.base, 0), ("top", tagged.top, top)):
-        ends = corners[edge], corners[(edge + 1) % len(corners)]
-        points = mesh.p[:, mesh.facets[:, facets]]
-        length = np.hypot(*(points[:, 1] - points[:, 0])).sum()
-        off = max((_distance(np.array(ends), point) for point in points.reshape(2, -1).T), default=np.inf)
-        if off > slack or abs(length - np.hypot(*(ends[1] - ends[0]))) > slack:
+    tags = {0: ("base", tagged.base), (problem.top - problem.base) % len(corners): ("top", tagged.top)}
+    count = 0
+    for number, (start, end) in enumerate(zip(corners, np.roll(corners, -1, axis=0), strict=True)):
+        try:
+            facets = facets_between(tagged.mesh, start, end, slack)
+        except ValueError as error:
+            raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} differs: {error}") from None
+        count += len(facets)
+        name, own = tags.get(number, ("", facets))
+        if set(own.tolist()) != set(facets.tolist()):
             raise ValueError(f"mesh: tag {name!r} must cover edge {getattr(problem, name)} of the block exactly")
+    if count != len(tagged.mesh.boundary_facets()):
+        raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has a boundary off the polygon")
 
 
-def _distance(corners: Array, point: Array) -> float:
-    """Distance from a point to the closed polygon line through `corners` [m]."""
-    side = np.roll(corners, -1, axis=0) - corners
-    along = np.einsum("ij,ij->i", point - corners, side) / np.einsum("ij,ij->i", side, side)
-    foot = corners + np.clip(along, 0, 1)[:, None] * side
-    return float(np.hypot(*(point - foot).T).min())
+def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[NDArray[np.int64], Array]:
+    """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
+
+    Returns
+    -------
+    tuple
+        The facets, and the arc lengths of their ends from the start [m], lower first, shape (2, facets).
+
+    Raises
+    ------
+    ValueError
+        They do not cover it.
+    """
+    along = end - start
+    length = float(np.hypot(*along))
+    facets = mesh.boundary_facets()
+    ends = mesh.p[:, mesh.facets[:, facets]] - start[:, None, None]
+    offsets = abs(along[0] * ends[1] - along[1] * ends[0]) / length
+    places = np.sort((along[0] * ends[0] + along[1] * ends[1]) / length, axis=0)
+    on_line = np.all(offsets <= slack, axis=0)
+    on_piece = on_line & (places[1] > slack) & (places[0] < length - slack)
+    covered = float(np.sum(np.ptp(np.clip(places[:, on_piece], 0.0, length), axis=0)))
+    if abs(covered - length) > slack * len(facets):
+        raise ValueError(
+            f"edge: must be covered by edges of the outline, got {tuple(start.tolist())!r} to {tuple(end.tolist())!r}"
+        )
+    return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
+
+
+def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> NDArray[np.int64]:
+    """Return the boundary facets that make up a straight piece of the outline.
+
+    Raises
+    ------
+    ValueError
+        They do not cover it.
+    """
+    facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
+    if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
+        raise ValueError(f"edge: must begin and end at corners of elements, got {np.array([start, end]).tolist()}")
+    return facets

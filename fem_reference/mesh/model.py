@@ -96,7 +96,7 @@ def assemble(problem: Problem) -> Assembled:
 
 def _assemble_on(problem: Problem, tagged: TaggedMesh, half: bool = False, congruent: bool = False) -> Assembled:
     basis = elasticity.vector_basis(tagged.mesh, problem.degree)
-    rule = elasticity.foundation_rule(problem, tagged.mesh, tagged.base, half)
+    rule = elasticity.foundation_rule(problem, basis, tagged.base, half)
     springs, pressure = elasticity.springs(basis, problem, rule)
     u, v, rotation = elasticity.point_values(basis, problem.centroid)
     M = elasticity.mass(basis, problem.density, congruent)

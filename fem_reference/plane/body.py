@@ -13,7 +13,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 from skfem import Mesh, MeshQuad, MeshTri
 
@@ -156,46 +155,3 @@ def _ring(polygon: Array, corners: Array, slack: float) -> list[int]:
         on_side = np.flatnonzero((offsets <= slack) & (places >= -slack) & (places < length - slack))
         ring += [int(i) for i in on_side[np.argsort(places[on_side])]]
     return ring
-
-
-def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[NDArray[np.int64], Array]:
-    """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
-
-    Returns
-    -------
-    tuple
-        The facets, and the arc lengths of their ends from the start [m], lower first, shape (2, facets).
-
-    Raises
-    ------
-    ValueError
-        They do not cover it.
-    """
-    along = end - start
-    length = float(np.hypot(*along))
-    facets = mesh.boundary_facets()
-    ends = mesh.p[:, mesh.facets[:, facets]] - start[:, None, None]
-    offsets = abs(along[0] * ends[1] - along[1] * ends[0]) / length
-    places = np.sort((along[0] * ends[0] + along[1] * ends[1]) / length, axis=0)
-    on_line = np.all(offsets <= slack, axis=0)
-    on_piece = on_line & (places[1] > slack) & (places[0] < length - slack)
-    covered = float(np.sum(np.ptp(np.clip(places[:, on_piece], 0.0, length), axis=0)))
-    if abs(covered - length) > slack * len(facets):
-        raise ValueError(
-            f"edge: must be covered by edges of the outline, got {tuple(start.tolist())!r} to {tuple(end.tolist())!r}"
-        )
-    return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
-
-
-def facets_between(mesh: Mesh, start: Point, end: Point, slack: float) -> NDArray[np.int64]:
-    """Return the boundary facets that make up a straight piece of the outline.
-
-    Raises
-    ------
-    ValueError
-        They do not cover it.
-    """
-    facets, places = facets_along(mesh, np.array(start, float), np.array(end, float), slack)
-    if places.min() < -slack or places.max() > float(np.hypot(*np.subtract(end, start))) + slack:
-        raise ValueError(f"edge: must begin and end at corners of elements, got {start!r} to {end!r}")
-    return facets

@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, vstack
 
-from fem_reference.contact.system import ContactRows, opening_rows, slipping_rows, with_friction
+from fem_reference.contact.system import ContactRows, opening_rows, point_rows
 from fem_reference.mesh import elasticity
-from fem_reference.plane.body import Point, facets_along
+from fem_reference.mesh.mesh import facets_along
+from fem_reference.plane.body import Point
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
@@ -61,12 +62,8 @@ class PatchContact:
 
     def rows(self, share: Array) -> ContactRows:
         """Rows of its points with their shares: normal ones, and where it has springs of shear those of these."""
-        compliance = 1 / (self.stiffness * share)
-        normal = slipping_rows(compliance, np.full(len(share), math.inf)) if self.bonded else opening_rows(compliance)
-        if not self.shear_stiffness:
-            return normal
-        strength = np.full(len(share), math.inf) if self.friction is None else self.cohesion * share
-        return with_friction(normal, slipping_rows(1 / (self.shear_stiffness * share), strength), self.friction or 0.0)
+        cohesion = self.cohesion * share
+        return point_rows(self.stiffness * share, self.shear_stiffness * share, self.friction, cohesion, self.bonded)
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,8 @@ from scipy.sparse import csr_array
 from skfem import FacetBasis, LinearForm
 
 from fem_reference.mesh import elasticity
-from fem_reference.plane.body import PlaneBody, Point, Segment, Traction, facets_between, mesh_of
+from fem_reference.mesh.mesh import facets_between
+from fem_reference.plane.body import PlaneBody, Point, Segment, Traction, mesh_of
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 

@@ -16,24 +16,23 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import block_diag as dense_block_diag
 from scipy.linalg import null_space
-from scipy.sparse import block_array, block_diag, csr_array, diags_array
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse import block_array, block_diag, csr_array
+from scipy.sparse.linalg import splu
 
 from fem_reference.contact import compilation
 from fem_reference.contact.columns import ENERGY_COLUMNS, LOSS_COLUMNS, energies_of
-from fem_reference.contact.driver import OUTCOMES, Cut, make_steps
-from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.driver import OUTCOMES, Cut, histories
 from fem_reference.contact.law import AT_LOWER, INSIDE
 from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.stepper import ContactStepper
-from fem_reference.contact.system import ContactSystem
+from fem_reference.contact.system import ContactSystem, with_springs
 from fem_reference.plane.body import PlaneBody, Point
 from fem_reference.plane.contact import PatchContact, points_of
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.motion import Motion as BaseMotion
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.problem.result import Mode, Result
-from fem_reference.scheme.eigen import eigenvalues, largest_frequency
+from fem_reference.problem.result import Mode, Result, just_ended
+from fem_reference.scheme.eigen import as_modes, largest_frequency, lowest
 from fem_reference.scheme.newmark import Work
 from fem_reference.scheme.stage import Motion
 
@@ -59,7 +58,6 @@ class Rest:
 class BodiesResult(Result):
     """Histories of the steps that were reached; row 0 is step 1, and a contact has a column of its arrays."""
 
-    outcome: str  # "completed", or why the history ends early
     normal: Array  # force out of the second body on the first [N]
     shear: Array  # force on the first body clockwise of that [N]
     gap: Array  # mean distance over the patch, negative where the springs are shortened [m]
@@ -183,20 +181,9 @@ class PlaneModel:
         reach = float(np.max(first.extent[1] - first.extent[0]))
         shift = SHIFT * first.shear_modulus / first.density * (np.pi / reach) ** 2
         rigid = self._unheld(closed).shape[1]
-        inverse = Work().factor(csr_array(K + shift * self.M))
-        start = np.random.default_rng(0).standard_normal(len(self.F))
-        operator = LinearOperator(K.shape, matvec=inverse, dtype=float)
-        squares, shapes = eigsh(K, count + rigid, self.M, sigma=-shift, OPinv=operator, v0=start)
-        order = np.argsort(squares)[rigid:]
-        squares = squares[order]
-        shapes = shapes[:, order]
+        squares, shapes = lowest(K, self.M, count + rigid, shift)
         work = float(self.F @ self._rest_of(closed))
-        shares = (shapes.T @ self.F) ** 2 / (squares * work) if work else np.zeros(count)
-        frequencies = np.sqrt(squares)
-        return tuple(
-            Mode(float(w), float(share), eigenvalues(float(w), scheme))
-            for w, share in zip(frequencies, shares, strict=True)
-        )
+        return as_modes(squares[rigid:], shapes[:, rigid:], self.F, work, scheme)
 
     def history(
         self, scheme: Scheme, steps: int, rows: Array, *, settled: bool = False, limit: int = 6
@@ -216,33 +203,22 @@ class PlaneModel:
             Greatest number of solutions of the open-close iteration before its fallback.
         """
         began = time.perf_counter()
-        system = self._system(scheme, rows)
-        modal = system.C is None and len(self.F) <= compilation.MODES and steps >= compilation.LONG
-        compiled, note = compilation.march(modal, steps)
-        stepper = ContactStepper(
-            system.in_modes() if modal else system, scheme, limit, energies=True, losses=True, compiled=compiled
-        )
+        system, compiled, notes = compilation.prepared(self._system(scheme, rows), steps)
+        stepper = ContactStepper(system, scheme, limit, energies=True, losses=True, compiled=compiled)
         state = self._start(stepper, settled)
         ready = time.perf_counter()
         cut = None if scheme.staggered or system.C is not None else CUT
-        outcome = CONVERGED
-        pieces = [self._kept(stepper.record(0))]
-        for record, marched in make_steps(stepper, state, steps, cut):
-            pieces.append(self._kept(record))
-            outcome = marched.outcome
-        kept: dict[str, Any] = {name: np.concatenate([piece[name] for piece in pieces]) for name in pieces[0]}
+        kept, marched = histories(stepper, state, steps, cut, self._kept)
         observed = kept.pop("observed")
         rates = kept.pop("rates")
         energy = {name: kept.pop(name) for name in (*ENERGY_COLUMNS, *LOSS_COLUMNS)}
         return BodiesResult(
-            time=np.asarray(scheme.step * np.arange(1, len(observed) + 1), dtype=np.float64),
+            **just_ended(scheme.step, len(observed), began, ready),
             columns={str(i): values for i, values in enumerate(observed.T)},
             unknowns=len(self.F),
             **vars(stepper.work),
-            notes=(note,) if len(self.points.gap) else (),
-            setup_seconds=ready - began,
-            stepping_seconds=time.perf_counter() - ready,
-            outcome=OUTCOMES[outcome],
+            notes=notes if len(self.points.gap) else (),
+            outcome=OUTCOMES[marched.outcome],
             rates={str(i): values for i, values in enumerate(rates.T)},
             energy=energy,
             **kept,
@@ -314,12 +290,13 @@ class PlaneModel:
 
     def _stiffness(self, closed: NDArray[np.bool_]) -> csr_array:
         """K with the springs of the closed rows [N/m]."""
-        B = self.points.B[closed]
-        return csr_array(self.K + B.T @ diags_array(1 / self.points.rows.compliance[closed]) @ B)
+        return with_springs(self.K, self.points.B[closed], self.points.rows.compliance[closed])
 
     def _unheld(self, closed: NDArray[np.bool_]) -> Array:
         """Rigid motions that neither clamps nor closed springs hold, orthonormal, shape (unknowns, 0 or more)."""
         motions, _ = np.linalg.qr(self.motions)
+        if not motions.shape[1]:  # which LAPACK may refuse
+            return np.asarray(motions)
         springs = np.sqrt(1 / self.points.rows.compliance[closed])[:, None] * (self.points.B[closed] @ motions)
         return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from time import perf_counter
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,20 +15,38 @@ COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotat
 """Columns of a history: v at the centroid [m], mean base pressure [Pa], u and rotation at the centroid [m, 1]."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Result:
     """A history with its work counts; row 0 is step 1."""
 
     time: Array  # time of each row [s], shape (steps,)
     columns: dict[str, Array]  # one array of shape (steps,) for each asked column, in the units of `COLUMNS`
     unknowns: int  # number of unknowns that were integrated [-]
-    nonzeros: int  # stored entries of the matrix that was factorised [-]
-    factorisations: int  # number of factorisations [-]
-    solves: int  # number of solutions with a factorised matrix [-]
-    notes: tuple[str, ...]  # savings used and warnings, in words
+    nonzeros: int = 0  # stored entries of the matrix that was factorised [-]
+    factorisations: int = 0  # number of factorisations [-]
+    solves: int = 0  # number of solutions with a factorised matrix [-]
+    notes: tuple[str, ...] = ()  # savings used and warnings, in words
     setup_seconds: float  # time for assembly and factorisation [s]
     stepping_seconds: float  # time for the steps [s]
     estimate: float | None = None  # estimated error over the maximum value [-]; None where none is made
+    outcome: str | None = None  # of contacts: ``"completed"``, or why the history ends early
+
+
+def just_ended(step: float, rows: int, began: float, ready: float) -> dict[str, Any]:
+    """Return the instants and the times of a history that has just ended, as fields of its result.
+
+    Parameters
+    ----------
+    step, rows
+        Of the scheme [s], and number of steps that were reached.
+    began, ready
+        When its model was begun, and its first step [s].
+    """
+    return {
+        "time": np.asarray(step * np.arange(1, rows + 1), dtype=np.float64),
+        "setup_seconds": ready - began,
+        "stepping_seconds": perf_counter() - ready,
+    }
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.linalg import eigh
 
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
@@ -46,9 +45,7 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Mod
 
 def _frequencies(problem: Problem, model: Model) -> Array:
     """All frequencies of a small mesh, the lowest ones and the highest of a large one [rad/s]."""
-    if len(model.F) <= DENSE:
-        squares: Array = eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)
-    else:
-        squares = np.append(lowest(model, 6)[0], highest_frequency(problem, model=model) ** 2)
-    frequencies: Array = np.sqrt(np.abs(squares))
-    return frequencies
+    size = len(model.F)
+    squares = lowest(model.K, model.M, size if size <= DENSE else 6)[0]
+    highest = highest_frequency(problem, model=model)
+    return np.asarray(np.sqrt(np.abs(np.append(squares, highest**2))))

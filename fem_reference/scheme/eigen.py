@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array
-from scipy.sparse.linalg import eigsh
+from scipy.sparse.linalg import LinearOperator, eigsh
 
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
@@ -43,17 +43,19 @@ def modes(
     F = model.F if np.any(model.F) else _carried(problem, model)
     D = Work().factor(model.K)(F)
     while True:
-        squares, shapes = lowest(model, count)
-        shares = (shapes.T @ F) ** 2 / (squares * (F @ D))
+        found = as_modes(*lowest(model.K, model.M, count), F, float(F @ D), scheme)
+        shares = np.array([mode.share for mode in found])
         # The shares of all modes sum to one: no mode left out can exceed what is still missing.
-        if len(squares) < count or shares.max() > 1 - shares.sum():
-            break
+        if len(found) < count or shares.max() > 1 - shares.sum():
+            return tuple(found[i] for i in np.argsort(-shares, kind="stable"))
         count *= 2
-    order = np.argsort(-shares, kind="stable")
-    frequencies = np.sqrt(squares)
-    return tuple(
-        Mode(float(frequencies[i]), float(shares[i]), eigenvalues(float(frequencies[i]), scheme)) for i in order
-    )
+
+
+def as_modes(squares: Array, shapes: Array, F: Array, work: float, scheme: Scheme) -> tuple[Mode, ...]:
+    """Modes with their shares of the work that the load does at rest, none where it does none."""
+    shares = (shapes.T @ F) ** 2 / (squares * work) if work else np.zeros(len(squares))
+    pairs = zip(np.sqrt(squares).tolist(), shares.tolist(), strict=True)
+    return tuple(Mode(frequency, share, eigenvalues(frequency, scheme)) for frequency, share in pairs)
 
 
 def _carried(problem: Problem, model: Model) -> Array:
@@ -65,14 +67,19 @@ def _carried(problem: Problem, model: Model) -> Array:
     return inertia
 
 
-def lowest(model: Model, count: int) -> tuple[Array, Array]:
-    """Squares of the lowest frequencies [rad2/s2] and their shapes with phi' M phi = 1, one a column."""
-    size = len(model.F)
+def lowest(K: csr_array, M: csr_array, count: int, shift: float = 0.0) -> tuple[Array, Array]:
+    """Squares of the lowest frequencies [rad2/s2], rising, and their shapes with phi' M phi = 1, one a column.
+
+    K + shift M is definite.
+    """
+    size = K.shape[0]
     if size <= DENSE or count >= size - 1:
-        squares, shapes = eigh(model.K.toarray(), model.M.toarray())
+        squares, shapes = eigh(K.toarray(), M.toarray())
         return squares[:count], shapes[:, :count]
-    squares, shapes = eigsh(csc_array(model.K), count, csc_array(model.M), sigma=0.0, v0=_start_vector(size))
-    return squares, shapes
+    inverse = LinearOperator(K.shape, matvec=Work().factor(csr_array(K + shift * M)), dtype=float)
+    squares, shapes = eigsh(K, count, M, sigma=-shift, OPinv=inverse, v0=_start_vector(size))
+    order = np.argsort(squares)
+    return squares[order], shapes[:, order]
 
 
 def _start_vector(size: int) -> Array:

@@ -15,7 +15,7 @@ from conftest import refused, typed
 from oracles.answers import answered
 from oracles.processes import answer_here
 
-from validation.models.rigid import problems as boxes
+from validation.models.plane import problems as boxes
 from validation.problems import bands, packs
 from validation.problems.bands import standard
 from validation.problems.cause import Cause
@@ -252,15 +252,18 @@ def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, mon
     assert (answer["problem"], answer["verdict"]) == ("locked", "PASS")
 
 
-def test_rigid_boxes_are_judged_by_numbers(undrawn: None) -> None:
+def test_boxes_are_judged_by_numbers(undrawn: None) -> None:
     done = typed("judge", "dda", "impact")
     assert done.returncode == 1, done.stderr
-    assert re.search(r"speed of the rebound +FAIL", done.stdout) and re.search(r"time of contact +PASS", done.stdout)
+    for number in ("speed of the rebound", "peak force by the sinking"):
+        assert re.search(rf"{number} +FAIL", done.stdout)
     assert "cause" not in done.stdout
-    done = typed("judge", "rigid-exact", "standing", "--set", "rigid.friction=19")
+    done = typed("judge", "rigid-exact", "standing", "--set", "plane.contact.friction=19")
     assert done.returncode == 0, done.stderr
     assert re.search(r"distance slid +PASS", done.stdout)
-    assert "rigid.gravity: must be that of the problem" in refused("judge", "dda", "impact", "--set", "rigid.gravity=3")
+    assert "plane.gravity: must be that of the problem" in refused(
+        "judge", "dda", "impact", "--set", "plane.gravity=[0.0, -3.0]"
+    )
 
 
 @pytest.mark.long

@@ -61,7 +61,7 @@ REFUSED = {  # what is added to a scene of no tables [run], [[gate]]
     "core": "",  # the name of a study
     "figure-8": "",  # the name of a built-in scene
 }
-BOXES = "[rigid]\nbox = {}\n[time]\nstep = 0.01\nsteps = 20\n"
+BLOCKS = "[plane]\nyoung = inf\ndensity = 1e3\nblock = {}\n[time]\nstep = 0.01\nsteps = 20\n"
 BROKEN = """import numpy as np
 def raises(scene):
     raise ValueError("no step left")
@@ -111,8 +111,8 @@ def desk() -> Path:
     (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
     for name, more in REFUSED.items():
         (place / f"{name}.toml").write_text(SCENE.partition("[run]")[0] + more)
-    for name, boxes in {"number": "3", "numbers": "[3]", "no": "[]", "table": "{}", "word": '"one"'}.items():
-        (place / f"{name}-box.toml").write_text(BOXES.format(boxes))
+    for name, blocks in {"number": "3", "numbers": "[3]", "no": "[]", "table": "{}", "word": '"one"'}.items():
+        (place / f"{name}-block.toml").write_text(BLOCKS.format(blocks))
     for name in ("raises", "not_a_number", "exits", "short"):
         (place / f"{name}.toml").write_text((SCENE + ONE_GATE).replace("SOLVER", f'"broken:{name}"'))
     return place

@@ -92,6 +92,24 @@ def loop_of_another_numba(numbers, kept):
         kept[i] = third(numbers.size) + i
 
 
+class Weights(NamedTuple):
+    first: int
+    at: np.ndarray
+
+
+class Series(NamedTuple):
+    scale: float
+    weights: Weights
+    values: np.ndarray
+
+
+def loop_of_series(series, kept):
+    """A loop that moves a product of two arrays of any length from one to another."""
+    for i in range(series.weights.first, len(series.values)):
+        kept[i] = series.scale * series.weights.at[i][1] * series.values[i]
+        series.values[i] = 0.0
+
+
 @pytest.fixture
 def fresh(always, monkeypatch, tmp_path):
     """Forget what was compiled; keep code in a directory of this test."""
@@ -121,6 +139,17 @@ def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(f
         path.write_bytes(b"nothing that numba knows")
     monkeypatch.setattr(compiled, "loops", {})
     assert ran() == RAN
+
+
+def test_code_is_the_same_for_arrays_of_all_lengths_in_named_tuples(fresh):
+    for n in (3, 5):
+        at = np.arange(2.0 * n).reshape(n, 2)
+        values = np.full(n, 3.0)
+        kept = np.zeros(n)
+        how = compiled.run_loop(loop_of_series, (), (Series(2.0, Weights(1, at), values),), (kept,), 1)[2]
+        assert how == compiled.COMPILED
+        assert kept.tolist() == [0.0, *(6.0 * at[1:, 1])] and values.tolist() == [3.0] + (n - 1) * [0.0]
+    assert len(compiled.loops) == 1
 
 
 def test_steps_decide_what_is_compiled_what_is_read_and_what_is_made_each_time(monkeypatch):

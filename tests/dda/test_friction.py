@@ -10,7 +10,7 @@ from oracles.frictional import KNOWN, shaken, sliding, square
 from oracles.unilateral_checks import DT, apart
 
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
-from dda.bodies.turning_block import RollingModel, solve_rolling
+from dda.bodies.turning_block import RollingModel
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 AVERAGE = (0.25, 0.5, "consistent")
@@ -43,8 +43,8 @@ def test_sliding_is_the_free_recursion_to_rounding(p, scheme):
         model = UnilateralModel(square(0.2), replace(law, gap=gap), gravity=9.81, slope=35.0, motion=motion)
         turning = RollingModel(model.block, model.contact, model.load)
         place = 120 * np.finfo(float).eps  # of the centroid at 1 m, which a block that turns keeps in place of its way
-        for body, solve, rounding in ((model, solve_unilateral, 0.0), (turning, solve_rolling, place)):
-            own, must, parts = sliding(body, Scheme(alpha, delta, gg, dt, start), 120, solve)
+        for body, rounding in ((model, 0.0), (turning, place)):
+            own, must, parts = sliding(body, Scheme(alpha, delta, gg, dt, start), 120)
             assert len(own) > 12 and np.max(np.abs(own - must)) < 1e-12 * np.max(parts) + rounding
 
 

@@ -8,9 +8,18 @@ import numpy as np
 import pytest
 
 import dda.bodies.turning_step as step
-from dda import Block, Load, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, named_scheme
-from dda import solve_unilateral as solve_small
-from dda.bodies.turning_block import RollingModel, RollingOptions, solve_rolling
+from dda import (
+    Block,
+    Load,
+    Material,
+    Scheme,
+    Unilateral,
+    UnilateralModel,
+    UnilateralOptions,
+    named_scheme,
+    solve_unilateral,
+)
+from dda.bodies.turning_block import RollingModel
 from dda.bodies.turning_body import FIRST_ORDER
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", "strain_x", "strain_y")
@@ -32,7 +41,7 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
         return start._replace(p=scheme.step * (model.body.shapes.T @ model.body.M @ V))
 
     with patch.object(RollingModel, "start", vibrating):
-        result = solve_rolling(model, scheme, 300)
+        result = solve_unilateral(model, scheme, 300)
     states, M = result.motion, result.body.M
     assert states.r[-1] > 6 * math.pi
     assert np.max(np.abs(states.V @ M[:, :3] / (M[:3] @ V) - 1)) < 1e-12
@@ -47,7 +56,8 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
 def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     r = math.pi / steps
     model = RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), FAR, spin=r / 0.01)
-    result = solve_rolling(model, Scheme(*CONSTANT, 1.0, 0.01), steps, options=RollingOptions(FIRST_ORDER))
+    growing = UnilateralOptions(rotation=FIRST_ORDER)
+    result = solve_unilateral(model, Scheme(*CONSTANT, 1.0, 0.01), steps, options=growing)
     assert result.area[-1] == pytest.approx((1 + r * r) ** steps, rel=1e-11)
     first, last = result.energies["kinetic"][[0, -1]]
     assert last / first == pytest.approx((1 + r * r) ** (2 * (steps - 1)), rel=1e-11)  # moments go with its square
@@ -69,8 +79,8 @@ def test_small_motion_is_the_limit_of_small_loads(scheme):
     """On a base that leans; they differ by some forty times the rotation."""
     block = Block([[0, 0], [2, 1], [1.5, 2.2], [-0.5, 1.0]], MATERIAL)
     given = block, Unilateral(2e8, 1e8), Load(4e2, 0.3, 1.2e2, 9.81e-3)
-    small = solve_small(UnilateralModel(*given), scheme, 200, COLUMNS, UnilateralOptions(energies=True))
-    turning = solve_rolling(RollingModel(*given), scheme, 200, COLUMNS)
+    small = solve_unilateral(UnilateralModel(*given), scheme, 200, COLUMNS, UnilateralOptions(energies=True))
+    turning = solve_unilateral(RollingModel(*given), scheme, 200, COLUMNS)
     share = 40 * np.max(np.abs(small.columns["rotation"]))
     assert 0 < share < 1e-3
     for name in COLUMNS:
@@ -83,7 +93,7 @@ def test_a_dead_load_keeps_its_direction_and_its_point():
     """What it gives to a weightless block in flight is q L times the fall of its point."""
     block = Block.rectangle(1.0, 2.0, Material(2700.0, 1e12, 0.0))
     model = RollingModel(block, FAR, Load(1e4, 0.2, 2e3))
-    result = solve_rolling(model, Scheme(*AVERAGE, 1.0, 4e-3, "consistent"), 150)
+    result = solve_unilateral(model, Scheme(*AVERAGE, 1.0, 4e-3, "consistent"), 150)
     assert abs(result.angle[-1]) > 0.25
     e = result.energies
     assert np.max(np.abs(e["kinetic"] + e["load"])) < 1e-4 * np.max(e["kinetic"])
@@ -94,7 +104,7 @@ def test_a_dead_load_keeps_its_direction_and_its_point():
 
 def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
     scheme, rocking = Scheme(*CONSTANT, 1.0, 5e-3), replace(HEAVY, tilt=0.1)
-    sound = solve_rolling(rocking, scheme, 80)
+    sound = solve_unilateral(rocking, scheme, 80)
     with patch.object(step, "REACH", -100.0):
-        blind = solve_rolling(rocking, scheme, 80)
+        blind = solve_unilateral(rocking, scheme, 80)
     assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.states)) > 1

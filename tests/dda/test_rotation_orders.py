@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from oracles.rolling import RollingBlock
 
-from dda import Block, Load, Material, Scheme, Unilateral
-from dda.bodies.turning_block import RollingModel, solve_rolling
+from dda import Block, Load, Material, Scheme, Unilateral, solve_unilateral
+from dda.bodies.turning_block import RollingModel
 from dda.bodies.turning_body import Turn, turn, turned
 
 OUTLINE = [[0, 0], [1, 0], [1.1, 1.4], [0.1, 1.6]]
@@ -30,7 +30,7 @@ def truth():
 def test_a_block_on_a_corner_converges_at_the_order_of_the_scheme(truth, alpha, delta, order):
     errors = []
     for n in (150, 300):
-        last = solve_rolling(MODEL, Scheme(alpha, delta, 1.0, T / n, "consistent"), n).motion
+        last = solve_unilateral(MODEL, Scheme(alpha, delta, 1.0, T / n, "consistent"), n).motion
         errors.append(np.linalg.norm([*last.c[-1], last.r[-1] + TILT] - truth))
     assert abs(math.log2(errors[0] / errors[1]) - order) < 0.1  # the next order at these steps
 

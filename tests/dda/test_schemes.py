@@ -22,7 +22,6 @@ from dda import (
     named_scheme,
     response,
     solve,
-    solve_adaptive,
     solve_textbook,
     static,
     textbook_applicable,
@@ -90,7 +89,7 @@ def test_damping_of_newmark_alone_is_refused_beside_another_scheme():
     with pytest.raises(ValueError, match="mass_damping, stiffness_damping: go with newmark only"):
         replace(scheme, mass_damping=1.0)
     with pytest.raises(ValueError, match="self-adaptive damping goes with newmark only"):
-        solve_adaptive(square(), scheme, 5)
+        solve(square(), scheme, 5, floor=0.0)
     assert "hht" in str(textbook_applicable(square(), scheme))
     with pytest.raises(ValueError, match="printed recursion"):
         solve_textbook(square(), scheme, 5)

@@ -6,8 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.frictional import shaken
 from oracles.scheme_cases import every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
+from oracles.unilateral_checks import apart
 
 from dda import (
     COLUMNS,
@@ -21,7 +23,6 @@ from dda import (
     named_scheme,
     opening_subdivided,
     response,
-    solve_opening_system,
     solve_unilateral,
 )
 from dda.bodies.bonded_column import Drive, solve_column
@@ -152,14 +153,20 @@ def test_a_bonded_column_steps_to_its_response(name, values, impedance):
 
 
 @few_schemes
-def test_one_sub_block_is_the_block(name, values):
+def test_one_sub_block_on_a_base_that_shakes_is_the_block(name, values):
     scheme = scheme_of(name, values, 1e-4, 0.99)
     law = Unilateral(2e8, 1e8, friction=0.3)
-    model = UnilateralModel(block(0.25, 1.5), law, Load(1e5, 0.0, 5e4, 9.81), velocity=-0.01)
+    load = Load(1e5, 0.0, 5e4, 9.81, shaken(np.random.default_rng(0), 1e-4))
+    model = UnilateralModel(block(0.25, 1.5), law, load, velocity=-0.01)
     one = solve_unilateral(model, scheme, 150, COLUMNS, ENERGIES)
-    sub = solve_opening_system(opening_subdivided(model, 1, 1, 1e12), scheme, 150, COLUMNS, ENERGIES)
+    sub = solve_unilateral(opening_subdivided(model, 1, 1, 1e12), scheme, 150, COLUMNS, ENERGIES)
     for column in COLUMNS:
         assert np.max(np.abs(one.columns[column] - sub.columns[column])) < 1e-11 * np.max(np.abs(one.columns[column]))
+    assert np.array_equal(sub.states, one.states) and np.any(np.abs(one.states) == 2)
+    for field in ("normal", "shear", "gap", "slide", "slip"):
+        assert apart(getattr(sub, field), getattr(one, field)) < 1e-10, field
+    for mine, its in zip(sub.base_contacts, one.base_contacts, strict=True):
+        assert apart(sub.normal[mine], one.normal[its]) < 1e-10
     assert sub.solves == one.solves and sub.slip[-1] == pytest.approx(one.slip[-1], rel=1e-11) and one.slip[-1] > 0
     stays = one.closed[:, 1:] & one.closed[:, :-1]  # where the slips of all stages are what the reference moves by
     moved = np.diff(one.slide + one.shear / law.shear)

@@ -129,9 +129,8 @@ def test_a_base_that_gives_way_is_no_fault_of_the_integrator(tmp_path: Path) -> 
     answer = compare(s, read(write_measured_point(history, tmp_path / "m.m", program.dt)))
     assert answer.causes == ["contact-opened", "base-compliance", "geometry-updated"]
     assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": 0.99}
-    assert answer.ranking[0]["compliance"] == pytest.approx(0.01, abs=1e-3)
+    assert answer.values["base-compliance"] == pytest.approx(0.01, abs=1e-3)
     assert answer.opened == (1, 6) == tuple(history.opened or ())
-    assert {row["model"] for row in answer.ranking} == {"dda", "bar"}  # gg < 1: the damped continuum takes minutes
 
 
 def test_steps_are_written_as_runs() -> None:
@@ -163,14 +162,9 @@ def test_the_example_of_ntdda() -> None:
     ]
     assert example["scheme"] == {"alpha": 0.5, "delta": 1.0, "gg": 1.0}
     assert str(example["sentence"]).startswith("Same model, same scheme: constant acceleration")
-    ranking = example["ranking"]
-    assert (ranking[0]["model"], ranking[0]["name"]) == ("dda", "constant acceleration")
-    # seven digits over 200 rows leave some 1e-7; the numbers stand in the example's README
-    assert 1e-7 < ranking[0]["misfit"] < 5e-6
-    assert ranking[0]["compliance"] == pytest.approx(0.0015, abs=1e-4)
-    # the nearest rival scheme is a thousand times worse
-    assert ranking[1]["misfit"] > 1e3 * ranking[0]["misfit"]
-    assert {row["model"] for row in ranking} == {"dda", "bar", "continuum"}
+    # the number stands in the example's README
+    assert example["values"]["base-compliance"] == pytest.approx(0.0015, abs=1e-4)
+    assert example["model"] == ""
 
 
 def example_target() -> Target:
@@ -224,7 +218,7 @@ def test_a_history_of_finite_elements_is_named_so() -> None:
     s = scene(time__steps=80)
     run_ = solve(s.with_values({"fem.elements": 16}), "fem")
     answer = compare(s, Foreign(run_.time, run_.displacement, run_.contact_pressure))
-    assert answer.ranking[0]["model"] == "bar"
+    assert answer.model == "bar"
     assert answer.sentence.startswith("Same model as bar")
     assert answer.departure is None and answer.causes == []
 

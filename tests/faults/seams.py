@@ -30,6 +30,7 @@ from dda.bodies import turning_step as rolling_step
 from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
+from dda.plane import bodies as moving_bodies
 from dda.result import result as dda_result
 from dda.scheme import blocked, newmark
 from fem_reference.column import mesh as line_mesh
@@ -126,7 +127,13 @@ SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 GLUED_EDGES = Seam(glued, glued.shared_edges)
 GLUED_LOAD = Seam(glued, glued._traction_of)
 PLANE_MATERIAL = Seam(dda, dda.Material)
+PLANE_SPRINGS = Seam(dda, dda.ContactSprings)  # of moving blocks
+PLANE_BLOCK = Seam(dda, dda.PlaneBlock)
 FEM_PLANE_STIFFNESS = Seam(plane_elements.BodyElements, plane_elements.BodyElements.elastic)
+
+# Blocks that move in the plane
+PLANE = Seam(dda, dda.solve_plane)
+PLANE_PULL = Seam(moving_bodies, moving_bodies.pull_of)
 
 # Blocks that turn
 ROLLING_WEIGHT = Seam(rolling.RollingModel, rolling.RollingModel.weight)

@@ -200,8 +200,11 @@ def test_a_welded_foot_is_held_by_the_base_motion() -> None:
     assert resting.mean_velocity == pytest.approx(np.zeros(50), abs=1e-12) and not resting.columns["gap_1"].any()
 
 
-def test_a_column_at_rest_has_closed_its_gaps() -> None:
+@pytest.mark.parametrize("long", [10, 9], ids=["operators", "natural modes"])
+def test_a_column_at_rest_has_closed_its_gaps(long: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Its lower block by gap, weight over spring, and its own shortening."""
+    monkeypatch.setattr(compilation, "LONG", long)
+    monkeypatch.setattr(compilation, "march", lambda modal, steps: (None, ""))
     resting = replace(DROPPED, velocities=(0.0, 0.0), settled=True)
     found = solve_contacts(resting, [3, 3], 2, scheme(AVERAGE, 1e-4), still(9), ["displacement_1", "force_1"], [1.0])
     weight = 9.81 * 2500

@@ -7,6 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.contact_points import PointStep
 
+from fem_reference.contact.law import crossed
 from fem_reference.contact.stepper import SINGLY
 
 
@@ -67,6 +68,14 @@ def holding(step):
         if trial.settled and np.array_equal(step.asked(trial, states), states):
             kept.append(np.concatenate([trial.normal, trial.shear]))
     return kept
+
+
+@pytest.mark.parametrize(
+    ("force", "gap", "share"), [(2.0, 2e-3, 0.5), (2.0, 0.0, 1.0), (-1.0, 1e-3, 0.0), (0.0, 0.0, 1.0)]
+)
+def test_the_share_of_a_step_for_which_a_point_is_closed(force, gap, share):
+    """Of a straight way from the gap to the depth; one that neither moves nor presses counts as closed throughout."""
+    assert crossed(force, gap, 1e-3) == share
 
 
 def test_few_points_try_all_states():

@@ -181,6 +181,10 @@ def test_mesh_file_that_is_not_the_block_is_refused(tmp_path):
         build(make(tall, mesh=file))
     with pytest.raises(ValueError, match="mesh: tag 'top'"):
         build(make(top=1, mesh=file))
+    fine = MeshQuad.init_tensor(*[np.linspace(0.0, 2.0, 4)] * 2)
+    holed = fine.remove_elements(np.flatnonzero((abs(fine.p[:, fine.t].mean(axis=1) - 1) < 0.1).all(axis=0)))
+    with pytest.raises(ValueError, match="mesh: outline"):
+        build(make(mesh=write_mesh(tmp_path / "holed.msh", problem, holed)))
     short = meshio.read(file)
     short.cell_data["gmsh:physical"][0][0] = 3
     meshio.write(tmp_path / "short.msh", short, file_format="gmsh22", binary=False)

@@ -8,7 +8,7 @@ import pytest
 from conftest import thinned
 from scipy.integrate import solve_ivp
 
-from fem_reference.exact.sliding_block import Segment, SlidingBlock, harmonic, moved, recorded, solve
+from fem_reference.exact.sliding_block import Segment, SlidingBlock, moved, recorded, solve
 
 G = 9.81
 LEVEL = SlidingBlock(0.0, math.degrees(math.atan(0.1)))
@@ -58,12 +58,10 @@ def swept(block: SlidingBlock, segment: Segment, start: tuple[float, float], t: 
 def random_base(seed: int) -> tuple[Segment, ...]:
     rng = np.random.default_rng(seed)
     t = np.concatenate([[0], np.cumsum(rng.uniform(0.05, 0.3, 8))])
-    if seed % 3 == 0:
-        return harmonic(rng.uniform(3, 20), rng.uniform(3, 20), 1.5)
-    return recorded(t, rng.uniform(-8, 8, 9)) if seed % 3 == 1 else moved(t, np.cumsum(rng.normal(0, 0.03, 9)))
+    return recorded(t, rng.uniform(-8, 8, 9)) if seed % 2 else moved(t, np.cumsum(rng.normal(0, 0.03, 9)))
 
 
-@pytest.mark.parametrize("seed", thinned([0, 3, 1, 4, 2, 5], 2))
+@pytest.mark.parametrize("seed", thinned([1, 4, 2, 5], 2))
 def test_an_independent_integration_agrees(seed: int) -> None:
     base = random_base(seed)
     motion = solve(SLOPE, base, 2.0)
@@ -72,21 +70,14 @@ def test_an_independent_integration_agrees(seed: int) -> None:
         assert motion.at([end])[0] == pytest.approx(integrated(SLOPE, base, end), abs=1e-7)
 
 
-def test_the_mirrored_slope_and_one_way() -> None:
-    base = harmonic(14.0, 9.0, 2.0)
-    other = tuple(replace(one, amplitude=-one.amplitude) for one in base)
+def test_the_mirrored_slope() -> None:
+    base = random_base(1)
+    other = tuple(replace(part, a0=-part.a0, a1=-part.a1) for part in base)
     one, two = solve(SLOPE, base, 3.0), solve(replace(SLOPE, slope=-20.0), other, 3.0)
     assert one.at([1.0, 3.0])[0] == pytest.approx(-two.at([1.0, 3.0])[0], rel=1e-12)
-    down = solve(replace(SLOPE, two_way=False), base, 3.0)
-    assert 0 < down.slip == pytest.approx(down.at([3.0])[0][0])
-    thrown = moved([0, 0.1, 0.2], [0, -0.02, 0.02])  # down the slope first, then up, where it is held
-    ways = {
-        held: {way for _, way in solve(replace(SLOPE, two_way=not held), thrown, 1.0).switches}
-        for held in (False, True)
-    }
-    assert ways == {False: {1, -1, 0}, True: {1, 0}}
-    assert -1 in {way for _, way in one.switches}
-    assert -1 not in {way for _, way in down.switches}
+    assert one.slip > 0
+    thrown = moved([0, 0.1, 0.2], [0, -0.02, 0.02])  # down the slope first, then up
+    assert {way for _, way in solve(SLOPE, thrown, 1.0).switches} == {1, -1, 0}
 
 
 def test_bad_input_is_refused_by_name() -> None:
@@ -94,7 +85,6 @@ def test_bad_input_is_refused_by_name() -> None:
         with pytest.raises(ValueError, match=field):
             replace(SLOPE, **{field: value})
     for make in (
-        lambda: harmonic(1.0, 0.0, 1.0),
         lambda: recorded([0, 1], [1]),
         lambda: recorded([0.5, 1], [1, 1]),
         lambda: moved([0, 0], [1, 1]),

@@ -9,7 +9,7 @@ from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import points, stepper
-from fem_reference.contact.iteration import NONE
+from fem_reference.contact.iteration import NONE, OVERFLOW
 from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history import unilateral
 
@@ -148,3 +148,12 @@ def test_an_unstable_scheme_ends_with_its_overflow():
     run = solve_unilateral(make(elements=8), Scheme(0.0, 0.5, 1.0, 5e-3), 2000)
     assert run.outcome == "overflow" and 10 < len(run.time) < 2000
     assert all(np.all(np.isfinite(column)) for column in run.columns.values())
+
+
+def test_a_step_from_a_velocity_without_bound_solves_no_contact():
+    model = points.build(make(elements=2))
+    one = ContactStepper(model.system(), SCHEME)
+    start = unilateral.block_at_start(one, model, Unilateral())
+    with np.errstate(all="ignore"):
+        marched = one.march(start._replace(V=start.V + np.inf), one.record(1))
+    assert (marched.steps, marched.solves, marched.outcome) == (0, 0, OVERFLOW)

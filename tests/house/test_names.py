@@ -26,7 +26,7 @@ NAMED = {
     "advice/advice.py": {"dda", "fem", "continuum"},
     "diagnosis/judgement.py": {"dda", "fem", "bar", "continuum"},
     "diagnosis/other_solvers.py": {"fem", "continuum"},
-    "diagnosis/forces/runs.py": {"dda"},
+    "diagnosis/slopes.py": {"dda"},
 }
 
 

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.models.rigid import measures
-from validation.models.rigid.problems import box_problems
-from validation.models.rigid.tables import RigidSection
+from validation.models.plane import measures
+from validation.models.plane.boxes import boxes_of
+from validation.models.plane.problems import box_problems
 from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
@@ -17,12 +17,12 @@ from validation.scenes.scene import Scene
 
 def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag: float = 0.0) -> History:
     """Step one box that stays flat by symplectic Euler: velocities, impulses at the velocities, positions."""
-    rigid = scene.table(RigidSection)
-    box = rigid.box[0]
-    e = rigid.restitution if bounce is None else bounce
+    ground = boxes_of(scene)
+    box = ground.boxes[0]
+    e = ground.rebound if bounce is None else bounce
     step = scene.time.step / parts
-    along, across = rigid.pull
-    x, y, _ = rigid.starts[0]
+    along, across = ground.pull
+    x, y, _ = ground.starts[0]
     u, v = box.velocity
     rows = []
     for n in range(scene.time.steps * parts):
@@ -32,7 +32,7 @@ def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag:
         if y + v * step < box.reach and v < 0:
             impulse = -v
             v = -e * v if -v > 2 * abs(across) * step else 0.0
-        grip = rigid.friction_coefficient * impulse
+        grip = ground.friction_coefficient * impulse
         u -= max(-grip, min(grip, u))
         x += u * step
         y += v * step
@@ -40,7 +40,7 @@ def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag:
             rows.append((x, y))
     time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
     columns = np.array(rows).T
-    return History(time, {"x_1": columns[0], "y_1": columns[1], "angle_1": np.zeros(len(time))})
+    return History(time, {"box.x": columns[0], "box.y": columns[1], "box.angle": np.zeros(len(time))})
 
 
 def numbers(name: str, history: History, **values: Any) -> dict[str, tuple[float | None, str]]:
@@ -56,7 +56,7 @@ def scene_of(name: str, **values: Any) -> Scene:
 
 @pytest.mark.parametrize("friction", [19.0, 22.0])
 def test_a_box_on_a_slope_stands_or_slides(friction: float) -> None:
-    values = {"rigid.friction": friction, "time.steps": 50}
+    values = {"plane.contact.friction": friction, "time.steps": 50}
     history = flat_engine(scene_of("standing", **values), parts=20)
     assert {word for _, word in numbers("standing", history, **values).values()} == {"PASS"}
 
@@ -64,9 +64,9 @@ def test_a_box_on_a_slope_stands_or_slides(friction: float) -> None:
 def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails() -> None:
     history = flat_engine(scene_of("standing"))
     for speed, word in ((0.16, "PASS"), (0.17, "FAIL")):
-        creeping = History(history.time, history.columns | {"x_1": 1e-3 * speed * history.time})
+        creeping = History(history.time, history.columns | {"box.x": 1e-3 * speed * history.time})
         assert numbers("standing", creeping)["creep"] == (pytest.approx(speed, rel=1e-6), word)
-        sinking = History(history.time, history.columns | {"y_1": 0.5 - 1e-3 * speed * history.time})
+        sinking = History(history.time, history.columns | {"box.y": 0.5 - 1e-3 * speed * history.time})
         assert numbers("standing", sinking)["creep"][1] == word
 
 
@@ -83,14 +83,14 @@ def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts: int, step_shar
     """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
     scene = scene_of("bouncing", **{"time.steps": 25})
     history = flat_engine(scene, parts)
-    rigid = scene.table(RigidSection)
-    flying = measures.in_flight(history, rigid)
+    ground = boxes_of(scene)
+    flying = measures.in_flight(history, ground)
     assert flying[2:-2].all() and not flying[:2].any()
-    energy = measures.energies(history, rigid)[flying]
+    energy = measures.energies(history, ground)[flying]
     assert np.ptp(energy) < 1e-9 * energy[0]
     dt = scene.time.step * step_share
-    excess = (energy[0] - measures.first_energy(rigid)) / rigid.gravity
-    assert excess == pytest.approx(rigid.gravity * dt**2 / 8, rel=1e-6)
+    excess = (energy[0] - measures.first_energy(ground)) / ground.gravity
+    assert excess == pytest.approx(ground.gravity * dt**2 / 8, rel=1e-6)
 
 
 def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
@@ -98,13 +98,12 @@ def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
     from validation.solvers.registry import solve
 
     for lift in np.linspace(0.9, 1.1, 23):
-        box = {"width": 1.0, "height": 0.5, "density": 2500.0, "lift": float(lift)}
-        scene = scene_of("bouncing", **{"rigid.box": [box], "time.steps": 200})
+        scene = scene_of("bouncing", **{"plane.block.1.at": [0.0, 0.25 + float(lift)], "time.steps": 200})
         history = solve(scene, "rigid-exact").history
         assert history is not None
-        rigid = scene.table(RigidSection)
-        energy = measures.energies(history, rigid)[measures.in_flight(history, rigid)]
-        np.testing.assert_allclose(energy, measures.first_energy(rigid), rtol=1e-9)
+        ground = boxes_of(scene)
+        energy = measures.energies(history, ground)[measures.in_flight(history, ground)]
+        np.testing.assert_allclose(energy, measures.first_energy(ground), rtol=1e-9)
 
 
 @pytest.mark.parametrize(("bounce", "gain", "word"), [(1.0, 0.0, "PASS"), (1.02, 0.0404, "FAIL")])
@@ -130,7 +129,7 @@ def test_a_loss_of_energy_is_seen_and_is_no_gain() -> None:
 def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing() -> None:
     values = {"time.steps": 100}
     history = flat_engine(scene_of("bouncing", **values), parts=16, drag=0.04)
-    assert np.sum(measures.in_flight(history, scene_of("bouncing").table(RigidSection))) > 80
+    assert np.sum(measures.in_flight(history, boxes_of(scene_of("bouncing")))) > 80
     found = numbers("bouncing", history, **values)
     assert found["energy in the end over that at the start"][1] == "FAIL"
     assert found["largest gain of energy"] == (0.0, "PASS")
@@ -138,7 +137,7 @@ def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing() -> N
 
 def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
     history = flat_engine(scene_of("impact"))
-    standing = History(history.time, history.columns | {"y_1": np.full(len(history.time), 0.6)})
+    standing = History(history.time, history.columns | {"box.y": np.full(len(history.time), 0.6)})
     found = numbers("impact", standing)
     assert found["time of contact"] == (None, "FAIL")
     assert found["peak force as reported"] == (None, "not reported")

@@ -88,7 +88,7 @@ CASES = {name: case_of(name) for name in UNTIL}
 def course(drive: drives.Drive, times: np.ndarray) -> np.ndarray:
     """Return a drive and its first two derivatives at times, shape (3, times)."""
     pieces = drive()
-    series = [pieces.piece_at(t)[0].series(arb(t), 1.0, 3) for t in times.tolist()]
+    series = [pieces.piece_at(t).series(arb(t), 1.0, 3) for t in times.tolist()]
     return np.array([[float(c) for c in row] for row in series]).T * [[1], [1], [2]]
 
 

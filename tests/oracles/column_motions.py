@@ -177,7 +177,7 @@ COLUMNS = {
             (ColumnJoint(1e8),) * 3,
             gravity=9.81,
             at_rest=True,
-            base_motion=drives.sine(-AMPLITUDE * SHAKING, 2.0, integral=True, quarters=1),
+            base_motion=drives.integrated(drives.sine(-AMPLITUDE * SHAKING, 2.0, quarters=1)),
         ),
         1.0,
         "2O 0.2884185916487, 1O 0.2894973943897, 0O 0.2919232407186, 0C 0.5926076180049, 1C 0.6041640489858, "
@@ -228,7 +228,7 @@ COLUMNS = {
             law="frictional",
             base="transmitting",
             impedance=2200 * 600.0,
-            base_motion=drives.half_sine(0.6, 0.05, integral=True),
+            base_motion=drives.integrated(drives.half_sine(0.6, 0.05)),
         ),
         0.4,
         "1- 0.01008000877453, 2- 0.0158570463041, 5- 0.01748918365745, 5K 0.0178435100858, 3- 0.02112535842778, "
@@ -270,7 +270,7 @@ COLUMNS = {
             law="frictional",
             base="transmitting",
             impedance=2000 * math.sqrt(1e5),
-            base_motion=drives.half_sine(0.5, 0.05, integral=True),
+            base_motion=drives.integrated(drives.half_sine(0.5, 0.05)),
         ),
         0.4,
         "3- 0.02400486368064, 3K 0.0595538645585, 3+ 0.06994991042837, 3K 0.07638813009495, 3+ 0.08563241378001, "
@@ -286,7 +286,7 @@ COLUMNS = {
             blocks(4, 2500, RIGID, LATER_SPEED),
             tuple(ColumnJoint(5e8, strength=s) for s in (3e4, 2e4, 1.2e4, 5e3)),
             law="frictional",
-            base_motion=drives.sine(LATER_SPEED, 5.0, integral=True, quarters=1),
+            base_motion=drives.integrated(drives.sine(LATER_SPEED, 5.0, quarters=1)),
         ),
         0.5,
         "3+ 0.01811786308784, 2+ 0.01998144845654, 1+ 0.02118283035453, 0+ 0.02299005784232, 0K 0.02538930044859, "

@@ -33,7 +33,7 @@ def value_of(drive: drives.Drive) -> Callable[[float, int], float]:
     course = drive()
 
     def value(t: float, order: int) -> float:
-        piece, _ = course.piece_at(t)
+        piece = course.piece_at(t)
         return float(piece.series(arb(t), 1.0, 3)[order]) * math.factorial(order)
 
     return value
@@ -183,9 +183,9 @@ def random_column(seed: int) -> tuple[ColumnProblem, float]:
             strength = float(10 ** random.uniform(4, 5.3)) if law == "frictional" else None
             joint = ColumnJoint(k, gap, strength)
         joints.append(joint)
-    motion = drives.still if base == "free" else drives.sine(0.3, 20.0, integral=True, quarters=int(seed % 3 == 0))
+    motion = drives.still if base == "free" else drives.integrated(drives.sine(0.3, 20.0, quarters=int(seed % 3 == 0)))
     if base == "transmitting":
-        motion = drives.ricker(0.5, 60.0, integral=True)
+        motion = drives.integrated(drives.ricker(0.5, 60.0))
     pressure = drives.half_sine(float(random.uniform(0, 1e6)), 0.006)
     problem = ColumnProblem(
         tuple(blocks),

@@ -7,7 +7,6 @@ laws, rules of contact and schemes. Another body is a kind and its cases.
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -15,10 +14,7 @@ from oracles.frictional import rubbing_model, shaken
 from oracles.rolling import random_rolling
 from oracles.unilateral_checks import DT, random_model
 
-import dda.bodies.turning_block as rotation
-import dda.bodies.unilateral as one_block
-from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme
-from dda.bodies.turning_block import RollingOptions
+from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme, opening_subdivided, solve_unilateral
 from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
@@ -74,11 +70,12 @@ def mirrored_load(model):
 class OneBlock:
     """A block whose corners M and N open: its base lies along x."""
 
-    owner: ModuleType = one_block
+    share = 1.0  # of the law of a corner in that of a contact
+    rounding = 1.0  # over that of one block
 
     @staticmethod
     def solve(model, scheme, steps, options):
-        return one_block.solve_unilateral(model, scheme, steps, options=UnilateralOptions(energies=True, **options))
+        return solve_unilateral(model, scheme, steps, options=UnilateralOptions(energies=True, **options))
 
     @staticmethod
     def velocities(model, result):
@@ -124,14 +121,31 @@ class OneBlock:
         return form.B[:c] @ shapes @ result.history.motion[:, n : 2 * n].T / scheme.step
 
 
-class TurningBlock:
-    """A block that turns by any angle; its contacts are all corners, its axes those of the base."""
+class SubBlocks(OneBlock):
+    """The block cut into six by glue that is 10,000 times as stiff as it; its contacts are the points of the base."""
 
-    owner: ModuleType = rotation
+    share = 1 / 3
+    rounding = 10.0  # of the forces of seven joints beside those of the contacts
 
     @staticmethod
     def solve(model, scheme, steps, options):
-        return rotation.solve_rolling(model, scheme, steps, options=RollingOptions(**options))
+        cut = opening_subdivided(model, 3, 2, 1e4 * model.block.material.young)
+        return OneBlock.solve(cut, scheme, steps, options)
+
+    @staticmethod
+    def mirrored(model):
+        return OneBlock.mirrored(model)[0], [*reversed(range(6))]
+
+
+class TurningBlock:
+    """A block that turns by any angle; its contacts are all corners, its axes those of the base."""
+
+    share = 1.0
+    rounding = 1.0
+
+    @staticmethod
+    def solve(model, scheme, steps, options):
+        return solve_unilateral(model, scheme, steps, options=UnilateralOptions(**options))
 
     @staticmethod
     def velocities(model, result):
@@ -263,6 +277,8 @@ CASES: dict[str, Callable[[int], Case]] = {
     "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
     "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
     "shaken by two stages": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), of_scheme("composite")),
+    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 100),
+    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 60),
     "turning": turning_case,
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
@@ -275,8 +291,8 @@ CASES: dict[str, Callable[[int], Case]] = {
 # ---- other steps -----------------------------------------------------------------------------------------------------
 
 
-def put_stage(patch, owner, change):
-    """Let the histories of a module be made of other stages: `change` of the one that it would take."""
+def put_stage(patch, change):
+    """Let histories be made of other stages: `change` of the one that it would take."""
 
     def run(loop, *given):
         held = dict(zip(loop.__code__.co_freevars, (cell.cell_contents for cell in loop.__closure__), strict=True))

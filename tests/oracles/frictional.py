@@ -72,10 +72,10 @@ def free_fall(scheme, steps, acceleration):
     return np.array(found)
 
 
-def sliding(model, scheme, steps, solve=solve_unilateral):
+def sliding(model, scheme, steps):
     """Return u + tan(phi) v of a block as long as it slips towards +x, what it must be, and how large its parts are."""
     both = "horizontal_displacement", "displacement"
-    result = solve(model, scheme, steps, both)
+    result = solve_unilateral(model, scheme, steps, both)
     assert result.outcome == "completed"
     slips = np.append(np.all((result.states == 2) | (result.states == 0), axis=0), False)
     n = int(slips.argmin())

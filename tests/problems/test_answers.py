@@ -13,7 +13,7 @@ import pytest
 from oracles.answers import QUICK, STATED, answered, stated
 
 from validation.errors import InputError
-from validation.models.rigid.tables import POSE
+from validation.models.plane.boxes import boxes_of
 from validation.problems import packs
 from validation.problems.answers import FILE, AnswerSet, folder_name, keep, read_sets, read_tables
 from validation.problems.bands import standard
@@ -316,7 +316,7 @@ def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"pack": "99.0"}, f"pack: must be one of {PACK}, this pack and earlier ones"),
+        ({"pack": "99.0"}, f"pack: must be one of 4.0, {PACK}, this pack and earlier ones"),
         ({"pack": ...}, "pack: is required, got nothing"),
         ({"format": "other"}, "format: must be 'dda-validation answers 1', got 'other'"),
         ({"version": 3}, "version: must be a valid string, got 3"),
@@ -357,15 +357,15 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path: Path) -> 
     assert caught.value.field == "asked"
 
 
-# ---- rigid boxes ----------------------------------------------------------------------------------------------------
+# ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
-def boxes_answered(place: Path, name: str, **changed: float) -> None:
-    """Answer a problem of rigid boxes with boxes that stay where they are, columns times factors."""
+def boxes_answered(place: Path, name: str, changed: dict[str, float] | None = None) -> None:
+    """Answer a problem of boxes with boxes that stay where they are, columns times factors."""
     asked = problem(name)
-    starts = asked.scene.rigid.starts
-    poses = {f"{part}_{n}": x for n, start in enumerate(starts, start=1) for part, x in zip(POSE, start, strict=True)}
-    columns = {c: np.full(len(asked.instants), changed.get(c, 1.0) * poses[c]) for c in asked.columns}
+    boxes = boxes_of(asked.scene).boxes
+    poses = {f"{box.name}.{part}": getattr(box, part) for box in boxes for part in ("x", "y", "angle")}
+    columns = {c: np.full(len(asked.instants), (changed or {}).get(c, 1.0) * poses[c]) for c in asked.columns}
     (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
@@ -382,6 +382,9 @@ def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
 
 
 def test_heights_in_millimetres_are_named(tmp_path: Path) -> None:
-    boxes_answered(answered(tmp_path, names=()), "pile", y_3=1e3)
+    boxes_answered(answered(tmp_path, names=()), "pile", {"box_3.y": 1e3})
     (line,) = defects_of(tmp_path)
-    assert "pile.csv:1:" in line and "y_3_m: wrong units: it begins with 1000 times what is expected in SI, mm?" in line
+    assert (
+        "pile.csv:1:" in line
+        and "box_3.y_m: wrong units: it begins with 1000 times what is expected in SI, mm?" in line
+    )

@@ -7,7 +7,7 @@ import pytest
 
 from validation.errors import InputError
 from validation.gates.gate import Status
-from validation.models.rigid import problems as boxes
+from validation.models.plane import problems as boxes
 from validation.problems.bands import LARGEST, band, changes, standard
 from validation.problems.judge import judge
 from validation.problems.problem import Problem, problem, problem_of
@@ -250,11 +250,11 @@ def test_data_that_a_scene_has() -> None:
     assert harder["contact.shear_stiffness"] == pytest.approx(1.01 * own.shear_stiffness)
 
 
-# ---- rigid boxes ----------------------------------------------------------------------------------------------------
+# ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", boxes.ASKS)
-def test_rigid_boxes_are_judged_by_their_numbers(name: str) -> None:
+def test_boxes_are_judged_by_their_numbers(name: str) -> None:
     one = problem(name)
     reference = standard(one)
     assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
@@ -267,7 +267,7 @@ def test_rigid_boxes_are_judged_by_their_numbers(name: str) -> None:
 def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
     one = problem("standing")
     exact = standard(one).exact
-    creeping = History(exact.time, dict(exact.columns) | {"x_1": exact.time * 0.03 / 60})
+    creeping = History(exact.time, dict(exact.columns) | {"box.x": exact.time * 0.03 / 60})
     judgement = judge(one, creeping)
     assert judgement.status is Status.FAIL
     assert judgement.deciding is not None
@@ -279,7 +279,7 @@ def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
 def test_a_number_of_a_withheld_column_is_not_reported() -> None:
     one = problem("tumbling")
     exact = standard(one).exact
-    fewer = History(exact.time, {name: exact.columns[name] for name in ("x_1", "y_1")})
+    fewer = History(exact.time, {name: exact.columns[name] for name in ("box.x", "box.y")})
     judgement = judge(one, fewer)
     assert judgement.status is Status.PARTIAL
     assert "energy in the end over that at the start" in judgement.withheld
@@ -289,9 +289,9 @@ def test_a_number_of_a_withheld_column_is_not_reported() -> None:
 @pytest.mark.parametrize(
     ("name", "values", "field"),
     [
-        ("restitution", {"rigid.gravity": 9.81}, "rigid.gravity"),
+        ("restitution", {"plane.gravity": [0.0, -9.81]}, "plane.gravity"),
         ("bouncing", {"time.steps": 100}, "time"),
-        ("standing", {"rigid.restitution": 0.5}, "rigid.restitution"),
+        ("standing", {"plane.contact.restitution": 0.5}, "plane.contact.restitution"),
     ],
 )
 def test_boxes_whose_numbers_would_mean_something_else_are_refused(
@@ -303,7 +303,7 @@ def test_boxes_whose_numbers_would_mean_something_else_are_refused(
 
 
 def test_the_question_of_boxes_may_be_asked_with_another_friction() -> None:
-    steeper = problem_of(load_scene("rigid-standing").with_values({"rigid.friction": 19.0}))
+    steeper = problem_of(load_scene("rigid-standing").with_values({"plane.contact.friction": 19.0}))
     judgement = judge(steeper, standard(steeper).exact)
     assert [one.name for one in judgement.criteria] == ["distance slid"]
     assert judgement.status is Status.PASS

@@ -159,10 +159,10 @@ def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path,
 @pytest.mark.parametrize("name", BOXES)
 def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(name: str, written: Path) -> None:
     data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
-    assert data.exact is None and list(data.scene) == ["rigid"]
+    assert data.exact is None and list(data.scene) == ["plane"]
     assert [one.name for one in data.numbers] == [one.name for one in problem(name).numbers if not one.optional]
     assert all(number.low <= number.exact <= number.high for number in data.numbers)
-    assert len(data.answer) == 3 * len(data.scene["rigid"]["boxes"])
+    assert len(data.answer) == 3 * sum(not block["fixed"] for block in data.scene["plane"]["blocks"])
     header, first, *_ = (written / "answers" / f"{name}.csv").read_text().splitlines()
     assert header.split(",") == [pack.TIME, *(column.name for column in data.answer)]
     assert float(first.split(",")[0]) == pytest.approx(data.sampling.step_s)

@@ -9,13 +9,14 @@ from typing import Any
 import pytest
 
 from validation.errors import InputError
+from validation.models.plane.boxes import boxes_of
 from validation.problems.problem import ASKS, PREFIX, problem
 from validation.scenes.plain import scene_data, words
 from validation.scenes.scene import Scene, load_scene, parse_scene
 
-SI = r"_(m|kg_per_m3|Pa|m_per_s2?|deg|rad|rad_per_s|N_per_m|Pa_per_m|Hz|s)$"
+SI = r"_(m|kg|kg_m2|N|kg_per_m3|Pa|m_per_s2?|deg|rad|rad_per_s|N_per_m|Pa_per_m|Hz|s)$"
 WORDS = {"poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "contacts", "settled", "at", "shape"}
-WORDS |= {"geometry", "restitution", "boxes"}
+WORDS |= {"geometry", "restitution", "blocks", "contact", "fixed", "name"}
 
 
 def plain(value: Any) -> Any:
@@ -90,12 +91,22 @@ def test_nothing_of_a_scene_is_lost(name: str, values: dict[str, Any]) -> None:
         assert scene_data(scene) != scene_data(load_scene(name))
 
 
-def test_boxes_stand_where_they_are_at_the_start() -> None:
-    data = scene_data(problem("tumbling").scene)["rigid"]
-    (box,) = data["boxes"]
-    rigid = problem("tumbling").scene.rigid
-    assert (box["x_m"], box["y_m"], box["angle_rad"]) == rigid.starts[0]
-    assert (data["gravity_m_per_s2"], data["friction_deg"]) == (rigid.gravity, rigid.friction)
+def test_blocks_are_stated_by_what_any_program_needs_to_place_them() -> None:
+    scene = problem("tumbling").scene
+    data = scene_data(scene)["plane"]
+    ground, block = data["blocks"]
+    (box,) = boxes_of(scene).boxes
+    assert block["centroid_m"] == pytest.approx([box.x, box.y], abs=1e-12) and block["angle_rad"] == box.angle
+    assert (block["mass_kg"], block["inertia_kg_m2"]) == pytest.approx((box.mass, box.inertia))
+    assert min(y for _, y in block["vertices_m"]) == pytest.approx(1.0)
+    assert ground["fixed"] and max(y for _, y in ground["vertices_m"]) == 0.0
+    assert (data["gravity_m_per_s2"], data["contact"]["friction_deg"]) == ([0.0, -9.81], 0.0)
+    assert (data["contact"]["stiffness_N_per_m"], data["contact"]["restitution"]) == ("inf", 1.0)
+
+
+def test_a_block_that_is_driven_brings_its_record() -> None:
+    ground, _ = scene_data(problem("shaken").scene)["plane"]["blocks"]
+    assert (ground["motion"]["time_s"][135], ground["motion"]["x_m"][135]) == pytest.approx((0.25, 0.1))
 
 
 def test_what_is_infinite_stands_in_json_as_inf() -> None:
@@ -126,4 +137,5 @@ def test_columns_name_their_units() -> None:
     assert [problem("joint").named(column) for column in problem("joint").columns] == [
         *("velocity_1_m_per_s", "velocity_2_m_per_s", "force_3_Pa", "slip_3_m"),
     ]
-    assert problem("impact").named("force_1") == "force_1_N" and problem("impact").named("creep") == "creep"
+    impact = problem("impact")
+    assert (impact.named("box-ground.normal"), impact.named("creep")) == ("box-ground.normal_N", "creep")

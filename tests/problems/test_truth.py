@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.rigid import problems as boxes
+from validation.models.plane import problems as boxes
 from validation.problems.bands import standard
 from validation.problems.problem import ASKS, PREFIX, problem, problem_of
 from validation.problems.truth import exact, truth_of

@@ -5,8 +5,8 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
 from peers.dart import FINE_STEP, OWN_STEP, Dart, World
-from programs.rigid_scenes import rigid_scene
 
 # To look for it costs nothing; to import it takes seconds in every process that collects these tests.
 installed = pytest.mark.skipif(not find_spec("dartpy"), reason="NOT RUN: DART is not installed")
@@ -23,13 +23,13 @@ def test_its_default_step_and_sleeping_are_those_of_a_new_world():
 @installed
 def test_a_box_below_the_bouncing_speed_of_dart_does_not_bounce():
     """DART leaves restitution away below 0.1 m/s, which nothing sets from Python."""
-    scene = rigid_scene({"velocity": (0.0, -0.05)}, restitution=1.0)
-    assert np.max(Dart().solve(scene)["y_1"]) < 0.5 + 1e-4
+    scene = box_scene({"velocity": (0.0, -0.05)}, restitution=1.0)
+    assert np.max(Dart().solve(scene)["box_1.y"]) < 0.5 + 1e-4
 
 
 @installed
 def test_nothing_leaves_the_plane_though_nothing_holds_it_there():
-    world = World(rigid_scene({}, {}, {"lift": 0.1}, friction=30.0), sleeps=False)
+    world = World(box_scene({}, {}, {"lift": 0.1}, friction=30.0), sleeps=False)
     for number in range(1000):
         world.advance(number * FINE_STEP, FINE_STEP)
     for body in world.bodies:

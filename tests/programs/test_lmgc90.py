@@ -5,8 +5,8 @@ import math
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
 from peers.lmgc90 import LMGC90, AsItComes
-from programs.rigid_scenes import rigid_scene
 
 absent = importlib.util.find_spec("compas_lmgc90") is None
 installed = pytest.mark.skipif(absent, reason="NOT RUN: LMGC90 is not installed")
@@ -33,15 +33,17 @@ def test_a_box_flies_and_spins_as_the_midpoint_rule_does(solver, gravity, width,
     """The step x + h (v + v') / 2 is exact of a constant force; a rotation by h w is 2 atan(h w / 2) in a step."""
     monkeypatch.chdir(tmp_path)
     box = {"velocity": (3.0, 20.0), "spin": 2.0, "width": width, "height": height}
-    scene = rigid_scene(box, slope=20.0, gravity=gravity)
+    scene = box_scene(box, slope=20.0, gravity=gravity)
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
     columns = solver.solve(scene)
-    np.testing.assert_allclose(columns["x_1"], 3 * t + gravity * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
-    np.testing.assert_allclose(columns["y_1"], height / 2 + 20 * t - gravity * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(columns["box_1.x"], 3 * t + gravity * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(
+        columns["box_1.y"], height / 2 + 20 * t - gravity * math.cos(SLOPE) * t**2 / 2, atol=1e-9
+    )
     h = solver.own_step
     rotation = t / h * 2 * math.atan(h * 2.0 / 2)
     # The step before the first turns it by half as much, from the rate 0.
-    np.testing.assert_allclose(columns["angle_1"], rotation, atol=(2.0 * h) ** 3)
+    np.testing.assert_allclose(columns["box_1.angle"], rotation, atol=(2.0 * h) ** 3)
     assert not list(tmp_path.iterdir())
 
 
@@ -56,8 +58,8 @@ def test_a_box_comes_back_at_e_times_the_speed_it_came_with(restitution, density
     monkeypatch.setattr("peers.lmgc90.refuse", lambda rigid: None)  # landings are refused for what can follow them
     h = LMGC90.own_step
     box = {"velocity": (0.0, -2.0), "lift": 2.0 * h / 2 * (1 - 1e-6), "density": density}
-    scene = rigid_scene(box, gravity=0.0, restitution=restitution, step=h, steps=3)
-    rebound = np.diff(LMGC90().solve(scene)["y_1"]) / h
+    scene = box_scene(box, gravity=0.0, restitution=restitution, step=h, steps=3)
+    rebound = np.diff(LMGC90().solve(scene)["box_1.y"]) / h
     np.testing.assert_allclose(rebound, 2.0 * restitution, rtol=2 * TOLERANCE)
 
 
@@ -67,26 +69,28 @@ def test_a_box_turns_about_its_corner_as_a_rigid_body_does(solver):
     """Less than a tenth of a second from upright, where theta'' = -m g w / 2 / I but for theta, here up to 0.05."""
     width, height, spin = 1.0, 3.0, 0.7
     box = {"width": width, "height": height, "spin": spin, "velocity": (-spin * height / 2, spin * width / 2)}
-    scene = rigid_scene(box, friction=40.0, steps=9)
+    scene = box_scene(box, friction=40.0, steps=9)
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
     back = 9.81 * width / 2 / ((width**2 + height**2) / 3)
     expected = spin * t - back * t**2 / 2
-    np.testing.assert_allclose(solver.solve(scene)["angle_1"], expected, rtol=0.02, atol=solver.own_step * spin * 0.2)
+    np.testing.assert_allclose(
+        solver.solve(scene)["box_1.angle"], expected, rtol=0.02, atol=solver.own_step * spin * 0.2
+    )
 
 
 @installed
 def test_a_stiffness_of_the_scene_bears_the_weight():
     """It vibrates about the static sinking m g / k, five times in the last second."""
-    columns = LMGC90().solve(rigid_scene(stiffness=1e6, steps=300))
-    assert 0.5 - columns["y_1"][-100:].mean() == pytest.approx(9.81e-3, rel=2e-2)
+    columns = LMGC90().solve(box_scene(stiffness=1e6, steps=300))
+    assert 0.5 - columns["box_1.y"][-100:].mean() == pytest.approx(9.81e-3, rel=2e-2)
 
 
 @installed
 @pytest.mark.parametrize(
     ("scene", "message"),
     [
-        (rigid_scene(slope=20.0, friction=15.0, steps=300), "slides by more than"),
-        (rigid_scene({"spin": -4.0, "velocity": (2.0, 2.0)}, friction=60.0, steps=300), "turns over"),
+        (box_scene(slope=20.0, friction=15.0, steps=300), "slides by more than"),
+        (box_scene({"spin": -4.0, "velocity": (2.0, 2.0)}, friction=60.0, steps=300), "turns over"),
     ],
 )
 def test_refuses_what_the_points_of_a_contact_do_not_follow(scene, message):

@@ -9,8 +9,10 @@ from importlib.util import find_spec
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene, euler
 from peers.newton import XPBD, SemiImplicit, SemiImplicitAsItComes, XPBDAsItComes
-from programs.rigid_scenes import euler, rigid_scene
+
+from validation.models.plane.boxes import boxes_of
 
 # To look for it costs nothing; to import it takes seconds in every process that collects these tests.
 is_absent = pytest.mark.skipif(not find_spec("newton"), reason="NOT RUN: Newton is not installed")
@@ -32,29 +34,29 @@ SINGLE = 2.0**-24  # what rounding takes of a number in single precision
     [(XPBD(), {"stiffness": 1e6}, "stiffness"), (SemiImplicit(), {"restitution": 0.5}, "restitution")],
 )
 def test_refuses_what_a_solver_cannot_express(solver, rigid, field):
-    with pytest.raises(NotImplementedError, match=rf"rigid\.{field}"):
-        solver.solve(rigid_scene(**rigid))
+    with pytest.raises(NotImplementedError, match=rf"plane\.contact\.{field}"):
+        solver.solve(box_scene(**rigid))
 
 
 @pytest.mark.parametrize("package", ["newton", "warp"])
 def test_a_program_that_is_absent_is_named(package, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(NotImplementedError, match="is not installed: pip install"):
-        XPBD().solve(rigid_scene())
+        XPBD().solve(box_scene())
 
 
 @installed
 @every
 def test_a_box_falls_and_spins_as_semi_implicit_euler_does(solver):
-    scene = rigid_scene({"lift": 5.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0, steps=60)
-    _, height, angle = scene.rigid.starts[0]
+    scene = box_scene({"lift": 5.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0, steps=60)
+    _, height, angle = boxes_of(scene).starts[0]
     columns = solver.solve(scene)
     count = round(scene.time.step * scene.time.steps / solver.step)
     rounding = count * 8 * SINGLE  # each step rounds positions of up to 8 m
     expected = euler(scene, solver.step, 3.0, 9.81 * math.sin(SLOPE))
-    np.testing.assert_allclose(columns["x_1"], expected, atol=rounding)
+    np.testing.assert_allclose(columns["box_1.x"], expected, atol=rounding)
     fall = euler(scene, solver.step, 1.0, -9.81 * math.cos(SLOPE))
-    np.testing.assert_allclose(columns["y_1"], height + fall, atol=rounding)
+    np.testing.assert_allclose(columns["box_1.y"], height + fall, atol=rounding)
     # SemiImplicit takes 0.05 of the spin away in a second as it comes, after each step.
     damping = 0.05 if type(solver) is SemiImplicitAsItComes else 0.0
     left = 1 - damping * solver.step
@@ -65,51 +67,51 @@ def test_a_box_falls_and_spins_as_semi_implicit_euler_does(solver):
     # In each step it takes the spin to the body's axes and back, and at its end to a quaternion: about four roundings.
     spin_rounding = 4 * count * 9.0 * SINGLE
     time = scene.time.step * scene.time.steps
-    np.testing.assert_allclose(columns["angle_1"], angle + turned, atol=lag + rounding + spin_rounding * time)
+    np.testing.assert_allclose(columns["box_1.angle"], angle + turned, atol=lag + rounding + spin_rounding * time)
 
 
 @installed
 @every
 def test_a_box_slides_without_friction_as_semi_implicit_euler_does_whatever_its_mass(solver):
-    scenes = [rigid_scene({"density": density}, slope=20.0, steps=50) for density in (10.0, 40.0)]
+    scenes = [box_scene({"density": density}, slope=20.0, steps=50) for density in (10.0, 40.0)]
     expected = euler(scenes[0], solver.step, 0.0, 9.81 * math.sin(SLOPE))
     for scene in scenes:
-        np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, rtol=2e-3, atol=1e-4)
+        np.testing.assert_allclose(solver.solve(scene)["box_1.x"], expected, rtol=2e-3, atol=1e-4)
 
 
 @installed
 @pytest.mark.parametrize("solver", [XPBD(), SemiImplicit()], ids=lambda solver: type(solver).__name__)
 def test_an_elastic_box_comes_back_at_the_speed_it_came_with(solver):
-    scene = rigid_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=1.0, gravity=0.0, steps=20)
-    height = solver.solve(scene)["y_1"]
+    scene = box_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=1.0, gravity=0.0, steps=20)
+    height = solver.solve(scene)["box_1.y"]
     assert (height[-1] - height[-2]) / scene.time.step == pytest.approx(1.0, rel=2e-2)
 
 
 @installed
 def test_half_of_the_speed_comes_back_where_half_is_asked():
-    scene = rigid_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=0.5, gravity=0.0, steps=20)
+    scene = box_scene({"lift": 0.05, "velocity": (0.0, -1.0)}, restitution=0.5, gravity=0.0, steps=20)
     for solver in (XPBD(), XPBDAsItComes()):
-        height = solver.solve(scene)["y_1"]
+        height = solver.solve(scene)["box_1.y"]
         assert (height[-1] - height[-2]) / scene.time.step == pytest.approx(0.5, rel=2e-2)
 
 
 @installed
 @pytest.mark.parametrize("solver", [SemiImplicit(), SemiImplicitAsItComes()], ids=lambda solver: type(solver).__name__)
 def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
-    scene = rigid_scene({"density": 100.0}, stiffness=4e4, steps=400)
-    settled = 0.5 - solver.solve(scene)["y_1"][-20:].mean()
+    scene = box_scene({"density": 100.0}, stiffness=4e4, steps=400)
+    settled = 0.5 - solver.solve(scene)["box_1.y"][-20:].mean()
     assert settled == pytest.approx(9.81 * 100.0 / 4e4, rel=1e-2)
 
 
 @installed
 def test_a_ground_that_moves_takes_a_box_along():
-    scene = rigid_scene(friction=45.0, base_amplitude=0.1, steps=50)
-    expected = [scene.rigid.base(scene.time.step * row)[0] for row in range(1, 51)]
-    np.testing.assert_allclose(XPBD().solve(scene)["x_1"], expected, atol=5e-3)
+    scene = box_scene(friction=45.0, base=(0.1, 1.0), steps=50)
+    expected = [boxes_of(scene).base(scene.time.step * row)[0] for row in range(1, 51)]
+    np.testing.assert_allclose(XPBD().solve(scene)["box_1.x"], expected, atol=5e-3)
 
 
 @installed
 @pytest.mark.parametrize("solver", [XPBD(), SemiImplicit()], ids=lambda solver: type(solver).__name__)
 def test_a_ground_that_moves_leaves_a_frictionless_box_where_it_is(solver):
-    scene = rigid_scene(base_amplitude=0.1, steps=50)
-    assert np.max(np.abs(solver.solve(scene)["x_1"])) < 1e-5
+    scene = box_scene(base=(0.1, 1.0), steps=50)
+    assert np.max(np.abs(solver.solve(scene)["box_1.x"])) < 1e-5

@@ -7,11 +7,12 @@ import sys
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
 from peers import siconos
 from peers.siconos_column import Chain
-from programs.rigid_scenes import rigid_scene
 
 from validation import solve
+from validation.models.plane.boxes import boxes_of
 from validation.problems.problem import problem_of
 from validation.problems.truth import exact
 from validation.scenes.scene import load_scene
@@ -147,39 +148,39 @@ def tolerance(solver):
 
 
 def test_springs_of_a_box_that_turns_or_rubs_are_refused():
-    with pytest.raises(NotImplementedError, match=r"rigid\.stiffness"):
-        siconos.Siconos().solve(rigid_scene(stiffness=1e6, friction=10.0))
+    with pytest.raises(NotImplementedError, match=r"plane\.contact\.stiffness"):
+        siconos.Siconos().solve(box_scene(stiffness=1e6, friction=10.0))
 
 
 @both
 def test_a_box_flies_and_spins_as_the_midpoint_rule_does(program, solver):
-    scene = rigid_scene({"lift": 50.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0, steps=20)
-    _, height, angle = scene.rigid.starts[0]
+    scene = box_scene({"lift": 50.0, "tilt": 30.0, "velocity": (3.0, 1.0), "spin": 9.0}, slope=20.0, steps=20)
+    _, height, angle = boxes_of(scene).starts[0]
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
     columns = solver.solve(scene)
-    np.testing.assert_allclose(columns["x_1"], 3 * t + 9.81 * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
-    np.testing.assert_allclose(columns["y_1"], height + t - 9.81 * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
-    np.testing.assert_allclose(columns["angle_1"], angle + 9 * t, atol=1e-9)
+    np.testing.assert_allclose(columns["box_1.x"], 3 * t + 9.81 * math.sin(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(columns["box_1.y"], height + t - 9.81 * math.cos(SLOPE) * t**2 / 2, atol=1e-9)
+    np.testing.assert_allclose(columns["box_1.angle"], angle + 9 * t, atol=1e-9)
 
 
 @both
 @pytest.mark.parametrize(("friction", "density"), [(0.0, 1000.0), (15.0, 1000.0), (15.0, 10.0)])
 def test_a_box_slides_as_the_midpoint_rule_does_whatever_its_mass(program, solver, friction, density):
-    scene = rigid_scene({"density": density}, slope=20.0, friction=friction, steps=20)
+    scene = box_scene({"density": density}, slope=20.0, friction=friction, steps=20)
     held = math.tan(math.radians(friction)) * 9.81 * math.cos(SLOPE)
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
     columns = solver.solve(scene)
     expected = (9.81 * math.sin(SLOPE) - held) * t**2 / 2
-    np.testing.assert_allclose(columns["x_1"], expected, atol=tolerance(solver) * held * t[-1] ** 2 / 2 + 1e-9)
-    assert columns["force_1"][-1] == pytest.approx(density * 9.81 * math.cos(SLOPE), rel=GAUSS_SEIDEL)
+    np.testing.assert_allclose(columns["box_1.x"], expected, atol=tolerance(solver) * held * t[-1] ** 2 / 2 + 1e-9)
+    assert columns["box_1-ground.normal"][-1] == pytest.approx(density * 9.81 * math.cos(SLOPE), rel=GAUSS_SEIDEL)
 
 
 @both
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
 def test_a_box_comes_back_at_e_times_the_speed_it_came_with(program, solver, restitution):
     box = {"velocity": (0.0, -2.0), "lift": 0.01}
-    scene = rigid_scene(box, gravity=0.0, restitution=restitution, steps=4)
-    rebound = np.diff(solver.solve(scene)["y_1"])[-1] / scene.time.step
+    scene = box_scene(box, gravity=0.0, restitution=restitution, steps=4)
+    rebound = np.diff(solver.solve(scene)["box_1.y"])[-1] / scene.time.step
     assert rebound == pytest.approx(2 * restitution, abs=4 * tolerance(solver))
 
 
@@ -189,21 +190,22 @@ def test_a_ground_that_moves_takes_a_box_along(program, solver):
 
     Not at 45 degrees, where the arms of friction and weight of a cube are equal: there the pivots go astray.
     """
-    scene = rigid_scene(friction=40.0, base_amplitude=0.1, steps=50)
+    scene = box_scene(friction=40.0, base=(0.1, 1.0), steps=50)
     t = scene.time.step * np.arange(1, scene.time.steps + 1)
-    expected = [scene.rigid.base(time)[0] for time in t]
-    np.testing.assert_allclose(solver.solve(scene)["x_1"], expected, atol=0.1 * tolerance(solver))
+    expected = [boxes_of(scene).base(time)[0] for time in t]
+    np.testing.assert_allclose(solver.solve(scene)["box_1.x"], expected, atol=0.1 * tolerance(solver))
 
 
 @both
 def test_the_peak_force_is_that_of_a_mass_on_the_stiffness_of_the_scene(program, solver):
-    scene = rigid_scene({"lift": 0.1}, stiffness=1e6, step=0.001, steps=200)
+    scene = box_scene({"lift": 0.1}, stiffness=1e6, step=0.001, steps=200)
     expected = 9810.0 + math.sqrt(9810.0**2 + 2 * 9810.0 * 0.1 * 1e6)
-    assert solver.solve(scene)["force_1"].max() == pytest.approx(expected, rel=1e-3)
+    assert solver.solve(scene)["box_1-ground.normal"].max() == pytest.approx(expected, rel=1e-3)
 
 
 def test_forces_of_a_pile_are_the_weights_above(program):
     boxes = ({}, {"density": 500.0, "width": 0.5, "x": 0.1}, {"density": 2000.0, "height": 0.3})
-    columns = siconos.Siconos().solve(rigid_scene(*boxes, friction=30.0, steps=10))
-    forces = [columns[f"force_{number}"][-1] for number in (1, 2, 3)]
+    scene = box_scene(*boxes, friction=30.0, steps=10)
+    columns = siconos.Siconos().solve(scene)
+    forces = [columns[name][-1] for name in boxes_of(scene).force_columns]
     assert forces == pytest.approx([9.81 * 1850.0, 9.81 * 850.0, 9.81 * 600.0], rel=GAUSS_SEIDEL)

@@ -46,7 +46,7 @@ def test_damping_is_told_by_scheme_discount_and_tables() -> None:
         ("figures-3-4", ["Time step.", "Springs.", "Discount."]),
         ("waves-blocks", ["Time step.", "Discount."]),
         ("beams-squares", ["Time step.", "Springs.", "Discount."]),
-        ("rigid-standing", []),
+        ("rigid-standing", ["Time step.", "Discount."]),
     ],
 )
 def test_each_kind_of_scene_has_its_choices_and_a_drawing(

@@ -67,12 +67,14 @@ def test_very_many_are_counted() -> None:
     assert str(refused.value.field).endswith(" and 10 more")
 
 
-@pytest.mark.parametrize(("field", "meant"), MEANT["boxes"].items())
-def test_the_key_of_rigid_boxes_that_was_meant_is_named(field: str, meant: str) -> None:
-    box: dict[str, Any] = {"width": 1.0, "height": 1.0, "density": 2500.0}
-    data: dict[str, Any] = {"rigid": {"box": [box]}, "time": {"step": 0.01, "steps": 10}}
+@pytest.mark.parametrize(("field", "meant"), MEANT["plane"].items())
+def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field: str, meant: str) -> None:
+    block: dict[str, Any] = {"name": "A", "rectangle": [1.0, 1.0], "velocity": [1.0, 0.0]}
+    contact: dict[str, Any] = {"stiffness": 1e9}
+    plane: dict[str, Any] = {"young": 1e9, "density": 2500.0, "contact": contact, "block": [block]}
+    data: dict[str, Any] = {"plane": plane, "time": {"step": 0.01, "steps": 10}}
     place, _, key = field.rpartition(".")
-    {"rigid": data["rigid"], "rigid.box": box}[place][key] = 1.0
+    {"plane": plane, "plane.block": block, "plane.contact": contact}[place][key] = 1.0
     with pytest.raises(InputError) as refused:
         parse_scene(data, "boxes")
     assert refused.value.advice == f"did you mean {meant}?"

@@ -92,10 +92,10 @@ def test_settings_that_do_not_go_together_are_refused() -> None:
     block, mesh = model_of(PLAIN), problem_of(PLAIN)
     for scheme in ((0.5, 1.0, 0.9, 1e-3), (0.5, 1.0, 1.0, 1e-3, "zero", 1.0)):
         with pytest.raises(ValueError, match="adapt"):
-            dda.solve_adaptive(block, dda.Scheme(*scheme), 3)  # type: ignore[arg-type]
+            dda.solve(block, dda.Scheme(*scheme), 3, floor=0.0)  # type: ignore[arg-type]
         with pytest.raises(ValueError, match="adapt"):
             fem_reference.solve_adaptive(mesh, fem_reference.Scheme(*scheme), 3)  # type: ignore[arg-type]
     with pytest.raises(ValueError, match="floor"):
-        dda.solve_adaptive(block, dda.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
+        dda.solve(block, dda.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
     with pytest.raises(ValueError, match="floor"):
         fem_reference.solve_adaptive(mesh, fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)

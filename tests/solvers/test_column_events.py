@@ -93,7 +93,7 @@ def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -
     motion = motion_at(scene, times)
     for at, integral, expected in (("base", True, motion.displacement), ("top", False, motion.pressure)):
         course = drive_of(scene, at, integral)()
-        values = [float(course.piece_at(t)[0].series(arb(t), 1.0, 1)[0]) for t in times.tolist()]
+        values = [float(course.piece_at(t).series(arb(t), 1.0, 1)[0]) for t in times.tolist()]
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
 
 

@@ -80,9 +80,8 @@ TAKES: dict[str, set[str]] = {
     features.FRICTIONAL_COLUMN: {"dda", "fem", "column-events", "bars-events"},
     features.RIGID_BLOCKS: {"dda", "column-events"},
     features.RIGID_JOINTS: {"dda", "fem", "bars-events"},
-    features.RIGID_BOXES: {"dda", "rigid-exact"},
-    features.PLANE: {"dda", "fem", "fenicsx"},
-    features.MOVING_BLOCKS: {"dda", "fem"},
+    features.PLANE: {"dda", "fem", "fenicsx", "rigid-exact"},
+    features.MOVING_BLOCKS: {"dda", "fem", "rigid-exact"},
     features.DAMPING: {"dda", "fem", "bar", "continuum"},
     features.ADAPTIVE: {"dda", "fem"},
     features.IMPLICIT: {"dda", "fem", "block-events", "bar-events"},  # exact motions have no time step
@@ -154,9 +153,6 @@ def scene_with(values: dict[str, Any], directory: Path) -> Scene:
 def scene_of(feature: str, directory: Path) -> Scene:
     if feature == features.COLUMN:
         return load_scene("waves-base").expand()[0]
-    if feature == features.RIGID_BOXES:
-        box = {"width": 1.0, "height": 1.0, "density": 2e3}
-        return parse_scene({"rigid": {"box": [box]}, "time": {"step": 1e-2, "steps": 5}}, feature)
     if feature == features.PLANE:
         return load_scene("patch-strip").expand()[0]
     if feature == features.MOVING_BLOCKS:

@@ -117,7 +117,7 @@ def test_what_cannot_be_started_and_kinds_without_words(tmp_path: Path) -> None:
     path.write_bytes(b"\x7fELF no such thing")
     assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
     plane = completed(get_solver(str(path)), load_scene("patch-strip").expand()[0])
-    assert plane.outcome is Outcome.NOT_APPLICABLE and "must be a block, a column or rigid boxes" in plane.notes[0]
+    assert plane.outcome is Outcome.NOT_APPLICABLE and "plain data hold rigid blocks" in plane.notes[0]
 
 
 def test_a_program_is_told_what_problems_never_have() -> None:
@@ -158,4 +158,4 @@ def test_the_page_lists_what_a_solver_may_read() -> None:
                 value = getattr(value, part)
         read |= set(re.findall(r"`([\w.]+)`", of_program))
     assert known - read - {"geometry", "time.scheme"} == set() and read - known == set()
-    assert {name.partition(".")[0] for name, _ in words()} == {"block", "contact", "load", "column", "input", "rigid"}
+    assert {name.partition(".")[0] for name, _ in words()} == {"block", "contact", "load", "column", "input", "plane"}

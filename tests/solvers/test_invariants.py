@@ -163,7 +163,7 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
     "bar-events": ("opening", "landing"),
     "column-events": OF_CONTACTS,
     "bars-events": OF_CONTACTS[-2:],
-    "rigid-exact": (),  # of rigid boxes alone, which none of these scenes is
+    "rigid-exact": (),  # of boxes on a ground alone, which none of these scenes is
     "dda-60": ("locked",),
 }
 

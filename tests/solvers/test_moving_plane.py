@@ -174,3 +174,12 @@ def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(tmp_path, hori
     # average acceleration shortens the frequency of the free part by w0^3 dt^2 / 12
     lag = own**3 * step**2 / 12 * 0.3
     assert errors[-1] == pytest.approx(lag * DRIVEN["amplitude"] * r / (1 - r**2), rel=0.1)
+
+
+def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
+    block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
+    traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
+    plane = {"young": 1e9, "density": MASS, "block": [block], "load": [traction]}
+    scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
+    (load,) = scene.plane.assembly.loads
+    assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]

@@ -40,7 +40,7 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
     for unknown in (
         lambda: dda.subdivided(model, 2, 2, 1e15),
         lambda: dda.opening_subdivided(opens, 2, 2, 1e15),
-        lambda: dda.solve_adaptive(model, scheme, 5),
+        lambda: dda.solve(model, scheme, 5, floor=0.0),
         lambda: dda.solve_textbook(model, scheme, 5),
         lambda: dda.solve_unilateral(opens, average, 5, options=dda.UnilateralOptions("energy-conserving")),
     ):

@@ -7,24 +7,19 @@ from typing import Any
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
 
 from validation.gates.gate import Status
-from validation.models.rigid.problems import BoxCase, box_problems
+from validation.models.plane.boxes import boxes_of
+from validation.models.plane.problems import BoxCase, box_problems
+from validation.models.plane.tables import PlaneSection
 from validation.problems.numbered import measured
 from validation.runs.history import History
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
 BOX = {"width": 0.8, "height": 0.5, "density": 700.0}
 CASES = [(name, case) for name, problem in box_problems().items() for case in problem.cases]
-
-
-def scene_of(*boxes: dict[str, Any], step: float = 0.01, steps: int = 100, **rigid: Any) -> Scene:
-    """Return a scene of boxes with all columns."""
-    data = {"name": "boxes", "rigid": {"box": list(boxes), **rigid}, "time": {"step": step, "steps": steps}}
-    scene = parse_scene(data, "boxes")
-    assert scene.rigid is not None
-    return scene.with_values({"run.columns": list(scene.rigid.columns)})
 
 
 def motion(scene: Scene) -> History:
@@ -58,30 +53,32 @@ def test_the_exact_motion_passes_its_problem(name: str, case: BoxCase) -> None:
 def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> None:
     pushed = BOX | {"velocity": [-1.0, 0.0]}
     for friction, back in ((25.0, 0.0), (10.0, 1.0)):
-        history = motion(scene_of(pushed, slope=20.0, friction=friction, steps=300))
+        history = motion(box_scene(pushed, slope=20.0, friction=friction, steps=300))
         grip = math.tan(math.radians(friction)) * 9.81 * math.cos(math.radians(20))
         along = 9.81 * math.sin(math.radians(20))
         stop = 1 / (along + grip)
         moved = -stop / 2 + back * (along - grip) * (3 - stop) ** 2 / 2
-        assert history.columns["x_1"][-1] == pytest.approx(moved, rel=1e-9)
+        assert history.columns["box_1.x"][-1] == pytest.approx(moved, rel=1e-9)
 
 
 @pytest.mark.parametrize(("e", "gravity"), [(0.6, 9.81), (0.9, 1.62), (0.0, 9.81)])
 def test_bounces_follow_the_geometric_series(e: float, gravity: float) -> None:
-    history = motion(scene_of(BOX | {"lift": 0.4}, restitution=e, gravity=gravity, step=1e-3, steps=6000))
-    y = history.columns["y_1"] - 0.25
+    history = motion(box_scene(BOX | {"lift": 0.4}, restitution=e, gravity=gravity, step=1e-3, steps=6000))
+    y = history.columns["box_1.y"] - 0.25
     first = math.sqrt(2 * 0.4 / gravity)
     rest = first * (1 + 2 * e / (1 - e))
     assert np.all(y[history.time > rest + 1e-6] == 0)
-    assert np.all(history.columns["force_1"][history.time > rest + 1e-6] == pytest.approx(700 * 0.4 * gravity))
-    assert np.all(history.columns["force_1"][history.time < rest - 1e-3] == 0)
+    assert np.all(
+        history.columns["box_1-ground.normal"][history.time > rest + 1e-6] == pytest.approx(700 * 0.4 * gravity)
+    )
+    assert np.all(history.columns["box_1-ground.normal"][history.time < rest - 1e-3] == 0)
     if e:
         bounce = (history.time > first) & (history.time < first * (1 + 2 * e))
         assert max(y[bounce]) == pytest.approx(0.4 * e**2, rel=1e-4)
 
 
 def test_contact_and_flight_on_a_spring_repeat() -> None:
-    scene = scene_of(BOX | {"lift": 0.1}, stiffness=1e5, restitution=1.0, step=1e-3, steps=3000)
+    scene = box_scene(BOX | {"lift": 0.1}, stiffness=1e5, restitution=1.0, step=1e-3, steps=3000)
     history = motion(scene)
     mass = 280.0
     y = 0.35
@@ -93,22 +90,24 @@ def test_contact_and_flight_on_a_spring_repeat() -> None:
         v += (a - 9.81 + max(0.0, 1e5 * (0.25 - y)) / mass) * 1e-5
         if n % 50 == 49:
             expected.append(y)
-    np.testing.assert_allclose(history.columns["y_1"], expected, atol=1e-5)
-    np.testing.assert_allclose(history.columns["force_1"], 1e5 * np.maximum(0, 0.25 - history.columns["y_1"]))
+    np.testing.assert_allclose(history.columns["box_1.y"], expected, atol=1e-5)
+    np.testing.assert_allclose(
+        history.columns["box_1-ground.normal"], 1e5 * np.maximum(0, 0.25 - history.columns["box_1.y"])
+    )
 
 
 def test_a_box_about_its_right_corner_is_the_mirror_image() -> None:
     scene = box_problems()["toppling"].scene()
-    scene = scene.with_values(
-        {"time.step": 1e-3, "time.steps": 1200, "run.columns": ["x_1", "y_1", "angle_1", "force_1"]}
-    )
+    scene = scene.with_values({"time.step": 1e-3, "time.steps": 1200, "run.columns": list(boxes_of(scene).columns)})
     left = motion(scene)
-    upwards = np.diff(left.columns["y_1"], 2) / 1e-6
-    np.testing.assert_allclose(left.columns["force_1"][1:-1] / scene.rigid.box[0].mass, 9.81 + upwards, rtol=1e-4)
-    spun = scene.rigid.box[0].model_dump()
-    spun |= {"spin": -spun["spin"], "velocity": [-spun["velocity"][0], spun["velocity"][1]]}
-    right = motion(scene.with_values({"rigid.box": [spun]}))
-    for part, sign in (("x_1", -1), ("y_1", 1), ("angle_1", -1)):
+    upwards = np.diff(left.columns["box.y"], 2) / 1e-6
+    np.testing.assert_allclose(
+        left.columns["box-ground.normal"][1:-1] / boxes_of(scene).boxes[0].mass, 9.81 + upwards, rtol=1e-4
+    )
+    box = scene.table(PlaneSection).block[1]
+    mirrored = {"plane.block.1.spin": -box.spin, "plane.block.1.velocity": [-box.velocity[0], box.velocity[1]]}
+    right = motion(scene.with_values(mirrored))
+    for part, sign in (("box.x", -1), ("box.y", 1), ("box.angle", -1)):
         np.testing.assert_allclose(right.columns[part], sign * left.columns[part], atol=1e-9)
 
 
@@ -120,8 +119,8 @@ def test_a_tumbling_box_stays_above_ground_and_keeps_its_energy(
 ) -> None:
     step, (width, height) = 5e-4, shape
     box = {"width": width, "height": height, "density": 700.0, "tilt": tilt, "lift": lift}
-    columns = motion(scene_of(box, restitution=1.0, step=step, steps=2000)).columns
-    y, angle = columns["y_1"], columns["angle_1"]
+    columns = motion(box_scene(box, restitution=1.0, step=step, steps=2000)).columns
+    y, angle = columns["box_1.y"], columns["box_1.angle"]
     assert (y - abs(np.sin(angle)) * width / 2 - abs(np.cos(angle)) * height / 2).min() > -1e-12
     rate, spin = np.diff(y) / step, np.diff(angle) / step
     energy = rate**2 / 2 + (width**2 + height**2) / 24 * spin**2 + 9.81 * ((y[1:] + y[:-1]) / 2 + 9.81 * step**2 / 8)
@@ -147,27 +146,28 @@ SHIFTED = BOX | {"x": 0.45}
         ([BOX | {"tilt": 20.0}], {"restitution": 1.0}, "a corner presses on the ground without an impact"),
         ([BOX | {"lift": 0.0, "spin": 0.1, "velocity": [0.0, -1.0]}], {"restitution": 1.0}, "two corners come down at"),
         ([BOX | {"tilt": 5.0, "lift": 1.0}], {}, "friction = 0 and restitution = 1"),
+        ([BOX | {"lift": 1.0}], {}, "restitution must be stated"),
         ([BOX | {"tilt": 5.0, "lift": 1.0}], {"friction": 20.0, "restitution": 1.0}, "friction = 0"),
-        ([BOX | {"lift": 1.0, "velocity": [1.0, 0.0]}], {"friction": 20.0}, "lands with friction"),
+        ([BOX | {"lift": 1.0, "velocity": [1.0, 0.0]}], {"friction": 20.0, "restitution": 0.0}, "lands with friction"),
         ([BOX | {"velocity": [1.0, 0.0]}], {"friction": 60.0}, "friction overturns"),
-        ([BOX | {"lift": 0.1}], {"base_amplitude": 0.1, "friction": 20.0}, "at rest on it at t = 0"),
-        ([BOX], {"base_amplitude": 0.1, "friction": 60.0, "base_frequency": 3.0}, "friction overturns"),
-        ([BOX], {"base_amplitude": 0.1, "slope": 1.0}, "on level, rigid ground"),
+        ([BOX | {"lift": 0.1}], {"base": (0.1, 1.0), "friction": 20.0}, "at rest on it at t = 0"),
+        ([BOX], {"base": (0.1, 3.0), "friction": 60.0}, "friction overturns"),
+        ([BOX], {"base": (0.1, 1.0), "slope": 1.0}, "on level, rigid ground"),
     ],
 )
 def test_other_motions_are_refused_by_name(boxes: list[dict[str, Any]], rigid: dict[str, Any], why: str) -> None:
-    assert why in refusal(scene_of(*boxes, **rigid))
+    assert why in refusal(box_scene(*boxes, **rigid))
 
 
 def test_a_corner_that_slips_is_refused() -> None:
     scene = box_problems()["toppling"].scene()
-    assert "friction must be above 13.3" in refusal(scene.with_values({"rigid.friction": 13.0}))
-    assert not refusal(scene.with_values({"rigid.friction": 14.0}))
+    assert "friction must be above 13.3" in refusal(scene.with_values({"plane.contact.friction": 13.0}))
+    assert not refusal(scene.with_values({"plane.contact.friction": 14.0}))
 
 
 def test_boxes_that_are_not_above_each_other_stand_as_long_as_their_weight_is_carried() -> None:
-    scene = scene_of(BOX, BOX | {"x": 0.35, "density": 300.0}, friction=20.0)
+    scene = box_scene(BOX, BOX | {"x": 0.35, "density": 300.0}, friction=20.0)
     columns = motion(scene).columns
-    assert columns["x_2"][-1] == 0.35
-    assert columns["force_1"][-1] == pytest.approx(9.81 * 0.4 * 1000)
-    assert columns["force_2"][-1] == pytest.approx(9.81 * 0.4 * 300)
+    assert columns["box_2.x"][-1] == 0.35
+    assert columns["box_1-ground.normal"][-1] == pytest.approx(9.81 * 0.4 * 1000)
+    assert columns["box_2-box_1.normal"][-1] == pytest.approx(9.81 * 0.4 * 300)

@@ -202,7 +202,74 @@ LIMITS = [
     Fault("fem: always quadratic", ("fem",), seams.FEM_BASIS, of_degree(2)),
 ]
 
+# ---- blocks that move in the plane -----------------------------------------------------------------------------------
+
+
+def with_springs(**factors: float) -> Callable[..., Callable[..., object]]:
+    """Multiply what the springs of contacts have, of stated ones and of those that are found."""
+
+    def other(springs: Any) -> Any:
+        return replace(springs, **{name: factor * (getattr(springs, name) or 0.0) for name, factor in factors.items()})
+
+    def change(model: Any) -> dict[str, object]:
+        contacts = [replace(contact, springs=other(contact.springs)) for contact in model.contacts]
+        return {"contacts": contacts, "found": model.found and other(model.found)}
+
+    return of_first(change)
+
+
+def with_blocks(**factors: float) -> Callable[..., Callable[..., object]]:
+    """Multiply what blocks have."""
+    return of_first(
+        lambda model: {
+            "blocks": [
+                replace(block, **{name: factor * getattr(block, name) for name, factor in factors.items()})
+                for block in model.blocks
+            ]
+        }
+    )
+
+
+def with_bonds(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the normal springs of glue."""
+    return of_first(lambda model: {"bonds": [replace(bond, stiffness=factor * bond.stiffness) for bond in model.bonds]})
+
+
+def with_gravity(factor: float) -> Callable[..., Callable[..., object]]:
+    """Multiply the acceleration."""
+    return of_first(lambda model: {"gravity": tuple(factor * g for g in model.gravity)})
+
+
+def lost(share: float) -> Callable[..., Callable[..., object]]:
+    """Let a share of the kinetic energy go unaccounted."""
+    return told(lambda result: {"energy": result.energy | {"balance": share * result.energy["kinetic"]}})
+
+
+HEAVIER = Fault("dda: density 0.1 % high", DDA, seams.PLANE, with_blocks(density=1.001))
+STIFFER = Fault("dda: p doubled", DDA, seams.PLANE, with_springs(stiffness=2.0))
+SMOOTHER = Fault("dda: friction halved", DDA, seams.PLANE, with_springs(friction=0.5))
+UNACCOUNTED = Fault("dda: 1e-9 of the energy lost", DDA, seams.PLANE, lost(1e-9))
+MEETING = [
+    HEAVIER,
+    STIFFER,
+    SMOOTHER,
+    Fault("dda: glue 0.1 % soft", DDA, seams.PLANE, with_bonds(0.999)),
+]
+SPIN = [
+    HEAVIER,
+    SMOOTHER,
+    UNACCOUNTED,
+    Fault("dda: no centrifugal strain", DDA, seams.PLANE_PULL, times(0.0)),
+    Fault("dda: weight 0.1 % high", DDA, seams.PLANE, with_gravity(1.001)),
+    Fault("dda: spin 0.1 % high", DDA, seams.PLANE, with_blocks(spin=1.001)),
+]
+ROUGHER = Fault("dda: friction 2 % high", DDA, seams.PLANE, with_springs(friction=1.02))
+PUSHING = [HEAVIER, STIFFER, SMOOTHER, UNACCOUNTED, ROUGHER]
+
 KILLS = {
+    "meeting": MEETING,
+    "spin": SPIN,
+    "pushing": PUSHING,
     "columns": COLUMNS,
     "waves": WAVES,
     "subblocks": SUBBLOCKS,
@@ -211,6 +278,8 @@ KILLS = {
     "limits": LIMITS,
 }
 SHORT = {  # some gates and the faults that bite them, in the short tests
+    "meeting": (("meeting-land", "meeting-tower", "meeting-spinning"), MEETING[:2]),
+    "spin": (("spin-flight", "spin-turns"), [SPIN[0], *SPIN[2:]]),
     "columns": (
         ("columns-domino", "columns-settle[time.step=0.02", "columns-slips-steps[time.step=0.005"),
         COLUMNS[:3],

@@ -6,7 +6,7 @@ import pytest
 
 from validation.scenes.scene import load_scene
 from validation.studies.pushing.exact import Pushing, at, events
-from validation.studies.pushing.formulas import problem_of, wedge_motion
+from validation.studies.pushing.formulas import factor_of_safety, problem_of, wedge_motion
 
 DEGREES = {angle: math.tan(math.radians(angle)) for angle in (10, 15, 25, 30, 40)}
 BOTH = Pushing((5400, 2700), (DEGREES[15], DEGREES[25]), math.radians(30), 2e7, 0.0, (0.2, 0.0))
@@ -57,7 +57,9 @@ def test_the_pieces_give_the_events_and_the_ends_of_another_program(problem, unt
     assert at(problem, until)[:2] == pytest.approx(ways, abs=1e-12)
 
 
-@pytest.mark.parametrize(("name", "problem"), [("pushing-both", BOTH), ("pushing-held", HELD)])
+@pytest.mark.parametrize(
+    ("name", "problem"), [("pushing-both", BOTH), ("pushing-held", HELD), ("pushing-locked", STOPS)]
+)
 def test_the_scenes_state_these_problems(name, problem):
     stated = problem_of(load_scene(name).expand()[0])
     assert stated.masses == pytest.approx(problem.masses) and stated.friction == pytest.approx(problem.friction)
@@ -75,3 +77,22 @@ def test_the_scenes_state_these_problems(name, problem):
 def test_wedges_move_as_another_program_has_them(name, printed):
     motion = wedge_motion(load_scene(name).expand()[0])
     assert tuple(motion.values()) == pytest.approx(printed, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("below", "between", "printed"),
+    [
+        (35.0, 0.0, 1.07247267236957),
+        (35.0, 20.0, 1.16335645885845),
+        (35.0, 35.0, 1.24437551772442),
+        (20.0, 0.0, 0.557474903518597),
+        (20.0, 10.0, 0.601539427962898),
+    ],
+)
+def test_factors_of_safety_are_those_of_another_program(below, between, printed):
+    changes = {
+        "plane.contact": [{"stiffness": 1e9, "friction": below}],
+        "plane.pair": [[{"blocks": ["passive", "active"], "friction": between}]],
+    }
+    (case,) = load_scene("wedge-limit").model_copy(update={"sweep": changes}).expand()
+    assert factor_of_safety(case) == pytest.approx(printed, rel=1e-12)

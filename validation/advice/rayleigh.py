@@ -27,7 +27,6 @@ from numpy.typing import ArrayLike
 from validation.advice.limits import Limit
 from validation.errors import InputError
 from validation.runs.history import Array
-from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
 
@@ -87,10 +86,8 @@ def scheme_of(scene: Scene) -> Stepping:
     Raises
     ------
     InputError
-        It is another, or the scene has rigid boxes, which nothing strains.
+        It is another.
     """
-    if "damping" in scene.kind.refuses:
-        features.refuse_column(scene, "advise rayleigh")
     stepping = Stepping.of(scene)
     if stepping.scheme != "newmark":
         rule = "must be newmark, whose damping near w dt = 0 has the form of Rayleigh's"

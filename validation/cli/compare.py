@@ -10,12 +10,9 @@ import typer
 
 from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
 from validation.cli.printing.output import echo_answer
-from validation.runs.numbers import remainder_text
 
 if TYPE_CHECKING:
     from validation.diagnosis.answer import Answer
-
-RANKING_LINES = 6
 
 
 @app.command()
@@ -92,7 +89,7 @@ def _listed(alternative: dict[str, Any]) -> str:
 def _lines(answer: Answer) -> Iterator[str]:
     """Yield the sentence first, then what it rests on."""
     from validation.diagnosis.causes import CAUSES
-    from validation.diagnosis.sentences import cleaned, told_lines
+    from validation.diagnosis.sentences import told_lines
 
     yield answer.sentence
     if answer.remedy:
@@ -113,10 +110,5 @@ def _lines(answer: Answer) -> Iterator[str]:
             yield f"  {stage.name:<18} {mark:<6} {stage.words}"
     if answer.opened:
         yield f"\nthe contact opened: first step {answer.opened[0]}, last {answer.opened[1]}"
-    yield f"\n  {'model':<10} {'scheme':<24} {'misfit [%]':>10} {'compliance [%]':>14}"
-    for row in answer.ranking[:RANKING_LINES]:
-        compliance = "-" if row["compliance"] is None else f"{100 * cleaned(row['compliance']):.3g}"
-        scheme = "exact in time" if row["alpha"] is None else f"{row['alpha']:.4g}, {row['delta']:.4g}"
-        yield f"  {row['model']:<10} {row['name'] or scheme:<24} {remainder_text(row['misfit']):>10} {compliance:>14}"
-    yield from told_lines(answer.told, answer.untold)
-    yield from (f"note: {note}" for note in answer.notes)
+    rest = [*told_lines(answer.told, answer.untold), *(f"note: {note}" for note in answer.notes)]
+    yield from ["", *rest] if rest else []

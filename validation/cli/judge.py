@@ -96,8 +96,8 @@ def judge(
     """Judge what a program answers against exact motions and numbers, with the cause of a failure.
 
     Problems of one block: locked, opening, rebound, sliding, creep, rocking; of columns: column, stack, mass-ratio,
-    spall, cradle, joint; of rigid boxes, whose numbers are judged: standing, restitution, bouncing, tumbling, pile,
-    heavy-top, toppling, shaken, impact, and their cases. They and a folder to fill in come with dda-validate
+    spall, cradle, joint; of boxes on a ground, whose numbers are judged: standing, restitution, bouncing, tumbling,
+    pile, heavy-top, toppling, shaken, impact, and their cases. They and a folder to fill in come with dda-validate
     export-pack. A column passes where its error is below what one per cent of the problem's data changes. PARTIAL: the
     columns that it reports pass, others that the problem asks for are withheld. Stale: it answers an earlier pack, in
     which the problem was another. What is wrong with files is listed with file, line and character. Exit status: 0 all

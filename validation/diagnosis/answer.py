@@ -12,7 +12,7 @@ from validation.runs.history import Array
 
 WRITTEN = (  # by `--json`
     *("sentence", "causes", "values", "intervals", "slips", "remedy", "unexplained", "nearest", "alike", "departure"),
-    *("opened", "scheme", "ranking", "evidence"),
+    *("opened", "scheme", "model", "evidence"),
 )
 
 
@@ -25,7 +25,6 @@ class Answer:
     scheme: dict[str, Any]  # alpha, delta, gg; of another scheme than Newmark's its name and numbers
     departure: Departure | None
     notes: tuple[str, ...] = ()
-    ranking: list[dict[str, Any]] = field(default_factory=list)  # the best first
     opened: tuple[int, int] | None = None  # first step and last
     told: dict[str, Interval] = field(default_factory=dict)  # alpha, delta, gg and what was free with them
     untold: list[dict[str, float]] = field(default_factory=list)
@@ -40,12 +39,12 @@ class Answer:
     slips: tuple[Slip, ...] = ()  # of sign and unit, column by column
     intervals: dict[str, tuple[float, float]] = field(default_factory=dict)  # of `values`, 95 %
     remedy: str = ""  # the options by which the history is read without `slips`, or with its columns in their places
-    own_model: bool = True  # whether it is DDA that explains the history, not another model in space or in time
+    model: str = ""  # the solver that explains the history, where it is another one than the scene's
 
     @property
     def departs(self) -> bool:
         """Whether the history is another one than the scene itself gives, for whatever reason."""
-        return bool(self.causes) or not self.own_model
+        return bool(self.causes or self.model)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data."""

@@ -37,7 +37,7 @@ from validation.diagnosis.one_change import (
     of_numbers,
     of_schemes,
 )
-from validation.diagnosis.other_solvers import DISCOUNTS, STARTS, row_of
+from validation.diagnosis.other_solvers import DISCOUNTS, STARTS
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Reading, slips, words_of_slips
 from validation.diagnosis.schemes import scheme_numbers
@@ -516,8 +516,6 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
     stated = sentences.scheme_of(own)
     words = words_of_slips(search.reading.corrected)
     (judged_solver, *_) = by_role(Role.JUDGED)
-    alpha, delta = (own.alpha, own.delta) if own.family == "newmark" else (None, None)
-    ranking = [row_of(judged_solver, alpha, delta, own.gg, scene_misfit, None)]
     alike = [] if cause else [explanation.as_dict() for explanation in verdict.alike[:MOST_ALIKE]]
     if cause is not None:
         if cause.id in ("scheme", "start"):
@@ -527,7 +525,6 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         if cause.id == "scheme":
             words["scheme"] = f"a different scheme from the scene's {stated}"
         stated = cause.words if cause.id == "scheme" else sentences.scheme_of(replace(own, gg=scheme["gg"]))
-        ranking.insert(0, row_of(judged_solver, scheme["alpha"], scheme["delta"], scheme["gg"], misfit, None))
     if verdict.slipped is not None:
         slipped = list(verdict.slipped.reading.slips)
         alike.append({"causes": slipped, "values": {}, "further_scene": families.BESIDE_GRAVITY})
@@ -547,7 +544,6 @@ def answer_of(scene: Scene, foreign: Foreign, verdict: ColumnVerdict) -> Answer:
         scheme=scheme,
         departure=departure,
         notes=(*foreign.notes, *search.reading.notes, *_notes(search, scene)),
-        ranking=ranking,
         misfit=misfit,
         curves={name: (search.time, run[0]) for name, run in curves.items()},
         values={cause.id: cause.value} if cause and cause.value is not None else {},

@@ -9,15 +9,14 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis import causes, evidence, families, schemes, sentences
+from validation.diagnosis import causes, evidence, families, schemes, sentences, slopes
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
 from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.forces import answer as of_friction
-from validation.diagnosis.other_solvers import Rival, RivalVerdict, judged, not_installed, ranking, rivals, row_of
+from validation.diagnosis.other_solvers import RivalVerdict, judged, not_installed
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
     Reading,
@@ -178,7 +177,7 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
                 value=", ".join(_beyond(scene)),
             )
         if is_frictional:
-            of_friction.refuse_other_scenes(scene)
+            slopes.refuse_other_scenes(scene)
     features.refuse_sweep(scene)
 
 
@@ -207,12 +206,12 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         return compare_column(scene, foreign, tolerance)
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
-        reading = of_friction.read(scene, foreign)
-        if not of_friction.is_scene(scene, reading):
-            swapped = of_friction.read(scene, exchanged(foreign, *pair))
-            if of_friction.is_scene(scene, swapped):
+        reading = slopes.read(scene, foreign)
+        if not slopes.is_scene(scene, reading):
+            swapped = slopes.read(scene, exchanged(foreign, *pair))
+            if slopes.is_scene(scene, swapped):
                 return _of_swapped(scene, foreign, pair, tolerance)
-        return of_friction.answer_of(scene, foreign, reading)
+        return slopes.answer_of(scene, foreign, reading)
     column = rectangle_of(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
@@ -233,20 +232,13 @@ def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
         verdict = Verdict(verdict.scene_fit, replace(verdict.best, moves=(), fit=verdict.scene_fit), True)
     if not verdict.explains:
         case, verdict = _without_single_rows(case, verdict)
-    theirs: RivalVerdict | None = None
-    has_rivals = scene.contact.law == "locked" and scene.time.scheme == "newmark"
-    if not verdict.explains and has_rivals:
+    if not verdict.explains and scene.contact.law == "locked" and scene.time.scheme == "newmark":
         theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
         if theirs is not None and theirs.explained:
             return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
     if not verdict.explains:
         verdict = twofold(case.target, scene_variant, verdict)
-    others: list[Rival] = []
-    if has_rivals and np.ptp(case.target.steps) == 0:
-        v = verdict.best.fit.variant
-        at_hand = theirs.ranked if theirs else ()
-        others = rivals(case.reading.scene_of(scene), case.rivals, case.reading, [(v.alpha, v.delta)], at_hand)
-    return _answer(case, verdict, others)
+    return _answer(case, verdict)
 
 
 def _beyond(scene: Scene) -> list[str]:
@@ -298,7 +290,7 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
     return evidence.stages(case.target, case.expected, case.reading, factor)
 
 
-def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
+def _answer(case: Case, verdict: Verdict) -> Answer:
     target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
     stages = _stages(case)
     corrected = case.reading.corrected
@@ -365,7 +357,6 @@ def _answer(case: Case, verdict: Verdict, others: Sequence[Rival]) -> Answer:
     pressures = {"the file": as_read.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         scheme=schemes.scheme_numbers(v),
-        ranking=ranking(DDA, target, v, shown.free, others),
         departure=first_departure,
         causes=ids,
         opened=(steps[0], steps[-1]) if steps else None,
@@ -480,7 +471,6 @@ def _answer_of_rival(
     time = np.cumsum(reading.stepping.steps)[rows]
     return Answer(
         scheme={"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
-        ranking=[row_of(r.model, r.alpha, r.delta, r.gg, r.misfit, None) for r in verdict.ranked],
         departure=first_departure,
         causes=ids,
         sentence=sentence,
@@ -490,7 +480,7 @@ def _answer_of_rival(
         values=verdict.values if verdict.explained else {},
         unexplained=0.0 if verdict.explained else verdict.left,
         evidence=tuple(stages),
-        own_model=best.model == DDA,
+        model="" if best.model == DDA else best.model,
     )
 
 

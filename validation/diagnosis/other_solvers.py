@@ -7,20 +7,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
-from validation.diagnosis.causes import BENIGN_COMPLIANCE, compliance
+from validation.diagnosis.causes import BENIGN_COMPLIANCE
 from validation.diagnosis.fits.bar import Bar, norm
-from validation.diagnosis.fits.fit import NAMED, fit, fit_one, named
-from validation.diagnosis.fits.target import Target, joined
+from validation.diagnosis.fits.fit import NAMED
+from validation.diagnosis.fits.target import joined
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import CandidateChange, fitted, nearest_start, of_discount, of_numbers
 from validation.diagnosis.readings import Reading
-from validation.diagnosis.schemes import FAMILIES
-from validation.diagnosis.variant import Variant
 from validation.errors import InputError
 from validation.runs.history import Array
 from validation.runs.numbers import significant
@@ -31,7 +28,6 @@ SCHEMES_OF = {"continuum": 1, "fem": 1}  # how many are tried: the continuum has
 NUDGE = 1e-4  # of ln stiffness or ln factor, for the derivative
 ROUNDS = 9  # evaluations of a fit: a compliance of some per cent needs two, half the stiffness six
 MOST = math.log(1e3)  # no spring is softer or stiffer than that
-OF_SCHEMES = frozenset({"alpha", "delta", "gg", "base", "spectral", "split"})
 SLIPS = {"density-factor", "young-factor", "load-factor", "gg"}  # numbers that are tried besides the springs
 DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
@@ -84,7 +80,6 @@ class RivalVerdict:
     """What the other solvers came to."""
 
     best: Rival
-    ranked: list[Rival]
     causes: list[str]
     values: dict[str, float]
     scene_run: Array  # displacement of the same solver on the scene as it is [m]
@@ -92,13 +87,7 @@ class RivalVerdict:
     left: float  # share of the difference [-]
 
 
-def rivals(
-    scene: Scene,
-    solvers: Sequence[str],
-    recorded: Reading,
-    schemes: Iterable[tuple[float, float]] = NAMED.values(),
-    at_hand: Sequence[Rival] = (),
-) -> list[Rival]:
+def rivals(scene: Scene, solvers: Sequence[str], recorded: Reading) -> list[Rival]:
     """Return the solvers that apply to the scene, under the scene's own and other schemes, each at its best springs.
 
     Parameters
@@ -109,22 +98,16 @@ def rivals(
         Names of solvers; the continuum has no scheme.
     recorded
         The history.
-    schemes
-        Pairs (alpha, delta), the likeliest first; by default the named ones.
-    at_hand
-        Rivals of the same scene and the same history that are at hand.
     """
     t = scene.time
-    before = {(rival.model, rival.alpha, rival.delta): rival for rival in at_hand}
-    every = list(dict.fromkeys([(t.alpha, t.delta), *schemes]))
+    every = list(dict.fromkeys([(t.alpha, t.delta), *NAMED.values()]))
     ranked = []
     for name in solvers:
         if name == "continuum" and t.discount != 1:  # the damped one takes minutes over long histories
             continue
         for alpha, delta in every[: SCHEMES_OF.get(name, len(every))]:
-            scheme = (None, None) if name in NO_SCHEME else (alpha, delta)
             stepped = scene.with_values({"time.alpha": alpha, "time.delta": delta})
-            rival = before.get((name, *scheme)) or _fitted(stepped, name, recorded, _springs(stepped))
+            rival = _fitted(stepped, name, recorded, _springs(stepped))
             if rival is not None:
                 ranked.append(rival)
     return sorted(ranked, key=lambda rival: rival.misfit)
@@ -211,7 +194,7 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     spread = Bar.of(reading.displacement, reading.rounding).allowed
     mesh = 0.0 if model == exact else MESH
     if plain <= min(max(mesh, spread), below):
-        return RivalVerdict(same_scheme, ranked, [], {}, scene_run, True, 0.0)
+        return RivalVerdict(same_scheme, [], {}, scene_run, True, 0.0)
     ordered = sorted(ranked + slipped(same_steps, model, reading), key=lambda rival: rival.misfit)
     best = ordered[0]
     causes, values = _causes(scene, best)
@@ -220,7 +203,7 @@ def judged(scene: Scene, reading: Reading, below: float, names: Sequence[str], e
     allowed = spread if get_solver(model).meshed else max(mesh, spread)  # on the scene's own mesh noise alone is left
     is_enough = best.misfit <= min(allowed, max(SHARE * plain, 1e-12), below)
     explained = is_clear and is_enough and len(causes) <= 1
-    return RivalVerdict(best, ranked, causes, values, scene_run, explained, best.misfit / plain)
+    return RivalVerdict(best, causes, values, scene_run, explained, best.misfit / plain)
 
 
 def _causes(scene: Scene, rival: Rival) -> tuple[list[str], dict[str, float]]:
@@ -238,49 +221,3 @@ def _causes(scene: Scene, rival: Rival) -> tuple[list[str], dict[str, float]]:
         causes.append(name)
         values[name] = number if name == "springs-factor" else rival.softness
     return causes, values
-
-
-# ---- the ranking ----------------------------------------------------------------------------------------------------
-
-
-def ranking(
-    model: str, target: Target, best: Variant, free: Sequence[str], others: Sequence[Rival]
-) -> list[dict[str, Any]]:
-    """Return every named scheme with what else explains the history, and the other solvers, by misfit."""
-    is_newmark = best.family == "newmark"
-    pairs = dict.fromkeys([*([(best.alpha, best.delta)] if is_newmark else []), *NAMED.values()])
-    free = tuple(dict.fromkeys(("softness", *(name for name in free if name not in OF_SCHEMES))))
-    contact = "springs" if best.contact == "impact" else best.contact
-    newmark = replace(best, family="newmark", spectral=0.0, split=0.0, contact=contact)
-    fits = fit(target, [(replace(newmark, alpha=a, delta=d), free) for a, d in pairs])
-    misfits = [each.misfit for each in fits]
-    own_misfit = fit_one(target, best).misfit
-    rows = []
-    if is_newmark:
-        misfits[0] = min(misfits[0], own_misfit)
-    else:
-        row = row_of(model, None, None, best.gg, own_misfit, compliance(target.column, best))
-        rows.append(row | {"name": FAMILIES[best.family]})
-    for each, misfit in zip(fits, misfits, strict=True):
-        v = each.variant
-        rows.append(row_of(model, v.alpha, v.delta, best.gg, misfit, compliance(target.column, v)))
-    for rival in others:
-        softer = compliance(target.column, replace(best, softness=rival.softness))
-        rows.append(row_of(rival.model, rival.alpha, rival.delta, rival.gg, rival.misfit, softer))
-    return sorted(rows, key=lambda row: row["misfit"])
-
-
-def row_of(
-    model: str, alpha: float | None, delta: float | None, gg: float | None, misfit: float, soft: float | None
-) -> dict[str, Any]:
-    """Return a line of the ranking; a scheme that grows has no finite misfit worth a number."""
-    name = None if alpha is None or delta is None else named(alpha, delta)
-    return {
-        "model": model,
-        "name": name,
-        "alpha": alpha,
-        "delta": delta,
-        "gg": gg,
-        "misfit": significant(min(misfit, 1e6), 6),
-        "compliance": None if soft is None else significant(soft, 4),
-    }

@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from validation.runs.text import printable
 
-PACK: Final = "4.0"
+PACK: Final = "5.0"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S"), AfterValidator(printable)]
@@ -23,7 +23,7 @@ class Data(BaseModel):
 
 
 class NumberData(Data):
-    """A number of an answer to a problem of rigid boxes, and the band in which it passes."""
+    """A number of an answer to a problem of blocks in the plane, and the band in which it passes."""
 
     name: str
     unit: str
@@ -56,7 +56,7 @@ class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["4.0"] = PACK
+    pack: Literal["5.0"] = PACK
     problem: str
     digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str
@@ -64,7 +64,7 @@ class ProblemData(Data):
     scene: dict[str, Any] = Field(description='Its tables; names end in their units; "inf" stands for infinity.')
     sampling: SamplingData
     answer: tuple[ColumnOfAnswer, ...]
-    numbers: tuple[NumberData, ...] = Field((), description="What is measured on an answer of rigid boxes.")
+    numbers: tuple[NumberData, ...] = Field((), description="What is measured on an answer of blocks in the plane.")
     exact: str | None = Field(description="CSV file of the exact motion, beside this one's directory; null: none.")
 
 

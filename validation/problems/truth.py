@@ -87,7 +87,7 @@ def _role(scene: Scene) -> Role:
                 value=format(elastic[0], "g"),
             )
         return Role.LIMIT
-    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS, features.RIGID_BOXES} & scene_features else Role.LIMIT
+    return Role.TRUTH if {features.COLUMN, features.SUB_BLOCKS, features.MOVING_BLOCKS} & scene_features else Role.LIMIT
 
 
 def exact(scene: Scene, truth: Truth) -> History:

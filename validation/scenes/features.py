@@ -33,7 +33,6 @@ FRICTION, LAGGED, SLOPE, ROTATION = "friction", "lagged friction", "slope", "lar
 COLUMN = "column"
 UNILATERAL_COLUMN, FRICTIONAL_COLUMN = "column that opens", "column that slips"
 RIGID_BLOCKS, RIGID_JOINTS = "rigid blocks", "rigid joints"
-RIGID_BOXES = "rigid boxes"
 PLANE, MOVING_BLOCKS = "blocks in the plane", "blocks that move"
 DAMPING, ADAPTIVE = "damping tables", "self-adaptive damping"
 IMPLICIT, CONSERVING = "implicit contact", "energy-conserving contact"
@@ -199,12 +198,12 @@ def refuse_column(scene: Scene, what: str) -> None:
 
 
 def refuse_bonded_column(scene: Scene, what: str) -> None:
-    """Refuse rigid boxes and columns whose springs are bonded, where a block or a moving column has an answer.
+    """Refuse columns whose springs are bonded, where a block or a moving column has an answer.
 
     Raises
     ------
     InputError
-        The scene has such a column, or rigid boxes.
+        The scene has such a column.
     """
     if refused := scene.kind.motion_unread(scene):
         rule = f"{what} takes scenes of a block, or of a column whose contacts open or slip, only"

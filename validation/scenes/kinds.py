@@ -66,16 +66,10 @@ class Kind:
     rank: float = 9.0  # place among the kinds; a scene without a table of any kind is of the first
     tables: ClassVar[Mapping[str, type[Section]]] = {}  # by name, that of the kind first
     columns: OwnColumns = NO_OWN  # numbered columns of histories that only this kind has, without their numbers
-    greatest_number: int = 0  # of these
     solvers: ClassVar[Mapping[str, str]] = {}  # that the folder brings, each as ``module:class``
     files: ClassVar[Mapping[str, str]] = {}  # keys of its tables that name files, and what these are
     refuses: Collection[str] = ()  # common tables that do not go with it
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
-
-    def column_names(self) -> Iterator[str]:
-        """Yield the names of all columns that only scenes of this kind have, ``x_1`` and so on."""
-        for number in range(1, self.greatest_number + 1):
-            yield from (f"{part}_{number}" for part in self.columns)
 
     def run(self, table: Any) -> dict[str, Any]:
         """Return keys of `run`, such as solvers and columns, for a scene that does not state them.

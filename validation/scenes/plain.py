@@ -31,7 +31,8 @@ class PlainHooks(Hooks):
         InputError
             Plain data do not hold what drives it, or scenes of this kind.
         """
-        raise InputError("must be a block, a column or rigid boxes", source=scene.name, value=scene.kind_in_words)
+        kinds_in_words = "must be a block, a column or blocks in the plane"
+        raise InputError(kinds_in_words, source=scene.name, value=scene.kind_in_words)
 
     def table(self, section: Section, *without: str) -> dict[str, Any]:
         """Return the keys of a table with their units in the names; a key that is absent is null."""

@@ -128,7 +128,7 @@ class Scene(SceneTables):
             excluded = _excluded(field, value)
             if both := [other for other in excluded if other in values]:
                 raise InputError(f"{field} and {both[0]} exclude each other", source=self.name, value="both")
-            # set ``section.key`` in place; exclusive partners of the key are taken out
+            # set ``section.key``, or a key of a table in it, in place; exclusive partners of the key are taken out
             where = self.name
             if field in ("name", "sweep", "gate") or field.startswith(("sweep.", "gate.")):
                 raise InputError("must be a key as in time.step=0.001", source=where, field=field, value=repr(field))

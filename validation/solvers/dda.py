@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -13,7 +12,6 @@ from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
 from validation.runs.modes import Mode
 from validation.runs.run import Run
 from validation.scenes import features
-from validation.scenes.kinds import kinds
 from validation.scenes.record import base_direction, base_record
 from validation.scenes.scene import Scene
 from validation.solvers import translation
@@ -64,10 +62,8 @@ class OneBlock(Prepared):
 
     def solve_steps(self, steps: int, columns: Sequence[str]) -> dda.Result:
         """Return the history of some steps; a discount may follow the kinetic energy."""
-        if features.ADAPTIVE in features.of(self.scene):
-            floor = self.scene.damping.floor
-            return dda.solve_adaptive(self.model, self.scheme, steps, columns, floor, self.full)
-        return dda.solve(self.model, self.scheme, steps, columns, self.full)
+        floor = self.scene.damping.floor if features.ADAPTIVE in features.of(self.scene) else None
+        return dda.solve(self.model, self.scheme, steps, columns, self.full, floor)
 
     def highest_frequency(self) -> float:
         """Return the highest natural frequency that the load reaches, joints included [rad/s]."""
@@ -125,7 +121,7 @@ class DDA(Solver):
     handles = (
         frozenset({features.SUB_BLOCKS, features.UNILATERAL, features.DEAD_BAND, features.RIGID, features.COLUMN})
         | {features.DAMPING, features.ADAPTIVE, features.SLOPE, features.FRICTION, features.LAGGED, features.ROTATION}
-        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.RIGID_BOXES, features.PLANE, features.MOVING_BLOCKS}
+        | {features.RIGID_BLOCKS, features.RIGID_JOINTS, features.PLANE, features.MOVING_BLOCKS}
         | features.OF_MOVING_COLUMN
         | features.LOADS
         | features.COURSES
@@ -151,11 +147,10 @@ class DDA(Solver):
 
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
-        of_kinds = itertools.chain(*(kind.column_names() for kind in kinds().values()))
-        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS, *of_kinds)
+        return (*dda.COLUMNS, *dda.ADAPTIVE_COLUMNS, *OPENING, PASSES, AREA, *AT_HEIGHTS)
 
     def applicable(self, scene: Scene) -> str | None:
-        """Return None, or why a band and friction do not go together, or what boxes DDA has no blocks for."""
+        """Return None, or why a band and friction do not go together, or what of its kind DDA does not take."""
         if reason := SolvingHooks.of(scene).refusal(scene, self.name):
             return reason
         consistent = {features.FRICTION, features.DEAD_BAND} <= set(features.of(scene)) and (

@@ -4,6 +4,8 @@ import math
 
 import numpy as np
 
+from validation.models.plane.boxes import boxes_of
+
 ABOUT = {
     "program": "impulses",
     "version": "1.0",
@@ -16,22 +18,25 @@ ABOUT = {
 class Impulses:
     """One box; impulses until none changes any more."""
 
-    handles = frozenset({"rigid boxes"})
+    handles = frozenset({"blocks in the plane", "blocks that move"})
     about = ABOUT
     own_step = 1e-3  # s
 
     def solve(self, scene):
         """Return the columns of a scene: pose and normal force of the box at each row."""
-        rigid = scene.rigid
-        if len(rigid.box) > 1 or rigid.stiffness is not None:
+        try:
+            ground = boxes_of(scene)
+        except ValueError as error:
+            raise NotImplementedError(str(error)) from None
+        if len(ground.boxes) > 1 or ground.stiffness is not None:
             raise NotImplementedError("one box on rigid ground only")
-        box = rigid.box[0]
-        per_row = math.ceil(scene.time.step / self.own_step - 1e-9) * 2**rigid.refine
+        box = ground.boxes[0]
+        per_row = math.ceil(scene.time.step / self.own_step - 1e-9)
         dt = scene.time.step / per_row
         inverse_mass = 1 / np.array([box.mass, box.mass, box.inertia])
         half_sides = np.array([box.width, box.height]) / 2
         corners = half_sides * [(-1, -1), (1, -1), (1, 1), (-1, 1)]
-        pose = np.array(rigid.starts[0])
+        pose = np.array([box.x, box.y, box.angle])
         velocity = np.array([*box.velocity, box.spin])
         rows = []
         for row in range(scene.time.steps):
@@ -43,13 +48,13 @@ class Impulses:
                     (-math.sin(pose[2]), math.cos(pose[2])),
                 ]
                 touching = arms[pose[1] + arms[:, 1] <= 0]
-                velocity, force = self._step(rigid, inverse_mass, velocity, touching, dt, rigid.base(time + dt)[1])
+                velocity, force = self._step(ground, inverse_mass, velocity, touching, dt, ground.base(time + dt)[1])
                 pose = pose + dt / 2 * velocity
             rows.append((*pose, force))
-        return dict(zip(("x_1", "y_1", "angle_1", "force_1"), np.array(rows).T, strict=True))
+        return dict(zip(ground.columns, np.array(rows).T, strict=True))
 
-    def _step(self, rigid, inverse_mass, before, touching, dt, ground):
-        velocity = before + dt * np.array([*rigid.pull, 0.0])
+    def _step(self, ground, inverse_mass, before, touching, dt, base_velocity):
+        velocity = before + dt * np.array([*ground.pull, 0.0])
         impulses = np.zeros((len(touching), 2))
         tolerance = 1e-12 * abs(velocity).max() / inverse_mass[0]
         change = math.inf
@@ -59,11 +64,11 @@ class Impulses:
                 for axis, direction in ((1, np.array([0.0, 1.0, x])), (0, np.array([1.0, 0.0, -y]))):
                     excess = direction @ velocity
                     if axis == 1:
-                        excess += rigid.restitution * min(direction @ before, 0.0)
+                        excess += ground.rebound * min(direction @ before, 0.0)
                         low, high = 0.0, math.inf
                     else:
-                        excess -= ground
-                        high = rigid.friction_coefficient * impulses[corner, 1]
+                        excess -= base_velocity
+                        high = ground.friction_coefficient * impulses[corner, 1]
                         low = -high
                     wanted = impulses[corner, axis] - excess / (direction**2 @ inverse_mass)
                     added = min(max(wanted, low), high) - impulses[corner, axis]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from peers.boxes import Pose, base_velocity, boxes_of, ground_ends, record, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.runs.history import Array
@@ -29,15 +29,15 @@ class World:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        rigid = boxes_of(scene)
-        if rigid.stiffness is not None:
+        pile = boxes_of(scene)
+        if pile.stiffness is not None:
             raise NotImplementedError(
                 "contact of given stiffness: Box2D's hertz correct overlap, its contacts stop a box dead"
             )
         self.scene = scene
         self.box2d = imported("pyb2d3", "Box2D", RECIPE)
-        self.world = self.box2d.World(gravity=rigid.pull)
-        self.moves = bool(rigid.base_amplitude)
+        self.world = self.box2d.World(gravity=pile.pull)
+        self.moves = bool(pile.base_amplitude)
         self.default = default
         if not default:
             self.world.restitution_threshold = 0.0
@@ -45,14 +45,14 @@ class World:
             # The stiffest that Box2D takes: a quarter of the rate of its sub-steps, to which it lowers what is above.
             hertz = SUB_STEPS * substeps(scene, STEP) / scene.time.step / 4
             self.world.set_contact_tuning(hertz, DAMPING_RATIO, PUSH_SPEED)
-        material = self.box2d.surface_material(friction=rigid.friction_coefficient, restitution=rigid.restitution)
-        left, right = ground_ends(scene)
+        material = self.box2d.surface_material(friction=pile.friction_coefficient, restitution=pile.rebound)
+        left, right = boxes_of(scene).ends
         corners = [(left, -DEPTH), (right, -DEPTH), (right, 0.0), (left, 0.0)]
         self.ground = self.world.create_kinematic_body() if self.moves else self.world.create_static_body()
         self.ground.create_polygon_shape(self.box2d.shape_def(material=material), self.box2d.polygon(corners))
         self.boxes = []
         self.turns = []
-        for box, (x, y, angle) in zip(rigid.box, rigid.starts, strict=True):
+        for box, (x, y, angle) in zip(pile.boxes, pile.starts, strict=True):
             body = self.world.create_dynamic_body(
                 position=(x, y),
                 rotation=self.box2d.make_rot(angle),

@@ -1,4 +1,4 @@
-"""Rigid boxes for programs of contact: the program's own step beside the instants of a scene, and the columns."""
+"""Boxes on a ground for programs of contact: the program's own step beside the instants of a scene, and the columns."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from validation.models.rigid.tables import FORCE, POSE, BoxSection, RigidSection
+from validation.models.plane.boxes import Box, BoxesOnGround
+from validation.models.plane.boxes import boxes_of as read_boxes
+from validation.models.plane.history import POSE
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.solvers.foreign import PROGRAM_STEPS
@@ -19,41 +21,34 @@ FAST_CORRECTION = 20.0  # 1/s
 SPRING_RESOLUTION = 0.005  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
-def boxes_of(scene: Scene) -> RigidSection:
-    """Return the rigid boxes of a scene.
+def boxes_of(scene: Scene) -> BoxesOnGround:
+    """Return the boxes on a ground of a scene of blocks in the plane.
 
     Raises
     ------
     NotImplementedError
-        The scene is of a block or a column.
+        The scene is of something else.
     """
-    if scene.rigid is None:
-        raise NotImplementedError("rigid boxes only: its bodies neither strain nor stand on springs of given stiffness")
-    return scene.rigid
+    try:
+        return read_boxes(scene)
+    except ValueError as error:
+        raise NotImplementedError(str(error)) from None
 
 
 def substeps(scene: Scene, own_step: float) -> int:
-    """Return how many steps a program makes in one of the scene's.
-
-    Parameters
-    ----------
-    scene
-        A scene of rigid boxes; `rigid.refine` says how often the program's step is halved.
-    own_step
-        The step that the program is used with [s].
-    """
-    return max(1, math.ceil(scene.time.step / own_step - ROUNDING)) * 2 ** boxes_of(scene).refine
+    """Return how many steps a program makes in one of the scene's, at most as long as the one it is used with [s]."""
+    return max(1, math.ceil(scene.time.step / own_step - ROUNDING))
 
 
 def spring_step(scene: Scene) -> float:
     """Return a step that resolves a contact of given stiffness [s]; no bound where none is given."""
-    rigid = boxes_of(scene)
-    if rigid.stiffness is None:
+    pile = boxes_of(scene)
+    if pile.stiffness is None:
         return math.inf
-    return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in rigid.box) / rigid.stiffness)
+    return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in pile.boxes) / pile.stiffness)
 
 
-def corners_of(box: BoxSection) -> list[tuple[float, float]]:
+def corners_of(box: Box) -> list[tuple[float, float]]:
     """Return the corners of a box from its centre, the two lower ones first [m]."""
     half_width = box.width / 2
     half_height = box.height / 2
@@ -67,30 +62,9 @@ def correction_rate(scene: Scene) -> float:
     brought. Boxes that stand on each other overlap more and more where their impulses are not solved to the end; there
     it is to go.
     """
-    rigid = boxes_of(scene)
-    piled = len(rigid.box) > 1 and not rigid.restitution
+    pile = boxes_of(scene)
+    piled = len(pile.boxes) > 1 and not pile.rebound
     return FAST_CORRECTION if piled else SLOW_CORRECTION
-
-
-def ground_ends(scene: Scene) -> tuple[float, float]:
-    """Return x of both ends of a ground that no box leaves [m].
-
-    For programs whose ground has ends: a box slides without friction, its speed at first and that of its fall turned
-    along the ground, and rolls over a few times beside that.
-    """
-    rigid = boxes_of(scene)
-    duration = scene.time.steps * scene.time.step
-    fastest = max(
-        math.sqrt(math.hypot(*box.velocity) ** 2 + box.inertia / box.mass * box.spin**2 + 2 * rigid.gravity * box.lift)
-        for box in rigid.box
-    )
-    margin = 10.0 + 4 * sum(box.width + box.height for box in rigid.box) + 4 * abs(rigid.base_amplitude)
-    along, _ = rigid.pull
-    free = along * duration**2 / 2
-    starts = [box.x for box in rigid.box]
-    left = min(starts) - margin - fastest * duration + min(free, 0.0)
-    right = max(starts) + margin + fastest * duration + max(free, 0.0)
-    return left, right
 
 
 def base_velocity(scene: Scene, start: float, step: float, position: float) -> float:
@@ -114,7 +88,7 @@ def record(
     Parameters
     ----------
     scene
-        A scene of rigid boxes.
+        A scene of boxes on a ground.
     own_step
         The step that the program is used with [s]; see `substeps`.
     advance
@@ -131,7 +105,7 @@ def record(
     """
     per_row = substeps(scene, own_step)
     step = scene.time.step / per_row
-    count = len(boxes_of(scene).box)
+    count = len(boxes_of(scene).boxes)
     rows = np.full((scene.time.steps, count, 3 if forces is None else 4), np.nan)
     for row in range(scene.time.steps):
         for part in range(per_row):
@@ -141,20 +115,25 @@ def record(
             rows[row, :, 3] = forces()
         if not np.isfinite(rows[row, :, :3]).all():
             break
-    return named(rows, per_row * scene.time.steps)
+    return named(scene, rows, per_row * scene.time.steps)
 
 
-def named(rows: Array, program_steps: int) -> dict[str, Array]:
+def named(scene: Scene, rows: Array, program_steps: int) -> dict[str, Array]:
     """Return the columns of an answer.
 
     Parameters
     ----------
+    scene
+        A scene of boxes on a ground.
     rows
         x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
     program_steps
         How many steps the program made, for the curves of error over cost.
     """
-    names = (*POSE, FORCE)[: rows.shape[2]]
-    boxes = range(rows.shape[1])
-    columns = {f"{name}_{box + 1}": rows[:, box, column] for box in boxes for column, name in enumerate(names)}
-    return columns | {PROGRAM_STEPS: np.array(float(program_steps))}
+    pile = boxes_of(scene)
+    columns = {PROGRAM_STEPS: np.array(float(program_steps))}
+    for number, (box, force) in enumerate(zip(pile.boxes, pile.force_columns, strict=True)):
+        columns |= {f"{box.name}.{part}": rows[:, number, place] for place, part in enumerate(POSE)}
+        if rows.shape[2] > len(POSE):
+            columns[force] = rows[:, number, len(POSE)]
+    return columns

@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import math
 
-from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, record, spring_step, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import check_plane
-from validation.models.rigid.tables import BoxSection
+from validation.models.plane.boxes import Box
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -37,14 +37,14 @@ class World:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        rigid = boxes_of(scene)
+        pile = boxes_of(scene)
         self.scene = scene
         self.default = default
         self.bullet = imported("pybullet", "PyBullet", RECIPE)
         self.server = self.bullet.connect(self.bullet.DIRECT)
         self.own_step = USUAL_STEP if default else min(STEP, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
-        along, up = rigid.pull
+        along, up = pile.pull
         self.bullet.setGravity(along, 0, up, physicsClientId=self.server)
         self.bullet.setTimeStep(step, physicsClientId=self.server)
         if not default:
@@ -56,11 +56,11 @@ class World:
             )
         self.ground, self.ground_link = self._ground()
         self.boxes = []
-        for box, start in zip(rigid.box, rigid.starts, strict=True):
+        for box, start in zip(pile.boxes, pile.starts, strict=True):
             body = self._free(box, start) if default else self._planar(box, start)
             self.boxes.append(body)
-        self.starts = rigid.starts
-        self.turns = [start[2] for start in rigid.starts]
+        self.starts = pile.starts
+        self.turns = [start[2] for start in pile.starts]
 
     def close(self) -> None:
         """End the server."""
@@ -99,24 +99,24 @@ class World:
 
     def _ground(self) -> tuple[int, int]:
         """Return a ground that is a box, and its link; as a multi-body on a joint where it moves."""
-        rigid = boxes_of(self.scene)
-        left, right = ground_ends(self.scene)
+        pile = boxes_of(self.scene)
+        left, right = boxes_of(self.scene).ends
         shape = self._shape((right - left) / 2, THICKNESS, THICKNESS / 2)
         position = [(left + right) / 2, 0.0, -THICKNESS / 2]
-        if rigid.base_amplitude:
-            mass = HEAVY * sum(box.mass for box in rigid.box)
+        if pile.base_amplitude:
+            mass = HEAVY * sum(box.mass for box in pile.boxes)
             body = self._linked(position, [(self.bullet.JOINT_PRISMATIC, [1, 0, 0])], [mass], shape)
             link = 0
         else:
             body = self.bullet.createMultiBody(0, shape, basePosition=position, physicsClientId=self.server)
             link = BASE
         self._set(body, link)
-        if rigid.stiffness is not None:
+        if pile.stiffness is not None:
             # A damping of zero is none; the share of the box's own is set to zero as well.
-            self._change(body, link, contactStiffness=rigid.stiffness / CORNERS, contactDamping=0.0)
+            self._change(body, link, contactStiffness=pile.stiffness / CORNERS, contactDamping=0.0)
         return body, link
 
-    def _free(self, box: BoxSection, start: Pose) -> int:
+    def _free(self, box: Box, start: Pose) -> int:
         """Return a box that is free in space."""
         x, y, angle = start
         body: int = self.bullet.createMultiBody(
@@ -131,7 +131,7 @@ class World:
         self._set(body, BASE)
         return body
 
-    def _planar(self, box: BoxSection, start: Pose) -> int:
+    def _planar(self, box: Box, start: Pose) -> int:
         """Return a box on joints that leave it the plane."""
         x, y, angle = start
         joints = [
@@ -151,10 +151,10 @@ class World:
 
     def _set(self, body: int, link: int) -> None:
         """Set friction and restitution; a pair has the product of its two coefficients."""
-        rigid = boxes_of(self.scene)
-        restitution = 0.0 if rigid.stiffness is not None else rigid.restitution  # a spring returns what it took
+        pile = boxes_of(self.scene)
+        restitution = 0.0 if pile.stiffness is not None else pile.rebound  # a spring returns what it took
         self._change(
-            body, link, lateralFriction=math.sqrt(rigid.friction_coefficient), restitution=math.sqrt(restitution)
+            body, link, lateralFriction=math.sqrt(pile.friction_coefficient), restitution=math.sqrt(restitution)
         )
 
     def _change(self, body: int, link: int, **values: float) -> None:

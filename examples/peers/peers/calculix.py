@@ -24,12 +24,7 @@ HANDLED = frozenset(
     [
         *("off-centre load", "own weight", "base motion", "unilateral contact", "friction", "slope", "large rotation"),
         *("column", "implicit contact", "energy-conserving contact"),  # the last two are DDA's steps, as alpha is
-        "rigid boxes",  # refused in words of its own
     ]
-)
-NO_BOXES = (
-    "rigid boxes: a block here is one elastic element on penalty springs, without restitution; boxes that fall and "
-    "turn would need rigid bodies of large rotation and a law of impact"
 )
 MODEL = "one C3D8 kept affine by equations, penalty contact of its nodes; a column of C3D8 on dashpots"
 
@@ -58,7 +53,6 @@ class CalculiX(ExternalProgram):
         Stopped
             ccx gave the last try up.
         """
-        refuse(scene.rigid is not None, NO_BOXES)
         refuse(scene.damping.present, "CalculiX has no Rayleigh damping in direct integration")
         sub = self.increments(scene)
         for attempt in range(TRIES if self.accurate else 1):

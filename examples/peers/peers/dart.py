@@ -6,11 +6,11 @@ import itertools
 import math
 from typing import Any
 
-from peers.boxes import Pose, boxes_of, ground_ends, record
+from peers.boxes import Pose, boxes_of, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
-from validation.models.rigid.tables import RigidSection
+from validation.models.plane.boxes import BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -35,14 +35,14 @@ class World:
             options.mEnabled = False
             self.world.setDeactivationOptions(options)
         # A box and not a plane: on DART's PlaneShape a box gets fewer than four points of contact and turns about them.
-        left, right = ground_ends(scene)
+        left, right = boxes_of(scene).ends
         self.ground, _ = self._body("ground", (right - left, 1.0, GROUND_DEPTH))
         self._place(self.ground, ((left + right) / 2, -0.5, 0.0), (0.0, 0.0, 0.0))
         # The velocity is prescribed: contact forces do not move it.
         self.ground.setActuatorType(self.dart.dynamics.ActuatorType.VELOCITY)
         self.bodies = []
         self.rotations = []
-        for number, (box, start) in enumerate(zip(self.boxes.box, self.boxes.starts, strict=True), 1):
+        for number, (box, start) in enumerate(zip(self.boxes.boxes, self.boxes.starts, strict=True), 1):
             size = box.width, box.height, 1.0
             joint, body = self._body(f"box_{number}", size)
             moments = self.dart.dynamics.BoxShape(size).computeInertiaFromMass(box.mass)
@@ -65,7 +65,7 @@ class World:
         node.createDynamicsAspect()
         surface = node.getDynamicsAspect()
         surface.setFrictionCoeff(self.boxes.friction_coefficient)
-        surface.setRestitutionCoeff(math.sqrt(self.boxes.restitution))
+        surface.setRestitutionCoeff(math.sqrt(self.boxes.rebound))
         self.world.addSkeleton(skeleton)
         return joint, body
 
@@ -114,7 +114,7 @@ def _skeleton(collision_object: Any) -> str:
     return str(collision_object.getShapeFrame().asShapeNode().getBodyNodePtr().getSkeleton().getName())
 
 
-def _check(boxes: RigidSection) -> None:
+def _check(boxes: BoxesOnGround) -> None:
     """Refuse what DART cannot express.
 
     Raises
@@ -123,11 +123,11 @@ def _check(boxes: RigidSection) -> None:
         The scene asks for it.
     """
     if boxes.stiffness is not None:
-        raise NotImplementedError("rigid.stiffness: DART's contact is rigid, a condition on impulses")
+        raise NotImplementedError("plane.contact.stiffness: DART's contact is rigid, a condition on impulses")
     if 0 < boxes.friction_coefficient <= LEAST_FRICTION:
-        raise NotImplementedError(f"rigid.friction: DART leaves away a coefficient of up to {LEAST_FRICTION:g}")
-    if 0 < boxes.restitution <= LEAST_RESTITUTION:
-        raise NotImplementedError(f"rigid.restitution: DART leaves away one of up to {LEAST_RESTITUTION:g}")
+        raise NotImplementedError(f"plane.contact.friction: DART leaves away a coefficient of up to {LEAST_FRICTION:g}")
+    if 0 < boxes.rebound <= LEAST_RESTITUTION:
+        raise NotImplementedError(f"plane.contact.restitution: DART leaves away one of up to {LEAST_RESTITUTION:g}")
 
 
 class Dart(ExternalProgram):

@@ -11,7 +11,7 @@ from typing import Any
 from peers.boxes import Pose, boxes_of, record, spring_step, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.rigid.tables import BoxSection, RigidSection
+from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -58,13 +58,13 @@ class World:
         self.plant.mutable_gravity_field().set_gravity_vector([*self.boxes.pull, 0.0])
         self.numbers = {self._ground(): 0}
         self.joints = []
-        for number, box in enumerate(self.boxes.box, 1):
+        for number, box in enumerate(self.boxes.boxes, 1):
             self._box(number, box)
         self.plant.Finalize()
         self.diagram = builder.Build()
         self.simulator = self.drake.Simulator(self.diagram)
         self.context = self.plant.GetMyMutableContextFromRoot(self.simulator.get_mutable_context())
-        for joint, box, (x, y, angle) in zip(self.joints, self.boxes.box, self.boxes.starts, strict=True):
+        for joint, box, (x, y, angle) in zip(self.joints, self.boxes.boxes, self.boxes.starts, strict=True):
             joint.set_pose(self.context, [x, y], angle)
             joint.set_translational_velocity(self.context, box.velocity)
             joint.set_angular_velocity(self.context, box.spin)
@@ -84,7 +84,7 @@ class World:
         half_space = self.drake.HalfSpace()
         return self.plant.RegisterCollisionGeometry(self.plant.world_body(), pose, half_space, "ground", properties)
 
-    def _box(self, number: int, box: BoxSection) -> None:
+    def _box(self, number: int, box: Box) -> None:
         """Add a box that moves in the plane."""
         inertia = self.drake.SpatialInertia.SolidBoxWithMass(box.mass, box.width, box.height, 1.0)
         body = self.plant.AddRigidBody(f"box_{number}", inertia)
@@ -94,7 +94,7 @@ class World:
         joint = self.drake.PlanarJoint(f"joint_{number}", self.plant.world_frame(), body.body_frame(), [0.0, 0.0, 0.0])
         self.joints.append(self.plant.AddJoint(joint))
 
-    def _shapes(self, box: BoxSection) -> Iterator[tuple[str, Any, Any, Any]]:
+    def _shapes(self, box: Box) -> Iterator[tuple[str, Any, Any, Any]]:
         """Yield name, pose, shape and properties of what touches other bodies."""
         if self.chosen and self.boxes.stiffness is not None:
             # Hydroelastic contact loses stiffness with depth, for the pressure falls towards the sides of a box.
@@ -118,7 +118,7 @@ class World:
         coefficient = self.boxes.friction_coefficient
         friction = self.drake.CoulombFriction(coefficient, coefficient)
         self.drake.AddContactMaterial(friction=friction, properties=properties)
-        if self.boxes.restitution == 1:
+        if self.boxes.rebound == 1:
             properties.AddProperty("material", "hunt_crossley_dissipation", 0.0)
         if stiffness is not None:
             properties.AddProperty("material", "point_contact_stiffness", 2 * stiffness)
@@ -138,7 +138,7 @@ class World:
     def _push(self, acceleration: float) -> None:
         """Apply what an acceleration of the ground is in its own frame."""
         forces = []
-        for joint, box in zip(self.joints, self.boxes.box, strict=True):
+        for joint, box in zip(self.joints, self.boxes.boxes, strict=True):
             force = self.drake.ExternallyAppliedSpatialForce()
             force.body_index = joint.child_body().index()
             force.F_Bq_W = self.drake.SpatialForce([0.0, 0.0, 0.0], [-box.mass * acceleration, 0.0, 0.0])
@@ -176,7 +176,7 @@ class World:
             forces[lower] += abs(math.cos(angle) * float(force[1]) - math.sin(angle) * float(force[0]))
 
 
-def _check(boxes: RigidSection, *, chosen: bool) -> None:
+def _check(boxes: BoxesOnGround, *, chosen: bool) -> None:
     """Refuse what Drake cannot express.
 
     Raises
@@ -184,14 +184,14 @@ def _check(boxes: RigidSection, *, chosen: bool) -> None:
     NotImplementedError
         The scene asks for it.
     """
-    if 0 < boxes.restitution < 1:
+    if 0 < boxes.rebound < 1:
         raise NotImplementedError(
-            "rigid.restitution: Drake's contact has a dissipation, whose rebound depends on mass and speed; "
+            "plane.contact.restitution: Drake's contact has a dissipation, whose rebound depends on mass and speed; "
             "0 (its own dissipation) and 1 (none) only"
         )
-    if chosen and boxes.stiffness is not None and len(boxes.box) > 1:
+    if chosen and boxes.stiffness is not None and len(boxes.boxes) > 1:
         raise NotImplementedError(
-            "rigid.stiffness: of a box alone, whose corners have it; corners of others meet edges"
+            "plane.contact.stiffness: of a box alone, whose corners have it; corners of others meet edges"
         )
 
 

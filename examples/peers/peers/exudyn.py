@@ -16,7 +16,7 @@ import numpy as np
 from peers.boxes import Pose, boxes_of, corners_of, named, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.rigid.tables import BoxSection, RigidSection
+from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -55,36 +55,36 @@ class Exudyn(ExternalProgram):
         Raises
         ------
         NotImplementedError
-            The scene has no rigid boxes, or Exudyn is not installed.
+            The scene is of something else, or Exudyn is not installed.
         """
-        rigid = boxes_of(scene)
+        pile = boxes_of(scene)
         imported("exudyn.itemInterface", "Exudyn", RECIPE)
         exudyn = imported("exudyn", "Exudyn", RECIPE)
         exudyn.config.printToConsole = False
         steps = substeps(scene, self.own_step)
-        model = Model(exudyn, rigid, self.stiffness(rigid, scene.time.step / steps), self.friction_zone)
+        model = Model(exudyn, pile, self.stiffness(pile, scene.time.step / steps), self.friction_zone)
         settings = exudyn.SimulationSettings()
         settings.solution.file.write = False
         time = settings.timeIntegration
         time.verboseMode = 0
         time.endTime = scene.time.step * scene.time.steps
         time.numberOfSteps = steps * scene.time.steps
-        self.choose(time, rigid)
+        self.choose(time, pile)
         rows = model.rows(settings, scene.time.step * np.arange(1.0, scene.time.steps + 1))
-        return named(rows, time.numberOfSteps)
+        return named(scene, rows, time.numberOfSteps)
 
-    def stiffness(self, rigid: RigidSection, step: float) -> list[float]:
+    def stiffness(self, pile: BoxesOnGround, step: float) -> list[float]:
         """Return the stiffness of the contact below each box, where the scene gives none [N/m].
 
         An impact errs by about the square of the angle of its vibration in a step, (w h)^2, and a box sinks by g / w^2:
         both fall with the step where w^2 is proportional to 1 / h.
         """
         square = (self.angle / self.own_step) ** 2 * self.own_step / step
-        return [carried * square for carried in carried_masses(rigid)]
+        return [carried * square for carried in carried_masses(pile)]
 
-    def choose(self, time: Any, rigid: RigidSection) -> None:
+    def choose(self, time: Any, pile: BoxesOnGround) -> None:
         """Set what differs from Exudyn's defaults in its `TimeIntegrationSettings`."""
-        weight = min(box.mass for box in rigid.box) * acceleration(rigid)
+        weight = min(box.mass for box in pile.boxes) * acceleration(pile)
         time.generalizedAlpha.spectralRadius = 1.0
         time.newton.absoluteTolerance = 1e-6 * weight
         time.discontinuous.iterationTolerance = 1e-4 * weight
@@ -101,51 +101,51 @@ class AsItComes(Exudyn):
         "has no default: a box sinks by 0.1 % of its height under its weight on Earth"
     )
 
-    def stiffness(self, rigid: RigidSection, step: float) -> list[float]:
+    def stiffness(self, pile: BoxesOnGround, step: float) -> list[float]:
         """Return the stiffness of the contact below each box, where the scene gives none [N/m]."""
-        return [carried * EARTH / (SINKS * rigid.box[0].height) for carried in carried_masses(rigid)]
+        return [carried * EARTH / (SINKS * pile.boxes[0].height) for carried in carried_masses(pile)]
 
-    def choose(self, time: Any, rigid: RigidSection) -> None:
+    def choose(self, time: Any, pile: BoxesOnGround) -> None:
         """Leave Exudyn's settings as they are."""
 
 
-def carried_masses(rigid: RigidSection) -> list[float]:
+def carried_masses(pile: BoxesOnGround) -> list[float]:
     """Return the mass that stands on the contact below each box [kg]."""
-    masses = [box.mass for box in rigid.box]
+    masses = [box.mass for box in pile.boxes]
     return [sum(masses[number:]) for number in range(len(masses))]
 
 
-def fastest(rigid: RigidSection) -> float:
+def fastest(pile: BoxesOnGround) -> float:
     """Return the speed with which a corner may hit the ground, if nothing is gained [m/s]."""
     squares = []
-    for box in rigid.box:
-        level = not (box.tilt or box.spin) and rigid.friction_coefficient * box.height < box.width
+    for box in pile.boxes:
+        level = not (box.angle or box.spin) and pile.friction_coefficient * box.height < box.width
         if level:
-            squares.append(box.velocity[1] ** 2 + 2 * rigid.gravity * box.lift)
+            squares.append(box.velocity[1] ** 2 + 2 * pile.gravity * box.lift)
         else:
             size = math.hypot(box.width, box.height)
             rotating = (box.spin * size / 2) ** 2
-            squares.append(math.hypot(*box.velocity) ** 2 + rotating + 2 * rigid.gravity * (box.lift + size))
+            squares.append(math.hypot(*box.velocity) ** 2 + rotating + 2 * pile.gravity * (box.lift + size))
     return math.sqrt(max(squares))
 
 
-def acceleration(rigid: RigidSection) -> float:
+def acceleration(pile: BoxesOnGround) -> float:
     """Return gravity, or where there is none what stops the fastest corner within the height of a box [m/s2]."""
-    return rigid.gravity or fastest(rigid) ** 2 / rigid.box[0].height or 1.0
+    return pile.gravity or fastest(pile) ** 2 / pile.boxes[0].height or 1.0
 
 
-def corner_law(rigid: RigidSection, stiffness: float, mass: float) -> dict[str, float]:
+def corner_law(pile: BoxesOnGround, stiffness: float, mass: float) -> dict[str, float]:
     """Return Exudyn's parameters of one of two corners, from stiffness [N/m] and mass [kg] of what stands on both.
 
     A stiffness that the scene gives is that of an elastic spring. Restitution 0 is critical damping of a flat landing,
     and more than that of a corner alone. Between 0 and 1 stands the impact model 2: its restitution depends on no mass.
     """
-    law = {"contactStiffness": stiffness / 2, "dynamicFriction": rigid.friction_coefficient}
-    if rigid.stiffness is not None or rigid.restitution == 1:
+    law = {"contactStiffness": stiffness / 2, "dynamicFriction": pile.friction_coefficient}
+    if pile.stiffness is not None or pile.rebound == 1:
         return law
-    if rigid.restitution == 0:
+    if pile.rebound == 0:
         return law | {"contactDamping": math.sqrt(stiffness * mass)}
-    return law | {"impactModel": 2, "restitutionCoefficient": rigid.restitution}
+    return law | {"impactModel": 2, "restitutionCoefficient": pile.rebound}
 
 
 class Model:
@@ -155,7 +155,7 @@ class Model:
     ----------
     exudyn
         The program.
-    rigid
+    pile
         The boxes.
     stiffness
         Of the contact below each box, where the scene gives none [N/m].
@@ -163,31 +163,31 @@ class Model:
         Slip below which friction is proportional to it [m/s]; None is Exudyn's own.
     """
 
-    def __init__(self, exudyn: Any, rigid: RigidSection, stiffness: list[float], friction_zone: float | None) -> None:
+    def __init__(self, exudyn: Any, pile: BoxesOnGround, stiffness: list[float], friction_zone: float | None) -> None:
         self.exudyn = exudyn
         self.items = exudyn.itemInterface
-        self.rigid = rigid
+        self.pile = pile
         self.container = exudyn.SystemContainer()
         self.system = self.container.AddSystem()
-        carried = carried_masses(rigid)
-        if rigid.stiffness is not None:
-            stiffness = [rigid.stiffness] * len(carried)
+        carried = carried_masses(pile)
+        if pile.stiffness is not None:
+            stiffness = [pile.stiffness] * len(carried)
         softest = min(k / mass for k, mass in zip(stiffness, carried, strict=True))
-        deepest = fastest(rigid) / math.sqrt(softest) + rigid.gravity / softest
-        self.radius = max(ARM * min(box.height for box in rigid.box), DEEP * deepest)
-        laws = [corner_law(rigid, k, mass) for k, mass in zip(stiffness, carried, strict=True)]
+        deepest = fastest(pile) / math.sqrt(softest) + pile.gravity / softest
+        self.radius = max(ARM * min(box.height for box in pile.boxes), DEEP * deepest)
+        laws = [corner_law(pile, k, mass) for k, mass in zip(stiffness, carried, strict=True)]
         if friction_zone is not None:
             laws = [{**law, "frictionProportionalZone": friction_zone} for law in laws]
         self.nodes: list[int] = []
         self.bodies: list[int] = []
-        for box, start in zip(rigid.box, rigid.starts, strict=True):
+        for box, start in zip(pile.boxes, pile.starts, strict=True):
             self.add_box(box, start)
         ground = self.system.AddObject(self.items.ObjectGround())
-        size = max(math.hypot(box.width, box.height) for box in rigid.box)
-        on_ground = self.touch(self.bodies[0], corners_of(rigid.box[0]), ground, (0.0, 1.0), WIDE * size, laws[0])
+        size = max(math.hypot(box.width, box.height) for box in pile.boxes)
+        on_ground = self.touch(self.bodies[0], corners_of(pile.boxes[0]), ground, (0.0, 1.0), WIDE * size, laws[0])
         self.contacts = [on_ground]  # of each box with what is below it
-        for number, box in enumerate(rigid.box[1:], start=1):
-            lower = rigid.box[number - 1]
+        for number, box in enumerate(pile.boxes[1:], start=1):
+            lower = pile.boxes[number - 1]
             upper_body = self.bodies[number]
             lower_body = self.bodies[number - 1]
             top = (lower.height / 2, 1.0)
@@ -197,18 +197,18 @@ class Model:
             self.contacts.append(on_lower + on_upper)
         self.system.Assemble()
 
-    def add_box(self, box: BoxSection, start: Pose) -> None:
+    def add_box(self, box: Box, start: Pose) -> None:
         """Add a planar rigid body, its weight, and the inertial load of a ground that moves."""
         items = self.items
         initial = [*box.velocity, box.spin]
         node = self.system.AddNode(items.NodeRigidBody2D(referenceCoordinates=list(start), initialVelocities=initial))
         body = self.system.AddObject(items.ObjectRigidBody2D(mass=box.mass, inertia=box.inertia, nodeNumber=node))
         marker = self.system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-        pull = [*self.rigid.pull, 0.0]
+        pull = [*self.pile.pull, 0.0]
         load = items.LoadMassProportional(markerNumber=marker, loadVector=pull)
-        if self.rigid.base_amplitude:
-            rate = 2 * math.pi * self.rigid.base_frequency
-            peak = self.rigid.base_amplitude * rate**2
+        if self.pile.base_amplitude:
+            rate = 2 * math.pi * self.pile.base_frequency
+            peak = self.pile.base_amplitude * rate**2
             load.loadVectorUserFunction = lambda system, time, vector: [
                 pull[0] - peak * math.cos(rate * time),
                 pull[1],
@@ -281,7 +281,7 @@ class Model:
         except (SystemError, RuntimeError, ValueError):
             rows[done:] = np.nan
         for row, instant in enumerate(instants):
-            rows[row, :, 0] += self.rigid.base(float(instant))[0]
+            rows[row, :, 0] += self.pile.base(float(instant))[0]
         return rows
 
     def state(self, time: float) -> State:

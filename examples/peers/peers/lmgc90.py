@@ -21,7 +21,7 @@ import numpy as np
 from peers.boxes import Pose, boxes_of, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.rigid.tables import BoxSection, RigidSection
+from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -57,19 +57,19 @@ class LMGC90(ExternalProgram):
         NotImplementedError
             The scene is not what this part of LMGC90 can express, or compas_lmgc90 is not installed.
         """
-        rigid = boxes_of(scene)
-        refuse(rigid)
-        alert = self.alert(rigid)
+        pile = boxes_of(scene)
+        refuse(pile)
+        alert = self.alert(pile)
         program = imported("compas_lmgc90._lmgc90", "LMGC90", RECIPE)
-        model = Model(program.LMGC90Solver, rigid, scene.time.step / substeps(scene, self.own_step), alert)
+        model = Model(program.LMGC90Solver, pile, scene.time.step / substeps(scene, self.own_step), alert)
         try:
             return record(scene, self.own_step, model.advance, model.poses, model.forces)
         finally:
             model.solver.finalize()
 
-    def alert(self, rigid: RigidSection) -> float:
+    def alert(self, pile: BoxesOnGround) -> float:
         """Return the distance within which contact is sought [m]."""
-        return max(2 * box.lift + max(box.width, box.height) for box in rigid.box)
+        return max(2 * box.lift + max(box.width, box.height) for box in pile.boxes)
 
 
 class AsItComes(LMGC90):
@@ -78,36 +78,36 @@ class AsItComes(LMGC90):
     own_step = DEFAULT_STEP
     settings = "theta = 1/2 at 10 ms, contact is sought within 1 mm: the defaults of compas_lmgc90.Solver"
 
-    def alert(self, rigid: RigidSection) -> float:
+    def alert(self, pile: BoxesOnGround) -> float:
         """Return the distance within which contact is sought [m]."""
-        far = max(box.lift for box in rigid.box)
+        far = max(box.lift for box in pile.boxes)
         if far > DEFAULT_ALERT:
             why = "as it comes, contact is sought in the first step within 1 mm, and what is further up falls through"
-            raise NotImplementedError(f"rigid.box.lift: {why}, got {far:g} m")
+            raise NotImplementedError(f"plane.block.at: {why}, got {far:g} m")
         return DEFAULT_ALERT
 
 
-def refuse(rigid: RigidSection) -> None:
+def refuse(pile: BoxesOnGround) -> None:
     """Refuse what this part of LMGC90 cannot express."""
-    tilted = [box.tilt for box in rigid.box if box.tilt]
+    tilted = [box.angle for box in pile.boxes if box.angle]
     if tilted:
         why = "compas_lmgc90 seeks contact between parallel faces only, and a tilted box falls through the ground"
-        raise NotImplementedError(f"rigid.box.tilt: {why}, got {tilted[0]:g} deg")
-    lifted = [box.lift for box in rigid.box if box.lift]
-    if lifted and rigid.stiffness is None:
+        raise NotImplementedError(f"plane.block.turned: {why}, got {tilted[0]:g} deg")
+    lifted = [box.lift for box in pile.boxes if box.lift]
+    if lifted and pile.stiffness is None:
         # 0.314 of the impulse again in the step after, where the contact is still closed then: what comes back follows
         # where in a step a box lands, and says nothing of LMGC90's own law.
         why = "through compas_lmgc90 a landing can have a second impulse a step later, and e is not what is set"
-        raise NotImplementedError(f"rigid.box.lift: {why}, got {lifted[0]:g} m")
+        raise NotImplementedError(f"plane.block.at: {why}, got {lifted[0]:g} m")
 
 
-def contact_law(rigid: RigidSection) -> tuple[str, list[float]]:
+def contact_law(pile: BoxesOnGround) -> tuple[str, list[float]]:
     """Return the name of the contact law, and its parameters."""
-    if rigid.stiffness is not None:
-        return "ELASTIC_REPELL_CLB", [rigid.stiffness / POINTS, rigid.friction_coefficient]
-    if rigid.restitution:
-        return "RST_CLB", [rigid.restitution, 0.0, rigid.friction_coefficient]  # normal, tangential, friction
-    return "IQS_CLB", [rigid.friction_coefficient]
+    if pile.stiffness is not None:
+        return "ELASTIC_REPELL_CLB", [pile.stiffness / POINTS, pile.friction_coefficient]
+    if pile.rebound:
+        return "RST_CLB", [pile.rebound, 0.0, pile.friction_coefficient]  # normal, tangential, friction
+    return "IQS_CLB", [pile.friction_coefficient]
 
 
 class Model:
@@ -117,7 +117,7 @@ class Model:
     ----------
     program
         Class of LMGC90 in the wrapper.
-    rigid
+    pile
         The boxes.
     step
         Of LMGC90 [s].
@@ -125,36 +125,36 @@ class Model:
         Distance within which contact is sought [m].
     """
 
-    def __init__(self, program: Any, rigid: RigidSection, step: float, alert: float) -> None:
+    def __init__(self, program: Any, pile: BoxesOnGround, step: float, alert: float) -> None:
         self.solver = program()
-        self.rigid = rigid
+        self.pile = pile
         self.step = step
         # Rotations are those about the principal axes of a box, whose order LMGC90 tells once it has the boxes.
-        self.axes = [np.eye(3)] * len(rigid.box)
+        self.axes = [np.eye(3)] * len(pile.boxes)
         self.axes = self.build(alert)
-        if any(box.spin for box in rigid.box):
+        if any(box.spin for box in pile.boxes):
             self.solver.finalize()  # there is one simulation in a process
             self.solver = program()
             self.axes = self.build(alert)
-        self.angles = np.zeros(len(rigid.box))
-        self.touched = [False] * len(rigid.box)  # whether a box was ever borne
+        self.angles = np.zeros(len(pile.boxes))
+        self.touched = [False] * len(pile.boxes)  # whether a box was ever borne
         self.result = self.solver.compute_one_step()  # in which boxes get their momentum
 
     def build(self, alert: float) -> list[Array]:
         """Give LMGC90 the scene; return the principal axes of the boxes, a row an axis."""
         solver = self.solver
-        rigid = self.rigid
+        pile = self.pile
         solver.initialize(self.step, THETA, False)
-        solver.add_one_tact_behav(LAW, *contact_law(rigid))
-        self.depth = DEEP * max(max(box.width, box.height) for box in rigid.box)
-        densities = sorted({box.density / self.depth for box in rigid.box})
+        solver.add_one_tact_behav(LAW, *contact_law(pile))
+        self.depth = DEEP * max(max(box.width, box.height) for box in pile.boxes)
+        densities = sorted({box.density / self.depth for box in pile.boxes})
         self.materials = {density: f"s{number:04d}" for number, density in enumerate(densities, start=1)}
         solver.set_materials(densities)
         solver.set_see_tables(alert)
-        solver.set_nb_bodies(1 + len(rigid.box))
+        solver.set_nb_bodies(1 + len(pile.boxes))
         self.ground_centre = 0.0
         self.add_ground()
-        for number, (box, start) in enumerate(zip(rigid.box, rigid.starts, strict=True), start=2):
+        for number, (box, start) in enumerate(zip(pile.boxes, pile.starts, strict=True), start=2):
             self.add_box(number, box, start)
         solver.close_before_computing()
         frames = solver.get_initial_state().body_frames[1:]
@@ -162,21 +162,21 @@ class Model:
 
     def add_ground(self) -> None:
         """Add a slab whose velocity is driven, wide enough for all boxes."""
-        left = min(box.x - box.width for box in self.rigid.box)
-        right = max(box.x + box.width for box in self.rigid.box)
-        height = self.rigid.box[0].height
+        left = min(box.x - box.width for box in self.pile.boxes)
+        right = max(box.x + box.width for box in self.pile.boxes)
+        height = self.pile.boxes[0].height
         vertices, faces = cuboid(right - left, 2 * self.depth, height)
-        density = self.rigid.box[0].density / self.depth
+        density = self.pile.boxes[0].density / self.depth
         self.ground_centre = (left + right) / 2
         centre = [self.ground_centre, 0.0, -height / 2]
         self.solver.set_one_polyr(self.materials[density], centre, faces, vertices, 6, 0)
-        rate = 2 * math.pi * self.rigid.base_frequency
+        rate = 2 * math.pi * self.pile.base_frequency
         # A driven velocity is (v0 + v1 cos(v2 t + v3)) min(1, v4 + v5 t); t = 0 of the scene is the end of a step.
-        along = [0.0, self.rigid.base_amplitude * rate, rate, -math.pi / 2 - rate * self.step, 1.0, 0.0]
+        along = [0.0, self.pile.base_amplitude * rate, rate, -math.pi / 2 - rate * self.step, 1.0, 0.0]
         for freedom in range(1, 7):
             self.solver.set_drvdof(1, freedom, along if freedom == 1 else [0.0] * 6, True, False)
 
-    def add_box(self, number: int, box: BoxSection, start: Pose) -> None:
+    def add_box(self, number: int, box: Box, start: Pose) -> None:
         """Add a box where a step with its velocities leads to its start."""
         back = self.step * THETA  # this step goes from rest to the velocity
         x = start[0] - back * box.velocity[0]
@@ -190,7 +190,7 @@ class Model:
         self.solver.set_one_polyr(material, [x, 0.0, z], faces, vertices, len(leaving), 3)
         for freedom in leaving:
             self.solver.set_drvdof(number, freedom, [0.0] * 6, True, False)
-        pull = self.rigid.pull
+        pull = self.pile.pull
         # A rotation about y is one from z to x, that is clockwise.
         angular = -box.inertia * box.spin * axes[across, 1]
         momenta = (box.mass * box.velocity[0], box.mass * box.velocity[1], angular)
@@ -219,7 +219,7 @@ class Model:
         """
         poses = []
         offset_below = self.result.bodies[0][0] - self.ground_centre
-        for number, box in enumerate(self.rigid.box):
+        for number, box in enumerate(self.pile.boxes):
             x, _, z = self.result.bodies[number + 1]
             frame = np.array(self.result.body_frames[number + 1]).reshape(3, 3)
             rotation = frame.T @ self.axes[number]
@@ -244,9 +244,9 @@ class Model:
         They move by half the slip s. Friction mu N at the base of what stands there, of height H and width w, puts the
         normal force mu H/2 off the middle; it is within the points as long as s/2 + mu H/2 < w/2.
         """
-        box = self.rigid.box[number]
-        height = sum(above.height for above in self.rigid.box[number:])
-        reach = max(box.width / 4, box.width - self.rigid.friction_coefficient * height)
+        box = self.pile.boxes[number]
+        height = sum(above.height for above in self.pile.boxes[number:])
+        reach = max(box.width / 4, box.width - self.pile.friction_coefficient * height)
         why = "compas_lmgc90 seeks contact in the first step only, and its points do not follow"
         if slip > reach:
             raise NotImplementedError(f"{why} box {number + 1}, which slides by more than {reach:g} m")
@@ -255,7 +255,7 @@ class Model:
 
     def forces(self) -> list[float]:
         """Return the normal force below each box."""
-        forces = [0.0] * len(self.rigid.box)
+        forces = [0.0] * len(self.pile.boxes)
         for bodies, local in zip(self.result.interaction_bodies, self.result.interaction_rloc, strict=True):
             forces[max(bodies) - 2] += local[1]
         return forces

@@ -34,7 +34,8 @@ OF_CONTACT = {
     features.SLOPE,
     features.ROTATION,
     features.COLUMN,
-    features.RIGID_BOXES,
+    features.PLANE,
+    features.MOVING_BLOCKS,
 }
 GLUE = 100.0  # coefficient of friction of a corner that never slips, of a box
 TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
@@ -223,7 +224,7 @@ class MuJoCo(ExternalProgram):
         NotImplementedError
             MuJoCo is not installed, or the scene has what it cannot express.
         """
-        if scene.rigid is not None:
+        if "plane" in scene.tables():
             return boxes(scene, default=self.default)
         if scene.column is not None:
             return column(scene, default=self.default)
@@ -260,9 +261,9 @@ class AsItComes(MuJoCo):
     def boxed(self, scene: Scene) -> bool:
         """Whether a rigid box on a plane is the scene's model."""
         (a, h), c = sizes(scene), scene.contact
-        turns, rigid = scene.run.geometry == "updated", scene.block.young * a / h >= RIGID * 2 * c.stiffness
+        turns, pile = scene.run.geometry == "updated", scene.block.young * a / h >= RIGID * 2 * c.stiffness
         refuse("a pressure or traction on a block that turns far", where=turns and _pushed(scene))
-        return c.law == "unilateral" and (turns or rigid or c.friction is not None)
+        return c.law == "unilateral" and (turns or pile or c.friction is not None)
 
 
 def _pushed(scene: Scene) -> bool:

@@ -20,7 +20,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, ground_ends, record, spring_step, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, record, spring_step, substeps
 from peers.mujoco_model import Columns, March, model_text, refuse
 from peers.spatial import check_plane
 from validation.scenes.scene import Scene
@@ -48,23 +48,23 @@ class World:
     """Boxes and ground as bodies of MuJoCo: free in space as they come, else on joints that keep them in the plane."""
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        rigid = boxes_of(scene)
+        pile = boxes_of(scene)
         self.scene = scene
         self.default = default
-        self.moves = bool(rigid.base_amplitude)
+        self.moves = bool(pile.base_amplitude)
         self.own_step = USUAL_STEP if default else STEP
         if default:
-            refuse("MuJoCo's contact has no coefficient of restitution", where=rigid.restitution != 0)
-            refuse("MuJoCo's stiffness is no default of its own", where=rigid.stiffness is not None)
-        if rigid.stiffness is not None:
+            refuse("MuJoCo's contact has no coefficient of restitution", where=pile.rebound != 0)
+            refuse("MuJoCo's stiffness is no default of its own", where=pile.stiffness is not None)
+        if pile.stiffness is not None:
             refuse(
-                "contact of given stiffness below several boxes: MuJoCo's is one over mass", where=len(rigid.box) > 1
+                "contact of given stiffness below several boxes: MuJoCo's is one over mass", where=len(pile.boxes) > 1
             )
             soft = "contact of given stiffness with friction: MuJoCo softens both together"
-            refuse(soft, where=rigid.friction != 0)
+            refuse(soft, where=pile.friction != 0)
             self.own_step = min(self.own_step, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
-        along, up = rigid.pull
+        along, up = pile.pull
         options = f'timestep="{step!r}"' if default else f'timestep="{step!r}" {OPTIONS}'
         bodies = "".join(self._bodies())
         pairs = "" if default else f"<contact>{''.join(self._pairs(step))}</contact>"
@@ -72,10 +72,10 @@ class World:
         self.march = March(text)
         self.geoms = [self.march.model.geom(GROUND).id]
         self.first = 1 if self.moves else 0  # coordinate at which those of the boxes begin
-        self.turns = [angle for _, _, angle in rigid.starts]
+        self.turns = [angle for _, _, angle in pile.starts]
         self._start()
-        if rigid.stiffness is not None:
-            self._soften(rigid.stiffness)
+        if pile.stiffness is not None:
+            self._soften(pile.stiffness)
 
     def _surface(self) -> str:
         """Return the attributes of a geom: its friction, of a pair the greater of the two; else pairs state it."""
@@ -85,11 +85,11 @@ class World:
         return f'condim="3" friction="{friction!r} 0 0"' if friction else 'condim="1"'
 
     def _bodies(self) -> Iterator[str]:
-        rigid = boxes_of(self.scene)
+        pile = boxes_of(self.scene)
         surface = self._surface()
         if self.moves:
-            left, right = ground_ends(self.scene)
-            mass = HEAVY * sum(box.mass for box in rigid.box)
+            left, right = boxes_of(self.scene).ends
+            mass = HEAVY * sum(box.mass for box in pile.boxes)
             size = f"{(right - left) / 2!r} {HALF_DEPTH + THICKNESS!r} {THICKNESS / 2!r}"
             joint = '<joint type="slide" axis="1 0 0"/>'
             geom = f'<geom name="{GROUND}" type="box" size="{size}" mass="{mass!r}" {surface}/>'
@@ -99,36 +99,36 @@ class World:
             yield f'<geom name="{GROUND}" type="plane" size="1 1 1" {surface}/>'
         slides = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
         joints = "<freejoint/>" if self.default else f'{slides}<joint type="hinge" axis="0 -1 0"/>'
-        for number, (box, (x, y, _)) in enumerate(zip(rigid.box, rigid.starts, strict=True)):
+        for number, (box, (x, y, _)) in enumerate(zip(pile.boxes, pile.starts, strict=True)):
             size = f"{box.width / 2!r} {HALF_DEPTH!r} {box.height / 2!r}"
             geom = f'<geom name="{number}" type="box" size="{size}" density="{box.density!r}" {surface}/>'
             yield f'<body pos="{x!r} 0 {y!r}">{joints}{geom}</body>'
 
     def _pairs(self, step: float) -> Iterator[str]:
-        rigid = boxes_of(self.scene)
-        if rigid.restitution:
+        pile = boxes_of(self.scene)
+        if pile.rebound:
             impedance = REBOUND_IMPEDANCE
-            rate = impedance * (1 + rigid.restitution) / step  # MuJoCo divides by the impedance
+            rate = impedance * (1 + pile.rebound) / step  # MuJoCo divides by the impedance
             stiffness = correction_rate(self.scene) / step
         else:
             impedance = REST_IMPEDANCE
             rate = LANDING / step
-            stiffness = rate * (PILE_CORRECTION if len(rigid.box) > 1 else REST_CORRECTION)
+            stiffness = rate * (PILE_CORRECTION if len(pile.boxes) > 1 else REST_CORRECTION)
         stop = math.sqrt(step * TIME_CONSTANT)
         law = f'solref="{-stiffness!r} {-rate!r}" solreffriction="0 {-1 / stop!r}"'
         law += f' solimp="{impedance} {impedance} 0.001 0.5 2"'
-        friction = rigid.friction_coefficient
+        friction = pile.friction_coefficient
         law += f' condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else ' condim="1"'
-        names = [GROUND, *map(str, range(len(rigid.box)))]
+        names = [GROUND, *map(str, range(len(pile.boxes)))]
         for upper, name in enumerate(names):
             for below in names[:upper]:
                 yield f'<pair geom1="{below}" geom2="{name}" {law}/>'
 
     def _start(self) -> None:
         """Set angles and velocities, and note the boxes' geoms."""
-        rigid = boxes_of(self.scene)
+        pile = boxes_of(self.scene)
         data = self.march.data
-        for number, (box, (_, _, angle)) in enumerate(zip(rigid.box, rigid.starts, strict=True)):
+        for number, (box, (_, _, angle)) in enumerate(zip(pile.boxes, pile.starts, strict=True)):
             self.geoms.append(self.march.model.geom(str(number)).id)
             along, up = box.velocity
             if self.default:
@@ -149,7 +149,7 @@ class World:
         """
         model = self.march.model
         data = self.march.data
-        box = boxes_of(self.scene).box[0]
+        box = boxes_of(self.scene).boxes[0]
         start = data.qpos.copy()
         model.pair_solimp[:, :2] = COMPLIANT
         data.qpos[self.first + 1] = box.height / 2 - boxes_of(self.scene).starts[0][1] - 1e-6
@@ -174,11 +174,11 @@ class World:
     def poses(self) -> list[Pose]:
         """Return position and angle of each box; what is no number after a breakdown."""
         data = self.march.data
-        rigid = boxes_of(self.scene)
+        pile = boxes_of(self.scene)
         if data.warning.number.any():
-            return [(math.nan, math.nan, math.nan)] * len(rigid.box)
+            return [(math.nan, math.nan, math.nan)] * len(pile.boxes)
         poses = []
-        for number, (x, y, _) in enumerate(rigid.starts):
+        for number, (x, y, _) in enumerate(pile.starts):
             if self.default:
                 place = self.first + 7 * number
                 poses.append((float(data.qpos[place]), float(data.qpos[place + 2]), self.turns[number]))

@@ -16,7 +16,7 @@ from peers.boxes import Pose, boxes_of, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
-from validation.models.rigid.tables import RigidSection
+from validation.models.plane.boxes import BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -78,11 +78,11 @@ class World:
         builder = self.newton.ModelBuilder(up_axis=self.newton.Axis.Y, gravity=(*self.boxes.pull, 0.0))
         # Friction and restitution of a pair are the mean of the two; masses are given with the bodies.
         config = self.newton.ModelBuilder.ShapeConfig(
-            mu=self.boxes.friction_coefficient, restitution=self.boxes.restitution, density=0.0, **material
+            mu=self.boxes.friction_coefficient, restitution=self.boxes.rebound, density=0.0, **material
         )
         builder.add_ground_plane(cfg=config)
         self.rotations = []
-        for box, (x, y, angle) in zip(self.boxes.box, self.boxes.starts, strict=True):
+        for box, (x, y, angle) in zip(self.boxes.boxes, self.boxes.starts, strict=True):
             squares = box.width**2, box.height**2, 1.0
             moments = [box.mass * (sum(squares) - square) / 12 for square in squares]
             place = warp.transform(p=warp.vec3(x, y, 0.0), q=warp.quat_from_axis_angle(warp.vec3(0.0, 0.0, 1.0), angle))
@@ -155,7 +155,7 @@ class Newton(ExternalProgram):
     solver = ""
     step = OWN_STEP
 
-    def check(self, boxes: RigidSection) -> None:
+    def check(self, boxes: BoxesOnGround) -> None:
         """Refuse what the solver cannot express.
 
         Raises
@@ -164,11 +164,11 @@ class Newton(ExternalProgram):
             The scene asks for it.
         """
 
-    def material(self, boxes: RigidSection, step: float) -> dict[str, float]:
+    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
         """Return what bodies are made of beside their friction and restitution, by the names of Newton."""
         return {}
 
-    def options(self, boxes: RigidSection) -> dict[str, Any]:
+    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
         """Return the arguments of the solver."""
         return {}
 
@@ -194,14 +194,16 @@ class XPBDAsItComes(Newton):
     solver = "SolverXPBD"
     settings = "all as it comes, restitution enabled where a scene has one; 1/500 s as in Newton's example of shapes"
 
-    def check(self, boxes: RigidSection) -> None:
+    def check(self, boxes: BoxesOnGround) -> None:
         """Refuse a stiffness."""
         if boxes.stiffness is not None:
-            raise NotImplementedError("rigid.stiffness: the contact of XPBD is a condition on positions, and has none")
+            raise NotImplementedError(
+                "plane.contact.stiffness: XPBD's contact is a condition on positions, and has none"
+            )
 
-    def options(self, boxes: RigidSection) -> dict[str, Any]:
+    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
         """Enable restitution, which Newton leaves away otherwise."""
-        return {"enable_restitution": True} if boxes.restitution else {}
+        return {"enable_restitution": True} if boxes.rebound else {}
 
 
 class SemiImplicitAsItComes(Newton):
@@ -211,20 +213,20 @@ class SemiImplicitAsItComes(Newton):
     solver = "SolverSemiImplicit"
     settings = "all as it comes: 2.5 kN/m and 100 N s/m a contact point; 1/500 s as in Newton's example of shapes"
 
-    def check(self, boxes: RigidSection) -> None:
+    def check(self, boxes: BoxesOnGround) -> None:
         """Refuse a restitution that dampers do not have."""
-        if 0 < boxes.restitution < 1:
+        if 0 < boxes.rebound < 1:
             raise NotImplementedError(
-                "rigid.restitution: contact is a spring and a damper, whose rebound depends on the mass; "
+                "plane.contact.restitution: contact is a spring and a damper, whose rebound depends on the mass; "
                 "0 (its own damper) and 1 (none) only"
             )
 
-    def material(self, boxes: RigidSection, step: float) -> dict[str, float]:
+    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
         """Return the stiffness of a corner, and no damper where nothing is to be lost."""
         material = {}
         if boxes.stiffness is not None:
             material["ke"] = boxes.stiffness / BASE_CORNERS
-        if boxes.restitution == 1:
+        if boxes.rebound == 1:
             material["kd"] = 0.0
         return material
 
@@ -235,11 +237,11 @@ class XPBD(XPBDAsItComes):
     step = FINE_STEP
     settings = "step 1/2000 s, ten iterations (two as it comes), no rolling or torsional friction"
 
-    def material(self, boxes: RigidSection, step: float) -> dict[str, float]:
+    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
         """Return Coulomb's friction alone."""
         return {"mu_torsional": 0.0, "mu_rolling": 0.0}
 
-    def options(self, boxes: RigidSection) -> dict[str, Any]:
+    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
         """Return more iterations."""
         return {"iterations": ITERATIONS, **super().options(boxes)}
 
@@ -250,9 +252,9 @@ class SemiImplicit(SemiImplicitAsItComes):
     step = FINE_STEP
     settings = "1/2000 s; contact as stiff and friction as steep as the step bears, critical damper, no angular damping"
 
-    def material(self, boxes: RigidSection, step: float) -> dict[str, float]:
+    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
         """Return the springs and dampers of a corner, from the mass of the lightest box."""
-        mass = min(box.mass for box in boxes.box)
+        mass = min(box.mass for box in boxes.boxes)
         frequency = CONTACT_FREQUENCY / step
         material = {
             "ke": mass * frequency**2 / BASE_CORNERS,
@@ -263,6 +265,6 @@ class SemiImplicit(SemiImplicitAsItComes):
             material["kd"] = 2 * math.sqrt(mass * boxes.stiffness) / BASE_CORNERS
         return material | super().material(boxes, step)
 
-    def options(self, boxes: RigidSection) -> dict[str, Any]:
+    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
         """Take the damping of rotation away."""
         return {"angular_damping": 0.0}

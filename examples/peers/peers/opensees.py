@@ -28,10 +28,6 @@ MOST_WORK = 150_000  # sub-steps of a round, times what a mesh adds
 FIRST = 1e-6  # of a sub-step: the first one, at whose end the acceleration is that of the loads
 SMALL, ROUNDING = 1e-10, 1e-14  # of what springs give, and of a way: increment at which Newton's iteration ends
 ITERATIONS = 30
-NO_BOXES = (
-    "rigid boxes: the contact used here has a fixed normal and no law of impact; boxes that fall and turn would need "
-    "contact whose normal follows them, and a restitution"
-)
 MODEL = "tri31 and truss masses: exactly one strain; contact zeroLengthContactASDimplex; a column of trusses"
 
 Columns = dict[str, Array]
@@ -52,7 +48,6 @@ class OpenSees(ExternalProgram):
         features.RULES
         | {features.OFF_CENTRE, features.WEIGHT, features.UNILATERAL, features.FRICTION, features.SLOPE}
         | {features.ROTATION, features.COLUMN, features.DAMPING}
-        | {features.RIGID_BOXES}  # refused in words of its own
     )
     settings = f"Newmark 1/2, 1/4; sub-steps {FINER} times finer until the history changes by less than {ENOUGH:g}"
 
@@ -66,8 +61,6 @@ class OpenSees(ExternalProgram):
         NotConverged
             Newton's iteration found no equilibrium, in sub-steps however fine.
         """
-        if scene.rigid is not None:
-            raise NotImplementedError(NO_BOXES)
         refuse(scene, self.handles)
         ops = program()
         try:

@@ -9,7 +9,7 @@ from validation.scenes import features
 class ExternalProgram:
     """Another program as a solver; as it stands here, one of rigid boxes that is a package of Python."""
 
-    handles = frozenset({features.RIGID_BOXES})
+    handles = frozenset({features.PLANE, features.MOVING_BLOCKS})
     program = ""
     package = ""  # of Python
     recipe = ""  # by which it is installed

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from peers.boxes import Pose, base_velocity, boxes_of, corners_of, ground_ends, record
+from peers.boxes import Pose, base_velocity, boxes_of, corners_of, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.runs.history import Array
@@ -30,26 +30,26 @@ class World:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        rigid = boxes_of(scene)
-        if rigid.stiffness is not None:
+        pile = boxes_of(scene)
+        if pile.stiffness is not None:
             raise NotImplementedError("contact of given stiffness: pymunk's contacts are impulses")
         self.scene = scene
         self.pymunk = imported("pymunk", "pymunk", RECIPE)
         self.space = self.pymunk.Space()
-        self.space.gravity = rigid.pull
+        self.space.gravity = pile.pull
         if not default:
             self.space.iterations = ITERATIONS
             self.space.collision_slop = SLOP
             self.space.collision_bias = math.exp(-CORRECTION_RATE)
         self.ground = self.space.static_body
-        if rigid.base_amplitude:
+        if pile.base_amplitude:
             self.ground = self.pymunk.Body(body_type=self.pymunk.Body.KINEMATIC)
             self.space.add(self.ground)
-        left, right = ground_ends(scene)
+        left, right = boxes_of(scene).ends
         corners = [(left, -DEPTH), (right, -DEPTH), (right, 0.0), (left, 0.0)]
         self._add_shape(self.ground, corners)
         self.boxes = []
-        for box, (x, y, angle) in zip(rigid.box, rigid.starts, strict=True):
+        for box, (x, y, angle) in zip(pile.boxes, pile.starts, strict=True):
             body = self.pymunk.Body(box.mass, box.inertia)
             body.position = x, y
             body.angle = angle
@@ -60,11 +60,11 @@ class World:
             self.boxes.append(body)
 
     def _add_shape(self, body: Any, corners: list[tuple[float, float]]) -> None:
-        rigid = boxes_of(self.scene)
+        pile = boxes_of(self.scene)
         shape = self.pymunk.Poly(body, corners)
         # A pair has the product of the two shapes' coefficients.
-        shape.friction = math.sqrt(rigid.friction_coefficient)
-        shape.elasticity = math.sqrt(rigid.restitution)
+        shape.friction = math.sqrt(pile.friction_coefficient)
+        shape.elasticity = math.sqrt(pile.rebound)
         self.space.add(shape)
 
     def advance(self, start: float, step: float) -> None:

@@ -40,7 +40,7 @@ class Siconos(ExternalProgram):
         (
             *("off-centre load", "own weight", "unilateral contact", "friction", "slope", "large rotation", "column"),
             *("implicit contact", "energy-conserving contact"),  # rules of DDA's step, of which nothing is used here
-            "rigid boxes",
+            *("blocks in the plane", "blocks that move"),
         )
     )
     model = "block of one strain by its matrices; contact springs as a linear complementarity system; boxes are rigid"
@@ -67,7 +67,7 @@ class Siconos(ExternalProgram):
         ArithmeticError
             Its complementarity solver failed in some steps.
         """
-        if scene.rigid is not None:
+        if "plane" in scene.tables():
             from peers.siconos_boxes import boxes
 
             return boxes(scene, self.fine, ask)
@@ -129,7 +129,7 @@ def block(scene: Scene, fine: bool) -> dict[str, np.ndarray]:
     if scene.contact.law == "locked":
         return locked(scene, *sizes, fine)
     if scene.run.geometry == "updated" or not fine:
-        return rigid(scene, *sizes, fine)
+        return pile(scene, *sizes, fine)
     return springs(scene, *sizes)
 
 
@@ -236,7 +236,7 @@ def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: in
     return {"A": A, "B": B, "C": C, "D": D, "b": b, "e": e, "x0": x0, "ends": ends}
 
 
-def rigid(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:
+def pile(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:
     """Run a rigid block on two rigid corners; where the geometry is updated, its rotation is not small."""
     c, turns = scene.contact, scene.run.geometry == "updated"
     of = matrices(scene, a, h)

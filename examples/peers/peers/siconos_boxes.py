@@ -15,7 +15,7 @@ import numpy as np
 
 from peers.boxes import boxes_of, named, substeps
 from peers.siconos import corner_on_ground, times
-from validation.models.rigid.tables import BoxSection, RigidSection
+from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -27,53 +27,53 @@ OF_VIBRATION = 0.02  # rad of a box on its springs in a step
 
 def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
     """Return the columns of a scene of rigid boxes; `ask` runs the program's side."""
-    rigid = boxes_of(scene)
-    if rigid.stiffness is not None:
-        return springs(scene, rigid, fine, ask)
+    pile = boxes_of(scene)
+    if pile.stiffness is not None:
+        return springs(scene, pile, fine, ask)
     parts = substeps(scene, CHOSEN_STEP if fine else DEFAULT_STEP)
     request = {
         "kind": "boxes",
         **times(scene, parts),
         "boxes": [
             {"inertia": [box.mass, box.mass, box.inertia], "q0": start, "v0": [*box.velocity, box.spin], "couple": 0.0}
-            for box, start in zip(rigid.box, rigid.starts, strict=True)
+            for box, start in zip(pile.boxes, pile.starts, strict=True)
         ],
-        "pull": rigid.pull,
-        "contacts": contacts(rigid),
-        "restitution": rigid.restitution,
-        "friction": rigid.friction_coefficient,
-        "amplitude": rigid.base_amplitude,
-        "rate": 2 * math.pi * rigid.base_frequency,
+        "pull": pile.pull,
+        "contacts": contacts(pile),
+        "restitution": pile.rebound,
+        "friction": pile.friction_coefficient,
+        "amplitude": pile.base_amplitude,
+        "rate": 2 * math.pi * pile.base_frequency,
         "middle": fine,
         "turns": True,
-        "size": max(math.hypot(box.width, box.height) for box in rigid.box),
+        "size": max(math.hypot(box.width, box.height) for box in pile.boxes),
         # Pivots solve the contact of a box exactly, but those of a pile went wrong: ten boxes at rest moved by 0.2 m.
-        "pivots": fine and len(rigid.box) == 1,
-        "iterations": ITERATIONS if fine and len(rigid.box) > 1 else None,
+        "pivots": fine and len(pile.boxes) == 1,
+        "iterations": ITERATIONS if fine and len(pile.boxes) > 1 else None,
     }
     answer = ask(request)
     rows = np.concatenate([answer["poses"], answer["forces"][:, :, None]], axis=2)
     instants = scene.time.step * np.arange(1, scene.time.steps + 1)
-    rows[:, :, 0] += np.array([rigid.base(float(instant))[0] for instant in instants])[:, None]
-    return named(rows, parts * scene.time.steps)
+    rows[:, :, 0] += np.array([pile.base(float(instant))[0] for instant in instants])[:, None]
+    return named(scene, rows, parts * scene.time.steps)
 
 
-def contacts(rigid: RigidSection) -> list[dict[str, Any]]:
+def contacts(pile: BoxesOnGround) -> list[dict[str, Any]]:
     """Return a contact for each corner that may touch: corner and face in their bodies' frames, and who is carried."""
-    first = rigid.box[0]
+    first = pile.boxes[0]
     requests = []
     for side in (-1.0, 1.0):
         for end in (-1.0, 1.0):
             requests.append(corner_on_ground((side * first.width / 2, end * first.height / 2)))
-    for number in range(1, len(rigid.box)):
-        requests += [between(rigid, number, side) for side in (-1.0, 1.0)]
+    for number in range(1, len(pile.boxes)):
+        requests += [between(pile, number, side) for side in (-1.0, 1.0)]
     return requests
 
 
-def between(rigid: RigidSection, number: int, side: float) -> dict[str, Any]:
+def between(pile: BoxesOnGround, number: int, side: float) -> dict[str, Any]:
     """Return the contact of a box with the one below it on one side: of the corner that is the inner one of two."""
-    upper = rigid.box[number]
-    lower = rigid.box[number - 1]
+    upper = pile.boxes[number]
+    lower = pile.boxes[number - 1]
     if side * edge(upper, side) <= side * edge(lower, side):
         corner = (side * upper.width / 2, -upper.height / 2)
         face = {"other": number - 1, "level": lower.height / 2, "outward": 1.0}
@@ -83,26 +83,26 @@ def between(rigid: RigidSection, number: int, side: float) -> dict[str, Any]:
     return {"body": number - 1, "corner": corner, **face, "carried": number}
 
 
-def edge(box: BoxSection, side: float) -> float:
+def edge(box: Box, side: float) -> float:
     """Return where the left or right side of a level box is [m]."""
     return box.x + side * box.width / 2
 
 
-def springs(scene: Scene, rigid: RigidSection, fine: bool, ask: Any) -> dict[str, Array]:
+def springs(scene: Scene, pile: BoxesOnGround, fine: bool, ask: Any) -> dict[str, Array]:
     """Return the columns of a level box on two springs without tension: 0 <= N perp y + N / k >= 0 at each corner.
 
     The state is x, y, vx, vy, with y from where the springs are relaxed; l = N / (k d) and the gap come in units of a
     length d, so that the system is one of numbers of order 1.
     """
-    box = rigid.box[0]
-    if len(rigid.box) > 1 or box.tilt or box.spin or rigid.friction or rigid.base_amplitude:
+    box = pile.boxes[0]
+    if len(pile.boxes) > 1 or box.angle or box.spin or pile.friction or pile.base_amplitude:
         why = "Siconos' springs without tension are here those of one level box without friction, on ground at rest"
-        raise NotImplementedError(f"rigid.stiffness: {why}")
-    corner_stiffness = rigid.stiffness / 2
-    rate = math.sqrt(rigid.stiffness / box.mass)
+        raise NotImplementedError(f"plane.contact.stiffness: {why}")
+    corner_stiffness = pile.stiffness / 2
+    rate = math.sqrt(pile.stiffness / box.mass)
     own_step = min(CHOSEN_STEP, OF_VIBRATION / rate) if fine else DEFAULT_STEP
     parts = substeps(scene, own_step)
-    length = rigid.gravity / rate**2 + abs(box.velocity[1]) / rate or 1.0
+    length = pile.gravity / rate**2 + abs(box.velocity[1]) / rate or 1.0
     A = np.zeros((4, 4))
     A[:2, 2:] = np.eye(2)
     B = np.zeros((4, 2))
@@ -110,10 +110,10 @@ def springs(scene: Scene, rigid: RigidSection, fine: bool, ask: Any) -> dict[str
     C = np.zeros((2, 4))
     C[:, 1] = 1 / length
     start = [0.0, box.lift, *box.velocity]
-    b = [0.0, 0.0, *rigid.pull]
+    b = [0.0, 0.0, *pile.pull]
     request = {"A": A, "B": B, "C": C, "D": np.eye(2), "b": b, "e": np.zeros(2), "x0": start, "ends": 2}
     state = ask({"kind": "complementarity", **times(scene, parts), **request})["x"]
     level = state[:, 1]
-    force = rigid.stiffness * np.maximum(0.0, -level)
+    force = pile.stiffness * np.maximum(0.0, -level)
     columns = [box.x + state[:, 0], box.height / 2 + level, np.zeros(len(level)), force]
-    return named(np.stack(columns, axis=1)[:, None, :], parts * scene.time.steps)
+    return named(scene, np.stack(columns, axis=1)[:, None, :], parts * scene.time.steps)

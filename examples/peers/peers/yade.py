@@ -27,10 +27,6 @@ if TYPE_CHECKING:
 FINE, COARSE = 0.05, 1.6  # time step times the highest frequency: chosen, and 0.8 of the critical 2 (Yade's own factor)
 LINKED = 1.0  # the same where the highest frequencies are those of hard bonds, which nothing excites, or of a lattice
 REPORTED = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-NO_BOXES = (
-    "rigid boxes: the bodies here stand on penalty springs of given stiffness, without restitution; boxes that "
-    "fall and turn would need Yade's polyhedra and a contact law with restitution"
-)
 MOST_STEPS = 10_000_000  # explicit steps of a run, some minutes
 
 
@@ -41,7 +37,6 @@ class Yade(ExternalProgram):
         {
             *("off-centre load", "own weight", "unilateral contact", "friction", "slope", "large rotation", "column"),
             *("implicit contact", "energy-conserving contact"),  # rules of DDA's steps, which no other program has
-            "rigid boxes",  # refused in words of its own
         }
     )
     program = "Yade"
@@ -59,8 +54,6 @@ class Yade(ExternalProgram):
 
     def solve(self, scene: Scene) -> dict[str, Array]:
         """Return the columns of a scene that Yade can report."""
-        if scene.rigid is not None:
-            raise NotImplementedError(NO_BOXES)
         if scene.time.discount != 1:
             raise NotImplementedError("time.gg, DDA's discount of velocities, is no part of the program")
         if scene.damping.present or scene.damping.kinetic != "constant":

@@ -233,7 +233,9 @@ def _edge_parts(block: PlacedBlock, edge: Segment) -> Iterator[Segment]:
     for side in (across, -across):  # a strip whose long side is the line, on one side of it and on the other
         strip = (start, end, end + side, start + side) if side is across else (end, start, start + side, end + side)
         corners = tuple((float(x), float(y)) for x, y in strip)
-        yield from geometry.shared_edges(block.vertices, corners, tolerance / 2)
+        for part in geometry.shared_edges(block.vertices, corners, tolerance / 2):
+            if math.dist(*part) > 2 * tolerance:  # not the strip's short sides, which lie on joints of its neighbours
+                yield part
 
 
 def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContact]:

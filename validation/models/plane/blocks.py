@@ -197,6 +197,14 @@ def centroid(vertices: Vertices) -> tuple[float, float]:
     return float(x), float(y)
 
 
+def polar_moment(vertices: Vertices) -> float:
+    """Return the polar second moment of an outline about its centroid [m4]: sum (a x b) (a.a + a.b + b.b) / 12."""
+    a = np.array(vertices) - centroid(vertices)
+    b = np.roll(a, -1, axis=0)
+    crosses = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
+    return float(crosses @ np.sum(a * a + a * b + b * b, axis=1)) / 12
+
+
 def thickness(vertices: Vertices) -> float:
     """Return the least extent of an outline normal to one of its edges [m]."""
     points = np.array(vertices)

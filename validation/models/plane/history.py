@@ -1,6 +1,7 @@
 """Columns of a history of moving blocks: of a block, of a contact, of all; their units and what they mean.
 
-``A.x`` is of block A, ``A.2-B.0.normal`` of corner 2 of A on edge 0 of B, ``momentum.x`` and ``energy.kinetic`` of all.
+``A.x`` is of block A, ``A.2-B.0.normal`` of corner 2 of A on edge 0 of B, ``A-B.normal`` of all contacts between both,
+``momentum.x`` and ``energy.kinetic`` of all.
 """
 
 from __future__ import annotations
@@ -33,6 +34,9 @@ OF_CONTACT: Mapping[str, tuple[str, str]] = {
     GAP: ("m", "distance of the corner from the edge, negative where the spring is compressed"),
     "slip": ("m", "sliding of the corner along the edge"),
 }
+OF_PAIR: Mapping[str, tuple[str, str]] = {
+    "normal": ("N", "normal forces of all contacts between two blocks, compression positive"),
+}
 OF_MOMENTUM: Mapping[str, tuple[str, str]] = {
     "x": ("kg m/s", "momentum of all blocks that move"),
     "y": ("kg m/s", "momentum of all blocks that move, upwards"),
@@ -50,16 +54,18 @@ OF_ENERGY: Mapping[str, tuple[str, str]] = {
     "balance": ("J", "what the account leaves: rounding"),
 }
 _OF_CONTACT = re.compile(r"(\w+)\.(\d+)-(\w+)\.(\d+)\.(\w+)")
+_OF_PAIR = re.compile(r"(\w+)-(\w+)\.(\w+)")
 _OF_BLOCK = re.compile(r"(\w+)\.(\w+)")
 
 
 @dataclass(frozen=True)
 class ColumnPlace:
-    """What a column is of: a block, a contact (block, corner, other block, edge), or all blocks."""
+    """What a column is of: a block, a contact (block, corner, other block, edge), a pair of blocks, or all blocks."""
 
     part: str  # "x", "normal", "kinetic"
     block: str = ""
     contact: tuple[str, int, str, int] | None = None
+    pair: tuple[str, str] | None = None
     whole: str = ""  # "momentum" or "energy"
 
 
@@ -68,6 +74,8 @@ def place_of(column: str) -> ColumnPlace | None:
     if match := _OF_CONTACT.fullmatch(column):
         contact = match[1], int(match[2]), match[3], int(match[4])
         return ColumnPlace(match[5], contact=contact) if match[5] in OF_CONTACT else None
+    if match := _OF_PAIR.fullmatch(column):
+        return ColumnPlace(match[3], pair=(match[1], match[2])) if match[3] in OF_PAIR else None
     match = _OF_BLOCK.fullmatch(column)
     if match is None:
         return None
@@ -84,9 +92,10 @@ class PlaneColumns(Mapping[str, ColumnKind]):
         place = place_of(column)
         if place is None:
             raise KeyError(column)
-        parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_CONTACT if place.contact else OF_BLOCK}
+        of_blocks = OF_BLOCK if place.block else OF_CONTACT
+        parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_PAIR if place.pair else of_blocks}
         unit, meaning = parts[place.whole][place.part]
-        return ColumnKind(unit, meaning, words=column, from_zero=bool(place.contact) or place.part not in POSE)
+        return ColumnKind(unit, meaning, words=column, from_zero=place.part not in POSE or bool(place.whole))
 
     def __iter__(self) -> Iterator[str]:
         return iter(())
@@ -98,6 +107,11 @@ class PlaneColumns(Mapping[str, ColumnKind]):
 def contact_column(block: str, corner: int, on: str, edge: int, part: str) -> str:
     """Return the name of a contact's column."""
     return f"{block}.{corner}-{on}.{edge}.{part}"
+
+
+def pair_column(first: str, second: str) -> str:
+    """Return the name of the column of the normal forces between two blocks."""
+    return f"{first}-{second}.normal"
 
 
 def numbers_of(contact: tuple[str, int, str, int], names: Sequence[str]) -> tuple[int, int, int, int]:

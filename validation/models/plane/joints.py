@@ -9,9 +9,10 @@ from pydantic import Field, model_validator
 
 from validation.models.plane.blocks import Point
 from validation.scenes.keys import Key, Section
-from validation.scenes.tables import Angle, Index, NonNegative, Positive, Real
+from validation.scenes.tables import Angle, Index, NonNegative, Positive, Real, Stiffness
 
 FrictionAngle = Annotated[Angle, Field(ge=0)]
+Restitution = Annotated[Real, Field(ge=0, le=1)]
 Corner = Annotated[Index, Field(ge=0)]
 Pair = tuple[str, str]
 Segment = tuple[Point, Point]
@@ -24,8 +25,14 @@ class PlaneContactSection(Section):
     `tension`; it sticks by its shear spring until the force along the edge exceeds cohesion and friction.
     """
 
-    stiffness: Annotated[Positive, Key("N/m", "of the normal spring of a corner", "p")]
+    stiffness: Annotated[
+        Stiffness,
+        Key("N/m", "of the normal spring of a corner; inf: rigid, and whoever has springs takes its own", "p"),
+    ]
     shear_stiffness: Annotated[NonNegative | None, Key("N/m", "that of stiffness if absent; 0 is frictionless")] = None
+    restitution: Annotated[
+        Restitution | None, Key("", "rebound over approach speed; absent: as the contact's model has it", "e")
+    ] = None
     friction: Annotated[FrictionAngle | None, Key("deg", "angle of friction; absent: it never slips", "φ")] = None
     cohesion: Annotated[NonNegative, Key("N", "of a corner that may slip")] = 0.0
     tension: Annotated[NonNegative, Key("N", "that a corner carries before it opens for the first time")] = 0.0

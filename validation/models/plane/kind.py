@@ -19,6 +19,7 @@ class BlocksInThePlane(Kind):
     feature = "blocks in the plane"
     rank = 3.0
     tables: ClassVar = {"plane": PlaneSection}
+    solvers: ClassVar = {"rigid-exact": "validation.models.plane.exact:RigidExact"}
     columns = PlaneColumns()
     files: ClassVar = {"plane.block.motion": "record of a block's motion"}
     fem_keys = ("elements", "degree", "foundation", "patch_width")
@@ -28,6 +29,10 @@ class BlocksInThePlane(Kind):
         if table.is_glued:
             return {"solvers": ["dda", "fem"], "columns": ["displacement"]}
         return {"solvers": ["dda"], "columns": list(table.assembly.pose_columns)}
+
+    def motion_unread(self, scene: Any) -> str:
+        """Return that no history of such blocks is explained."""
+        return f"a scene of {self.words}"
 
     def has_column(self, scene: Any, column: str) -> bool:
         """Whether a column is of moving blocks, corners and edges that there are."""
@@ -43,7 +48,8 @@ class BlocksInThePlane(Kind):
             if not self.has_column(scene, column):
                 near = difflib.get_close_matches(column, plane.assembly.pose_columns, n=1)
                 meant = f"; did you mean {near[0]}?" if near else ""
-                rule = "columns must be BLOCK.x, BLOCK.0-BLOCK.0.normal, energy.kinetic, momentum.x or their like"
+                of_contacts = "BLOCK.0-BLOCK.0.normal, BLOCK-BLOCK.normal"
+                rule = f"columns must be BLOCK.x, {of_contacts}, energy.kinetic, momentum.x or their like"
                 if plane.touch and "-" in column:
                     rule = "columns of contacts must be of those that [[plane.touch]] states"
                 raise ValueError(f"run: {rule}, got {column!r}{meant}")
@@ -61,6 +67,8 @@ def _is_column(column: str, assembly: Assembly) -> bool:
             return False
         stated = [(one.block, one.corner, one.on, one.edge) for one in assembly.contacts]
         return not stated or numbers_of(place.contact, [*corners]) in stated
+    if place.pair is not None:
+        return {*place.pair} <= {*corners} and len({*place.pair}) == len(place.pair)
     rate_of_driven = place.part in RATES and place.block in {block.name for block in assembly.blocks if block.motion}
     return bool(place.whole) or (place.block in corners and not rate_of_driven)
 

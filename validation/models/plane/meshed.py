@@ -6,6 +6,7 @@ edge, with `fem.foundation = "corner"` at the corner itself, which has no limit 
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -54,6 +55,8 @@ def refusal_of(scene: Scene, plane: PlaneSection) -> str | None:
         return "blocks must be elastic, got young = inf"
     if any(block.motion is not None for block in assembly.blocks):
         return "blocks must be fixed or move by themselves, got one that is driven"
+    if any(math.isinf(contact.springs.stiffness) for contact in assembly.contacts):
+        return "contacts must have springs of finite stiffness"
     if any(contact.springs.tension for contact in assembly.contacts):
         return "contacts must carry no tension"
     return None

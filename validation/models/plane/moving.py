@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +14,7 @@ from validation.errors import InputError
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.history import ENERGY, GAP, OF_BLOCK, OF_MOMENTUM, contact_column, numbers_of, place_of
 from validation.models.plane.joints import PlaneContactSection
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
 from validation.scenes.outline import area
@@ -21,14 +23,17 @@ from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
 from validation.solvers.translation import naming
 
-AFTER_START = slice(1, None)  # rows of a history: one a step, without that of t = 0
+ROUNDING = 1e-9
 
 
 def springs_of(contact: PlaneContactSection) -> dda.ContactSprings:
-    """Return the springs of a corner as `dda` takes them."""
+    """Return the springs of a corner as `dda` takes them; its own in the place of rigid ones, which would not rebound.
+
+    A rigid stop on displacements turns back as its steps happen to fall.
+    """
     return dda.ContactSprings(
-        stiffness=contact.stiffness,
-        shear=contact.shear,
+        stiffness=OWN_STIFFNESS if math.isinf(contact.stiffness) else contact.stiffness,
+        shear=OWN_STIFFNESS if math.isinf(contact.shear) else contact.shear,
         friction=contact.friction_coefficient if contact.shear else None,
         cohesion=contact.cohesion,
         tension=contact.tension,
@@ -101,14 +106,17 @@ class MovingBlocks(Prepared):
     def __init__(self, scene: Scene, plane: PlaneSection, scheme: dda.Scheme) -> None:
         self.scene = scene
         self.plane = plane
-        self.scheme = scheme
+        self.steps_per_row = 1
+        if plane.contact is not None and math.isinf(plane.contact.stiffness):  # the scene's steps are rows alone
+            self.steps_per_row = max(1, math.ceil(scene.time.step / OWN_STEP - ROUNDING))
+        self.scheme = replace(scheme, step=scene.time.step / self.steps_per_row)
         with naming(scene):
             self.model = model_of(plane)
 
     def history_run(self) -> Run:
         """Run the scene."""
         began = time.perf_counter()
-        result = dda.solve_plane(self.model, self.scheme, self.scene.time.steps)
+        result = dda.solve_plane(self.model, self.scheme, self.scene.time.steps * self.steps_per_row)
         seconds = {"stepping": time.perf_counter() - began}
         names = [block.name for block in self.plane.assembly.blocks]
         columns = {name: self._column(result, names, name) for name in self.scene.run.columns}
@@ -117,7 +125,12 @@ class MovingBlocks(Prepared):
             self._write_fields(result, names)
         work = {"steps": result.reached, "solves": int(np.sum(result.solves)), "cuts": int(np.sum(result.cuts))}
         notes = (result.note, *([f"ended at {step}"] if step else []))
-        return Run(Outcome(outcome), History(result.time[AFTER_START], columns), work, seconds, notes)
+        return Run(Outcome(outcome), History(result.time[self.rows], columns), work, seconds, notes)
+
+    @property
+    def rows(self) -> slice:
+        """The steps of a result that are rows of a history: the last one of each, without that of t = 0."""
+        return slice(self.steps_per_row, None, self.steps_per_row)
 
     def _column(self, result: dda.PlaneResult, names: list[str], column: str) -> Array:
         """Return a column of a result by its name; a contact that never carried a force has carried none."""
@@ -128,14 +141,19 @@ class MovingBlocks(Prepared):
             values = result.energy[place.part.replace("_", " ")]
         elif place.whole:
             values = result.momentum[:, [*OF_MOMENTUM].index(place.part)]
+        elif place.pair is not None:
+            pair = {names.index(name) for name in place.pair}
+            between = [{contact.block, contact.on} == pair for contact in result.contacts]
+            values = result.normal[:, between].sum(axis=1)
         elif place.contact is None:
             values = self._of_block(result, names.index(place.block), place.part)
         else:
             contact = numbers_of(place.contact, names)
             if contact not in result.contacts:  # named tuples, which equal plain ones
-                return np.full(len(result.time) - 1, np.nan if place.part == GAP else 0.0)  # whose gap nobody looked at
+                values = np.full(len(result.time), np.nan if place.part == GAP else 0.0)  # whose gap nobody looked at
+                return values[self.rows]
             values = getattr(result, place.part)[:, result.contacts.index(dda.PlaneContact(*contact))]
-        return np.asarray(values)[AFTER_START]
+        return np.asarray(values)[self.rows]
 
     def _of_block(self, result: dda.PlaneResult, block: int, part: str) -> Array:
         start = self.plane.assembly.blocks[block].angle
@@ -157,9 +175,9 @@ class MovingBlocks(Prepared):
         from validation.models.plane.fields import write_fields
 
         parts = [(f"{name}.{part}", k, part) for k, name in enumerate(names) for part in OF_BLOCK]
-        columns = {name: self._of_block(result, k, part)[AFTER_START] for name, k, part in parts}
+        columns = {name: self._of_block(result, k, part)[self.rows] for name, k, part in parts}
         for number, (block, corner, on, edge) in enumerate(result.contacts):
             for part, values in (("normal", result.normal), ("shear", result.shear)):
-                columns[contact_column(names[block], corner, names[on], edge, part)] = values[AFTER_START, number]
+                columns[contact_column(names[block], corner, names[on], edge, part)] = values[self.rows, number]
         if self.fields is not None:
-            write_fields(self.fields, self.plane.assembly, History(result.time[AFTER_START], columns))
+            write_fields(self.fields, self.plane.assembly, History(result.time[self.rows], columns))

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+import numpy as np
+
 from validation.models.plane.tables import PlaneSection
-from validation.scenes.plausibility import Implausible, PlausibilityHooks, material, stepping
+from validation.scenes.plausibility import Implausible, PlausibilityHooks, friction, judged, material, stepping
 from validation.scenes.scene import Scene
 
 
@@ -21,3 +23,8 @@ class HOOKS(PlausibilityHooks):
             speed = math.sqrt(plane.young / plane.density)
             yield from material("plane", plane.density, plane.young, speed, {"plane.load": largest / plane.young})
         yield from stepping(scene)
+        if plane.contact is not None:
+            yield from friction("plane.contact.friction", plane.contact.friction)
+        yield from judged("gravity", "plane.gravity", math.hypot(*plane.gravity))
+        for number, block in enumerate(plane.block):
+            yield from judged("size", f"plane.block.{number}", max(np.ptp(block.outline, axis=0)))

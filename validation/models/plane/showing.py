@@ -158,6 +158,8 @@ def moving_numbers(plane: PlaneSection, step: float) -> Iterator[Number]:
     if not springs or not masses:
         return
     stiffest = max(contact.stiffness for contact in springs)
+    if math.isinf(stiffest):
+        return
     if weight := sum(masses) * math.hypot(*plane.gravity):
         softest = min(contact.stiffness for contact in springs)
         yield Number("W/p", weight / softest, "m", "compression of one spring under the weight of all that moves")

@@ -11,6 +11,10 @@ from validation.solvers.contract import Prepared, Solver
 from validation.solvers.hooks import SolvingHooks
 from validation.solvers.memory import NUMBER, sparse
 
+# s of a case of which a study has dozens, and s more for each second of motion and block: the slowest program takes
+# some 0.5 s for it on a core of its own
+TIME_LIMIT = 60.0
+TIME_FACTOR = 3.0
 STATE = 18  # numbers of a moving block at a step: pose, strain and velocity, and as many of its contacts
 
 
@@ -18,8 +22,11 @@ class HOOKS(SolvingHooks):
     """Blocks by `dda`, the elastic body of the outline of glued ones by elements."""
 
     def refusal(self, scene: Scene, solver: str) -> str | None:
-        """Return what of moving blocks elements do not take."""
+        """Return what of moving blocks a solver does not take."""
         plane = scene.table(PlaneSection)
+        if plane.contact is not None and plane.contact.restitution not in (None, 1.0):
+            why = "no coefficient of restitution below 1: its springs give back everything"
+            return f"{solver} has {why}, got {plane.contact.restitution:g}"
         return refusal_of(scene, plane) if plane.moves and solver == "fem" else None
 
     def build(self, scene: Scene, solver: str, full: bool) -> Prepared | None:
@@ -35,6 +42,12 @@ class HOOKS(SolvingHooks):
         from validation.solvers.plane.mesh import PlaneMesh
 
         return (PlaneMesh if plane.is_glued else MovingMesh)(scene, plane, scheme_of(scene))
+
+    def time_limit(self, scene: Scene) -> float | None:
+        """Return the time that a user's function may take [s], of blocks that move."""
+        plane = scene.table(PlaneSection)
+        moving = sum(not block.held for block in plane.assembly.blocks) if plane.moves else 0
+        return TIME_LIMIT + TIME_FACTOR * scene.time.duration * moving if moving else None
 
     def request(self, scene: Scene) -> dict[str, Any]:
         """Return the elastic body of the outline on the mesh of `fem`, as the worker takes it."""

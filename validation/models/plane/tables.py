@@ -22,6 +22,8 @@ from validation.models.plane.joints import Segment as Segment
 from validation.scenes.keys import Key, Section
 from validation.scenes.tables import Count, Positive, Real
 
+OWN_STIFFNESS = 1.0e9  # N/m, of a corner: DDA's springs where a scene has rigid contact
+OWN_STEP = 2.0e-3  # s: and its longest step there, that of the damping study that this suite began with
 OF_MOTION = ("contact", "pair", "touch", "bond", "ramp", *GENERATORS)  # keys that go with moving blocks only
 OF_GLUED = ("stress", "clamp", "clamp_glue", "width", "height", "subdivide", "pattern")  # with glued ones only
 OF_MOVING_BLOCK = ("velocity", "spin", "fixed", "motion", "density", "young", "poisson", "subdivide")

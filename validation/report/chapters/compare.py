@@ -1,4 +1,4 @@
-"""The page of `compare --out`: the answer, the curves and the ranking."""
+"""The page of `compare --out`: the answer, the curves and the evidence."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from pathlib import Path
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.sentences import told_lines
-from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, Table, TableColumn, table
+from validation.report.blocks import Block, Blocks, Callout, Heading, Paragraph, TableColumn, table
 from validation.report.chapters.text import parameters
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
@@ -19,7 +19,6 @@ from validation.runs.numbers import DASH, short
 from validation.scenes.scene import Scene
 
 FIGURE = "compare.svg"
-LINES = 5  # of the ranking that leave the answer on one page
 
 
 def write_page(scene: Scene, source: str, answer: Answer, out: Path) -> Path:
@@ -64,7 +63,6 @@ def page(scene: Scene, source: str, answer: Answer, directory: Path) -> Sequence
         histories.saved(answer_figure(scene, answer), directory, FIGURE, caption),
         *_facts(answer),
         *_evidence(answer),
-        *([_ranking(answer)] if answer.ranking else []),
         *(Paragraph(line, "small") for line in rest),
     ]
 
@@ -91,16 +89,3 @@ def _evidence(answer: Answer) -> Blocks:
     rows = tuple((stage.name.replace("_", " "), marks[stage.agrees], stage.words) for stage in answer.evidence)
     titles = (TableColumn("Evidence", "code"), TableColumn("", "code"), TableColumn("In words", "fill"))
     return [table(titles, rows)] if rows else []
-
-
-def _ranking(answer: Answer) -> Table:
-    rows = []
-    for row in answer.ranking[:LINES]:
-        scheme = "exact in time" if row["alpha"] is None else f"α = {row['alpha']:.4g}, δ = {row['delta']:.4g}"
-        softer = DASH if row["compliance"] is None else short(100 * row["compliance"], 3)
-        rows.append((str(row["model"]), str(row["name"] or scheme), short(100 * row["misfit"], 3), softer))
-    return table(
-        (TableColumn("Model", "code"), TableColumn("Scheme", "fill"), "Misfit [%]", "Compliance [%]"),
-        rows,
-        "Relative L2 of what each model leaves, at its best compliance of the springs.",
-    )

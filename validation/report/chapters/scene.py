@@ -255,14 +255,12 @@ def outcomes(group: CaseGroup) -> Blocks:
 
 
 def _columns(group: CaseGroup) -> list[str]:
-    """Return the columns that some solver reports: those of a kind in its order or the scene's, displacement first."""
+    """Return the columns that some solver reports: those of a kind in the scene's order, displacement first."""
     names: set[str] = set()
     for case in group.cases:
         names.update(*(history.columns for history in case.histories.values()))
     scene = group.cases[0].scene
-    of_kind = scene.kind.column_names()
-    stated = (name for name in scene.run.columns if scene.kind.has_column(scene, name))
-    own = [name for name in (*of_kind, *stated) if name in names]
+    own = [name for name in scene.run.columns if scene.kind.has_column(scene, name) and name in names]
     return own or sorted(names, key=lambda name: (rank(name), name))
 
 

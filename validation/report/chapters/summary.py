@@ -93,8 +93,6 @@ def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
     """Yield time step, springs and discount of the cases, and what they do."""
     scenes = [case.scene for case in group.cases]
     hooks = ShowingHooks.of(scenes[0])
-    if not hooks.chooses_steps:
-        return
     yield "Time step.", _step(group, scenes)
     if springs := hooks.springs(scenes, group.numbers):
         yield "Springs.", springs

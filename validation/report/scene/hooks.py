@@ -36,7 +36,6 @@ class ShowingHooks(Hooks):
 
     module = "showing"
     no_data: frozenset[str] = frozenset()  # keys that say nothing of such scenes
-    chooses_steps: bool = True  # whether step and discount are the scene's, and not each program's
     first_mode = ""  # name of the number that is the frequency of the first mode
 
     def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:

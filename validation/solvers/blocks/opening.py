@@ -43,15 +43,13 @@ class OpeningBlock(Prepared):
         self.scheme = scheme
         self.full = full
         self.result: dda.ContactResult | None = None
+        self.body: dda.UnilateralModel | dda.OpeningSystem
         b = scene.block
         with naming(scene):
             load = load_of(scene, motion)
             self.model = dda.UnilateralModel(block_of(scene), law_of(scene), load, b.base, b.top, velocity=b.velocity)
+            self.body = self.model
             self.options = options_of(scene, full)
-
-    def solve(self, columns: Sequence[str]) -> dda.ContactResult:
-        """Make the steps."""
-        return dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, columns, self.options)
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the block on both corners [rad/s]."""
@@ -62,7 +60,7 @@ class OpeningBlock(Prepared):
         passes = (PASSES,) if self.options.rule == "augmented" else ()
         check_columns(self.scene, (*dda.COLUMNS, *OPENING, *passes))
         model_columns = [name for name in self.scene.run.columns if name in dda.COLUMNS]
-        result = self.solve(model_columns)
+        result = dda.solve_unilateral(self.body, self.scheme, self.scene.time.steps, model_columns, self.options)
         self.result = result
         return to_run(self.scene, result, {**result.columns, **self._contact(result)})
 
@@ -155,12 +153,8 @@ class OpeningSubBlocks(OpeningBlock):
         b = scene.block
         with naming(scene):
             columns, rows = b.subdivide or (1, 1)
-            self.opening = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
+            self.body = dda.opening_subdivided(self.model, columns, rows, b.glue_ratio * b.young, b.pattern)
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the sub-blocks while all points of the base are closed [rad/s]."""
         return opening_system_frequency(self.scene)
-
-    def solve(self, columns: Sequence[str]) -> dda.ContactResult:
-        """Make the steps."""
-        return dda.solve_opening_system(self.opening, self.scheme, self.scene.time.steps, columns, self.options)

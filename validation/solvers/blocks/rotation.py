@@ -38,7 +38,7 @@ class RollingBlock(Prepared):
     """A whole block whose outline, contact points and directions are taken anew at every step."""
 
     def __init__(self, scene: Scene, scheme: dda.Scheme, motion: dda.BaseMotion | None) -> None:
-        from dda.bodies.turning_block import RollingModel, RollingOptions
+        from dda.bodies.turning_block import RollingModel
 
         self.scene = scene
         self.scheme = scheme
@@ -55,7 +55,7 @@ class RollingBlock(Prepared):
                 tilt=math.radians(b.tilt),
                 velocity=(0.0, b.velocity),
             )
-            self.options = RollingOptions(scene.run.rotation, c.solve_limit, c.cut)
+            self.options = dda.UnilateralOptions(solve_limit=c.solve_limit, cut=c.cut, rotation=scene.run.rotation)
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the block on any of its edges [rad/s]."""
@@ -63,12 +63,10 @@ class RollingBlock(Prepared):
 
     def history_run(self) -> Run:
         """Run the scene."""
-        from dda.bodies.turning_block import solve_rolling
-
         check_columns(self.scene, (*dda.COLUMNS, *ROLLING_COLUMNS))
         requested_columns = self.scene.run.columns
         model_columns = [name for name in requested_columns if name in dda.COLUMNS]
-        result = solve_rolling(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
+        result = dda.solve_unilateral(self.model, self.scheme, self.scene.time.steps, model_columns, self.options)
         self.result = result
         columns = {name: contact_column(result, name) for name in requested_columns if name in OPENING}
         if AREA in requested_columns:

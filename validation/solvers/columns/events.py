@@ -69,15 +69,19 @@ def drive_of(scene: Scene, at: str, integral: bool) -> Drive:
     section = scene.input
     if section.record is not None:
         times, values, order = read_drive(Path(section.record), section.at)
-        return drives.recorded(times.tolist(), values.tolist(), order - 1 + integral)
+        return drives.integrated(drives.recorded(times.tolist(), values.tolist()), order - 1 + integral)
     size = (section.velocity if at == "base" else section.pressure) or 0.0
-    if section.shape in ("half-sine", "triangle"):
-        pulse = drives.half_sine if section.shape == "half-sine" else drives.triangle
-        return pulse(size, section.duration or 1.0, integral)
     frequency = section.frequency or 1.0
-    if section.shape == "ricker":
-        return drives.ricker(size, frequency, integral)
-    return drives.sine(size, frequency, integral, quarters=1 if section.shape == "cosine" else 0)
+    duration = section.duration or 1.0
+    if section.shape == "half-sine":
+        drive = drives.half_sine(size, duration)
+    elif section.shape == "triangle":
+        drive = drives.triangle(size, duration)
+    elif section.shape == "ricker":
+        drive = drives.ricker(size, frequency)
+    else:
+        drive = drives.sine(size, frequency, quarters=1 if section.shape == "cosine" else 0)
+    return drives.integrated(drive, int(integral))
 
 
 def problem_of(scene: Scene) -> ColumnProblem:
@@ -226,7 +230,7 @@ class ColumnEventMotion(Motion):
         values = []
         course = drive_of(self.scene, "top", integral=True)()
         for moment in (0.0, time):
-            piece, _ = course.piece_at(moment)
+            piece = course.piece_at(moment)
             values.append(float(piece.series(arb(moment), 1.0, 1)[0]))
         return values[1] - values[0]
 

@@ -25,8 +25,8 @@ from validation.suite.bands import Band, cases
 
 PUSHING = ("pushing-both", "pushing-held")
 PASSIVE, ACTIVE = math.radians(10), math.radians(50)  # dips of the planes that the wedges slide on
+LOCKED = "pushing-locked"
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
-LIMIT = 1.16335645885845  # factor of safety at 35 degrees, 20 between the wedges
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
 
 
@@ -85,6 +85,27 @@ def against_exact(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
+def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
+    """Return the push that is left at the end, and that of the exact motion [N]."""
+    problem = problem_of(scene)
+    upper, lower, _, _ = at(problem, float(history.time[-1]))
+    exact = problem.stiffness * (upper - lower - problem.gap)
+    return float(history.columns["slope_2.4-slope_1.1.normal"][-1]), exact
+
+
+def against_rest(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the push that is locked in between two blocks at rest [N], and over the exact one, less one."""
+    push, exact = push_at_end(scene, history)
+    return {"push": push, "exact": exact, "over exact": push / exact - 1}
+
+
+def order_of_push(finished: Finished) -> Mapping[str, Value]:
+    """Return the error of the push that is left over twice that of half the step."""
+    pushes = [push_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(LOCKED)]
+    coarse, fine = (push - exact for push, exact in pushes)
+    return {"push": coarse / (2 * fine)}
+
+
 def orders(name: str, finished: Finished) -> Mapping[str, Value]:
     """Return the error of each block over twice that of half the step."""
     coarse, fine = (errors_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(name))
@@ -97,6 +118,8 @@ def derived() -> tuple[Derived, ...]:
     for name in PUSHING:
         needs = tuple((case.name, "dda") for case in cases(name))
         rows.append(Derived(name, "order", needs, partial(orders, name)))
+    locked = tuple((case.name, "dda") for case in cases(LOCKED))
+    rows.append(Derived(LOCKED, "order", locked, order_of_push))
     return tuple(rows)
 
 
@@ -124,7 +147,16 @@ def first_order() -> Band:
 
     Both scenes have the same blocks, spring and steps.
     """
-    case = next(iter(cases(PUSHING[0])))
+    return _first_order(PUSHING[0])
+
+
+def first_order_of_push() -> Band:
+    """Return the same of the blocks that come to rest."""
+    return _first_order(LOCKED)
+
+
+def _first_order(name: str) -> Band:
+    case = next(iter(cases(name)))
     problem = problem_of(case)
     frequency = math.sqrt(problem.stiffness * sum(1 / mass for mass in problem.masses))
     return 1 - frequency * case.time.step, 1 + frequency * case.time.step
@@ -133,17 +165,24 @@ def first_order() -> Band:
 # ---- two wedges ---------------------------------------------------------------------------------------------------
 
 
-def wedge_motion(scene: Scene) -> dict[str, float]:
-    """Return accelerations [m/s2] and normal forces [N] of rigid wedges that slide."""
+def weights_and_friction(scene: Scene) -> tuple[float, float, float, float]:
+    """Return the weights of the active and the passive wedge [N], tan(phi) below them and tan(delta) between them."""
     plane = scene.table(PlaneSection)
     assembly = plane.assembly
     rock, passive, active = (assembly.members[name][0] for name in ("rock", "passive", "active"))
-    W2, W1 = (plane.density * area(assembly.blocks[block].vertices) * -plane.gravity[1] for block in (passive, active))
-    p, q = (
-        math.atan((contact.friction_coefficient if contact else None) or 0.0)
+    W1, W2 = (plane.density * area(assembly.blocks[block].vertices) * -plane.gravity[1] for block in (active, passive))
+    below, between = (
+        (contact.friction_coefficient if contact else None) or 0.0
         for contact in (assembly.springs_between(passive, rock), assembly.springs_between(passive, active))
     )
-    a1, a2, g = ACTIVE, PASSIVE, -plane.gravity[1]
+    return W1, W2, below, between
+
+
+def wedge_motion(scene: Scene) -> dict[str, float]:
+    """Return accelerations [m/s2] and normal forces [N] of rigid wedges that slide."""
+    W1, W2, below, between = weights_and_friction(scene)
+    p, q = math.atan(below), math.atan(between)
+    a1, a2, g = ACTIVE, PASSIVE, -scene.table(PlaneSection).gravity[1]
 
     def left_over(P: float) -> float:
         A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
@@ -196,14 +235,36 @@ def rigid_wedges(case: Scene) -> Band:
     return -half, half
 
 
+def factor_of_safety(case: Scene) -> float:
+    """Return F by which tan(phi) and tan(delta) are divided where the wedges are at their limit.
+
+    With tan p = tan(phi)/F below them and tan q = tan(delta)/F between them what the active one pushes with is what the
+    passive one resists: W1 sin(a1 - p) / cos(a1 - p - q) = W2 sin(p - a2) / cos(p - a2 + q), for p between a2 and a1.
+    """
+    W1, W2, below, between = weights_and_friction(case)
+
+    def left_over(F: float) -> float:
+        p, q = math.atan(below / F), math.atan(between / F)
+        push = W1 * math.sin(ACTIVE - p) / math.cos(ACTIVE - p - q)
+        return push - W2 * math.sin(p - PASSIVE) / math.cos(p - PASSIVE + q)
+
+    least, most = below / math.tan(ACTIVE) * (1 + 1e-9), below / math.tan(PASSIVE)
+    return float(brentq(left_over, least, most, xtol=1e-15, rtol=1e-14))
+
+
+def limit(case: Scene) -> Mapping[str, Value]:
+    """Return the factor of safety of the wedges and their angles of friction [rad], below and between them."""
+    _, _, below, between = weights_and_friction(case)
+    return {"factor": factor_of_safety(case), "below": math.atan(below), "between": math.atan(between)}
+
+
 def at_the_limit(case: Scene) -> Band:
-    """Return the speed at the end [m/s]: none above the limit; below it at least what half the excess drives.
+    """Return the speed at the end [m/s]: none above the limit; below it at least what half the deficit drives.
 
     Of tan(phi) 1 % too low, the weight along the planes exceeds the friction by a hundredth of it.
     """
     plane = case.table(PlaneSection)
-    tangent = plane.contact.friction_coefficient if plane.contact else 0.0
-    stands = (tangent or 0.0) > math.tan(math.radians(35)) / LIMIT
-    if stands:
+    deficit = 1 - factor_of_safety(case)
+    if deficit < 0:
         return -STANDS, STANDS
-    return 0.01 / 2 * -plane.gravity[1] * math.sin(PASSIVE) * (case.time.duration - plane.ramp), math.inf
+    return deficit / 2 * -plane.gravity[1] * math.sin(PASSIVE) * (case.time.duration - plane.ramp), math.inf

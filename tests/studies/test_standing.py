@@ -1,0 +1,139 @@
+"""The study `standing`: limits and the truss against numbers of other programs; every gate is bitten by a fault."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from faults.fault import Fault, told
+from faults.kill_matrix import cases_of, check_kill_matrix
+from faults.seams import Seam
+
+import dda
+from validation.scenes.scene import load_scene
+from validation.studies.standing import limits
+from validation.studies.standing.formulas import half_truss, turned_columns
+from validation.suite.bands import cases
+from validation.suite.folders import get_study
+
+DIP = math.radians(30)
+COULOMB = [(35, 3, 2.33678219, 2.56823), (35, 5, 2.73726587, 3.32522), (40, 3, 3.12255634, 4.33108)]
+OVERHANG_FORCES = [(23357.143, 1167.857), (47441.803, 1608.197), (71389.604, 2185.396)]  # of a block of 24525 N
+DROP = {  # x and y from the start, turn, N at A and C, shear at A, by DOP853 and LSODA
+    0.02: (-2.24883958e-5, -0.00149383215506, 4.67369604e-4, 37054.6767, 51780.6618, 55455.6310),
+    0.1: (-0.00104610905439, -0.0154670182010, 0.00682906629656, 427326.3996, 422875.8442, 173271.3700),
+    0.2: (4.80616610e-5, -3.45723606e-4, -8.72548139e-5, 4513.5301, 14918.3912, 52106.9073),
+}
+
+
+@pytest.mark.parametrize(("phi", "count", "recursion", "program"), COULOMB)
+def test_columns_on_a_flat_base_have_the_brackets_of_another_program(phi, count, recursion, program):
+    heights = limits.flat_height(count, 1.0, DIP, math.tan(math.radians(phi)))
+    assert heights == pytest.approx((recursion, program), rel=3e-6)
+
+
+def test_limits_are_those_of_another_program():
+    assert math.degrees(limits.stepped_dip([2, 4, 4, 4, 4], 1.0, 1.0, 0.8)) == pytest.approx(14.6417, abs=5e-5)
+    assert limits.keyed_dip(2.36188746487, 5, 1.0) == pytest.approx(DIP, rel=1e-11)
+    assert limits.least_thickness(1.0, 7) == pytest.approx(0.095703, abs=5e-7)
+    assert limits.leaning_friction(math.radians(50), 7.5) == pytest.approx(0.352883148922, rel=1e-11)
+    assert limits.harmonic(8, 1.0) == pytest.approx(761 / 560)
+    forces = 24525 * np.array(limits.seat_forces(3, 2.0, 0.95))
+    assert forces == pytest.approx(np.array(OVERHANG_FORCES), abs=5e-4)
+
+
+def test_a_program_of_forces_lets_a_key_stone_stand_that_falls_on_springs():
+    tangent = math.tan(math.radians(5))
+    half = [0.5 - y * tangent for y in (-0.5, 0.5, -1.0, 1.0)]
+    stone = ((-half[0], -0.5), (half[0], -0.5), (half[1], 0.5), (-half[1], 0.5))
+    right = ((half[2], -1.0), (2.0, -1.0), (2.0, 1.0), (half[3], 1.0))
+    left = ((-2.0, -1.0), (-half[2], -1.0), (-half[3], 1.0), (-2.0, 1.0))
+    stands = [limits.can_rest([stone, left, right], [False, True, True], math.tan(math.radians(phi))) for phi in (4, 6)]
+    assert stands == [False, True]
+
+
+def test_columns_begin_to_turn_as_another_program_has_them():
+    scene = load_scene("standing-turning")
+    assert 2e8 * turned_columns(scene, np.array([1e-4]))[0] == pytest.approx(0.442422153194, rel=1e-6)
+
+
+def test_half_a_truss_rests_and_moves_as_another_program_has_it():
+    truss = half_truss(next(cases("standing-truss-load")))
+    u, load = truss.limit
+    assert (math.atan2(1, 4) - u, load) == pytest.approx((0.114591304192557, 1110203.06756373), rel=1e-9)
+    rests = [truss.rest(share * load)["turn"] for share in (0.0, 0.5, 0.9)]
+    assert rests == pytest.approx([0.023357203961846915, 0.0482543113365478, 0.0836526059742487], rel=1e-9)
+    assert truss.rest(0.0)["thrust"] == pytest.approx(217687.901496793, rel=1e-9)
+    assert truss.rest(1.01 * load) is None
+    rows = truss.motion(np.array([0.0, *DROP]))
+    moved = rows[1:] - [*rows[0][:3], 0.0, 0.0, 0.0]
+    assert moved == pytest.approx(np.array([*DROP.values()]), rel=1e-7, abs=1e-12)
+
+
+Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def springs(**changes: Callable[[dda.ContactSprings], Any]) -> Wrap:
+    """Change the springs of all contacts, stated and found."""
+
+    def changed(law: Any) -> Any:
+        if law is None or isinstance(law, dda.ContactSprings):
+            return law and replace(law, **{name: change(law) for name, change in changes.items()})
+        return lambda first, second: changed(law(first, second))
+
+    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+        def model(blocks: Any, *, contacts: Any, found: Any, **others: Any) -> Any:
+            stated = [replace(contact, springs=changed(contact.springs)) for contact in contacts]
+            return sound(blocks, contacts=stated, found=changed(found), **others)
+
+        return model
+
+    return wrap
+
+
+def weight(factor: float = 1.0, turned: float = 0.0) -> Wrap:
+    """Multiply all weights, and turn them [deg]."""
+    turn = factor * np.array([[math.cos(math.radians(turned)), -math.sin(math.radians(turned))],
+                              [math.sin(math.radians(turned)), math.cos(math.radians(turned))]])  # fmt: skip
+
+    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+        def model(blocks: Any, *, loads: Any, gravity: Any, **others: Any) -> Any:
+            changed = [replace(load, force=tuple(turn @ load.force)) for load in loads]
+            return sound(blocks, loads=changed, gravity=tuple(turn @ gravity), **others)
+
+        return model
+
+    return wrap
+
+
+def unbalanced(result: Any) -> dict[str, object]:
+    return {"energy": {**result.energy, "balance": result.energy["balance"] + 1e-6 * result.energy["load"]}}
+
+
+DDA = ("dda",)
+MODEL = Seam(dda, dda.PlaneModel)
+FAULTS = [
+    Fault("weight upside down", DDA, MODEL, weight(-1.0)),
+    Fault("weight a hundredth high", DDA, MODEL, weight(1.01)),
+    Fault("weight turned up the dip", DDA, MODEL, weight(turned=-1.5)),
+    Fault("weight turned down the dip", DDA, MODEL, weight(turned=1.5)),
+    Fault("contacts that pull", DDA, MODEL, springs(tension=lambda law: 1e6, cohesion=lambda law: 1e7 * law.shear)),
+    Fault("friction a twentieth high", DDA, MODEL, springs(friction=lambda law: law.friction and 1.05 * law.friction)),
+    Fault("friction a twentieth low", DDA, MODEL, springs(friction=lambda law: law.friction and 0.95 * law.friction)),
+    Fault("nothing slips", DDA, MODEL, springs(friction=lambda law: None)),
+    Fault("springs a tenth stiff", DDA, MODEL, springs(stiffness=lambda law: 1.1 * law.stiffness)),
+    Fault("springs a tenth soft", DDA, MODEL, springs(stiffness=lambda law: 0.9 * law.stiffness)),
+    Fault("load in no account", DDA, Seam(dda, dda.solve_plane), told(unbalanced)),
+]  # fmt: skip
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    study = get_study("standing")
+    gates = study.gates()
+    check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)

@@ -1,0 +1,71 @@
+"""Blocks that move in the plane as plain data: what any program needs to place them, and the law of their contact."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any, ClassVar
+
+from validation.errors import InputError
+from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, polar_moment
+from validation.models.plane.joints import PlaneContactSection
+from validation.models.plane.tables import PlaneSection
+from validation.scenes.outline import area
+from validation.scenes.plain import PlainHooks
+from validation.scenes.record import read_record
+from validation.scenes.scene import Scene
+
+SHAPES = frozenset(PlaneBlockSection.model_fields) - {"name", "density", "velocity", "spin", "fixed"}
+
+
+class HOOKS(PlainHooks):
+    """Rigid blocks, each where it is at t = 0, that touch by one law under their weight."""
+
+    tables: ClassVar = {"plane.blocks": PlaneBlockSection, "plane.contact": PlaneContactSection}
+    unstated: ClassVar = {PlaneBlockSection: SHAPES}
+
+    def data(self, scene: Scene) -> dict[str, Any]:
+        """Return blocks, contact and gravity.
+
+        Raises
+        ------
+        InputError
+            The scene has more than that.
+        """
+        plane = scene.table(PlaneSection)
+        more = [name for name in ("observe", "pair", "touch", "bond", "load", "ramp") if getattr(plane, name)]
+        if plane.moves and not all(math.isinf(block.young) for block in plane.assembly.blocks):
+            more.append("young")
+        if more or plane.contact is None:
+            rule = "plain data hold rigid blocks of one contact under weight"
+            raise InputError(rule, source=scene.name, field=f"plane.{more[0] if more else 'contact'}")
+        blocks = [_block(block) for block in plane.assembly.blocks]
+        return {
+            "plane": {
+                "gravity_m_per_s2": list(plane.gravity),
+                "contact": self.table(plane.contact),
+                "blocks": blocks,
+            }
+        }
+
+
+def _block(block: PlacedBlock) -> dict[str, Any]:
+    """Return a block of unit depth: its outline and its centroid at t = 0, and what moves it from there."""
+    mass = block.density * area(block.vertices)
+    record = None if block.motion is None else read_record(Path(block.motion))
+    rows = (
+        None if record is None else {"time_s": record.time.tolist(), "x_m": record.x.tolist(), "y_m": record.y.tolist()}
+    )
+    return {
+        "name": block.name,
+        "fixed": block.fixed,
+        "motion": rows,
+        "vertices_m": [list(corner) for corner in block.vertices],
+        "centroid_m": list(centroid(block.vertices)),
+        "angle_rad": block.angle,
+        "density_kg_per_m3": block.density,
+        "mass_kg": mass,
+        "inertia_kg_m2": block.density * polar_moment(block.vertices),
+        "velocity_m_per_s": list(block.velocity),
+        "spin_rad_per_s": block.spin,
+    }

@@ -1,1 +1,0 @@
-"""Rigid boxes on a plane, what contact engines simulate: the table `[rigid]`."""

@@ -1,0 +1,1 @@
+"""Boxes on a ground by dda, against their exact motions."""

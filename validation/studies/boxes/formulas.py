@@ -1,0 +1,122 @@
+"""The study `boxes`: boxes on a ground by `dda` beside `rigid-exact`, and what springs and steps may add.
+
+A box has two corners on what is below it, each on a spring p. Where a scene asks for rigid contact the springs and the
+steps are DDA's own; a history keeps the rows alone.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import partial
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.suite.bands import Band, cases
+
+Against = Callable[[Scene, History, History], Mapping[str, Value]]
+
+
+def masses(case: Scene) -> list[float]:
+    """Return the masses of the boxes, from the lowest up [kg]."""
+    blocks = case.table(PlaneSection).assembly.blocks
+    return [block.density * area(block.vertices) for block in blocks if not block.fixed]
+
+
+def slide(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+    """Return how far the box is ahead at the end [m], and its normal force over the exact one, less one."""
+    force = "box-ground.normal"
+    return {
+        "lead": float(own.columns["box.x"][-1] - exact.columns["box.x"][-1]),
+        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+    }
+
+
+def rock(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+    """Return the greatest rotation over the exact one, less one."""
+    angle = "box.angle"
+    return {"rotation": float(np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1)}
+
+
+def stack(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+    """Return the sinking of the top over that of all springs, and the force below the lowest, each less one."""
+    above = np.cumsum(masses(case)[::-1])
+    springs = float(np.sum(above)) * -case.table(PlaneSection).gravity[1] / (2 * OWN_STIFFNESS)
+    force = "A-ground.normal"
+    return {
+        "sinking": float(exact.columns["E.y"][-1] - own.columns["E.y"][-1]) / springs - 1,
+        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+    }
+
+
+def land(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+    """Return the greatest force over the exact one, less one."""
+    force = "box-ground.normal"
+    return {"peak force": float(np.max(own.columns[force]) / np.max(exact.columns[force]) - 1)}
+
+
+AGAINST: Mapping[str, Against] = {
+    "boxes-sliding": slide,
+    "boxes-rocking": rock,
+    "boxes-pile": stack,
+    "boxes-landing": land,
+}
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return a row a case: the run of `dda` against the exact motion."""
+    rows = []
+    for name, against in AGAINST.items():
+        for case in cases(name):
+            needs = ((case.name, "dda"), (case.name, "rigid-exact"))
+            rows.append(Derived(case.name, "against", needs, partial(measured, case, against)))
+    return tuple(rows)
+
+
+def measured(case: Scene, against: Against, finished: Finished) -> Mapping[str, Value]:
+    """Return what is measured on both histories of a case."""
+    histories = [finished.needed_history(case.name, solver) for solver in ("dda", "rigid-exact")]
+    return against(case, *histories)
+
+
+def settlement(case: Scene) -> Band:
+    """Return the lead of a box that slides [m]: 0 to twice tan(phi) W/(2p), W across the slope."""
+    plane = case.table(PlaneSection)
+    friction = plane.contact.friction_coefficient if plane.contact else 0.0
+    settles = masses(case)[0] * -plane.gravity[1] / (2 * OWN_STIFFNESS)
+    return 0.0, 2 * (friction or 0.0) * settles
+
+
+def corner_gives_way(case: Scene) -> Band:
+    """Return 2 W/(p w) of a box of width w over the rotation at which it turns back."""
+    plane = case.table(PlaneSection)
+    block = next(block for block in plane.block if not block.fixed)
+    width, height = block.rectangle or (0.0, 0.0)
+    gravity, radius = -plane.gravity[1], math.hypot(width, height) / 2
+    # cos(alpha - theta) = cos(alpha) + w^2 / (2 P^2), P^2 = 3 g / (4 R), alpha the slenderness
+    alpha = math.atan2(width, height)
+    rotation = alpha - math.acos(math.cos(alpha) + block.spin**2 * 2 * radius / (3 * gravity))
+    half = 2 * masses(case)[0] * gravity / (OWN_STIFFNESS * width) / rotation
+    return -half, half
+
+
+def ringing(case: Scene) -> Band:
+    """Return exp(-w^2 h T/4): the slowest vibration of the pile after T, damped by w h/4 of critical."""
+    # Dunkerley: 1/w^2 is at most the sum of each mass alone on the springs below it.
+    slowest = 1 / sum(mass * number / (2 * OWN_STIFFNESS) for number, mass in enumerate(masses(case), start=1))
+    half = math.exp(-slowest * OWN_STEP * case.time.duration / 4)
+    return -half, half
+
+
+def closing(case: Scene) -> Band:
+    """Return (w h)^2, w^2 = 2p/m."""
+    plane = case.table(PlaneSection)
+    stiffness = plane.contact.stiffness if plane.contact else 0.0
+    half = 2 * stiffness / masses(case)[0] * case.time.step**2
+    return -half, half

@@ -1,0 +1,1 @@
+"""Blocks that spin, fly, slide to rest and tip over a ledge."""

@@ -1,0 +1,253 @@
+"""The study `spin`: rows that compare histories with exact motions, and the bands of their gates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from functools import partial
+
+import numpy as np
+
+from validation.engine.finished import Derived, Finished
+from validation.models.plane.blocks import PlacedBlock
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import History
+from validation.runs.row import Value
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.studies.spin.exact import Slide, Spinning
+from validation.suite.bands import Band, cases, fitted_order, near
+from validation.theory.spectra import EPS
+
+STRAINS = ("ex", "ey", "gxy")
+SPINNING = ("spin-square", "spin-rectangle")
+TIPPING = ("spin-ledge", "spin-ledge-smooth")
+
+
+def moving_block(scene: Scene) -> PlacedBlock:
+    """Return the one block that moves."""
+    (block,) = (block for block in scene.table(PlaneSection).assembly.blocks if not block.fixed)
+    return block
+
+
+def outline(scene: Scene) -> tuple[float, float]:
+    """Return width and height of the block [m]."""
+    width, height = np.ptp(moving_block(scene).vertices, axis=0)
+    return float(width), float(height)
+
+
+# ---- blocks that spin -----------------------------------------------------------------------------------------------
+
+
+def spinning_of(scene: Scene) -> Spinning:
+    """Return the exact problem of a block that spins."""
+    block = moving_block(scene)
+    return Spinning(*outline(scene), block.density, block.young, block.poisson, block.spin)
+
+
+def errors_of(scene: Scene, history: History) -> dict[str, float]:
+    """Return the largest error of the angle [rad] and of each strain."""
+    exact = spinning_of(scene).at(history.time)
+    return {name: float(np.max(np.abs(history.columns[f"block.{name}"] - values))) for name, values in exact.items()}
+
+
+def accounts(scene: Scene, history: History) -> dict[str, Value]:
+    """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
+    momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
+    balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
+    return {"momentum": float(np.max(np.abs(momentum - 1))), "balance": float(balance)}
+
+
+def against_motion(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the errors of a block that spins unstrained at first, and its accounts."""
+    return errors_of(scene, history) | accounts(scene, history)
+
+
+def against_steady(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the strains at the end, the area and the rate of the angle there over those of a steady spin."""
+    ex, ey, gxy = (float(history.columns[f"block.{name}"][-1]) for name in STRAINS)
+    exact = spinning_of(scene)
+    stretch = 1 + exact.steady_strain
+    rate = float(np.diff(history.columns["block.angle"])[-1]) / scene.time.step
+    return accounts(scene, history) | {
+        "ex": ex,
+        "ey": ey,
+        "area": ((1 + ex) * (1 + ey) - gxy**2 / 4) / stretch**2 - 1,
+        "rate": rate * stretch**2 / exact.spin - 1,
+    }
+
+
+def orders(name: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the order of the errors of angle and strains."""
+    levels = list(cases(name))
+    errors = [errors_of(case, finished.needed_history(case.name, "dda")) for case in levels]
+    steps = [case.time.step for case in levels]
+    names = ("angle", "ex") if name == "spin-square" else ("angle", *STRAINS)
+    return {name: fitted_order(steps, [error[name] for error in errors]) for name in names}
+
+
+def second_order() -> dict[str, Band]:
+    """Return 2 -/+ what the largest step departs from the leading term of its error.
+
+    A mode of frequency w has in average acceleration the phase 2 atan(w h / 2) = w h - (w h)^3/12 + (w h)^5/80 a step:
+    after a time t it is late by d = w t (w h)^2 / 12, of which (12/80) (w h)^2 is of higher order; the difference of
+    two vibrations is 2 sin(d/2) instead of d, less by d^2 / 24. Both fall to a quarter with half the step.
+    """
+    case = next(cases("spin-rectangle"))  # whose frequencies are the higher ones: across its shorter side
+    exact = spinning_of(case)
+    modulus = exact.young / (1 - exact.poisson**2)
+    frequency = math.sqrt(12 * modulus / exact.density) / min(exact.width, exact.height)
+    square = (frequency * case.time.step) ** 2
+    late = frequency * case.time.duration * square / 12
+    half = 0.75 * (late**2 / 24 + 12 / 80 * square) / math.log(2)
+    return dict.fromkeys(("angle", "ex", *STRAINS[1:]), (2 - half, 2 + half))
+
+
+def rounding(case: Scene) -> Band:
+    """Return n eps."""
+    return 0.0, case.time.steps * EPS
+
+
+def steady(case: Scene) -> dict[str, Band]:
+    """Return strain, area and rate of a steady spin: each rounded once a step, the rate as a difference of angles."""
+    exact = spinning_of(case)
+    relative = case.time.steps * EPS
+    angles = exact.spin * case.time.duration
+    last = angles * EPS / (exact.spin * case.time.step)
+    strain = near(exact.steady_strain, relative)
+    return {"ex": strain, "ey": strain, "area": (-relative, relative), "rate": (-last, last)}
+
+
+# ---- blocks that fly and slide --------------------------------------------------------------------------------------
+
+
+def against_flight(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return how far a block in flight is from its parabola and its even turn, over the largest way and angle."""
+    block = moving_block(scene)
+    t = history.time - history.time[0]
+    started = history.time[0]
+    gravity = scene.table(PlaneSection).gravity
+    largest = 0.0
+    for axis, name in enumerate(("x", "y")):
+        way = history.columns[f"block.{name}"] - history.columns[f"block.{name}"][0]
+        exact = (block.velocity[axis] + gravity[axis] * started) * t + gravity[axis] * t**2 / 2
+        largest = max(largest, float(np.max(np.abs(way - exact)) / np.max(np.abs(exact))))
+    angle = history.columns["block.angle"] - block.angle - block.spin * history.time
+    return {"way": largest, "angle": float(np.max(np.abs(angle))) / (block.spin * scene.time.duration)}
+
+
+def slide_of(scene: Scene) -> Slide:
+    """Return the exact problem of a block that slides over a table."""
+    plane = scene.table(PlaneSection)
+    block = moving_block(scene)
+    friction = plane.contact.friction_coefficient if plane.contact else None
+    place = float(np.mean([x for x, _ in block.vertices]))
+    return Slide(*outline(scene), friction or 0.0, place, block.velocity[0], -plane.gravity[1])
+
+
+def weight_over_stiffness(scene: Scene) -> float:
+    """Return W/p [m]."""
+    plane = scene.table(PlaneSection)
+    block = moving_block(scene)
+    weight = block.density * area(block.vertices) * -plane.gravity[1]
+    return weight / plane.contact.stiffness if plane.contact else 0.0
+
+
+def pitch(scene: Scene) -> float:
+    """Return the pitch of a block that slides, at rest in its own axes: mu W h / (p b^2) [rad]."""
+    slide = slide_of(scene)
+    return slide.friction * weight_over_stiffness(scene) * slide.height / slide.width**2
+
+
+def against_stop(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return how far the centre is from its parabola before its foot stops [m], and its way at the end [m]."""
+    slide = slide_of(scene)
+    slowing = slide.friction * slide.gravity
+    t = history.time
+    way = history.columns["block.x"] - slide.start
+    parabola = slide.speed * t - slowing * t**2 / 2
+    sliding = t < 0.99 * slide.speed / slowing
+    return {"parabola": float(np.max(np.abs((way - parabola)[sliding]))), "distance": float(way[-1])}
+
+
+def closed_stop(case: Scene) -> Mapping[str, Value]:
+    """Return the way to rest of the rigid block, and by how much its centre returns on springs [m]."""
+    slide = slide_of(case)
+    return {"distance": slide.stopping_distance, "back": pitch(case) * slide.height / 2}
+
+
+def parabola(case: Scene) -> Band:
+    """Return what the pitch takes from the parabola [m]: twice the resting one while it swings, squared, of the way.
+
+    The friction of both corners is mu W while both are closed; the heave that a pitch makes is of its second order.
+    """
+    return 0.0, (2 * pitch(case)) ** 2 * slide_of(case).stopping_distance
+
+
+def distance(case: Scene) -> Band:
+    """Return the way to rest [m]: the foot's, since the centre comes back by the pitch times h/2 as friction ends.
+
+    A step stops it in place, mu g h^2 / 2 too early or too late.
+    """
+    slide = slide_of(case)
+    foot = slide.stopping_distance - pitch(case) * slide.height / 2
+    within = slide.friction * slide.gravity * case.time.step**2 / 2
+    return foot - within, foot + within
+
+
+# ---- blocks on a ledge ----------------------------------------------------------------------------------------------
+
+
+def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:
+    """Return the turn, clockwise, and that of the rigid block, at the end [rad]."""
+    return -float(history.columns["block.angle"][-1]), slide_of(scene).turn(float(history.time[-1]))
+
+
+def against_ledge(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return the turn at the end over the rigid block's, less one, or where it stops [m]."""
+    balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
+    accounted: dict[str, Value] = {"balance": float(balance), "stiffness": stiffness_of(scene)}
+    slide = slide_of(scene)
+    if slide.tips is None:
+        return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}
+    turn, exact = turn_at_end(scene, history)
+    return accounted | {"turn": turn / exact - 1, "rigid turn": exact}
+
+
+def stiffness_of(scene: Scene) -> float:
+    """Return the normal spring of a corner [N/m]."""
+    contact = scene.table(PlaneSection).contact
+    return contact.stiffness if contact else math.inf
+
+
+def extrapolated(name: str, finished: Finished) -> Mapping[str, Value]:
+    """Return what two stiffnesses extrapolate to, over the rigid block's turn and less one; also over the next term.
+
+    The turn is that of the rigid block and a term in 1/p, which both stiffnesses tell; the next term is its square.
+    """
+    soft, stiff = cases(name)
+    turns = [turn_at_end(case, finished.needed_history(case.name, "dda")) for case in (soft, stiff)]
+    (first, exact), (second, _) = turns
+    ratio = stiffness_of(stiff) / stiffness_of(soft)
+    error = (ratio * second - first) / (ratio - 1) / exact - 1
+    term = (first - second) / exact
+    return {"turn": error, "over the next term": error / term**2}
+
+
+def stops(case: Scene) -> Band:
+    """Return how far from the rigid block's place it comes to rest [m]: no more than it sinks, W/2p."""
+    half = weight_over_stiffness(case) / 2
+    return -half, half
+
+
+# ---- rows -----------------------------------------------------------------------------------------------------------
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the rows that compare steps, and two stiffnesses."""
+    rows = []
+    for names, row, compute in ((SPINNING, "order", orders), (TIPPING, "rigid limit", extrapolated)):
+        for name in names:
+            needs = tuple((case.name, "dda") for case in cases(name))
+            rows.append(Derived(name, row, needs, partial(compute, name)))
+    return tuple(rows)

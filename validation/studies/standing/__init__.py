@@ -1,0 +1,1 @@
+"""What of several blocks stands and what falls, against limits in closed form."""

@@ -1,0 +1,1 @@
+"""Corners that hit edges: which one, when, and what comes of it."""

@@ -1,0 +1,191 @@
+r"""A rigid rectangle that hits a plane with a corner: on springs by its equations of motion, and in the rigid limit.
+
+With the arm r of the corner c = x + r, N = -p c_y while c_y < 0, and the spring along the plane stretched from the
+place a where the corner last held,
+
+    m x'' = T,   m y'' = N - m g,   I theta'' = r_x N - r_y T,    T = -ps (c_x - a) with |T| <= mu N.
+
+While it slips, T = -/+ mu N and a follows; it sticks again where a would turn back. In the limit p, ps/p -> inf the
+place does not change in the impact, and velocities are integrated along the normal impulse: the corner slips, and
+sticks or slips backwards once its slip has come to rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from validation.runs.history import Array
+
+SAMPLES = 2000  # of a free flight, between which the lowest corner meets the plane
+MOST_MODES = 60
+
+
+@dataclass(frozen=True)
+class FallingRectangle:
+    """A rectangle above the plane y = 0."""
+
+    width: float  # m
+    height: float  # m
+    mass: float  # kg
+    place: tuple[float, float]  # of the centroid [m]
+    angle: float  # rad
+    velocity: tuple[float, float]  # m/s
+    spin: float  # rad/s
+    gravity: float = 9.81
+
+    @property
+    def inertia(self) -> float:
+        """Of mass, about the centroid [kg m2]."""
+        return self.mass * (self.width**2 + self.height**2) / 12
+
+    def arms(self, angle: float) -> Array:
+        """Return the corners about the centroid at an angle, shape (4, 2) [m]."""
+        x, y = self.width / 2, self.height / 2
+        corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
+        cosine, sine = math.cos(angle), math.sin(angle)
+        turned: Array = corners @ np.array([[cosine, sine], [-sine, cosine]])
+        return turned
+
+    def flown(self, time: float) -> FallingRectangle:
+        """Return it after a free flight."""
+        (x, y), (u, v) = self.place, self.velocity
+        return replace(
+            self,
+            place=(x + u * time, y + v * time - self.gravity * time**2 / 2),
+            angle=self.angle + self.spin * time,
+            velocity=(u, v - self.gravity * time),
+        )
+
+    def landing(self, until: float) -> tuple[float, int]:
+        """Return when the first corner meets the plane [s], and its number."""
+
+        def lowest(time: float) -> float:
+            flown = self.flown(time)
+            return flown.place[1] + float(np.min(flown.arms(flown.angle)[:, 1]))
+
+        times = np.linspace(0.0, until, SAMPLES + 1)
+        below = next(k for k, time in enumerate(times) if lowest(time) < 0)
+        time = float(brentq(lowest, times[below - 1], times[below], xtol=1e-15))
+        landed = self.flown(time)
+        return time, int(np.argmin(landed.arms(landed.angle)[:, 1]))
+
+
+@dataclass(frozen=True)
+class Rebound:
+    """What an impact leaves behind."""
+
+    time: float  # at which the corner leaves [s]
+    state: tuple[float, ...]  # x, y, angle, and their rates then
+    impulse: tuple[float, float]  # along the plane and across it [N s]
+
+
+def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, until: float) -> Rebound:
+    """Return how a rectangle leaves springs p across and ps along the plane; mu None: smooth, where ps is zero.
+
+    Every mode (sticks, slips either way) is integrated up to the event that ends it, by a method of order 8.
+    """
+    landing, number = body.landing(until)
+    start = body.flown(landing)
+    m, inertia = body.mass, body.inertia
+    rough = mu is not None and ps > 0
+    coefficient = mu or 0.0
+
+    def corner(q: Array) -> tuple[Array, Array]:
+        arm = body.arms(q[2])[number]
+        return q[:2] + arm, q[3:5] + q[5] * np.array([-arm[1], arm[0]])
+
+    def shear_of(mode: int, held: float) -> Callable[[Array], float]:
+        if not rough:
+            return lambda q: 0.0
+        if mode == 0:
+            return lambda q: -ps * (float(corner(q)[0][0]) - held)
+        return lambda q: mode * coefficient * p * float(corner(q)[0][1])
+
+    def rate_of(shear: Callable[[Array], float]) -> Callable[[float, Array], list[float]]:
+        def rate(_: float, q: Array) -> list[float]:
+            arm = body.arms(q[2])[number]
+            normal = -p * float(corner(q)[0][1])
+            along = shear(q)
+            return [
+                *q[3:6],
+                along / m,
+                normal / m - body.gravity,
+                (arm[0] * normal - arm[1] * along) / inertia,
+                along,
+                normal,
+            ]
+
+        return rate
+
+    def leaves(_: float, q: Array) -> float:
+        return float(corner(q)[0][1])
+
+    leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
+    state = np.array([*start.place, start.angle, *start.velocity, start.spin, 0.0, 0.0])
+    (place, velocity), time = corner(state), landing
+    held = float(place[0])
+    # at N = T = 0 it sticks if the spring along the plane is loaded slowly enough beside that across it
+    slips = rough and ps * abs(velocity[0]) > coefficient * p * abs(velocity[1])
+    mode = int(np.sign(velocity[0])) if slips else 0
+    for _ in range(MOST_MODES):
+        shear = shear_of(mode, held)
+        events = [leaves]
+        if rough:
+
+            def ends(_: float, q: Array, mode: int = mode, shear: Callable[[Array], float] = shear) -> float:
+                place, velocity = corner(q)
+                if mode == 0:
+                    return coefficient * -p * float(place[1]) - abs(shear(q))
+                return mode * float(velocity[0] + mode * coefficient * p / ps * velocity[1])
+
+            ends.terminal, ends.direction = True, -1.0  # type: ignore[attr-defined]
+            events.append(ends)
+        solution = solve_ivp(
+            rate_of(shear), (time, until), state, method="DOP853", rtol=1e-12, atol=1e-14, events=events
+        )
+        time, state = float(solution.t[-1]), solution.y[:, -1]
+        if len(solution.t_events[0]) or solution.status == 0:
+            break
+        if mode == 0:
+            mode = int(np.sign(corner(state)[0][0] - held))
+        else:
+            held = float(corner(state)[0][0]) + shear(state) / ps
+            mode = 0
+    return Rebound(time, tuple(float(value) for value in state[:6]), (float(state[6]), float(state[7])))
+
+
+def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[float, float]:
+    """Return the impulses along and across the plane of a rigid corner with Coulomb friction, no normal work lost.
+
+    The corner's velocity changes by A J with the inverse masses A of the corner, piece by piece along J_n.
+    """
+    landing, number = body.landing(until)
+    landed = body.flown(landing)
+    x, y = landed.arms(landed.angle)[number]
+    inverse = np.array([[1 / body.mass + y**2 / body.inertia, -x * y / body.inertia],
+                        [-x * y / body.inertia, 1 / body.mass + x**2 / body.inertia]])  # fmt: skip
+    velocity = np.array(landed.velocity) + landed.spin * np.array([-y, x])
+    impulse = np.zeros(2)
+    work = 0.0  # of the normal impulse: what compression takes, restitution gives back
+    holds = abs(inverse[0, 1] / inverse[0, 0]) <= mu
+    mode = float(np.sign(velocity[0]))
+    while True:
+        along = -inverse[0, 1] / inverse[0, 0] if mode == 0 else -mode * mu
+        direction = np.array([along, 1.0])
+        change = inverse @ direction
+        to_rest = -velocity[0] / change[0] if mode != 0 and velocity[0] * change[0] < 0 else math.inf
+        # work + v_n J + c_n J^2/2 = 0 ends the impact
+        end = (-velocity[1] + math.sqrt(velocity[1] ** 2 - 2 * change[1] * work)) / change[1]
+        piece = min(to_rest, end)
+        work += velocity[1] * piece + change[1] * piece**2 / 2
+        velocity = velocity + change * piece
+        impulse = impulse + direction * piece
+        if piece == end:
+            return float(impulse[0]), float(impulse[1])
+        mode = 0.0 if holds else -mode

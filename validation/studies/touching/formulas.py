@@ -1,0 +1,281 @@
+"""The study `touching`: first contacts of moving polygons, and a rectangle that lands on a corner.
+
+The steps of `dda` find contacts as blocks meet. Which one is first, and when, is known to rounding; a step sees it at
+its end, so that the first force belongs to the first step that ends after the touch.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Mapping
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+import dda
+from validation.engine.finished import Derived, Finished
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import History
+from validation.runs.row import Row, Value
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.studies.touching.corner import FallingRectangle, Rebound, on_springs, rigid_impulse
+from validation.studies.touching.first import FirstTouch, MovingPolygon, first_touches, normals
+from validation.suite.bands import Band, cases
+
+STIFF = "touching-stiff"
+TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed
+CORNERS = "corner-corner"  # as the query calls it
+TOGETHER = 1e-9  # of the time: touches that are one
+
+
+# ---- who touches whom, and when -------------------------------------------------------------------------------------
+
+
+def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
+    """Return the two blocks of a scene as moving polygons."""
+    first, second = (
+        _about_centroid(block.vertices, block.velocity, block.spin)
+        for block in scene.table(PlaneSection).assembly.blocks
+    )
+    return first, second
+
+
+def _about_centroid(
+    outline: tuple[tuple[float, float], ...], velocity: tuple[float, float], spin: float
+) -> MovingPolygon:
+    """Return a polygon about its centroid: the mean of a fan of triangles by their areas."""
+    corners = np.array(outline)
+    fans = [(corners[0], a, b) for a, b in itertools.pairwise(corners[1:])]
+    weights = np.array([area(tuple((float(x), float(y)) for x, y in fan)) for fan in fans])
+    centroid = weights @ np.array([np.mean(fan, axis=0) for fan in fans]) / np.sum(weights)
+    return MovingPolygon(corners - centroid, (float(centroid[0]), float(centroid[1])), velocity, spin)
+
+
+def touch_of(scene: Scene) -> FirstTouch | None:
+    """Return the first touch of the two blocks of a scene."""
+    until = scene.time.duration
+    touches = first_touches(*polygons(scene), until, TOGETHER * until)
+    return touches[0] if touches else None
+
+
+def query(scene: Scene, row: Row) -> Mapping[str, Value]:
+    """Return what `dda.first_contact` says beside the roots: how much later, foot apart, and another pair or none."""
+    bodies = polygons(scene)
+    motions = [(*body.centroid, 0.0, *body.velocity, body.spin) for body in bodies]
+    contact = dda.first_contact(bodies[0].corners, bodies[1].corners, motions[0], motions[1], scene.time.duration)
+    touch = touch_of(scene)
+    if contact is None or touch is None:
+        return {"wrong": float((contact is None) != (touch is None))}
+    points = [point for one in contact.touches for point in one.points]
+    feet = {(point.block, point.corner, point.edge): point.foot for point in points}
+    later = {"later": contact.time - touch.time, "time": touch.time}
+    if not 0 < round(touch.foot, 9) < 1:  # at a corner, where edges are not told apart
+        return {"wrong": float(contact.touches[0].kind != CORNERS), **later}
+    foot = feet.get((touch.block, touch.corner, touch.edge))
+    return {"wrong": float(foot is None), "foot": touch.foot if foot is None else foot - touch.foot, **later}
+
+
+def motion(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return when the first contact pressed, in steps after the touch, and how far beside its normals [rad]."""
+    columns = history.columns
+    u, v = (columns[f"A.{part}"] - columns[f"A.{part}"][0] for part in ("vx", "vy"))
+    pressed = np.flatnonzero(np.hypot(u, v) > TOUCHED)
+    touch = touch_of(scene)
+    energy = columns["energy.kinetic"]
+    gain = {"gain": float(np.max(energy) / energy[0] - 1)}
+    if touch is None or not len(pressed):
+        return {"missed": float((touch is None) != (not len(pressed))), **gain}
+    first = int(pressed[0])
+    low, high = normals(*polygons(scene), touch)
+    direction = math.atan2(v[first], u[first])
+    middle = (low + high) / 2
+    beside = abs(math.remainder(direction - middle, 2 * math.pi)) - (high - low) / 2
+    steps = (float(history.time[first]) - touch.time) / scene.time.step
+    words = f"{'AB'[touch.block]}{touch.corner} on {'BA'[touch.block]}{touch.edge}"
+    return {"missed": 0.0, "steps": steps, "beside": max(0.0, beside), "pair": words, "foot": touch.foot, **gain}
+
+
+def turned_in_a_step(case: Scene) -> Band | None:
+    """Return how far the first force may lie beside the normals [rad]: what both blocks turn in two steps.
+
+    A block that does not spin begins to by the force of the step itself, at W^2 v per metre, W = 2 dt sqrt(p/m).
+    """
+    if touch_of(case) is None:
+        return None
+    step = case.time.step
+    bodies = polygons(case)
+    speed = sum(math.hypot(*body.velocity) for body in bodies)
+    plane = case.table(PlaneSection)
+    stiffness = plane.contact.stiffness if plane.contact else 0.0
+    lightest = plane.density * min(area(block.vertices) for block in plane.assembly.blocks)
+    starts = speed * step * min(1.0, step**2 * stiffness / lightest * 4)
+    return 0.0, 2 * step * sum(abs(body.spin) for body in bodies) + starts
+
+
+def first_step(case: Scene) -> Band | None:
+    """Return the steps after the touch at which the first force is there: within one.
+
+    Of a corner that meets a corner within two: at the first step's end it is not yet in front of either edge, and
+    which of them is taken the next step decides.
+    """
+    touch = touch_of(case)
+    if touch is None:
+        return None
+    return -1e-9, 1.0 + 1e-9 + (not 0 < round(touch.foot, 9) < 1)
+
+
+# ---- a square that lands on two corners -----------------------------------------------------------------------------
+
+
+def landing(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return how far velocity and spin after it are from those of the closed pieces, over the speed of landing."""
+    (first, second), columns = polygons(scene), history.columns
+    overlap_left = float(np.min(first.corners[:, 0])) + first.centroid[0]
+    overlap_right = float(np.max(second.corners[:, 0])) + second.centroid[0]
+    arms = (overlap_left - first.centroid[0], overlap_right - first.centroid[0])
+    radius = float(np.mean(np.sum(first.corners**2, axis=1))) / 3  # of gyration, squared, of a rectangle
+    rise, turn = two_corners(arms, radius)
+    speed = -first.velocity[1]
+    return {
+        "rise": float(columns["A.vy"][-1]) / speed - rise,
+        "spin": float(columns["A.spin"][-1]) / speed - turn,
+    }
+
+
+def two_corners(arms: tuple[float, float], radius_squared: float) -> tuple[float, float]:
+    """Return the velocity and the spin over the speed at which a body leaves two springs it lands on flat.
+
+    In times of sqrt(m/p): y'' = sum f, theta'' = sum a f/r^2, f = -(y + a theta) while that is positive.
+    """
+    a = np.array(arms)
+
+    def rate(_: float, z: np.ndarray) -> list[float]:
+        force = np.maximum(0.0, -(z[0] + a * z[1]))
+        return [z[2], z[3], float(np.sum(force)), float(a @ force) / radius_squared]
+
+    solution = solve_ivp(rate, (0.0, 6.0), [0.0, 0.0, -1.0, 0.0], method="DOP853", rtol=1e-11, max_step=2e-3)
+    return float(solution.y[2, -1]), float(solution.y[3, -1])
+
+
+def small_turn(case: Scene) -> Band:
+    """Return the first correction of the landing: how deep it presses, v sqrt(m/p), over the shorter arm of a contact.
+
+    Directions turn by that; beside it the second order of the step, W^2/12 with W = dt sqrt(p (2 + a^2/r^2)/m).
+    """
+    plane = case.table(PlaneSection)
+    mass = plane.density * area(plane.assembly.blocks[0].vertices)
+    stiffness = plane.contact.stiffness if plane.contact else math.inf
+    first, _ = polygons(case)
+    deep = math.hypot(*first.velocity) * math.sqrt(mass / stiffness) / 0.5
+    own = case.time.step**2 * stiffness / mass * (2 + 1.25 / (2 / 3)) / 12
+    return -deep - own, deep + own
+
+
+# ---- a rectangle that lands on a corner -----------------------------------------------------------------------------
+
+
+def falling(scene: Scene) -> FallingRectangle:
+    """Return the rectangle of a scene."""
+    plane = scene.table(PlaneSection)
+    block = plane.block[0]
+    width, height = block.rectangle or (math.nan, math.nan)
+    return FallingRectangle(
+        width=width,
+        height=height,
+        mass=plane.density * width * height,
+        place=block.at,
+        angle=math.radians(block.turned),
+        velocity=block.velocity,
+        spin=block.spin,
+        gravity=-plane.gravity[1],
+    )
+
+
+def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:
+    """Return the rectangle of a scene, and how it leaves springs."""
+    contact = scene.table(PlaneSection).contact
+    body = falling(scene)
+    stiffness, shear = (contact.stiffness, contact.shear) if contact else (math.inf, 0.0)
+    mu = contact.friction_coefficient if contact else None
+    return body, on_springs(body, stiffness, shear, mu, scene.time.duration)
+
+
+def against_springs(scene: Scene, history: History) -> Mapping[str, Value]:
+    """Return errors of the velocities after the impact beside the exact motion on the same springs, and impulses."""
+    body, exact = rebound(scene)
+    columns = history.columns
+    vx, vy, spin = (float(columns[f"rectangle.{part}"][-1]) for part in ("vx", "vy", "spin"))
+    _, _, _, left_x, left_y, left_spin = exact.state
+    left_y -= body.gravity * (float(history.time[-1]) - exact.time)
+    errors = {"vx": vx - left_x, "vy": vy - left_y, "spin": spin - left_spin}
+    landed = body.flown(body.landing(scene.time.duration)[0])
+    arm = math.hypot(body.width, body.height) / 2
+    flight = body.gravity * float(history.time[-1]) * body.mass
+    contact = scene.table(PlaneSection).contact
+    balance = np.max(np.abs(columns["energy.balance"])) / np.max(columns["energy.kinetic"])
+    ratio = contact.shear / contact.stiffness if contact else 0.0
+    return {
+        **errors,
+        "size": max(abs(errors["vx"]), abs(errors["vy"]), abs(errors["spin"]) * arm) / abs(landed.velocity[1]),
+        "bound": events_in_steps(scene)[1],
+        "J_t": body.mass * (vx - body.velocity[0]),
+        "J_n": body.mass * (vy - body.velocity[1]) + flight,
+        "mu": (contact.friction_coefficient if contact else None) or 0.0,
+        "ratio": ratio,
+        "balance": float(balance),
+        **rigid(scene),
+    }
+
+
+def rigid(scene: Scene) -> dict[str, float]:
+    """Return the impulses of the rigid limit, of the same friction, whose springs along the plane are far stiffer."""
+    contact = scene.table(PlaneSection).contact
+    along, across = rigid_impulse(falling(scene), (contact.friction_coefficient if contact else None) or 0.0, 1.0)
+    return {"rigid J_t": along, "rigid J_n": across}
+
+
+def in_the_limit(finished: Finished) -> Mapping[str, Value]:
+    """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
+    soft, stiff = (
+        float(str(against_springs(case, finished.needed_history(case.name, "dda"))["J_n"])) / smooth_limit() - 1
+        for case in cases(STIFF)
+    )
+    first, second = (case.table(PlaneSection).contact for case in cases(STIFF))
+    root = math.sqrt(second.stiffness / first.stiffness) if first and second else math.nan
+    return {"soft": soft, "stiff": stiff, "rigid": (root * stiff - soft) / (root - 1)}
+
+
+def smooth_limit() -> float:
+    """Return the impulse of the rigid impact without friction [N s]."""
+    return rigid(next(iter(cases(STIFF))))["rigid J_n"]
+
+
+def square_of_the_first() -> Band:
+    """Return what an extrapolation in p^-1/2 leaves: the square of the correction on the softer springs, exactly."""
+    _, exact = rebound(next(iter(cases(STIFF))))
+    half = (exact.impulse[1] / smooth_limit() - 1) ** 2
+    return -half, half
+
+
+def derived() -> tuple[Derived, ...]:
+    """Return the row that compares two stiffnesses."""
+    stiff = tuple((case.name, "dda") for case in cases(STIFF))
+    return (Derived(STIFF, "limit", stiff, in_the_limit),)
+
+
+def events_in_steps(case: Scene) -> Band:
+    """Return the error of a velocity over that of the landing: W^2, W^2 = dt^2 (p A_nn + ps A_tt), A of the corner.
+
+    The trapezoid of a force that begins or ends within a step is wrong by 1/8 of its rate times dt^2 at most, W^2/8 of
+    the velocity: there are five such events at most (closing, slip, stick, slip, opening), and the period's W^2/12.
+    """
+    body = falling(case)
+    landing, number = body.landing(case.time.duration)
+    landed = body.flown(landing)
+    x, y = landed.arms(landed.angle)[number]
+    contact = case.table(PlaneSection).contact
+    across = (contact.stiffness if contact else 0.0) * (1 / body.mass + x**2 / body.inertia)
+    along = (contact.shear if contact else 0.0) * (1 / body.mass + y**2 / body.inertia)
+    return 0.0, case.time.step**2 * (across + along)
