@@ -67,19 +67,21 @@ class PlaneBody(Meshed):
         matrix.zeroRowsColumns(unknowns, diag=1.0)
 
     def _observed(self) -> Any:
-        """Row of the observed displacement: the mean of an edge, or that of a point, less the mean of other edges."""
+        """Row of the observed displacement: that of a place, less the mean of others."""
         observe = self.request["observe"]
-        x, y = observe["direction"]
-        start, end = observe["place"]
-        if start == end:
-            self.outline.centroid = np.asarray(start, float)
-            across, up = self._point_rows()
-            row = x * across + y * up
-        else:
-            row = self._mean_of(observe["place"], (x, y))
-        for edge in observe["less"]:
-            row = row - self._mean_of(edge, (x, y)) / len(observe["less"])
+        row = self._row_at(observe["place"], observe["direction"])
+        for place in observe["less"]:
+            row = row - self._row_at(place, observe["direction"]) / len(observe["less"])
         return row
+
+    def _row_at(self, place: Any, direction: tuple[float, float]) -> Any:
+        """Row of the mean displacement of an edge, or of that of a point, which is an edge without length."""
+        start, end = place
+        if start != end:
+            return self._mean_of(place, direction)
+        self.outline.centroid = np.asarray(start, float)
+        across, up = self._point_rows()
+        return direction[0] * across + direction[1] * up
 
     def _mean_of(self, edge: Any, direction: tuple[float, float]) -> Any:
         v = ufl.TestFunction(self.space)

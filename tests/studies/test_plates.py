@@ -1,0 +1,74 @@
+"""The study `plates`: closed forms and linear elements against other programs; every gate is bitten by a fault."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from faults import seams
+from faults.fault import Fault, times
+from faults.kill_matrix import cases_of, check_kill_matrix
+
+from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement, hole_stress
+from validation.studies.plates.elements import displacements
+from validation.studies.plates.formulas import INNER, OUTER, POINTS, POISSON, TENSION, WEIGHTS, YOUNG
+from validation.studies.plates.shapes import outline, ring
+from validation.suite.folders import get_study
+
+
+def test_a_hole_and_a_disc_are_as_another_program_has_them():
+    assert hole_displacement(1.0, 0.0, 1e6, 1e9, 0.25) == pytest.approx(0.003)
+    assert hole_displacement(1.0, math.pi / 2, 1e6, 1e9, 0.25) == pytest.approx(-0.001)
+    assert hole_stress(np.array([[0.0, 1.0], [1.0, 0.0]]), 1.0, 1.0) == pytest.approx(
+        np.array([[3.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), abs=1e-12
+    )
+    pressure = 1e6 / (2 * math.pi / 8)
+    assert disc_centre(pressure, math.pi / 8) == pytest.approx((254849.282066966, -891469.054434547), rel=1e-12)
+
+
+def test_a_disc_under_a_pressure_all_round_and_without_poisson_shrinks_as_it_must():
+    assert disc_widening(1e6, math.pi / 2, 1e9, 0.25) == pytest.approx(-1e6 * (1 - 0.25) / 1e9, rel=1e-6)
+
+
+def test_linear_elements_widen_a_hole_as_another_program_has_it():
+    """With tractions that vary along the edges, which the other program has."""
+    triangles = ring(INNER, OUTER, 8)
+    forces = []
+    for start, end in outline(triangles, OUTER):
+        half = (np.array(end) - start) / 2
+        length = 2 * math.hypot(*half)
+        places = np.array(start) + half + POINTS[:, None] * half
+        s_xx, s_yy, s_xy = hole_stress(places, INNER, TENSION).T
+        nx, ny = 2 * half[1] / length, -2 * half[0] / length
+        traction = np.stack([s_xx * nx + s_xy * ny, s_xy * nx + s_yy * ny])
+        for sign, point in ((-1, start), (1, end)):
+            share = traction @ (WEIGHTS * (1 + sign * POINTS) / 4)
+            forces.append((point, share * length))
+    right, left = displacements(triangles, forces, YOUNG, POISSON, [(1.0, 0.0), (-1.0, 0.0)])
+    assert (right[0] - left[0]) / 2 == pytest.approx(0.0028535209, abs=1e-10)
+
+
+def stiffer(by: float) -> Callable[..., Callable[..., Any]]:
+    """Multiply Young's modulus of the blocks."""
+    return lambda sound: lambda *a, **k: replace(sound(*a, **k), young=by * sound(*a, **k).young)
+
+
+DDA, FEM = ("dda",), ("fem",)
+FAULTS = [
+    Fault("modulus a millionth high", DDA, seams.PLANE_MATERIAL, stiffer(1 + 1e-6)),
+    Fault("modulus a hundredth high", DDA, seams.PLANE_MATERIAL, stiffer(1.01)),
+    Fault("modulus a fifth high", DDA, seams.PLANE_MATERIAL, stiffer(1.2)),
+    Fault("modulus three hundredths high", FEM, seams.FEM_PLANE_STIFFNESS, times(1.03)),
+]
+
+
+@pytest.mark.long
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+    study = get_study("plates")
+    gates = [gate for gate in study.gates() if not any("fenicsx" in solver for solver in gate.pair)]
+    check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)

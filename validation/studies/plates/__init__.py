@@ -1,0 +1,1 @@
+"""A plate with a hole and a disc, of triangles that are glued."""
