@@ -140,6 +140,7 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
         "solvers/plane/blocks.py",
+        "solvers/plane/first_contact.py",
         "models/plane/moving.py",
     }
     for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
