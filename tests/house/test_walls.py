@@ -135,12 +135,12 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
+        "models/rigid/blocks.py",
         "solvers/blocks/closed.py",
         "solvers/blocks/opening.py",
         "solvers/blocks/rotation.py",
         "solvers/columns/blocks.py",
         "solvers/plane/blocks.py",
-        "solvers/plane/first_contact.py",
         "models/plane/moving.py",
     }
     for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):

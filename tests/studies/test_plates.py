@@ -38,7 +38,7 @@ def test_a_disc_under_a_pressure_all_round_and_without_poisson_shrinks_as_it_mus
 def test_linear_elements_widen_a_hole_as_another_program_has_it():
     """With tractions that vary along the edges, which the other program has."""
     triangles = ring(INNER, OUTER, 8)
-    forces = []
+    loads = []
     for start, end in outline(triangles, OUTER):
         half = (np.array(end) - start) / 2
         length = 2 * math.hypot(*half)
@@ -46,10 +46,9 @@ def test_linear_elements_widen_a_hole_as_another_program_has_it():
         s_xx, s_yy, s_xy = hole_stress(places, INNER, TENSION).T
         nx, ny = 2 * half[1] / length, -2 * half[0] / length
         traction = np.stack([s_xx * nx + s_xy * ny, s_xy * nx + s_yy * ny])
-        for sign, point in ((-1, start), (1, end)):
-            share = traction @ (WEIGHTS * (1 + sign * POINTS) / 4)
-            forces.append((point, share * length))
-    right, left = displacements(triangles, forces, YOUNG, POISSON, [(1.0, 0.0), (-1.0, 0.0)])
+        first, second = (length * traction @ (WEIGHTS * (1 + sign * POINTS) / 4) for sign in (-1, 1))
+        loads.append((start, end, first, second))
+    right, left = displacements(triangles, loads, YOUNG, POISSON, [(1.0, 0.0), (-1.0, 0.0)])
     assert (right[0] - left[0]) / 2 == pytest.approx(0.0028535209, abs=1e-10)
 
 
@@ -58,10 +57,16 @@ def stiffer(by: float) -> Callable[..., Callable[..., Any]]:
     return lambda sound: lambda *a, **k: replace(sound(*a, **k), young=by * sound(*a, **k).young)
 
 
+def glued_by(factor: float) -> Callable[..., Callable[..., Any]]:
+    """Multiply the springs across every shared edge."""
+    return lambda sound: lambda blocks, normal, shear: sound(blocks, factor * normal, shear)
+
+
 DDA, FEM = ("dda",), ("fem",)
 FAULTS = [
     Fault("modulus a millionth high", DDA, seams.PLANE_MATERIAL, stiffer(1 + 1e-6)),
     Fault("modulus a hundredth high", DDA, seams.PLANE_MATERIAL, stiffer(1.01)),
+    Fault("glue across a thousandth high", DDA, seams.GLUED_EDGES, glued_by(1.001)),
     Fault("modulus a fifth high", DDA, seams.PLANE_MATERIAL, stiffer(1.2)),
     Fault("modulus three hundredths high", FEM, seams.FEM_PLANE_STIFFNESS, times(1.03)),
 ]

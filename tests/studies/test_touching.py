@@ -180,8 +180,8 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
 @pytest.mark.parametrize(("wrong", "metrics"), [(other_edge, {"wrong"}), (later, {"later", "foot"})])
 def test_a_wrong_query_is_seen_on_every_scene(wrong, metrics, monkeypatch):
     gates = [gate for gate in get_study("touching").gates() if gate.pair == ("query",) and gate.metric in metrics]
-    sound = dda.first_block_contact
-    monkeypatch.setattr(dda, "first_block_contact", lambda *a: wrong(sound(*a)))
+    sound = dda.first_contact
+    monkeypatch.setattr(dda, "first_contact", lambda *a: wrong(sound(*a)))
     for gate in gates:
         value = formulas.query(load_scene(gate.scene), None)[gate.metric]
         assert not gate.low <= value <= gate.high, gate.id

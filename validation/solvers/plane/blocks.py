@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 import dda
+from validation.runs.history import Array
 from validation.solvers.plane.modelled import PlaneModelled
 
 
@@ -36,3 +37,20 @@ class PlaneBlocks(PlaneModelled):
         stresses = self.model.strains @ self.model.system.blocks[0].material.elasticity().T
         error = abs(stresses - np.array(self.plane.stress))
         return float(np.max(error) / np.max(np.abs(self.plane.stress)))
+
+
+def first_contact(
+    outlines: tuple[Array, Array], motions: tuple[tuple[float, ...], tuple[float, ...]], until: float
+) -> dda.FirstContact | None:
+    """Return the first contact of two polygons in uniform motion as `dda` has it, None where there is none.
+
+    Parameters
+    ----------
+    outlines
+        Corners about their own origins [m].
+    motions
+        Place [m], angle [rad], velocity [m/s] and spin [rad/s] of these.
+    until
+        Last instant that is looked at [s].
+    """
+    return dda.first_contact(outlines[0], outlines[1], motions[0], motions[1], until)

@@ -19,7 +19,7 @@ from validation.runs.history import History
 from validation.runs.row import Row, Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.solvers.plane.first_contact import first_contact
+from validation.solvers.plane.blocks import first_contact
 from validation.studies.touching.corner import FallingRectangle, Rebound, on_springs, rigid_impulse
 from validation.studies.touching.first import FirstTouch, MovingPolygon, first_touches, normals
 from validation.suite.bands import Band, cases
@@ -62,7 +62,10 @@ def touch_of(scene: Scene) -> FirstTouch | None:
 
 def query(scene: Scene, row: Row) -> Mapping[str, Value]:
     """Return what `dda.first_contact` says beside the roots: how much later, foot apart, and another pair or none."""
-    contact = first_contact(scene)
+    bodies = polygons(scene)
+    first, second = ((*body.centroid, 0.0, *body.velocity, body.spin) for body in bodies)
+    outlines = bodies[0].corners, bodies[1].corners
+    contact = first_contact(outlines, (first, second), scene.time.duration)
     touch = touch_of(scene)
     if contact is None or touch is None:
         return {"wrong": float((contact is None) != (touch is None))}
