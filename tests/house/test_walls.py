@@ -135,7 +135,6 @@ def test_no_module_of_validation_knows_both_solvers() -> None:
     assert not dda & elements
     adapters = {
         "solvers/dda.py",
-        "models/rigid/blocks.py",
         "solvers/blocks/closed.py",
         "solvers/blocks/opening.py",
         "solvers/blocks/rotation.py",
