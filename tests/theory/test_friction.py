@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from validation import load_scene
+from validation import load_scene, solve
 from validation.scenes.scene import Scene
 from validation.theory import friction
 
@@ -47,6 +47,29 @@ def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, ave
     offset = friction.penalty_offset(case)
     assert moved[-1] + offset == pytest.approx(way, abs=offset if average else 5e-7)
     assert speed[-1] < friction.sliding_acceleration(case) * friction.time_constant(case)
+
+
+@pytest.mark.parametrize("gg", [1.0, 0.97])
+@pytest.mark.parametrize(
+    ("name", "start"),
+    [
+        ("chung-hulbert", "consistent"),
+        ("chung-hulbert", "zero"),
+        ("wbz", "consistent"),
+        ("composite", "zero"),
+        ("leapfrog", "consistent"),
+    ],
+)
+def test_free_motion_is_that_of_dda_under_every_scheme(name: str, start: str, gg: float) -> None:
+    numbers = {} if name == "leapfrog" else {"time__rho_inf": 0.6}
+    case = scene(time__scheme=name, time__start=start, time__gg=gg, time__step=2e-4, time__steps=60, **numbers)
+    run = solve(case.with_values({"run.columns": ["displacement", "horizontal_displacement"]}), "dda").history
+    slide = run.columns["horizontal_displacement"] + friction.coefficient(case) * run.displacement
+    moved, speed = friction.free_motion(case, friction.sliding_acceleration(case))
+    assert np.max(abs(slide - moved)) < 1e-9 * moved[-1]
+    rates = np.gradient(moved, case.time.step)[1:-1]  # of a parabola, once the start has passed
+    late = 0.01 if start == "zero" else 1e-9
+    assert speed[1:-1] == pytest.approx(rates, rel=2 * (1 - gg) + late)
 
 
 @pytest.mark.parametrize(

@@ -173,9 +173,11 @@ def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
         V_1 = dt a ((1 - delta) s + delta),     V_n = g^(n-1) V_1 + dt a (1 - g^(n-1)) / (1 - g)
         D_1 = dt^2 a ((1/2 - alpha) s + alpha), D_n = D_1 + g dt sum_{k<n} V_k + (n - 1) dt^2 a / 2
 
-    From the consistent start V_n = dt a (1 - g^n) / (1 - g).
+    From the consistent start V_n = dt a (1 - g^n) / (1 - g). Other schemes are stepped by the numbers of their stages.
     """
     t, n = scene.time, np.arange(1.0, scene.time.steps + 1)
+    if t.scheme != "newmark":
+        return _stepped(Stepping.of(scene), t.start == "consistent", t.steps, acceleration)
     s = 1.0 if t.start == "consistent" else 0.0
     first = t.step * acceleration * ((1 - t.delta) * s + t.delta)
     begun = t.step**2 * acceleration * ((0.5 - t.alpha) * s + t.alpha)
@@ -183,6 +185,33 @@ def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
     velocity = t.discount ** (n - 1) * first + t.step * acceleration * gained
     distance = t.step * (first * gained + t.step * acceleration * summed)
     return begun + t.discount * distance + (n - 1) * t.step**2 * acceleration / 2, velocity
+
+
+def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: float) -> tuple[Array, Array]:
+    """Return displacement and velocity of a free body at each step, by the stages of a scheme."""
+    h = stepping.step
+    late = h * acceleration / 2 if stepping.scheme == "leapfrog" else 0.0  # its v is that of half a step before
+    moved = np.zeros(steps)
+    speed = np.zeros(steps)
+    x = 0.0
+    u = -late  # discounted velocity
+    a = acceleration if consistent else 0.0
+    for n in range(steps):
+        end = x
+        v = u
+        before = a
+        for stage in stepping.stages:
+            a_1 = (acceleration - stage.am * before) / (1 - stage.am)
+            way = stage.d_u * u + stage.d_g * v
+            end = x + h * way + h**2 * (stage.e_0 * a + stage.e_g * before + stage.beta * a_1)
+            v = u + h * (stage.g_0 * a + stage.g_g * before + stage.gamma * a_1)
+            before = a_1
+        x = end
+        u = stepping.gg * v
+        a = before
+        moved[n] = x
+        speed[n] = u + late if late else v
+    return moved, speed
 
 
 def _series(gg: float, n: Array) -> tuple[Array, Array]:
