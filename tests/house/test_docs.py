@@ -219,6 +219,11 @@ def test_the_page_of_references_is_that_of_the_bibliography(monkeypatch: pytest.
     assert references.PAGE.read_text(encoding="utf-8") == references.page()
 
 
+def test_every_study_says_what_it_verifies_and_by_which_source(monkeypatch: pytest.MonkeyPatch) -> None:
+    verification = script("verification", monkeypatch)
+    assert verification.PAGE.read_text(encoding="utf-8") == verification.page()
+
+
 # ---- docstrings -----------------------------------------------------------------------------------------------------
 
 

@@ -154,7 +154,9 @@ def test_a_deleted_folder_leaves_the_rest(tmp_path: Path) -> None:
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     shutil.rmtree(tmp_path / "validation" / "models" / kind)
     for study in (tmp_path / "validation" / "studies").iterdir():
-        if any(states(scene, kind) for scene in study.glob("scenes/*.toml")):  # a study of the kind goes with it
+        stated = any(states(scene, kind) for scene in study.glob("scenes/*.toml"))
+        made = any(f"models.{kind}" in module.read_text() for module in study.glob("*.py"))
+        if stated or made:  # a study of the kind goes with it
             shutil.rmtree(study)
     for scene in (tmp_path / "validation" / "scenes" / "library").glob("*.toml"):
         if states(scene, kind):
