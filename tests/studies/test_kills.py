@@ -148,7 +148,7 @@ SUBBLOCKS = [
 
 def printed_recursion(sound: Callable[..., Any]) -> Callable[..., Any]:
     """Swap the robust form for the textbook one."""
-    return lambda model, scheme, steps, columns, full=False: dda.solve_textbook(model, scheme, steps, columns)
+    return lambda model, scheme, steps, columns, *rest: dda.solve_textbook(model, scheme, steps, columns)
 
 
 def robust_form(sound: Callable[..., Any]) -> Callable[..., Any]:
