@@ -95,13 +95,13 @@ def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
 
 
 def _name_blocks(axes: Any, assembly: Assembly) -> None:
-    """Write the name of each block into it, where it fits: below the arrows that begin or end at its centroid."""
+    """Write the name of each block into it, where it fits: beside the arrows that begin or end at its centroid."""
     millimetre = np.ptp(axes.get_xlim()) / size_of(axes)[0]  # of the drawing, in metres
     loaded = {load.block for load in assembly.loads if load.edge is None}
     for number, block in enumerate(assembly.blocks):
         x, y = centroid(block.vertices)
-        if number in loaded or any(block.velocity):
-            y -= 0.28 * thickness(block.vertices)
+        if number in loaded or any(block.velocity):  # an arrow downwards leaves room above
+            y += (0.28 if block.velocity[1] < 0 else -0.28) * thickness(block.vertices)
         half = LETTER * len(block.name) / 2 * millimetre
         heights = y + np.array([-0.5, 0.0, 0.5]) * NAME_HEIGHT * millimetre
         places = np.array([(x + side, height) for side in (-half, 0.0, half) for height in heights])
