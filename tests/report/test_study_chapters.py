@@ -138,7 +138,7 @@ def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path: Path) -> No
     run_study(replace(response, scenes=response.scenes[:1], solvers=("dda",), data=dict, **bare), results)
     run_study(replace(get_study("rocking"), scenes=[], **bare), results)
     blocks = chapter_of("response")(results, results.whole("response"), tmp_path)
-    assert [type(block) for block in blocks] == [Heading, Paragraph]
+    assert [type(block) for block in blocks] == [Heading, Paragraph, Paragraph]  # what it asks, and its sources
     blocks = chapter_of("rocking")(results, results.manifest("rocking"), tmp_path)
     assert not [block for block in blocks if isinstance(block, FigureBlock)]
 
