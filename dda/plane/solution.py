@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,8 +117,8 @@ def solve_plane(
     (reached, outcome), left, how = run_loop(make_steps, (), *arguments, weight)
     with np.errstate(all="ignore"):
         unsettled = unsettled_contacts(model, left[0], history, reached, outcome)
-    result = result_of(model, scheme, march, history, every, reached, how)
-    return replace(result, outcome=sentence(model, reached, outcome, unsettled), unsettled=unsettled)
+    ended = sentence(model, reached, outcome, unsettled)
+    return result_of(model, scheme, march, history, every, reached, ended, unsettled, how)
 
 
 def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
@@ -407,9 +407,17 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
 
 
 def result_of(
-    model: PlaneModel, scheme: Scheme, march: March, history: History, every: int, reached: int, how: str
+    model: PlaneModel,
+    scheme: Scheme,
+    march: March,
+    history: History,
+    every: int,
+    reached: int,
+    outcome: str,
+    unsettled: tuple[PlaneContact, ...],
+    how: str,
 ) -> PlaneResult:
-    """Return the result of so many steps that are not said to have ended early."""
+    """Return the result of so many steps."""
     kept = reached // every + 1
     b = len(model.blocks)
     stated = len(model.contacts)
@@ -450,8 +458,8 @@ def result_of(
         bond=bonds,
         energy=energy | {"balance": total - total[0]},
         momentum=inertia.momentum(centroid),
-        outcome="",
-        unsettled=(),
+        outcome=outcome,
+        unsettled=unsettled,
         reached=reached,
         solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
         cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),

@@ -188,30 +188,26 @@ def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
 
 
 def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: float) -> tuple[Array, Array]:
-    """Return displacement and velocity of a free body at each step, by the stages of a scheme."""
-    h = stepping.step
-    late = h * acceleration / 2 if stepping.scheme == "leapfrog" else 0.0  # its v is that of half a step before
+    """Return displacement and velocity of a free body at each step, by the stages of a scheme, in units of the step."""
+    pull = stepping.step**2 * acceleration
+    late = pull / 2 if stepping.scheme == "leapfrog" else 0.0  # its v is that of half a step before
     moved = np.zeros(steps)
     speed = np.zeros(steps)
     x = 0.0
     u = -late  # discounted velocity
-    a = acceleration if consistent else 0.0
+    a = pull if consistent else 0.0
     for n in range(steps):
-        end = x
-        v = u
-        before = a
+        end = (x, u, a)
         for stage in stepping.stages:
-            a_1 = (acceleration - stage.am * before) / (1 - stage.am)
-            way = stage.d_u * u + stage.d_g * v
-            end = x + h * way + h**2 * (stage.e_0 * a + stage.e_g * before + stage.beta * a_1)
-            v = u + h * (stage.g_0 * a + stage.g_g * before + stage.gamma * a_1)
-            before = a_1
-        x = end
+            _, v_g, a_g = end
+            x_free, v_free = stage.ahead(x, u, a, v_g, a_g)
+            a_1 = (pull - stage.am * a_g) / (1 - stage.am)
+            end = (x_free + stage.beta * a_1, v_free + stage.gamma * a_1, a_1)
+        x, v, a = end
         u = stepping.gg * v
-        a = before
         moved[n] = x
         speed[n] = u + late if late else v
-    return moved, speed
+    return moved, speed / stepping.step
 
 
 def _series(gg: float, n: Array) -> tuple[Array, Array]:

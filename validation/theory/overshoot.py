@@ -44,8 +44,7 @@ def energies(stages: Stages, omega_dt: Any, is_consistent: bool) -> list[Any]:
         before = start
         for stage in stages:
             x, v, a = before
-            x_free = position + stage.d_u * velocity + stage.d_g * v + stage.e_0 * acceleration + stage.e_g * a
-            v_free = velocity + stage.g_0 * acceleration + stage.g_g * a
+            x_free, v_free = stage.ahead(position, velocity, acceleration, v, a)
             force = (1 - stage.af) * square * (1 - x_free) + stage.af * square * (1 - x) - stage.am * a
             a_end = force / (1 - stage.am + (1 - stage.af) * square * stage.beta)
             before = (x_free + stage.beta * a_end, v_free + stage.gamma * a_end, a_end)

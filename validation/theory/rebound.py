@@ -88,8 +88,7 @@ def spring_steps(stages: Stages, omega: float, gg: float = 1.0, zeta: float = 0.
         u = gg * start.v
         before = start._replace(pressed=np.zeros_like(start.N))
         for stage in stages:
-            x = start.x + stage.d_u * u + stage.d_g * before.v + stage.e_0 * start.a + stage.e_g * before.a
-            v = u + stage.g_0 * start.a + stage.g_g * before.a
+            x, v = stage.ahead(start.x, u, start.a, before.v, before.a)
             a = (stage.af * before.N - stage.am * before.a) / (1 - stage.am)
             x = x + stage.beta * a
             v = v + stage.gamma * a

@@ -17,7 +17,7 @@ Sources: generalised alpha, Chung and Hulbert 1993; composite, Bathe and Baig 20
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class Stage(NamedTuple):
@@ -33,6 +33,10 @@ class Stage(NamedTuple):
     gamma: float = 0.0  # of a1
     am: float = 0.0  # of a in the equation of motion
     af: float = 0.0  # of the forces at the start
+
+    def ahead(self, x: Any, u: Any, a: Any, v_g: Any, a_g: Any) -> tuple[Any, Any]:
+        """Return x1 and v1 without a1, from the start of the step and the end of the stage before."""
+        return x + self.d_u * u + self.d_g * v_g + self.e_0 * a + self.e_g * a_g, u + self.g_0 * a + self.g_g * a_g
 
     @property
     def equilibrium_weight(self) -> float:

@@ -6,7 +6,6 @@ its end, so that the first force belongs to the first step that ends after the t
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Mapping
 
@@ -14,6 +13,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.engine.finished import Derived, Finished
+from validation.models.plane.blocks import PlacedBlock, centroid
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Row, Value
@@ -35,22 +35,14 @@ TOGETHER = 1e-9  # of the time: touches that are one
 
 def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
     """Return the two blocks of a scene as moving polygons."""
-    first, second = (
-        _about_centroid(block.vertices, block.velocity, block.spin)
-        for block in scene.table(PlaneSection).assembly.blocks
-    )
+    first, second = (_about_centroid(block) for block in scene.table(PlaneSection).assembly.blocks)
     return first, second
 
 
-def _about_centroid(
-    outline: tuple[tuple[float, float], ...], velocity: tuple[float, float], spin: float
-) -> MovingPolygon:
-    """Return a polygon about its centroid: the mean of a fan of triangles by their areas."""
-    corners = np.array(outline)
-    fans = [(corners[0], a, b) for a, b in itertools.pairwise(corners[1:])]
-    weights = np.array([area(tuple((float(x), float(y)) for x, y in fan)) for fan in fans])
-    centroid = weights @ np.array([np.mean(fan, axis=0) for fan in fans]) / np.sum(weights)
-    return MovingPolygon(corners - centroid, (float(centroid[0]), float(centroid[1])), velocity, spin)
+def _about_centroid(block: PlacedBlock) -> MovingPolygon:
+    """Return a block as a polygon about its centroid."""
+    middle = centroid(block.vertices)
+    return MovingPolygon(np.array(block.vertices) - middle, middle, block.velocity, block.spin)
 
 
 def touch_of(scene: Scene) -> FirstTouch | None:
@@ -132,7 +124,8 @@ def first_step(case: Scene) -> Band | None:
 
 def landing(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return how far velocity and spin after it are from those of the closed pieces, over the speed of landing."""
-    (first, second), columns = polygons(scene), history.columns
+    first, second = polygons(scene)
+    columns = history.columns
     overlap_left = float(np.min(first.corners[:, 0])) + first.centroid[0]
     overlap_right = float(np.max(second.corners[:, 0])) + second.centroid[0]
     arms = (overlap_left - first.centroid[0], overlap_right - first.centroid[0])
