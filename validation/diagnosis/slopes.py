@@ -144,7 +144,8 @@ def read(scene: Scene, foreign: Foreign) -> SlopeReading:
     stepping = steppings(foreign, scene.time.step)[0]
     steps = stepping.steps
     if len(stepping.rows) != len(steps):
-        last, rows = float(np.max(np.diff(foreign.time))), len(stepping.rows)
+        last = float(np.max(np.diff(foreign.time)))
+        rows = len(stepping.rows)
         raise InputError(
             "with friction a history must show every step",
             source=scene.name,
@@ -241,7 +242,8 @@ def agreement(scene: Scene, reading: SlopeReading) -> Agreement:
     run = displacements(scene)
     if run is None:
         return NO_RUN
-    rest, largest_values = reading.place - run, reading.size
+    rest = reading.place - run
+    largest_values = reading.size
     misfit = float(np.max(np.sqrt(np.mean(rest**2, axis=0)) / largest_values))
     unit = reading.rounding + ARITHMETIC * largest_values
     is_noise = misfit <= NOISE and len(rest) >= NOISY and all(white(column) for column in rest.T)
@@ -252,7 +254,8 @@ def agreement(scene: Scene, reading: SlopeReading) -> Agreement:
     if not _within((rest / unit)[: max(4, len(rest) // 20)]):
         return Agreement(False, misfit)
     # what the scene makes of other arithmetic up to each step [m], (steps, 2); infinite where it has no run
-    c, grown = scene.contact, np.zeros_like(run)
+    c = scene.contact
+    grown = np.zeros_like(run)
     for name, value in (("contact.stiffness", c.stiffness), ("contact.friction", c.friction or 0.0)):
         shaken = displacements(scene.with_values({name: value * (1 + SHAKEN)}))
         grown = np.maximum(grown, np.inf if shaken is None else np.abs(shaken - run))
@@ -316,7 +319,8 @@ class Habits:
         g = scene.load.gravity
         across = max(g * math.cos(angle) + self.weight * GRAVITY, NONE * GRAVITY)  # a fit may lift the block
         pull = np.array([g * math.sin(angle), across])
-        c, soft = scene.contact, math.exp(-self.softness)
+        c = scene.contact
+        soft = math.exp(-self.softness)
         values: Values = {
             "contact.rules": self.rules,
             "load.gravity": float(np.hypot(*pull)),
@@ -331,7 +335,8 @@ class Habits:
     def compliance(self, scene: Scene) -> float:
         """Return what softer springs add to the static displacement, as a share of it [-]."""
         width, height = size(scene)
-        springs, block = 1 / (2 * scene.contact.stiffness), height / (4 * moduli(scene)[0] * width)
+        springs = 1 / (2 * scene.contact.stiffness)
+        block = height / (4 * moduli(scene)[0] * width)
         return springs * math.expm1(self.softness) / (springs + block)
 
     @property
@@ -453,7 +458,8 @@ def _with_band(habits: Habits, scene: Scene, reading: SlopeReading) -> Habits:
         longest = [share for share, near in zip(shares, nearness, strict=True) if near[0] == min(nearness)[0]]
         # too wide a band departs where the corner lands, one that is too narrow before: it is at the least of these
         ratio = shares[1] / shares[0]
-        low, high = longest[0] / ratio, longest[0] * ratio
+        low = longest[0] / ratio
+        high = longest[0] * ratio
     steps = len(reading.place)
     gain = _size_of(habits, scene, reading, steps) / max(_size_of(best, scene, reading, steps), ROUNDED)
     return best if gain >= BAND_GAIN else habits
@@ -492,7 +498,7 @@ def candidates(scene: Scene) -> Iterator[CandidateChange[Values]]:
     yield from of_numbers(scene, FACTORS)
     yield CandidateChange(
         "normal-springs-factor",
-        _words_of_normal_springs,
+        partial(_words_of_springs, "normal springs alone"),
         math.exp,
         lambda u: {"contact.stiffness": c.stiffness * math.exp(u), "contact.shear_stiffness": c.shear},
         tuple(map(math.log, FACTORS)),
@@ -512,8 +518,8 @@ def candidates(scene: Scene) -> Iterator[CandidateChange[Values]]:
             yield fixed(scheme.id, f"{words}{scheme.words(0.0)}", scheme.changed(0.0))
 
 
-def _words_of_normal_springs(factor: float) -> str:
-    return f"the normal springs alone are {factor:.4g} times the scene's"
+def _words_of_springs(which: str, factor: float) -> str:
+    return f"the {which} are {factor:.4g} times the scene's"
 
 
 def one_number(scene: Scene, reading: SlopeReading) -> tuple[OneChange | None, list[OneChange]]:
@@ -616,7 +622,7 @@ def _springs_of(habits: Habits, scene: Scene) -> tuple[OneChange, ...]:
         return ()
     name = "springs-factor" if habits.along else "normal-springs-factor"
     factor = significant(math.exp(-habits.softness), 6)
-    words = f"the {'springs' if habits.along else 'normal springs alone'} are {factor:.4g} times the scene's"
+    words = _words_of_springs("springs" if habits.along else "normal springs alone", factor)
     return (OneChange(name, factor, words, habits.run),)
 
 

@@ -237,9 +237,11 @@ def _boxes(blocks: list[PlacedBlock]) -> Iterator[Box]:
     for block in blocks:
         corners = np.array(block.vertices)
         along = corners[1] - corners[0]
-        width, height = math.hypot(*along), math.hypot(*(corners[-1] - corners[0]))
+        up = corners[-1] - corners[0]
+        width = math.hypot(*along)
+        height = math.hypot(*up)
         is_parallelogram = len(corners) == 4 and np.allclose(corners[0] + corners[2], corners[1] + corners[3])
-        skew = abs(float(along @ (corners[-1] - corners[0]))) / (width * height)
+        skew = abs(float(along @ up)) / (width * height)
         turned = math.remainder(math.atan2(along[1], along[0]) - block.angle, 2 * math.pi)
         if not is_parallelogram or max(skew, abs(turned)) > UPRIGHT or not math.isinf(block.young):
             rule = "blocks on a ground must be rigid rectangles from their lower left corner"

@@ -98,7 +98,8 @@ def corner_gives_way(case: Scene) -> Band:
     plane = case.table(PlaneSection)
     block = next(block for block in plane.block if not block.fixed)
     width, height = block.rectangle or (0.0, 0.0)
-    gravity, radius = -plane.gravity[1], math.hypot(width, height) / 2
+    gravity = -plane.gravity[1]
+    radius = math.hypot(width, height) / 2
     # cos(alpha - theta) = cos(alpha) + w^2 / (2 P^2), P^2 = 3 g / (4 R), alpha the slenderness
     alpha = math.atan2(width, height)
     rotation = alpha - math.acos(math.cos(alpha) + block.spin**2 * 2 * radius / (3 * gravity))

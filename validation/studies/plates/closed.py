@@ -40,7 +40,8 @@ def hole_stress(points: Array, radius: float, tension: float) -> Array:
     radial = tension / 2 * ((1 - q) + (1 - 4 * q + 3 * q**2) * np.cos(2 * t))
     around = tension / 2 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * t))
     shear = -tension / 2 * (1 + 2 * q - 3 * q**2) * np.sin(2 * t)
-    c, s = np.cos(t), np.sin(t)
+    c = np.cos(t)
+    s = np.sin(t)
     stress: Array = np.stack(
         [
             c**2 * radial + s**2 * around - 2 * s * c * shear,

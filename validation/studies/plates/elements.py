@@ -44,7 +44,9 @@ def displacements(
             at_point.setdefault(corners[k][1], set()).add(number)
             on_edge[corners[k][1], corners[following][1]] = number, own_numbers[following]
     elastic = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
-    rows, columns, values = [], [], []
+    rows: list[Array] = []
+    columns: list[Array] = []
+    values: list[Array] = []
     for triangle, own_nodes in zip(triangles, nodes, strict=True):
         (x0, y0), (x1, y1), (x2, y2) = triangle
         double = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
@@ -61,7 +63,8 @@ def displacements(
         values.append(np.ravel(double / 2 * strain.T @ elastic @ strain))
     for first, second in _joined(nodes) if math.isfinite(glue) else ():
         for axis in range(2):
-            i, j = 2 * numbers[first] + axis, 2 * numbers[second] + axis
+            i = 2 * numbers[first] + axis
+            j = 2 * numbers[second] + axis
             rows.append(np.array([i, i, j, j]))
             columns.append(np.array([i, j, i, j]))
             values.append(glue * np.array([1.0, -1.0, -1.0, 1.0]))

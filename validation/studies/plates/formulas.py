@@ -21,13 +21,16 @@ from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
 from validation.models.plane.tables import PlaneSection
 from validation.runs.row import Value
+from validation.scenes.outline import area
 from validation.scenes.scene import Scene, parse_scene
 from validation.studies.plates.closed import disc_widening, hole_displacement, hole_stress
 from validation.studies.plates.elements import displacements
 from validation.studies.plates.shapes import Point, Triangle, disc, outline, ring
 from validation.suite.bands import Band, about, near
 
-YOUNG, POISSON, DENSITY = 1e9, 0.25, 2700.0
+YOUNG = 1e9
+POISSON = 0.25
+DENSITY = 2700.0
 TENSION = 1e6  # Pa, along x
 PRESSURE = 1e6  # Pa, on two arcs
 HALF_ARC = math.pi / 8
@@ -235,8 +238,7 @@ def glued(case: Scene) -> Band:
     for polygon in plane.polygons:
         corners = np.array(polygon)
         lengths = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
-        (x1, y1), (x2, y2) = corners[1] - corners[0], corners[2] - corners[0]
-        slender = max(slender, float(np.max(lengths)) ** 2 / abs(float(x1 * y2 - x2 * y1)))
+        slender = max(slender, float(np.max(lengths)) ** 2 / (2 * area(polygon)))
     return low, high * (1 + 3 * slender / (2 * plane.glue))
 
 

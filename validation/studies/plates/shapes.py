@@ -43,7 +43,10 @@ def _cells(radii: list[float], n: int) -> list[Triangle]:
     triangles = []
     for low, high in itertools.pairwise(radii):
         for j in range(n):
-            a, b, c, d = _at(low, j, n), _at(high, j, n), _at(high, j + 1, n), _at(low, j + 1, n)
+            a = _at(low, j, n)
+            b = _at(high, j, n)
+            c = _at(high, j + 1, n)
+            d = _at(low, j + 1, n)
             triangles += [(a, b, c), (a, c, d)]
     return triangles
 

@@ -181,8 +181,11 @@ def weights_and_friction(scene: Scene) -> tuple[float, float, float, float]:
 def wedge_motion(scene: Scene) -> dict[str, float]:
     """Return accelerations [m/s2] and normal forces [N] of rigid wedges that slide."""
     W1, W2, below, between = weights_and_friction(scene)
-    p, q = math.atan(below), math.atan(between)
-    a1, a2, g = ACTIVE, PASSIVE, -scene.table(PlaneSection).gravity[1]
+    p = math.atan(below)
+    q = math.atan(between)
+    a1 = ACTIVE
+    a2 = PASSIVE
+    g = -scene.table(PlaneSection).gravity[1]
 
     def left_over(P: float) -> float:
         A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
@@ -244,11 +247,13 @@ def factor_of_safety(case: Scene) -> float:
     W1, W2, below, between = weights_and_friction(case)
 
     def left_over(F: float) -> float:
-        p, q = math.atan(below / F), math.atan(between / F)
+        p = math.atan(below / F)
+        q = math.atan(between / F)
         push = W1 * math.sin(ACTIVE - p) / math.cos(ACTIVE - p - q)
         return push - W2 * math.sin(p - PASSIVE) / math.cos(p - PASSIVE + q)
 
-    least, most = below / math.tan(ACTIVE) * (1 + 1e-9), below / math.tan(PASSIVE)
+    least = below / math.tan(ACTIVE) * (1 + 1e-9)
+    most = below / math.tan(PASSIVE)
     return float(brentq(left_over, least, most, xtol=1e-15, rtol=1e-14))
 
 

@@ -86,7 +86,8 @@ class Spinning:
         solution = solve_ivp(rate, span, start, "DOP853", times, rtol=TOLERANCE, atol=1e-15)
         a, b, c, d = solution.y[:4]  # F = [[a, b], [c, d]] = Q U
         angle = np.unwrap(np.arctan2(c - b, a + d))
-        cosine, sine = np.cos(angle), np.sin(angle)
+        cosine = np.cos(angle)
+        sine = np.sin(angle)
         return {
             "angle": angle,
             "ex": cosine * a + sine * c - 1,
@@ -133,7 +134,9 @@ class Slide:
         tips = self.tips
         if tips is None or time <= tips[0]:
             return 0.0
-        mu, h, g = self.friction, self.height, self.gravity
+        mu = self.friction
+        h = self.height
+        g = self.gravity
         r2 = (self.width**2 + h**2) / 12
 
         def rate(_: float, state: Array) -> list[float]:

@@ -7,7 +7,6 @@ prestress may be admissible that no history of the blocks brings about (a key st
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Iterator, Sequence
 from typing import NamedTuple
@@ -15,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq, linprog
 
+from validation.models.plane.blocks import centroid
 from validation.runs.history import Array
 from validation.scenes.outline import area
 
@@ -108,8 +108,7 @@ def can_rest(outlines: Sequence[Outline], held: Sequence[bool], mu: float | None
 
 def moment(outline: Outline) -> float:
     """Return the first moment of an area about the vertical axis [m3]."""
-    triangles = ((outline[0], a, b) for a, b in itertools.pairwise(outline[1:]))
-    return sum(area(corners) * sum(x for x, _ in corners) / 3 for corners in triangles)
+    return area(outline) * centroid(outline)[0]
 
 
 def straight_arch(radius: float, thickness: float, count: int) -> tuple[list[Outline], list[bool]]:
@@ -125,7 +124,8 @@ def straight_arch(radius: float, thickness: float, count: int) -> tuple[list[Out
 
 def least_thickness(radius: float, count: int) -> float:
     """Return the least thickness at which a semicircle of straight voussoirs stands, nothing slides [m]."""
-    low, high = 0.05 * radius, 0.2 * radius
+    low = 0.05 * radius
+    high = 0.2 * radius
     while high - low > 1e-7 * radius:
         middle = (low + high) / 2
         low, high = (low, middle) if can_rest(*straight_arch(radius, middle, count), None) else (middle, high)

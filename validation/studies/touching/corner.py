@@ -46,15 +46,18 @@ class FallingRectangle:
 
     def arms(self, angle: float) -> Array:
         """Return the corners about the centroid at an angle, shape (4, 2) [m]."""
-        x, y = self.width / 2, self.height / 2
+        x = self.width / 2
+        y = self.height / 2
         corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
-        cosine, sine = math.cos(angle), math.sin(angle)
+        cosine = math.cos(angle)
+        sine = math.sin(angle)
         turned: Array = corners @ np.array([[cosine, sine], [-sine, cosine]])
         return turned
 
     def flown(self, time: float) -> FallingRectangle:
         """Return it after a free flight."""
-        (x, y), (u, v) = self.place, self.velocity
+        x, y = self.place
+        u, v = self.velocity
         return replace(
             self,
             place=(x + u * time, y + v * time - self.gravity * time**2 / 2),
@@ -92,7 +95,8 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
     """
     landing, number = body.landing(until)
     start = body.flown(landing)
-    m, inertia = body.mass, body.inertia
+    m = body.mass
+    inertia = body.inertia
     rough = mu is not None and ps > 0
     coefficient = mu or 0.0
 
@@ -126,9 +130,11 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
     def leaves(_: float, q: Array) -> float:
         return float(corner(q)[0][1])
 
-    leaves.terminal, leaves.direction = True, 1.0  # type: ignore[attr-defined]
+    leaves.terminal = True  # type: ignore[attr-defined]
+    leaves.direction = 1.0  # type: ignore[attr-defined]
     state = np.array([*start.place, start.angle, *start.velocity, start.spin, 0.0, 0.0])
-    (place, velocity), time = corner(state), landing
+    place, velocity = corner(state)
+    time = landing
     held = float(place[0])
     # at N = T = 0 it sticks if the spring along the plane is loaded slowly enough beside that across it
     slips = rough and ps * abs(velocity[0]) > coefficient * p * abs(velocity[1])
@@ -144,12 +150,14 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
                     return coefficient * -p * float(place[1]) - abs(shear(q))
                 return mode * float(velocity[0] + mode * coefficient * p / ps * velocity[1])
 
-            ends.terminal, ends.direction = True, -1.0  # type: ignore[attr-defined]
+            ends.terminal = True  # type: ignore[attr-defined]
+            ends.direction = -1.0  # type: ignore[attr-defined]
             events.append(ends)
         solution = solve_ivp(
             rate_of(shear), (time, until), state, method="DOP853", rtol=1e-12, atol=1e-14, events=events
         )
-        time, state = float(solution.t[-1]), solution.y[:, -1]
+        time = float(solution.t[-1])
+        state = solution.y[:, -1]
         if len(solution.t_events[0]) or solution.status == 0:
             break
         if mode == 0:

@@ -103,8 +103,8 @@ def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> t
     low, high = _cone(other, hit, touch.time)
     own_low, own_high = (direction + math.pi for direction in _cone(mover, touch.corner, touch.time))
     shift = 2 * math.pi * round((low + high - own_low - own_high) / (4 * math.pi))
-    low, high = max(low, own_low + shift), min(high, own_high + shift)
-    return low + math.pi * touch.block, high + math.pi * touch.block
+    turned = math.pi * touch.block
+    return max(low, own_low + shift) + turned, min(high, own_high + shift) + turned
 
 
 def _cone(polygon: MovingPolygon, corner: int, time: float) -> tuple[float, float]:
