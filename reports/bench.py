@@ -613,10 +613,10 @@ over steps is what one writes for whatever is not linear.
 ## Steps that switch
 
 Microseconds of processor time a step of one history with its set-up, the least of some runs; the budget is what a step
-is allowed to take. What numba compiles is not counted. It is paid once an install, for the first history of each kind
-that takes plain Python more than a sixth of it: 7 s of processor time where the contacts slide freely, 15 s with
-shear, 25 s for a block that turns, each for one number of corners, and 25 s for the elements, from 50,000 steps on.
-Of blocks in the plane, whose switches are solves, it is a minute or two. That is more than the first such history
+is allowed to take. What numba compiles is not counted. It is paid once an install, for the first long history of each
+kind: 10 to 16 s of processor time of a block, of one that turns and of a column, each for one number of corners, some
+30 s for the elements, from 50,000 steps on, and some 20 s for any number of blocks in the plane, whose switches are
+solves. That may be more than the first such history
 saves, and whoever runs one runs more: 1e5 steps of a block that opens take two seconds in plain Python, and 0.02 s from
 then on. MuJoCo and pymunk step the same box as a rigid one on a plane with
 their own contact as it comes; each engine's step stands in a Python loop that keeps the motion.
