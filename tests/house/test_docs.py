@@ -208,7 +208,7 @@ def test_the_numbers_of_the_paper_are_those_of_the_pages_that_it_names() -> None
     for name in ("dda, 1,000,000 steps", "fem, 64 x 64, mu = 0.25, 10,000 steps"):  # measured anew by `make bench`
         assert any(0.5 < int(times) / int(speeds[name]) < 2 for times in re.findall(r"about (\d+) times faster", paper))
     differences = "by 18, 20 and 32 % in displacement and by 27, 90 and 189 % in contact pressure"
-    assert differences in paper and differences in " ".join(page_text("contact.md").split())
+    assert differences in paper and differences in " ".join(page_text("exact.md").split())
 
 
 def test_the_page_of_references_is_that_of_the_bibliography(monkeypatch: pytest.MonkeyPatch) -> None:
