@@ -101,14 +101,12 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> Non
         page.meta["search"] = {"boost": REFERENCE_BOOST}
 
 
-def studies_of_page(name: str) -> list[str]:
-    """Return the studies with results that README's table leads to a page from; `make docs` writes their pages."""
+def studies_of_page(markdown: str) -> list[str]:
+    """Return the studies with results that a page calls so; `make docs` writes their pages."""
     if not (ROOT / "reports/results/verdicts.json").is_file():
         return []
-    studies: list[str] = []
-    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
-        if line.startswith("| `") and f"](docs/{name})" in line:
-            studies += re.findall(r"`([\w-]+)`", line.split("|")[1])
+    called = re.findall(r"\bstud(?:y|ies)\s+((?:`[\w-]+`(?:,\s+|\s+and\s+)?)+)", markdown)
+    studies = dict.fromkeys(name for names in called for name in re.findall(r"[\w-]+", names.replace(" and ", " ")))
     return [study for study in studies if (ROOT / "reports/results/studies" / f"{study}.json").is_file()]
 
 
@@ -119,7 +117,7 @@ def on_page_content(content: str, page: Any, config: Any, files: Files) -> str:
         display = "block" if match[1] == "div" else "inline"
         return convert(html.unescape(match[2]).strip(), display=display)
 
-    links = [f'<a href="gallery/study-{study}.html">{study}</a>' for study in studies_of_page(page.file.src_uri)]
+    links = [f'<a href="gallery/study-{study}.html">{study}</a>' for study in studies_of_page(page.markdown)]
     results = f"<p>Results in the gallery: {', '.join(links)}.</p>" if links else ""
     return EQUATION.sub(mathml, content) + results
 
