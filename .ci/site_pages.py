@@ -8,6 +8,7 @@ import html
 import json
 import re
 import subprocess
+import sys
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +19,7 @@ from mkdocs.structure.files import File, Files
 
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("dda", "fem_reference", "validation")
+LISTS = ("metrics", "keys", "solvers", "schemes", "scenes", "studies")  # of `dda-validate list`
 NOTEBOOKS = sorted((ROOT / "docs/notebooks").glob("*.ipynb"))
 REFERENCE_BOOST = 0.2  # of the weight of a guide in the search
 EQUATION = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.S)
@@ -46,16 +48,22 @@ def on_config(config: Any) -> None:
     pages: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
         pages.append({package: [f"reference/{name}.md" for name in (package, *rooms(package))]})
+    pages.append({"lists": [f"reference/{word}.md" for word in LISTS]})
     config.nav.append({"Reference": pages})
 
 
 def on_files(files: Files, config: Any) -> None:
-    """Add the pages: the names that a package exports, everything that is in a room, notebooks, the changelog."""
+    """Add the pages: what packages export and hold, lists of the command, notebooks, the changelog."""
     for package in PACKAGES:
         for name in (package, *rooms(package)):
             whole = "true" if name != package else "false"
             text = f"# `{name}`\n\n::: {name}\n    options:\n      show_submodules: {whole}\n"
             files.append(File.generated(config, f"reference/{name}.md", content=text))
+    for word in LISTS:
+        command = [sys.executable, "-m", "validation", "list", word]
+        printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        text = f"# {word.capitalize()}\n\nAs `dda-validate list {word}` prints them.\n\n```text\n{printed}```\n"
+        files.append(File.generated(config, f"reference/{word}.md", content=text))
     for path in NOTEBOOKS:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=text))
@@ -93,14 +101,12 @@ def on_page_markdown(markdown: str, page: Any, config: Any, files: Files) -> Non
         page.meta["search"] = {"boost": REFERENCE_BOOST}
 
 
-def studies_of_page(name: str) -> list[str]:
-    """Return the studies with results that README's table leads to a page from; `make docs` writes their pages."""
+def studies_of_page(markdown: str) -> list[str]:
+    """Return the studies with results that a page calls so; `make docs` writes their pages."""
     if not (ROOT / "reports/results/verdicts.json").is_file():
         return []
-    studies: list[str] = []
-    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
-        if line.startswith("| `") and f"](docs/{name})" in line:
-            studies += re.findall(r"`([\w-]+)`", line.split("|")[1])
+    called = re.findall(r"\bstud(?:y|ies)\s+((?:`[\w-]+`(?:,\s+|\s+and\s+)?)+)", markdown)
+    studies = dict.fromkeys(name for names in called for name in re.findall(r"[\w-]+", names.replace(" and ", " ")))
     return [study for study in studies if (ROOT / "reports/results/studies" / f"{study}.json").is_file()]
 
 
@@ -111,7 +117,7 @@ def on_page_content(content: str, page: Any, config: Any, files: Files) -> str:
         display = "block" if match[1] == "div" else "inline"
         return convert(html.unescape(match[2]).strip(), display=display)
 
-    links = [f'<a href="gallery/study-{study}.html">{study}</a>' for study in studies_of_page(page.file.src_uri)]
+    links = [f'<a href="gallery/study-{study}.html">{study}</a>' for study in studies_of_page(page.markdown)]
     results = f"<p>Results in the gallery: {', '.join(links)}.</p>" if links else ""
     return EQUATION.sub(mathml, content) + results
 
