@@ -78,7 +78,7 @@ def page_of(name: str) -> Path:
 
 
 for command in (*app.registered_commands, *parts.registered_commands):
-    command.name = command.name or getattr(command.callback, "__name__", "")
+    command.name = command.name or str(getattr(command.callback, "__name__", ""))
     panels = [group for group, names in GROUPS.items() if command.name in names]
     command.rich_help_panel = panels[0] if panels else None  # the parts of a command stand in one
     # typer keeps the line breaks of a docstring, which are not those of a terminal
