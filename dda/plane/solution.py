@@ -185,6 +185,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         springs=springs,
         first=memories[0],
         second=memories[1],
+        made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
         many=many_of(blocks, c),

@@ -111,6 +111,7 @@ class Plane(NamedTuple):
     springs: Springs
     first: Memory  # of a step, or of the first of two stages
     second: Memory
+    made: Any  # (1,) 0, or 1 where the stage that was made last is the second
     dropped: Vector  # (1,) energy of contacts that are no more [J]
     dense: int  # contacts up to which the equations are those of their forces
     many: Many
@@ -132,6 +133,7 @@ def make_stage(
     room = march.room
     places = plane.places
     memory = memory_of(plane, stage)
+    plane.made[0] = 0 if stage.numbers.begin == 0 else 1
     length = length_in_plane(march, stage, part.ratio)
     prescribe(march, course, stage, part)
     begin_step(march, start, length)

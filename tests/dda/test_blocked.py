@@ -58,9 +58,10 @@ def test_a_double_root_is_no_special_case(omega):
         assert np.max(np.abs(blocked - stepped)) < 100 * 4 * np.finfo(float).eps
 
 
+@pytest.mark.parametrize("viscous", [{}, {"mass_damping": 30.0}, {"stiffness_damping": 1e-3}], ids=str)
 @pytest.mark.parametrize("steps", [1, 2, 3, 127, 128, 129, 5000])
-def test_every_number_of_steps(steps):
-    blocked, stepped = both(model(), Scheme(0.3025, 0.6, 0.98, 1e-3), steps)
+def test_every_number_of_steps(steps, viscous):
+    blocked, stepped = both(model(), Scheme(0.3025, 0.6, 0.98, 1e-3, **viscous), steps)
     assert blocked.shape == stepped.shape == (2, steps)
     np.testing.assert_allclose(blocked, stepped, rtol=0, atol=1e-12 * np.max(np.abs(stepped)))
 
@@ -91,6 +92,7 @@ def test_work_grows_with_the_logarithm(monkeypatch):
     [
         (Scheme(0.0, 0.5, 1.0, 1.0), "a mode grows"),
         (Scheme(0.25, 0.4, 1.0, 1e-3), "a mode grows"),
+        (Scheme(0.0, 0.5, 1.0, 1.0, mass_damping=1.0), "a mode grows"),
         (Scheme(0.5, 1.0, 1.0, 1e-30), "w dt is outside 1e-15 to 1e+15"),
     ],
 )

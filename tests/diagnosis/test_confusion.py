@@ -50,9 +50,9 @@ def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fi
 
 
 @pytest.mark.long
-def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
+def test_the_counts_of_the_documentation_are_these(fifty) -> None:
     page = confusion.PAGE.read_text()
-    found = page_with(confusion.matrix(fifty), page, confusion.BEGIN, confusion.END)
+    found = page_with(confusion.table(fifty), page, confusion.BEGIN, confusion.END)
     assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 

@@ -105,13 +105,6 @@ def test_blocks_in_common_flight_touch_without_force() -> None:
     assert motion.at([0.01, 0.012]).force[0].min() > 0
 
 
-def test_a_stack_of_touching_blocks_closes_from_below_in_the_order_of_its_derivatives() -> None:
-    # joint j of rigid blocks at rest has the derivative 2 j + 2 first; all close at once, as the printed forces say
-    motion = motion_of("A5")
-    assert motion.states_at_start == (contacts.STICKS,) * 10
-    assert motion.switches[0].time > 0.05
-
-
 def test_a_mirrored_pair_switches_in_one_ball() -> None:
     problem = ColumnProblem(
         (ColumnBlock(1.0, 2500, 1e9, 1.0), ColumnBlock(1.0, 2500, 1e9), ColumnBlock(1.0, 2500, 1e9, -1.0)),
@@ -186,41 +179,6 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.Monke
     assert 0.05 < error.value.time < 0.2
     with pytest.raises(TooManySwitchesError):
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"joints": (ColumnJoint(1e9, strength=1.0), None)}, "joints[0].strength"),
-        ({"law": "frictional", "joints": (ColumnJoint(1e9, 0.1), None)}, "joints[0].gap"),
-        ({"gravity": math.inf}, "gravity"),
-        ({"joints": (ColumnJoint(1e9), None), "base": "free"}, "joints[0]"),
-        ({"joints": (None,)}, "joints"),
-        ({"law": "glued"}, "law"),
-        ({"base": "transmitting", "joints": (None, None)}, "impedance"),
-    ],
-)
-def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field: str) -> None:
-    problem = ColumnProblem(blocks(2, 2500, 1e9), (ColumnJoint(1e9), None))
-    with pytest.raises(ValueError, match="must") as error:
-        replace(problem, **change)
-    assert str(error.value).startswith(f"{field}: ")
-
-
-@pytest.mark.parametrize(
-    ("of", "change", "field"),
-    [
-        (ColumnBlock(1.0, 1.0), {"density": -1.0}, "density"),
-        (ColumnBlock(1.0, 1.0), {"height": math.inf}, "height"),
-        (ColumnBlock(1.0, 1.0), {"velocity": math.nan}, "velocity"),
-        (ColumnJoint(1e9), {"stiffness": math.inf}, "stiffness"),
-        (ColumnJoint(1e9), {"gap": -0.1}, "gap"),
-        (ColumnJoint(1e9), {"strength": -1.0}, "strength"),
-    ],
-)
-def test_parts_of_a_column_refuse_what_cannot_be(of: ColumnBlock | ColumnJoint, change: dict, field: str) -> None:
-    with pytest.raises(ValueError, match=rf"^{field}: must"):
-        replace(of, **change)
 
 
 def test_a_column_that_is_welded_throughout_is_the_bonded_one() -> None:

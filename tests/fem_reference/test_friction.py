@@ -60,32 +60,6 @@ def test_a_turned_block_is_a_block_under_turned_gravity(contact, motion):
         assert np.abs(b[name] - a[name]).max() <= 1e-9 * np.abs(a[name]).max(), name
 
 
-def test_a_base_must_begin_where_the_block_stands():
-    with pytest.raises(ValueError, match=r"^motion: must be zero at t = 0"):
-        solve_unilateral(replace(incline(0.0), motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1)
-
-
-def test_a_point_that_closes_and_slides_has_slid_since_it_crossed():
-    problem = replace(incline(40.0), pressure=0.0)
-    model = build(problem)
-    stepper = ContactStepper(model.system("glued", Friction(5.0)), replace(CONSTANT, step=5e-4))
-    state = block_at_start(stepper, model, replace(RUBBING, gap=2e-5, velocity=-0.05))
-    points, seen = len(model.share), 0
-    for _ in range(60):
-        new = stepper.march(state, stepper.record(1)).state
-        sliding = (new.states[:points] == INSIDE) & (new.states[points:] != INSIDE)
-        crossing = sliding & (state.states[:points] != INSIDE)
-        w0, w1 = state.place[:points], new.place[:points]
-        phi = np.where(crossing, w1 / np.where(crossing, w1 - w0, 1.0), 1.0)
-        slip = model.tangential @ (new.D - state.D)
-        # its spring is as long as its friction says
-        expected = phi * slip + new.force[points:] / model.shear_stiffness
-        assert (new.slid - state.slid)[points:][crossing] == pytest.approx(expected[crossing], rel=1e-9, abs=1e-15)
-        seen += np.count_nonzero(crossing)
-        state = new
-    assert seen > 3
-
-
 class Refusing(ContactStepper):
     """A stepper that finds no contact in steps longer than 0.3 of its own."""
 

@@ -8,7 +8,6 @@ from conftest import thinned
 from oracles.contact_points import PointStep
 
 from fem_reference.contact.law import crossed
-from fem_reference.contact.stepper import SINGLY
 
 
 def random_step(rng, n, tangent=None):
@@ -103,20 +102,6 @@ def test_a_point_without_forces_is_one_contact_however_its_state_is_called():
     found = step.contact(1)
     assert (found.failure, found.solves) == ("", 2)
     assert found.trial.normal == pytest.approx([500.0, 0.0])
-
-
-def test_many_points_set_one_state_after_the_other():
-    rng, singly = np.random.default_rng(5), 0
-    for _ in range(40):
-        step = random_step(rng, 6, 0.4)
-        found = step.contact(1)
-        assert found.solves <= 1 + SINGLY * 6
-        if found.trial is None:
-            assert found.failure == "none"
-        elif found.solves > 1:
-            check_law(step, found)
-            singly += 1
-    assert singly > 20
 
 
 def test_a_point_that_turns_is_held_first():

@@ -80,9 +80,3 @@ def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
         size = max(map(abs, displaced))
         assert max(abs(found[name][0] - x) for name, x in zip(names, displaced, strict=True)) < 1e-8 * size
         assert abs(found["contact_pressure"][0] - pressure) < 1e-8 * (stiffness * size + abs(pressure))
-
-
-def test_no_rate_without_velocity() -> None:
-    scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
-    with pytest.raises(ValueError, match="gg = 0 has no rate"):
-        layers.solve_layers(Ground((SOIL,), "shear"), scheme, 10, drive, ("displacement",))

@@ -7,12 +7,11 @@ import meshio
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.elements import INCLINED, SQUARE, make
+from oracles.elements import INCLINED, make
 from skfem import MeshQuad, MeshTri
 
 from fem_reference.history.solver import static
 from fem_reference.mesh.model import assemble, build
-from fem_reference.scheme.eigen import highest_frequency
 
 
 def affine(x, y):
@@ -126,24 +125,6 @@ def test_patches_are_integrated_exactly_wherever_they_end(elements):
     assert assembled.observers["contact_pressure"] @ v == pytest.approx(pressure, rel=1e-13)
 
 
-def test_widest_patch_is_the_distributed_foundation():
-    patch = assemble(make(foundation="patch", patch_width=1.0, elements=3)).springs
-    spread = assemble(make(elements=3)).springs
-    assert abs(patch - spread).max() <= 1e-15 * abs(spread).max()
-
-
-@pytest.mark.parametrize(("elements", "degree"), [(1, 1), (5, 1), (8, 2)])
-@pytest.mark.parametrize("full", [False, True])
-def test_static_value_without_contraction_is_exact_on_every_mesh(elements, degree, full):
-    values = static(make(elements=elements, degree=degree), full)
-    # Conditioning of the mesh times rounding.
-    assert values["displacement"] == pytest.approx(-0.01, rel=1e-11)
-    assert values["contact_pressure"] == pytest.approx(5e6, rel=1e-11)
-    tall = make(((0, 0), (3, 0), (3, 5), (0, 5)), p=4e8, elements=elements, degree=degree)
-    # q W / 2p + (h / 2) (q / E)
-    assert static(tall, full)["displacement"] == pytest.approx(-(5e6 * 3 / 8e8 + 2.5 * 5e-3), rel=1e-11)
-
-
 def corner_block(tmp_path, vertices, top, holes):
     """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
     grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
@@ -202,38 +183,3 @@ def test_mesh_file_that_is_not_whole_is_refused_in_one_sentence(text, tmp_path, 
     with pytest.raises(ValueError, match=r"mesh: must be a readable mesh of triangles or quadrilaterals, .*grid\.msh"):
         build(make(mesh=str(file)))
     assert capfd.readouterr() == ("", "")
-
-
-def test_polygon_without_mesh_file_names_the_cure():
-    with pytest.raises(ValueError, match=r"\[fem\] mesh = "):
-        build(make(((0, 0), (2, 0), (3, 1), (2, 2), (0, 2)), top=3))
-
-
-def test_highest_frequency_of_linear_elements():
-    # Free line of linear elements with consistent mass: w^2 = 12 E / (rho h^2) to the ends' effect.
-    problem = make(elements=20, degree=1, p=1e-3)
-    assert highest_frequency(problem) == pytest.approx(np.sqrt(12e9 / 2700) / 0.1, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"poisson": 0.5, "hypothesis": "plane strain"}, "poisson"),
-        ({"poisson": -1.0}, "poisson"),
-        ({"p": 0.0}, "stiffness"),
-        ({"p": float("nan")}, "stiffness"),
-        ({"shear": -1.0}, "shear_stiffness"),
-        ({"hypothesis": "stress"}, "hypothesis"),
-        ({"foundation": "patch"}, "patch_width"),
-        ({"foundation": "patch", "patch_width": 1.1}, "patch_width"),
-        ({"patch_width": 0.5}, "patch_width"),
-        ({"degree": 3}, "degree"),
-        ({"elements": 0}, "elements"),
-        ({"top": 0}, "top"),
-        ({"base": 4}, "base"),
-        ({"vertices": SQUARE[::-1]}, "vertices"),
-    ],
-)
-def test_bad_values_name_their_field(change, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        make(**change)

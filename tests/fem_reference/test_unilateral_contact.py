@@ -66,26 +66,6 @@ def test_a_singular_matrix_is_a_set_of_states_that_nothing_asks_for():
     assert step.contact().trial is None or np.isfinite(step.contact().trial.normal).all()
 
 
-def random_glued(rng, n):
-    C = random_base(rng, 2 * n)[0]
-    closed = rng.random(n) < 0.5
-    stiffness = 1 / np.diag(C)[n:] * 10.0 ** rng.uniform(-2, 2, n)
-    compliance = np.diag(C)[:n] * 10.0 ** rng.uniform(-3, 1, n)
-    before = np.where(closed, -1.0, 1.0) * rng.random(n) * 1e-3
-    free = rng.standard_normal((2, n)) * 1e-3
-    return PointStep(C, compliance, stiffness, free.ravel(), before, closed.astype(np.int8))
-
-
-def test_glued_bases_without_a_unique_set_of_states_say_so():
-    rng = np.random.default_rng(11)
-    none, several = "none", "several"
-    assert {"", none} <= {random_glued(rng, 2).contact(6).failure for _ in range(40)}
-    # an iteration that stops at once leaves the choice to the trial of all states
-    assert {"", none, several} <= {random_glued(rng, 2).contact(1).failure for _ in range(60)}
-    many = [random_glued(rng, 9).contact(2) for _ in range(10)]
-    assert (none, 2) in {(found.failure, found.solves) for found in many}
-
-
 @pytest.mark.parametrize(("shear", "rule"), [("frictionless", "newmark"), ("glued", "newmark"), ("glued", "implicit")])
 def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
     problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8)

@@ -157,8 +157,11 @@ def test_archives_that_lack_something_are_told(dist: ModuleType, tmp_path: Path)
     with zipfile.ZipFile(tmp_path / "x.whl", "w") as wheel:
         for folder in ("dda", "fem_reference", "dda_validation", "tests", "x-1.dist-info"):
             wheel.writestr(f"{folder}/file", "x")
+        for page in sorted(dist.ROOT.glob("docs/*.md"))[1:]:
+            wheel.writestr(f"x-1.data/data/share/doc/dda-validation/{page.name}", "x")
     assert dist.missing_files(tmp_path / "x.tar.gz", tmp_path / "x.whl") == [
         f"x.tar.gz lacks {dist.REQUIRED[0]}",
+        f"x.whl lacks {min(page.name for page in dist.ROOT.glob('docs/*.md'))}",
         "x.whl holds tests",
         "x.whl lacks validation",
     ]

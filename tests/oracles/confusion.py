@@ -1,18 +1,19 @@
-"""Fifty histories of known origin, what `compare` makes of them, and the confusion matrix of the documentation.
+"""Fifty histories of known origin, what `compare` makes of them, and the counts of the documentation.
 
 The histories come from the program in `shi_dda`, which shares nothing with what judges them: seven digits each, some
 with noise, some on a base that yields. ``PYTHONPATH=.:tests python
-tests/oracles/confusion.py`` writes the matrix to docs/judge.md.
+tests/oracles/confusion.py`` writes the counts to docs/compare.md.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from oracles.pages import page_with
+from oracles.pages import page_with, summary
 from oracles.program_scenes import scene_of
 from oracles.shi_dda import History, Program, run
 
@@ -21,9 +22,10 @@ from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
-PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
-BEGIN, END = "<!-- confusion matrix: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
+BEGIN, END = "<!-- confusion: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"
 SAME = "same"
+WORDS = {"right": "were named right", "silent": "not explained", "wrong": "named wrong"}
 RIGID = {"base_young": 1e16, "fixed": 1e15}  # a base that moves by 1e-6 of the displacement
 PLAIN = Program(dt=0.002, steps=30, opens=False, updated=False, **RIGID)
 AVERAGE = {"alpha": 0.25, "delta": 0.5}
@@ -130,16 +132,18 @@ def judge() -> list[tuple[Known, Answer, History]]:
     return [(one, *one.judged(seed)) for seed, one in enumerate(known())]
 
 
-def matrix(judged: list[tuple[Known, Answer, History]]) -> str:
-    """Return the confusion matrix as a table: rows what was done, columns what was named."""
-    pairs = [(one.cause, told(answer)) for one, answer, _ in judged]
-    names = list(dict.fromkeys([true for true, _ in pairs] + [said for _, said in pairs]))
-    lines = ["| done, named | " + " | ".join(names) + " |", "|---|" + "---:|" * len(names)]
-    for true in dict.fromkeys(true for true, _ in pairs):
-        counts = [pairs.count((true, said)) for said in names]
-        lines.append(f"| {true} | " + " | ".join(str(n) if n else "" for n in counts) + " |")
-    return "\n".join(lines) + "\n"
+def verdict(one: Known, answer: Answer) -> str:
+    """Return whether what was done is what was named."""
+    named = told(answer)
+    if named == one.cause:
+        return "right"
+    return "silent" if named == "unexplained" else "wrong"
+
+
+def table(judged: list[tuple[Known, Answer, History]]) -> str:
+    """Return the paragraph of the page."""
+    return summary(Counter((one.cause, verdict(one, answer)) for one, answer, _ in judged), WORDS)
 
 
 if __name__ == "__main__":
-    PAGE.write_text(page_with(matrix(judge()), PAGE.read_text(), BEGIN, END))
+    PAGE.write_text(page_with(table(judge()), PAGE.read_text(), BEGIN, END))

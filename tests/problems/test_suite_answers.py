@@ -20,7 +20,7 @@ from validation.solvers.registry import get_solver
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; of a block that turns, which takes long
 OF_BLOCKS = ("locked", "opening", "rebound", "sliding", "creep", "rocking", "column")
 LONG = ("rebound", "sliding", "creep", "spall")
-PAGE = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
 
 
 def each(names: tuple[str, ...]) -> list[object]:

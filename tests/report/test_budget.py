@@ -17,10 +17,10 @@ from validation.engine.run import run_study
 from validation.report.blocks import figures_of
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.budget import CONTACT_COLOR, MARGINS, budget_panel
+from validation.report.chapters.data import groups_of_studies
 from validation.report.chapters.registry import chapter_of
 from validation.report.figures.charts import chart_figure
 from validation.report.figures.curves import style_of
-from validation.report.front.groups import groups_of_studies
 from validation.scenes.scene import load_scene
 from validation.suite import Study
 from validation.suite.folders import scene_study
@@ -74,7 +74,7 @@ def test_the_page_of_a_scene_shows_its_budget_and_the_appendix_its_alarms(
     captions = [figure.caption for figure in figures_of(blocks)]
     assert len(captions) == len(drawn) > 1
     assert any("Damping budget" in caption and "1.052 to 1.102 times" in caption for caption in captions)
-    alarms = " ".join(line.text for line in alarm_lines(groups_of_studies(results, ["figures-5-6"])))
+    alarms = " ".join(line.text for line in alarm_lines(groups_of_studies(results, [results.manifest("figures-5-6")])))
     assert all(kind in alarms for kind in ("agreement by damping", "hidden tension", "contact ringing"))
 
 

@@ -93,19 +93,14 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site: Path) -
     assert "FAIL" in files["index.html"] and "because of h / c" in files["index.html"]
 
 
-def test_the_decisions_come_first_where_the_paper_s_block_was_run(tmp_path: Path) -> None:
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
-    history = History(0.002 * np.arange(1, 5), {"displacement": np.full(4, -0.01)})
-    results = Results(tmp_path / "r")
-    kept_study(results, [(scene, made_row("dda", {"displacement.static": -0.01}, scene.name), history)])
-    pages.build(results, tmp_path / "site")
+def test_the_decisions_come_first_where_a_study_has_them(core_results: Results, drawn: Any, tmp_path: Path) -> None:
+    pages.build(core_results, tmp_path / "site")
     files = texts(tmp_path / "site")
-    check_links(files)
     index = files["index.html"]
     cards = re.findall(r'href="decisions.html#([^"]+)"><img src="decisions/decision-(\w+).svg"', index)
     assert [picture for _, picture in cards] == ["step", "springs", "discount"]
     assert all(f'id="{place}"' in files["decisions.html"] for place, _ in cards)
-    assert index.index(cards[-1][0]) < index.index("study-made.html")
+    assert index.index(cards[-1][0]) < index.index("study-core.html")
 
 
 def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site: Path, results: Results) -> None:

@@ -20,7 +20,6 @@ LAYERS = [
     {"thickness": 1.5, "density": 2000.0, "young": 5e8, "blocks": 1, "velocity": -0.5},
 ]
 OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
-SLIPS = {"motion": "shear", "law": "frictional", "stiffness": 5e8, "strength": 4e4, "layer": LAYERS}
 WELDED = {"motion": "pressure", "law": "unilateral", "layer": LAYERS, "gravity": 9.81}  # but for its joints
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 PULSE = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
@@ -53,30 +52,6 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
         else:
             assert not stepped[name].any(), name
     return max(errors)
-
-
-ON_BASES = [(column, base) for base in ("rigid", "transmitting", "free", "springs") for column in (SLIPS, OPENS)]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("column", "base"), thinned(ON_BASES, 8))
-def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
-    below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}
-    column = column | {"base": base} | below.get(base, {})
-    opening = "gap" if column["law"] == "unilateral" else "slip"
-    columns = ["displacement", "contact_pressure"]
-    columns += [f"{part}_{n}" for part in ("displacement", "velocity", "stress") for n in (2, 5)]
-    at_contacts = (1, 3) if base in ("rigid", "springs") else (3, 4)
-    columns += [f"{part}_{n}" for part in ("force", opening) for n in at_contacts]
-    exact = history(scene_of(column, columns, input=PULSE), "bars-events")
-    errors = []
-    for elements in (4, 12):
-        time = {"step": 1e-4 / elements, "steps": 200 * elements}
-        fine = scene_of(column, columns, elements, input=PULSE, time=time)
-        errors.append((distance(fine, elements, exact), distance(fine, elements, exact, *SMOOTH)))
-    # velocities that start with a jump have fronts, about which the error falls as a root of the elements' size
-    assert errors[1][0] < 0.12 and errors[1][0] < 0.8 * errors[0][0]
-    assert errors[1][1] < 0.01 and errors[1][1] < 0.4 * errors[0][1]
 
 
 @pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))

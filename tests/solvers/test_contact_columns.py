@@ -48,23 +48,6 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
     assert asked[0] is kept
 
 
-@pytest.mark.long
-def test_the_record_of_contacts_balances_and_counts() -> None:
-    prepared = get_solver("dda").prepare(dropped())
-    prepared.run()
-    record = prepared.contact_record()
-    assert record.solves is not None and record.cuts is not None and record.velocity is not None
-    assert (record.solves.min(), record.solves.max(), record.cuts.max()) == (1, 2, 0)
-    assert (record.start_velocity, record.start_energy) == pytest.approx((-1.0, 6250.0))
-    momentum = 12500 * (record.velocity[-1] + 1.0) + 12500 * 9.81 * record.time[-1]
-    assert record.impulse[-1] == pytest.approx(momentum, rel=1e-9)
-    total = sum(record.energies.values())
-    assert np.abs(total - record.start_energy).max() < 1e-11 * record.input_energy
-    assert record.open_share[0] == 1.0 and record.open_share.min() == 0.0 and record.open_share[-1] == 1.0
-    assert record.force.max() / 1e9 <= record.penetration.max() < 2 * record.force.max() / 1e9  # that of any contact
-    assert record.gap[-1] > 0.005 and record.slip is not None and not record.slip.any()
-
-
 def test_a_settled_column_stays_where_its_weight_has_put_it() -> None:
     scene = scene_of(
         {"gravity": 9.81, "settled": True, "layer": [LAYER | {"velocity": 0.0, "young": 1e9}]},

@@ -1,4 +1,4 @@
-"""The engine of docs/judge.md: it runs as it stands, and the page's table of problems is the code's."""
+"""The engine of docs/problems.md: it runs as it stands, and the page's table of problems is the code's."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from validation.scenes.scene import Scene
 from validation.solvers.user import UserSolver
 
 DOCS = Path(__file__).parents[2] / "docs"
-PAGE = (DOCS / "judge.md").read_text(encoding="utf-8")
+PAGE = (DOCS / "problems.md").read_text(encoding="utf-8")
 GRAVITY = 9.81
 
 

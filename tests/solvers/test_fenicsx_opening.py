@@ -10,7 +10,6 @@ from faults import seams
 
 from validation import solve
 from validation.errors import InputError
-from validation.metrics.catalogue import pair
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -189,14 +188,3 @@ def test_a_slip_of_the_worker_is_seen(
         assert distance(case) > 100 * SAME
     finally:
         worker.close_all()
-
-
-@pytest.mark.long
-@pytest.mark.fenicsx
-def test_a_bar_is_met_by_the_second_code_too(scene: Scene) -> None:
-    case = scene.with_values({"fem.elements": 16, "run.columns": FEW[:2]})
-    found, bar = solve(case, "fenicsx").history, solve(case, "bar").history
-    assert found is not None and bar is not None
-    values = [pair(name, found, bar) for name in ("displacement.l2", "pressure.l2")]
-    # quadratic elements, h = 2/16: the fourth order leaves 1e-5 to 1e-6 of the front
-    assert all(isinstance(value, float) and 0 < value < 1e-4 for value in values)

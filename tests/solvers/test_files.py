@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.pages import BLOCK, ROOT
+from oracles.pages import ROOT
 
 from validation.engine.measure import completed
 from validation.errors import InputError
@@ -22,8 +22,8 @@ from validation.solvers.user import VARIABLE
 from validation.suite.own_solver.gates import applying
 from validation.suite.own_solver.session import Session
 
-PAGE = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
-FILES = {file: text for _, file, text in BLOCK.findall(PAGE)}
+PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
+PROGRAM = (ROOT / "docs/examples/judge/block.cpp").read_text(encoding="utf-8")
 LOCKED = load_scene("field-locked")
 SPRINGS, DENSITY, PRESSURE = (
     "contact.stiffness_N_per_m",
@@ -50,7 +50,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory):
 
     def compile_with(old: str, new: str) -> str:
         place = tmp_path_factory.mktemp("program")
-        text = FILES["block.cpp"]
+        text = PROGRAM
         assert old in text
         text = text.replace(old, new)
         if "late" in new:

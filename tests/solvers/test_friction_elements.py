@@ -7,7 +7,6 @@ import pytest
 from validation import solve
 from validation.errors import InputError
 from validation.scenes.scene import Scene, load_scene
-from validation.solvers.registry import get_solver
 
 CONTACT = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 25.0, "cohesion": 2e3}
 LOAD = {"gravity": 9.81, "slope": 28.0, "pressure": 5e4, "eccentricity": 0.5, "traction": -2e4}
@@ -24,13 +23,6 @@ def scene() -> Scene:
 def test_a_column_that_elements_do_not_have_is_refused(scene: Scene) -> None:
     with pytest.raises(InputError, match="must be among"):
         solve(scene.with_values({"run.columns": ["slide_m"]}), "fem")
-
-
-def test_without_friction_no_slip_is_reported(scene: Scene) -> None:
-    glued = {key: value for key, value in CONTACT.items() if key not in ("friction", "cohesion")}
-    prepared = get_solver("fem").prepare(scene.with_values({"contact": glued, "time.steps": 5}))
-    prepared.run()
-    assert prepared.contact_record().slip is None
 
 
 @pytest.mark.parametrize("name", ["fem", pytest.param("fenicsx", marks=pytest.mark.fenicsx)])

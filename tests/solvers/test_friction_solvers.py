@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.runs.contact import LOST, STORED
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.dda import DDA
 
@@ -31,16 +30,6 @@ def record(given: Scene):
     """Return the history's columns and the contact's record."""
     prepared = DDA().build(given, False)
     return prepared.run().history.columns, prepared.contact_record()
-
-
-@pytest.mark.parametrize("block", [{}, {"subdivide": [2, 1]}])
-def test_friction_is_reported(block):
-    columns, seen = record(scene(block=block))
-    assert {1.0, 2.0} <= set(columns["state_m"])
-    assert seen.slip[-1] > 0 and columns["slide_m"][-1] > seen.slip[-1] / 2
-    assert set(seen.energies) == {*STORED, *LOST} and seen.energies["friction"][-1] > 0
-    total = sum(seen.energies.values())
-    assert np.ptp(total) < 1e-9 * np.max(np.abs(list(seen.energies.values())))
 
 
 def test_lagged_friction_and_its_bands_are_taken():

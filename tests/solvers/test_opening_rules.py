@@ -31,17 +31,6 @@ def test_energy_conserving_contact_glued_aside_is_refused(scene: Scene) -> None:
 COLUMNS = ["displacement", "contact_pressure", "gap_m", "gap_n", "normal_force_m", "shear_force_n", "solves", "cuts"]
 
 
-@pytest.mark.long
-def test_one_sub_block_is_the_block_through_the_adapter(scene: Scene) -> None:
-    case = scene.with_values({"run.columns": COLUMNS, "load.eccentricity": 0.2})
-    whole, cut = (solve(case.with_values(values), "dda").history for values in ({}, {"block.subdivide": [1, 1]}))
-    assert whole is not None and cut is not None and list(cut.columns) == COLUMNS
-    for name in COLUMNS[:-2]:
-        assert cut.columns[name] == pytest.approx(
-            whole.columns[name], rel=1e-9, abs=1e-9 * np.max(np.abs(whole.columns[name]))
-        ), name
-
-
 def test_sub_blocks_report_what_their_contact_did(scene: Scene) -> None:
     case = scene.with_values({"run.columns": COLUMNS, "block.subdivide": [2, 2], "time.steps": 120})
     prepared = get_solver("dda").prepare(case)

@@ -3,11 +3,9 @@
 import math
 from collections.abc import Callable
 from pathlib import Path
-from typing import NoReturn
 
 import numpy as np
 import pytest
-import scipy.linalg
 from conftest import thinned
 from oracles.stepped_vibration import fit
 
@@ -88,26 +86,6 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
         for column in COLUMNS:
             size = np.max(np.abs(band.columns[column]))
             assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
-
-
-@pytest.mark.long
-def test_a_sweep_over_a_tall_column_runs_no_step(monkeypatch: pytest.MonkeyPatch) -> None:
-    def refuse(*_: object) -> NoReturn:
-        raise AssertionError("a step was run")
-
-    for target in ("dda.bodies.locked_system.run_glued", "dda.bodies.locked_block.modal_histories"):
-        monkeypatch.setattr(target, refuse)
-    for target in ("fem_reference.history.solver.Stepper", "fem_reference.scheme.newmark.step_change"):
-        monkeypatch.setattr(target, refuse)
-    eliminations, own = [], scipy.linalg.solve_banded
-    monkeypatch.setattr(scipy.linalg, "solve_banded", lambda *a, **k: eliminations.append(1) or own(*a, **k))
-    size = {"block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 100]}
-    scene = BLOCK.with_values(size | {"fem.elements": 100})
-    found = response(scene, np.linspace(0.1, 200.0, 30), "dda")
-    assert np.all(np.isfinite(found.table()))
-    assert len(eliminations) == 30
-    for solver in ("fem", "bar", "continuum"):
-        assert np.all(np.isfinite(response(scene, np.linspace(0.1, 200.0, 30), solver).table()))
 
 
 def test_at_rest_and_at_a_load_that_turns_every_step() -> None:

@@ -10,9 +10,7 @@ import pytest
 from oracles.box_scenes import box_scene
 
 from validation.gates.gate import Status
-from validation.models.plane.boxes import boxes_of
 from validation.models.plane.problems import BoxCase, box_problems
-from validation.models.plane.tables import PlaneSection
 from validation.problems.numbered import measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
@@ -75,40 +73,6 @@ def test_bounces_follow_the_geometric_series(e: float, gravity: float) -> None:
     if e:
         bounce = (history.time > first) & (history.time < first * (1 + 2 * e))
         assert max(y[bounce]) == pytest.approx(0.4 * e**2, rel=1e-4)
-
-
-def test_contact_and_flight_on_a_spring_repeat() -> None:
-    scene = box_scene(BOX | {"lift": 0.1}, stiffness=1e5, restitution=1.0, step=1e-3, steps=3000)
-    history = motion(scene)
-    mass = 280.0
-    y = 0.35
-    v = 0.0
-    expected = []
-    for n in range(3000 * 50):  # velocity Verlet
-        a = -9.81 + max(0.0, 1e5 * (0.25 - y)) / mass
-        y += v * 2e-5 + a * 2e-10
-        v += (a - 9.81 + max(0.0, 1e5 * (0.25 - y)) / mass) * 1e-5
-        if n % 50 == 49:
-            expected.append(y)
-    np.testing.assert_allclose(history.columns["box_1.y"], expected, atol=1e-5)
-    np.testing.assert_allclose(
-        history.columns["box_1-ground.normal"], 1e5 * np.maximum(0, 0.25 - history.columns["box_1.y"])
-    )
-
-
-def test_a_box_about_its_right_corner_is_the_mirror_image() -> None:
-    scene = box_problems()["toppling"].scene()
-    scene = scene.with_values({"time.step": 1e-3, "time.steps": 1200, "run.columns": list(boxes_of(scene).columns)})
-    left = motion(scene)
-    upwards = np.diff(left.columns["box.y"], 2) / 1e-6
-    np.testing.assert_allclose(
-        left.columns["box-ground.normal"][1:-1] / boxes_of(scene).boxes[0].mass, 9.81 + upwards, rtol=1e-4
-    )
-    box = scene.table(PlaneSection).block[1]
-    mirrored = {"plane.block.1.spin": -box.spin, "plane.block.1.velocity": [-box.velocity[0], box.velocity[1]]}
-    right = motion(scene.with_values(mirrored))
-    for part, sign in (("box.x", -1), ("box.y", 1), ("box.angle", -1)):
-        np.testing.assert_allclose(right.columns[part], sign * left.columns[part], atol=1e-9)
 
 
 @pytest.mark.parametrize("shape", [(1.0, 0.5), (0.3, 1.0)])

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from validation.metrics.catalogue import in_words, is_count, words_of
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
@@ -47,6 +49,18 @@ def reason(v: VerdictRecord) -> str:
     width = f" ± {short(uncertainty, 2)}" if uncertainty else ""
     why = f" {capital(v['why'])}." if v.get("why") else ""
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
+
+
+def verdict_line(verdicts: Verdicts) -> Callout:
+    """Return the one line of verdicts."""
+    if not verdicts:
+        return Callout("No gate was judged.", "warn")
+    count = Counter(v["verdict"] for v in verdicts)
+    gates = "gate" if len(verdicts) == 1 else "gates"
+    text = f"{len(verdicts)} {gates}: {count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
+    if count["FAIL"]:
+        return Callout(text, "fail")
+    return Callout(text, "warn" if count["NOT RUN"] else "pass")
 
 
 def not_passed(verdicts: Verdicts) -> Blocks:

@@ -13,11 +13,10 @@ from pathlib import Path
 from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
 from validation.report.chapters.data import CaseGroup, case_groups
-from validation.report.chapters.gates import gate_list, not_passed
+from validation.report.chapters.gates import gate_list, not_passed, verdict_line
 from validation.report.chapters.scene import scene_page
-from validation.report.front.decisions import discount_page, spring_page, step_page
-from validation.report.front.first import verdict_line
-from validation.report.front.groups import groups_of_studies, paper_scene
+from validation.report.front import DECISIONS as THREE
+from validation.report.front import front_chapter
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
@@ -148,13 +147,12 @@ class Site:
         return directory
 
     def _write_decisions(self) -> Blocks:
-        """Write the page of the three decisions and return what leads there; nothing without the paper's block."""
-        groups = groups_of_studies(self._results, self.studies)
-        paper = paper_scene(groups)
-        if paper is None:
+        """Write the page of the three decisions and return what leads there; nothing where no study has any."""
+        front = front_chapter(self._results, self.studies, self._place / DECISIONS.removesuffix(".html"))
+        if front is None:
             return []
-        directory = self._directory(DECISIONS)
-        decisions = [decide(groups, paper, directory) for decide in (step_page, spring_page, discount_page)]
+        front.directory.mkdir()
+        decisions = [front.blocks(name) for name in THREE]
         title = "Three decisions"
         self._write(DECISIONS, title, [Heading(title), *itertools.chain.from_iterable(decisions)])
         links = []

@@ -15,9 +15,9 @@ from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.studies.spin.exact import Slide, Spinning
 from validation.suite.bands import Band, cases, fitted_order, near
 from validation.theory.spectra import EPS
+from validation.theory.spinning import Slide, Spinning
 
 STRAINS = ("ex", "ey", "gxy")
 SPINNING = ("spin-square", "spin-rectangle")

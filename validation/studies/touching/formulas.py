@@ -20,9 +20,9 @@ from validation.runs.row import Row, Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.solvers.plane.blocks import first_contact
-from validation.studies.touching.corner import FallingRectangle, Rebound, on_springs, rigid_impulse
-from validation.studies.touching.first import FirstTouch, MovingPolygon, first_touches, normals
 from validation.suite.bands import Band, cases
+from validation.theory.corner_impact import FallingRectangle, Rebound, on_springs, rigid_impulse
+from validation.theory.first_touch import FirstTouch, MovingPolygon, first_touches, normals
 
 STIFF = "touching-stiff"
 TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed

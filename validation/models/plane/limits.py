@@ -7,14 +7,16 @@ prestress may be admissible that no history of the blocks brings about (a key st
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.optimize import brentq, linprog
 
 from validation.models.plane.blocks import centroid
+from validation.models.plane.generators import ArchSection, ColumnsSection, GeneratorSection
 from validation.runs.history import Array
 from validation.scenes.outline import area
 
@@ -111,57 +113,66 @@ def moment(outline: Outline) -> float:
     return area(outline) * centroid(outline)[0]
 
 
-def straight_arch(radius: float, thickness: float, count: int) -> tuple[list[Outline], list[bool]]:
-    """Return a semicircle of straight voussoirs about the origin, and an abutment below either end."""
-    angles = [math.pi * (1 - joint / count) for joint in range(count + 1)]
-    inner = [((radius - thickness / 2) * math.cos(a), (radius - thickness / 2) * math.sin(a)) for a in angles]
-    outer = [((radius + thickness / 2) * math.cos(a), (radius + thickness / 2) * math.sin(a)) for a in angles]
-    outlines = [(inner[k], inner[k + 1], outer[k + 1], outer[k]) for k in range(count)]
-    for (a, _), (b, _) in ((outer[0], inner[0]), (inner[-1], outer[-1])):
-        outlines.append(((a, -thickness), (b, -thickness), (b, 0.0), (a, 0.0)))
-    return [tuple(outline) for outline in outlines], [False] * count + [True, True]
-
-
-def least_thickness(radius: float, count: int) -> float:
-    """Return the least thickness at which a semicircle of straight voussoirs stands, nothing slides [m]."""
-    low = 0.05 * radius
-    high = 0.2 * radius
-    while high - low > 1e-7 * radius:
-        middle = (low + high) / 2
-        low, high = (low, middle) if can_rest(*straight_arch(radius, middle, count), None) else (middle, high)
-    return high
-
-
-def flat_columns(heights: Sequence[float], width: float, dip: float) -> tuple[list[Outline], list[bool]]:
-    """Return columns side by side on a flat base that dips to the right, the toe first, and the base."""
-    cosine = math.cos(dip)
-    sine = math.sin(dip)
-    boxes = [(-width * (n + 1), 0.0, -width * n, height) for n, height in enumerate(heights)]
-    boxes.append((-width * (len(heights) + 1), -width, width, 0.0))
+def drawn(section: GeneratorSection) -> tuple[list[Outline], list[bool]]:
+    """Return the outlines that a table draws, and which of them are fixed."""
     outlines = []
-    for left, low, right, high in boxes:
-        upright = ((left, low), (right, low), (right, high), (left, high))
-        outlines.append(tuple((cosine * x + sine * y, cosine * y - sine * x) for x, y in upright))
-    return outlines, [False] * len(heights) + [True]
+    held = []
+    for _, outline, fixed in section.outlines():
+        outlines.append(outline)
+        held.append(fixed)
+    return outlines, held
 
 
+def last_that_rests(rests: Callable[[float], bool], stands: float, falls: float) -> float:
+    """Return the last value from one that rests on towards one that does not, to 1e-7 of their distance."""
+    least = 1e-7 * abs(falls - stands)
+    while abs(falls - stands) > least:
+        middle = (stands + falls) / 2
+        stands, falls = (middle, falls) if rests(middle) else (stands, middle)
+    return stands
+
+
+@functools.cache
+def least_thickness(radius: float, voussoirs: int, chords: int = 1) -> float:
+    """Return the least thickness at which a semicircle of equal voussoirs stands, nothing slides [m]."""
+
+    def rests(thickness: float) -> bool:
+        arch = ArchSection(name="arch", radius=radius, thickness=thickness, voussoirs=voussoirs, chords=chords)
+        return can_rest(*drawn(arch), None)
+
+    return last_that_rests(rests, 0.2 * radius, 0.05 * radius)
+
+
+@functools.cache
 def flat_height(count: int, width: float, dip: float, mu: float) -> tuple[float, float]:
     """Return the height of the highest of columns y_n = H n/N on a flat base: by the recursion, and the greatest [m].
 
     Above the greatest no contact forces balance the weights. In between it is the history that decides.
     """
 
-    def heights(H: float) -> list[float]:
-        return [H * n / count for n in range(1, count + 1)]
+    def heights(H: float) -> tuple[float, ...]:
+        return tuple(H * n / count for n in range(1, count + 1))
+
+    def rests(H: float) -> bool:
+        columns = ColumnsSection(name="column", width=width, heights=heights(H), dip=math.degrees(dip))
+        return can_rest(*drawn(columns), mu)
 
     low = 1.001 * width / math.tan(dip)  # a single column of that height stands
     push = brentq(lambda H: recursion(heights(H), width, 0.0, dip, mu) - LEAST_PUSH, low, 100 * low, xtol=1e-12)
-    high = 100 * low
-    while high - low > 1e-7 * width:
-        middle = (low + high) / 2
-        rests = can_rest(*flat_columns(heights(middle), width, dip), mu)
-        low, high = (middle, high) if rests else (low, middle)
-    return float(push), low
+    return float(push), last_that_rests(rests, low, 100 * low)
+
+
+@functools.cache
+def stepped_friction(heights: tuple[float, ...], width: float, rise: float, dip: float) -> tuple[float, float]:
+    """Return tan(phi) that columns on a stepped base need: by the recursion, and the least.
+
+    Below the least no contact forces balance the weights. In between it is the history that decides.
+    """
+    columns = ColumnsSection(name="column", width=width, heights=heights, dip=math.degrees(dip), rise=rise)
+    outlines, held = drawn(columns)
+    least = math.tan(dip) / 2  # in which nothing stands; above 1 the recursion has no sliding
+    push = brentq(lambda mu: recursion(heights, width, rise, dip, mu) - LEAST_PUSH, math.tan(dip), 0.99, xtol=1e-12)
+    return float(push), last_that_rests(lambda mu: can_rest(outlines, held, mu), 1.0, least)
 
 
 def keyed_dip(height: float, count: int, width: float) -> float:

@@ -14,7 +14,6 @@ from validation.theory.stepping import Stepping
 LOWEST = 1e-3  # w dt from which on a ratio is looked for
 HIGHEST = 8.0  # w dt up to which it is
 POINTS = 100  # a ratio changes smoothly with the step; where it is crossed is solved for between two
-NOISE = 1e-9  # of the load; a smaller tension is rounding
 
 
 def timed(scene: Scene, **values: Any) -> Scene:
