@@ -31,6 +31,7 @@ def test_every_source_says_who_wrote_what_when_and_where() -> None:
     sources = references()
     for key, source in sources.items():
         assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
+        assert source["read"].startswith(("full text", "abstract", "nothing"))
         assert source["title"] and source[PLACES.get(source["kind"], "journal")]
     paper = sources["feng2017"]
     for words in (paper["title"], paper["journal"], paper["year"], f"article {paper['pages']}", "9 pages", "18 July"):

@@ -23,6 +23,7 @@ from validation.cli import (
     run,
     show,
     verdicts,
+    verify,
     waves,
     work,
 )
@@ -44,12 +45,13 @@ COMMANDS = (
     compare,
     judge,
     verdicts,
+    verify,
     waves,
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("new", "list", "show", "run", "solve"),
-    "Results": ("report", "rows", "claims", "diff"),
+    "Results": ("report", "rows", "claims", "verify", "diff"),
     "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise",),
 }

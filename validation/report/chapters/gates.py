@@ -34,9 +34,8 @@ def measured(v: VerdictRecord) -> str:
     return f"{words_of(v['metric'])}{until}"
 
 
-def band(v: VerdictRecord) -> str:
-    """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
-    low, high = v["band"]
+def band_cell(low: float, high: float) -> str:
+    """Return a band with as many digits as tell its edges apart."""
     size = max(abs(low), abs(high))
     digits = next((d for d in range(4, 16) if high - low > 3 * 10.0**-d * size), 16)
     if low != high and digits > NARROW:
@@ -89,7 +88,7 @@ def gate_table(verdicts: Verdicts) -> Table:
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in verdicts:
         subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
-        row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band(v))
+        row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band_cell(*v["band"]))
         rows_by_reason.setdefault(reason(v), []).append(row)
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():

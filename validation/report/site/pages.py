@@ -21,6 +21,7 @@ from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
+from validation.report.verification import matrix
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -28,6 +29,7 @@ from validation.runs.results import Results
 NAME = "DDA validation"
 MARK = html.REFERENCES  # the page that marks a directory as such a site
 CALCULATORS = "calculators.html"
+VERIFIED = "verification.html"
 DECISIONS = "decisions.html"
 SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
 Progress = Callable[[int, int, str], None]
@@ -88,6 +90,7 @@ class Site:
         self._docs = docs
         self._manifests = {study: results.manifest(study) for study in studies}
         self._verdicts = [v for v in results.verdicts() if v["study"] in self._manifests]
+        self._matrix = matrix(self._verdicts)
         self._imprint = identity(manifest.get("provenance") or {} for manifest in self._manifests.values())
         self._study_pages = page_names("study", studies)
         names: dict[str, None] = {}
@@ -99,6 +102,8 @@ class Site:
 
     def _write(self, file: str, title: str, blocks: Blocks, **values: object) -> None:
         menu = [("index.html", "Results"), (CALCULATORS, "Calculators"), (html.REFERENCES, "References")]
+        if self._matrix:
+            menu.append((VERIFIED, "Verification"))
         if self._docs:
             menu.append((f"{self._docs}/index.html", "Documentation"))
         stem = file.removesuffix(".html")
@@ -162,7 +167,7 @@ class Site:
         return self._manifests[study].get("title") or study
 
     def write_other_pages(self) -> None:
-        """Write the first page, the calculators, the sources and what all pages share."""
+        """Write the first page, what is verified, the calculators, the sources and what all pages share."""
         lead = (
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
@@ -180,6 +185,8 @@ class Site:
             Links((Link(CALCULATORS, "Damping of a step, and the step for a damping"),)),
         ]
         self._write("index.html", NAME, index)
+        if self._matrix:
+            self._write(VERIFIED, "Verification", self._matrix)
         sources = "The paper whose model is tested, and the sources of the methods."
         self._write(html.REFERENCES, "References", [Heading("References"), Paragraph(sources, "lead"), References()])
         self._write(
