@@ -316,7 +316,7 @@ def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"pack": "99.0"}, f"pack: must be one of 4.0, {PACK}, this pack and earlier ones"),
+        ({"pack": "99.0"}, f"pack: must be one of 4.0, 5.0, {PACK}, this pack and earlier ones"),
         ({"pack": ...}, "pack: is required, got nothing"),
         ({"format": "other"}, "format: must be 'dda-validation answers 1', got 'other'"),
         ({"version": 3}, "version: must be a valid string, got 3"),

@@ -10,7 +10,8 @@ import pytest
 from oracles.box_scenes import box_scene
 
 from validation.gates.gate import Status
-from validation.models.plane.problems import BoxCase, box_problems
+from validation.models.plane.posed import PlaneCase
+from validation.models.plane.problems import box_problems
 from validation.problems.numbered import measured
 from validation.runs.history import History
 from validation.scenes.scene import Scene
@@ -35,7 +36,7 @@ def refusal(scene: Scene) -> str:
 
 
 @pytest.mark.parametrize(("name", "case"), CASES, ids=[f"{name} {case.label}" for name, case in CASES])
-def test_the_exact_motion_passes_its_problem(name: str, case: BoxCase) -> None:
+def test_the_exact_motion_passes_its_problem(name: str, case: PlaneCase) -> None:
     problem = box_problems()[name]
     scene = problem.scene(case)
     quantities = (case.quantities or problem.quantities)(scene)
