@@ -9,8 +9,6 @@ from validation import InputError, load_scene, response, solve
 from validation.advice.spectra import damping
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
-from validation.engine.case import Case
-from validation.scenes import drive
 from validation.scenes.scene import Scene, parse_scene
 
 SITE = Path(__file__).with_name("site.toml").read_text(encoding="utf-8")
@@ -54,23 +52,6 @@ def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) ->
     for name in scene.run.columns:
         blocks, elements = (history.columns[name] for history in histories)
         assert np.abs(blocks - elements).max() <= 1e-11 * np.abs(elements).max() + 1e-300, name
-
-
-def test_a_record_drives_a_column_as_the_pulse_that_it_holds(site: Scene, tmp_path: Path) -> None:
-    time = 1e-3 * np.arange(1200)
-    pulse = drive.motion_at(site, time)
-    again = drive.motion_at(site, time[:-1] + 5e-4)
-    runs = [solve(site, "dda")]
-    for name in ("velocity", "acceleration"):
-        rows = np.column_stack([time, getattr(pulse, name)])
-        np.savetxt(tmp_path / f"{name}.csv", rows, delimiter=",", header=f"time,{name}", comments="")
-        given = {"record": str(tmp_path / f"{name}.csv")}
-        scene = parse_scene(site.definition() | {"input": given}, name)
-        runs.append(solve(scene, "dda"))
-        for part, values in vars(drive.motion_at(scene, time[:-1] + 5e-4)).items():
-            assert np.abs(values - getattr(again, part)).max() <= 2e-3 * np.abs(getattr(again, part)).max(), part
-    for run in runs[1:]:
-        assert np.abs(run.displacement - runs[0].displacement).max() < 2e-4 * np.abs(runs[0].displacement).max()
 
 
 # ---- vibrations -----------------------------------------------------------------------------------------------------
@@ -164,18 +145,6 @@ def test_conditional_schemes_are_held_to_their_limit(site: Scene) -> None:
     for solver in ("dda", "fem"):
         with pytest.raises(InputError, match=r"time\.step: must not exceed"):
             solve(site.with_values({"time.alpha": 0.0}), solver)
-
-
-def test_key_of_a_column_reads_its_record_and_not_another_solvers_glue(site: Scene, tmp_path: Path) -> None:
-    glued = site.with_values({"column.glue": 1e10})
-    assert Case(site, "dda").key() != Case(glued, "dda").key()
-    assert Case(site, "fem").key() == Case(glued, "fem").key()
-    keys = []
-    for last in ("1", "2"):
-        (tmp_path / "record.csv").write_text(f"time,velocity\n0,0\n1,{last}\n")
-        scene = parse_scene(site.definition() | {"input": {"record": str(tmp_path / "record.csv")}}, "site")
-        keys.append(Case(scene, "dda").key())
-    assert keys[0] != keys[1]
 
 
 @pytest.mark.parametrize("solver", ["dda", "fem", "layers", "column-events", "bars-events"])
