@@ -219,7 +219,8 @@ def test_the_reason_is_found_under_the_launcher_s_words() -> None:
 
 def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
-    assert worker_directories().keys() == {"TMPDIR"}
+    for _ in range(2):  # made, and there already
+        assert worker_directories().keys() == {"TMPDIR"}
     monkeypatch.delenv("XDG_CACHE_HOME")
     for home in ("/proc/none", "/dev/null/home"):  # where not even root can make a directory
         monkeypatch.setenv("HOME", home)
