@@ -53,7 +53,7 @@ def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
     return Ground(strata, motion, joints, impedance), [float(height) for height in some]
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(12))
 def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
     rng = np.random.default_rng(seed)
     ground, heights = drawn(rng)

@@ -9,7 +9,6 @@ from conftest import thinned
 from faults import seams
 
 from validation import solve
-from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -119,12 +118,6 @@ def test_ranks_share_one_contact(scene: Scene, name: str) -> None:
 def test_a_step_without_a_contact_ends_the_history_by_name(scene: Scene) -> None:
     hopeless = scene.with_values(SCENES["glued"] | {"contact.solve_limit": 1})
     assert [solve(hopeless, name, full=True).outcome for name in ("fem", "fenicsx")] == [Outcome.NO_CONTACT_STATE] * 2
-
-
-def test_what_fenicsx_does_not_open_is_refused(scene: Scene) -> None:
-    patches = scene.with_values({"fem": {"elements": 8, "foundation": "patch", "patch_width": 0.5}})
-    with pytest.raises(InputError, match="none on patches"):
-        solve(patches, "fenicsx")
 
 
 WORKER_MODULES = ("opening.py", "small.py", "model.py")
