@@ -1,4 +1,4 @@
-"""The exact motion of the bar on a no-tension spring: known histories, an independent integration, identities."""
+"""The exact motion of the bar on a no-tension spring: known histories, momentum, states at rest."""
 
 from dataclasses import replace
 

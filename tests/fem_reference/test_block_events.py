@@ -1,4 +1,4 @@
-"""The exact motion of the block with no-tension corners: known histories, an independent integration, identities."""
+"""The exact motion of the block with no-tension corners: known histories, an independent integration, a long flight."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Line elements on contacts that open or slip: exact motions of blocks and bars, balances, the contact problem."""
+"""Line elements on contacts that open or slip: balances in every step, natural modes, bonded springs."""
 
 from __future__ import annotations
 

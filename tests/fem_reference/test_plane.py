@@ -1,4 +1,4 @@
-"""The plane elastic body: order of a cantilever's tip, a free body's six numbers, cells that meet in a T, refusals."""
+"""The plane elastic body: order of a cantilever's tip, a free body's six numbers, cells that meet in a T."""
 
 import functools
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
+"""Elements on a base that carries no tension: digits on stiff springs and in long flights, coarse meshes."""
 
 from dataclasses import replace
 

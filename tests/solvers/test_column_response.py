@@ -1,4 +1,4 @@
-"""Frequency responses of columns: against stepped histories, closed forms and the exact layers."""
+"""A pressure on the top of a column: its response at rest is the pressure."""
 
 import pytest
 

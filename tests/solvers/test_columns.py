@@ -1,4 +1,4 @@
-"""Scenes of columns: what they may state, who runs them, who refuses them, and that the three solvers agree."""
+"""Columns on every base: blocks, elements and the exact layers agree; a height is the top but for rounding."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""Moving blocks by `dda`: columns of blocks and contacts, refusals, fields, and where contact forces are drawn."""
+"""Moving blocks by `dda`: friction, motions of bases, fields, contacts that are found or do not settle."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Rules of contact and sub-blocks through the adapter `dda`: who takes them, what they report, refusals by name."""
+"""Sub-blocks on contact that opens, through the adapter `dda`: what they report."""
 
 import numpy as np
 import pytest

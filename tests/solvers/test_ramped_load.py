@@ -1,4 +1,4 @@
-"""A load that rises in a ramp: the closed form of each mode, exact flights, energies, and who refuses it."""
+"""A load that rises in a ramp: who refuses it, and what `compare` makes of it."""
 
 import math
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Frequency responses: the closed form against stepped histories, its limits, what refuses it, and what it costs."""
+"""Frequency responses: the numbers of an independent computation of the paper's block and bar."""
 
 import pytest
 

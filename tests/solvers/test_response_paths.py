@@ -1,4 +1,4 @@
-"""Frequency responses: moving bases, large systems, limits, refusals, and that no step is run."""
+"""Frequency responses: moving bases, large systems, limits and peaks."""
 
 import math
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""The exact motions of rigid boxes: they pass their own problems, agree with other formulas, and refuse the rest."""
+"""The exact motions of rigid boxes: they pass their own problems, keep their energy, and refuse the rest."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Damping tables, C = a0 M + a1 K: histories, spectra, exact motions, the damping budget, and who refuses them."""
+"""Damping tables, C = a0 M + a1 K: the radius of the step and the damping budget."""
 
 import numpy as np
 import pytest
