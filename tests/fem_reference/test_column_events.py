@@ -105,18 +105,6 @@ def test_blocks_in_common_flight_touch_without_force() -> None:
     assert motion.at([0.01, 0.012]).force[0].min() > 0
 
 
-def test_a_mirrored_pair_switches_in_one_ball() -> None:
-    problem = ColumnProblem(
-        (ColumnBlock(1.0, 2500, 1e9, 1.0), ColumnBlock(1.0, 2500, 1e9), ColumnBlock(1.0, 2500, 1e9, -1.0)),
-        (None, ColumnJoint(1e9, 0.001), ColumnJoint(1e9, 0.001)),
-        base="free",
-    )
-    motion = solve(problem, 0.02)
-    assert len(motion.simultaneous) == len(motion.switches) / 2
-    assert labels(motion)[:2] == ["1C", "2C"]
-    assert motion.at([0.02]).velocity.sum() == pytest.approx(0.0, abs=1e-14)
-
-
 def test_a_joint_without_strength_lets_its_block_coast() -> None:
     problem = ColumnProblem(
         blocks(1, 2500, RIGID, 0.5),

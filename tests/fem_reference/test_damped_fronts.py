@@ -1,4 +1,4 @@
-"""The damped bar right beside its fronts, late, and its modes: against its transform and the damped oscillator."""
+"""The damped bar right beside its fronts, and late: against its transform."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Elements that slide: turned axes, closed forms, other bases, symmetry."""
+"""Elements that slide: a step that is cut starts from the state as it was, and the base from its place."""
 
 from dataclasses import replace
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from oracles.elements import make
 
-from fem_reference import Friction, Motion, Scheme, Unilateral, solve, solve_unilateral
+from fem_reference import Friction, Motion, Scheme, Unilateral
 from fem_reference.contact.driver import Cut, cut_step
 from fem_reference.contact.iteration import NONE
 from fem_reference.contact.law import INSIDE
@@ -23,41 +23,6 @@ def incline(slope, gravity=98.1, **more):
     """A square on its incline, nothing on its top."""
     own = {"elements": 4, "degree": 1, "poisson": 0.2, "shear": 4e8} | more
     return replace(make(**own), pressure=0.0, gravity=gravity, slope=slope)
-
-
-def turned(problem, angle):
-    """The same block with its incline under it as it lies, gravity downwards, and the shaking along the same ways."""
-    turn = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]])
-    corners = tuple(map(tuple, (np.array(problem.vertices) @ turn.T).tolist()))
-    x, y = turn @ np.array([SHAKE.x, SHAKE.y])
-    motion = None if problem.motion is None else Motion(SHAKE.time, tuple(x), tuple(y))
-    return replace(problem, vertices=corners, slope=0.0, motion=motion), turn
-
-
-@pytest.mark.parametrize(
-    ("contact", "motion"),
-    [
-        (None, SHAKE),
-        (replace(RUBBING, gap=1e-5, friction=Friction(10.0, 1e4)), SHAKE),
-        pytest.param(None, None, marks=pytest.mark.long),
-        pytest.param(RUBBING, None, marks=pytest.mark.long),
-    ],
-)
-def test_a_turned_block_is_a_block_under_turned_gravity(contact, motion):
-    upright = replace(incline(30.0), motion=motion)
-    lying, turn = turned(upright, np.radians(30.0))
-    names = ("displacement", "horizontal_displacement", "contact_pressure", "rotation")
-    if contact is None:
-        a, b = (solve(problem, CONSTANT, 100, names).columns for problem in (upright, lying))
-    else:
-        a, b = (solve_unilateral(problem, CONSTANT, 100, contact).columns for problem in (upright, lying))
-        assert a["largest_slide"].max() > 1e-4 and np.array_equal(a["solves"], b["solves"])
-        assert b["friction_loss"] == pytest.approx(a["friction_loss"], rel=1e-9, abs=1e-9 * a["friction_loss"].max())
-    moved = turn @ np.array([a["horizontal_displacement"], a["displacement"]])
-    found = np.array([b["horizontal_displacement"], b["displacement"]])
-    assert np.abs(found - moved).max() <= 1e-10 * np.abs(moved).max()
-    for name in names[2:]:
-        assert np.abs(b[name] - a[name]).max() <= 1e-9 * np.abs(a[name]).max(), name
 
 
 class Refusing(ContactStepper):

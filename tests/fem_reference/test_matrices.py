@@ -10,7 +10,6 @@ from conftest import thinned
 from oracles.elements import INCLINED, make
 from skfem import MeshQuad, MeshTri
 
-from fem_reference.history.solver import static
 from fem_reference.mesh.model import assemble, build
 
 
@@ -123,23 +122,6 @@ def test_patches_are_integrated_exactly_wherever_they_end(elements):
     assert v @ (assembled.springs @ v) == pytest.approx(energy, rel=1e-13)
     pressure = -p / width / 2 * (width**3 + 2**3 - (2 - width) ** 3) / 3
     assert assembled.observers["contact_pressure"] @ v == pytest.approx(pressure, rel=1e-13)
-
-
-def corner_block(tmp_path, vertices, top, holes):
-    """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
-    grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
-    middle = grid.p[:, grid.t].mean(axis=1)
-    gone = [int(np.argmin(np.hypot(*(middle - np.array([[x], [y]]))))) for x, y in holes]
-    mesh = grid.remove_elements(np.array(gone)).refined(1)
-    return make(vertices, 0, top, 0.2, mesh=write_mesh(tmp_path / "corner.msh", make(vertices, 0, top), mesh))
-
-
-def test_nonconvex_block_from_a_mesh_file(tmp_path):
-    shape = ((0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (0, 2))
-    problem = corner_block(tmp_path, shape, 4, [(1.5, 1.5), (2.5, 1.5)])
-    # Statics: the base of length 3 carries the load of a top of length 1.
-    assert static(problem)["contact_pressure"] == pytest.approx(5e6 / 3, rel=1e-11)
-    assert assemble(problem).observers["displacement"].sum() == pytest.approx(1.0, rel=1e-12)
 
 
 def test_centroid_outside_the_block_is_refused(tmp_path):

@@ -1,4 +1,4 @@
-"""Schemes of stages on a base that opens: against exact motion, printed rebounds and each other."""
+"""Schemes of stages on a base that opens: printed rebounds and the exact motion."""
 
 import functools
 

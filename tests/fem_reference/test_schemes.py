@@ -174,6 +174,3 @@ def test_diagnostics_agree_with_themselves():
     found = diagnostics(make(elements=3, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
     assert found.spectral_radius == pytest.approx(found.predicted_radius, abs=1e-9)
     assert found.spectral_radius < 1
-
-
-# Seeded faults in the numbers of a table, and what one of them changes.

@@ -81,16 +81,6 @@ def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
         assert np.abs(many.columns[name] - values).max() <= 1e-10 * size, name
 
 
-def test_points_of_the_base_share_it_with_positive_weights():
-    for degree, weights in ((1, [0.5, 1, 1, 1, 0.5]), (2, np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 6)):
-        for cells in ("quadrilaterals", "triangles"):
-            model = points.build(make(elements=4, degree=degree, poisson=0.2, shear=3e8, cells=cells))
-            assert model.share == pytest.approx(np.array(weights) / 4, rel=1e-14)
-            assert model.stiffness == pytest.approx(2e9 * model.share, rel=1e-14)
-            assert model.shear_stiffness == pytest.approx(6e8 * model.share, rel=1e-14)
-            assert model.normal @ model.upwards == pytest.approx(np.ones(len(weights)), rel=1e-14)
-
-
 class Refusing(ContactStepper):
     """A stepper that finds no contact in steps longer than a share of its own."""
 

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import thinned
 
-from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.columns.bars import BarsOfColumn
@@ -67,21 +65,6 @@ def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     fine = scene_of(column, columns, 16, input=drive, time=time)
     assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
     assert distance(fine, 16, exact) < 0.12
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"input": {"shape": "ricker", "velocity": 0.1, "frequency": 50.0}}, "Ricker"),
-        ({"time": {"gg": 0.99}}, "gg is below 1"),
-        ({"column": {"layer": [LAYERS[0], LAYERS[1] | {"young": math.inf}]}}, "rigid blocks"),
-    ],
-)
-def test_what_has_no_exact_waves_is_refused_by_name(change: dict[str, Any], reason: str) -> None:
-    tables = {"input": PULSE} | change
-    scene = scene_of(OPENS | tables.pop("column", {}), ["displacement"], **tables)
-    with pytest.raises(InputError, match=reason):
-        solve(scene, "bars-events")
 
 
 @pytest.mark.long

@@ -2,8 +2,6 @@
 
 import os
 import subprocess
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -19,7 +17,6 @@ from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE, UserSolver
 from validation.suite.folders import scene_study
 
-GATES = "--pyargs validation -m validation -q -rs -p no:cacheprovider -k figures-3-4"
 HERE = Path(__file__).parent / "user_solvers"
 
 
@@ -122,32 +119,3 @@ def test_an_entry_point_is_a_name_everywhere(scene_file: Path, tmp_path: Path, m
     assert "mine" in [line.split()[0] for line in cli("list", "solvers").stdout.splitlines() if line.strip()]
     done = cli("solve", scene_file, "--solver", "mine", "--csv", tmp_path / "mine.csv")
     assert done.returncode == 0 and (tmp_path / "mine.csv").exists()
-
-
-def through_the_gates(attribute: str, *options: str) -> str:
-    """Run the gates of Figures 3 and 4 on a user's solver, as the user does, and return what pytest says."""
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", *GATES.split(), "--dda-solver", f"my_solver:{attribute}", *options],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        cwd=HERE,
-    )
-    return done.stdout + done.stderr
-
-
-@pytest.mark.long
-def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
-    shown = through_the_gates("solve", f"--junitxml={tmp_path / 'junit.xml'}")
-    assert " passed" in shown and "failed" not in shown
-    names = [case.get("name") for case in ElementTree.parse(tmp_path / "junit.xml").iter("testcase")]
-    assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names, "JUnit has the gates' ids"
-
-
-@pytest.mark.long
-def test_a_broken_solver_fails_by_name() -> None:
-    shown = through_the_gates("slack", "-x")
-    assert "failed" in shown and "is outside [" in shown
-    shown = through_the_gates("hangs", "--dda-timeout", "3")  # within which it is loaded, on a busy machine too
-    assert "passed," not in shown and "timeout: no history within 4 s, the time limit for 200 steps" in shown
-    assert "gates: not tried, since 2 scenes reached their time limit" in shown
