@@ -64,7 +64,14 @@ CORNERS = [(1e3, 1e3), (1e9, 1e-9), (1e9, 1e-3), (1e13, 1e-4), (1e24, 1e-4), (1e
 def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued):
     steps, grown = 25, 1e-12
     problem = replace(
-        IMPACT, poisson=0.31, stiffness=p, shear_stiffness=glued * p, pressure=3.7e6, eccentricity=0.13, gravity=3.0
+        IMPACT,
+        poisson=0.31,
+        stiffness=p,
+        shear_stiffness=glued * p,
+        gap=0.37 * dt,
+        pressure=3.7e6,
+        eccentricity=0.13,
+        gravity=3.0,
     )
     model, scheme = model_of(problem), Scheme(0.5, 1.0, 0.97, dt)
     shadow = replace(model, velocity=model.velocity * (1 + grown))
