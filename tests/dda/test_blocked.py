@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from faults import seams
-from oracles import mp_reference
+from oracles import block_in_digits
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
 from dda.bodies.locked_block import modal_histories
@@ -42,9 +42,9 @@ DATA = [(1e-6, 1e-7, 0.9), (1.0, 1e-3, 1.0), (3.0, 7e-4, 0.0), (1.0, 1.0, 1.0)] 
 def test_no_digit_is_lost_that_steps_keep(data, scheme, start):
     (ratio, step, gg), (alpha, delta) = data, scheme
     m, scheme, steps = model(ratio), Scheme(alpha, delta, gg, step, start), 400
-    exact = mp_reference.history(m, scheme, steps)
+    exact = block_in_digits.locked_history(m, scheme, steps)
     for blocked, stepped, truth in zip(*both(m, scheme, steps), exact, strict=True):
-        assert mp_reference.lost(blocked, truth) <= max(1e-12, 3 * mp_reference.lost(stepped, truth))
+        assert block_in_digits.lost(blocked, truth) <= max(1e-12, 3 * block_in_digits.lost(stepped, truth))
 
 
 @pytest.mark.parametrize("steps", [1, 2, 3, 127, 128, 129, 5000])
