@@ -10,14 +10,14 @@ from dda.bodies.column import Column, Layer, Spring
 DENSITY, YOUNG = 2000.0, 1.8e9
 
 
-def test_the_moduli_are_those_of_plane_waves() -> None:
+def test_the_moduli_are_those_of_plane_waves():
     layer = Layer(1.0, 1.0, 1.0, 0.25)
     assert layer.modulus("shear") == pytest.approx(0.4)
     assert layer.modulus("pressure") == pytest.approx(1.2)
     assert Layer(1.0, 1.0, 1.0).modulus("pressure") == 1.0
 
 
-def test_a_column_is_the_system_of_blocks_on_its_springs() -> None:
+def test_a_column_is_the_system_of_blocks_on_its_springs():
     """Five squares under a pressure: the two-dimensional blocks, whose two end springs of p make 2 p / a a joint."""
     a, p, glue, pressure, step, steps = 2.0, 3e9, 5e9, 1e6, 2e-4, 60
     block = dda.Block([(0, 0), (a, 0), (a, 5 * a), (0, 5 * a)], dda.Material(2700.0, 1e9, 0.0, "plane stress"))
@@ -44,6 +44,6 @@ def test_a_column_is_the_system_of_blocks_on_its_springs() -> None:
         ({"joints": [Spring(1.0, 1e9), Spring(1.0, 2e9)]}, "joints: must not share a height"),
     ],
 )
-def test_bad_columns_are_refused(change: dict[str, object], says: str) -> None:
+def test_bad_columns_are_refused(change, says):
     with pytest.raises(ValueError, match=says):
         Column(**({"layers": [Layer(4.0, DENSITY, YOUNG, 0.0, 4)]} | change))

@@ -20,7 +20,7 @@ from dda import (
     solve_unilateral,
 )
 from validation.theory import stages
-from validation.theory.rebound import Advance, midpoints, rebounds, spring_steps
+from validation.theory.rebound import midpoints, rebounds, spring_steps
 
 MASS = 1.3 * 0.9 * 2350.0
 V = 0.7
@@ -46,7 +46,7 @@ def rigid_rebound(scheme, omega, theta, zeta=0.0, rule="newmark", young=1e22, st
     return result.velocity[-1] / V
 
 
-def check_rebounds(scheme, advance: Advance, omega, tolerance=1e-6, **given):
+def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
     expected = rebounds(advance, PHASES)
     measured = [rigid_rebound(scheme, omega, float(theta), **given) for theta in PHASES]
     assert measured == pytest.approx(expected, abs=tolerance)

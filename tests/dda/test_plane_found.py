@@ -151,7 +151,11 @@ def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
 
 
 # least ratio of the errors of angular momentum, by steps of which one is a quarter of the other: 4^order is 16 and 4
-@pytest.mark.parametrize(("alpha", "delta", "ratio"), [(0.25, 0.5, 8), (0.5, 1.0, 3)], ids=["average", "constant"])
+@pytest.mark.parametrize(
+    ("alpha", "delta", "ratio"),
+    [(0.25, 0.5, 8), pytest.param(0.5, 1.0, 3, marks=pytest.mark.long)],
+    ids=["average", "constant"],
+)
 def test_blocks_that_fly_at_each_other_keep_their_momentum(alpha, delta, ratio):
     polygons = pile(6, 3)[3:]
     places = np.array([block.block.section.centroid for block in polygons])

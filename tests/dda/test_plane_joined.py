@@ -43,9 +43,9 @@ def test_a_block_that_is_dropped_comes_to_rest_on_its_springs(equations):
 def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name, equations):
     block = PlaneBlock(rectangle(0, 0.002, 2, 1), 2700.0, 1e9, 0.2, velocity=(3.0, -1.0), spin=-0.01)
     corners = [CornerOnEdge(1, corner, 0, 2, SPRINGS) for corner in (0, 1)]
-    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 150)
+    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 100)
     free = PlaneModel([floor(), block], gravity=(0, -GRAVITY), found=SPRINGS)
-    found = solve_plane(free, SCHEMES[name], 150, compiled=False)
+    found = solve_plane(free, SCHEMES[name], 100, compiled=False)
     assert np.abs(found.displacement - stated.displacement).max() <= 1e-9 * np.abs(stated.displacement).max()
     columns = [found.contacts.index((1, corner, 0, 2)) for corner in (0, 1)]
     assert found.normal[:, columns] == pytest.approx(stated.normal, abs=1e-7 * stated.normal.max())
@@ -63,7 +63,7 @@ def test_a_wall_without_gaps_stands(young):
             PlaneBlock(rectangle(left + 0.4 * k, 0.2 * row, 0.4, 0.2), 2000.0, young, 0.2) for k in range(4 - row % 2)
         ]
     model = PlaneModel(blocks, gravity=(0, -GRAVITY), found=ContactSprings(1e9, 4e8, 0.6))
-    result = solve_plane(model, scheme((0.5, 1.0, 0.9), 1e-3), 100, every=10, compiled=False)
+    result = solve_plane(model, scheme((0.5, 1.0, 0.9), 1e-3), 80, every=10, compiled=False)
     weight = 14 * 2000.0 * 0.08 * GRAVITY
     assert result.outcome == "completed" and np.abs(result.velocity[-1]).max() < 1e-4
     under = [contact.on == 0 or contact.block == 0 for contact in result.contacts]

@@ -43,7 +43,7 @@ CASES: list[tuple[Scheme, int, dict[str, Any]]] = [  # each opens or closes but 
 
 
 @pytest.mark.parametrize(("scheme", "steps", "data"), CASES)
-def test_a_block_that_does_not_turn_is_the_block_on_a_base(scheme: Scheme, steps: int, data: dict[str, Any]) -> None:
+def test_a_block_that_does_not_turn_is_the_block_on_a_base(scheme, steps, data):
     values = {"poisson": 0.0, "stiffness": 1e9, "shear": 0.0, "friction": None, "gap": 0.0} | data
     poisson, p, shear, friction, gap = (values[key] for key in ("poisson", "stiffness", "shear", "friction", "gap"))
     pressure, gravity, velocity = (data.get(key, 0.0) for key in ("pressure", "gravity", "velocity"))

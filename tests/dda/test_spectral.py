@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes, solve
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes
 from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
@@ -24,18 +24,6 @@ def test_the_critical_omega_is_where_growth_begins(alpha, delta, gg):
     limit = spectral.critical_omega(alpha, delta, gg)
     assert spectral.spectral_radius(limit * (1 - 1e-6), alpha, delta, gg) < 1
     assert spectral.spectral_radius(limit * (1 + 1e-6), alpha, delta, gg) > 1
-
-
-@pytest.mark.parametrize(("alpha", "delta"), [CONSTANT, (0.3025, 0.6)])
-@pytest.mark.parametrize("gg", [1.0, 0.97])
-@pytest.mark.parametrize("omega", [1e-3, 0.3, 2.0])
-def test_damping_and_frequency_give_back_the_roots(alpha, delta, gg, omega):
-    xi = spectral.damping_ratio(omega, alpha, delta, gg)
-    w = omega / (1 + spectral.period_elongation(omega, alpha, delta, gg))
-    exponent = (-xi + np.array([1j, -1j]) * np.sqrt(complex(1 - xi**2))) * w
-    roots = np.sort_complex(np.exp(exponent))
-    # where overdamped, the two exponents are recovered by a subtraction
-    np.testing.assert_allclose(roots, np.sort_complex(spectral.eigenvalues(omega, alpha, delta, gg)), rtol=1e-9)
 
 
 def sixty_digits(omega, alpha, delta, gg):
@@ -101,19 +89,3 @@ def test_diagnostics_name_a_growing_scheme():
     assert calm.spectral_radius <= 1
     assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
     assert calm.scaled_residual < 1e-15
-
-
-@pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (0.5, 1.0)])
-@pytest.mark.parametrize("start", ["consistent", "zero"])
-def test_damping_by_the_stiffness_is_a_scheme_of_larger_alpha_and_delta_from_the_consistent_start(
-    alpha: float, delta: float, start: str
-) -> None:
-    """`compare` calls C = a1 K the scheme alpha + delta a1/dt, delta + a1/dt: the same rows, but for the first step."""
-    step, a1 = 1.0e-3, 2.0e-4
-    viscous = Scheme(alpha, delta, 1.0, step, start, stiffness_damping=a1)
-    larger = Scheme(alpha + delta * a1 / step, delta + a1 / step, 1.0, step, start)
-    rows, same = (
-        solve(square(), scheme, 200, ("displacement",)).columns["displacement"] for scheme in (viscous, larger)
-    )
-    apart = np.linalg.norm(rows - same) / np.linalg.norm(rows)
-    assert (apart < 1e-12) == (start == "consistent")
