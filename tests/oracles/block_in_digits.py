@@ -1,8 +1,9 @@
-"""A block on corners that open, in high-precision arithmetic and in the displacement form with springs.
+"""A block on springs that hold it or on corners that open, in arithmetic of many digits and in displacements.
 
-Nothing is shared with the package: matrices are those of `mp_reference`, the springs of the closed corners are part of
-the matrix of the step, and the crossing of a closing corner is found by repetition. Many digits make harmless
-what this form loses by subtraction. Steps are made with arrays of `decimal`'s numbers, which are compiled.
+Nothing is shared with the package: areas, springs, loads and the step are written again here, in the textbook unknowns
+and with the textbook order of operations; the springs of closed corners are part of the matrix of the step, and the
+crossing of a closing corner is found by repetition. Many digits make harmless what this form loses by subtraction.
+Matrices are those of mpmath; steps are made with arrays of `decimal`'s numbers, which are compiled.
 """
 
 from decimal import Context, Decimal, localcontext
@@ -11,11 +12,72 @@ from types import SimpleNamespace
 
 import numpy as np
 from mpmath import mp, mpf
-from oracles import mp_reference
-from oracles.mp_reference import decimal
 
-DIGITS = 60
+DIGITS = 80
 ZERO, ONE, HALF = Decimal(0), Decimal(1), Decimal("0.5")
+
+
+def integrals(points):
+    """Return area, centroid and central second moments (s, x0, y0, s1, s2, s3)."""
+    s = sx = sy = sxx = syy = sxy = mpf(0)
+    for (x, y), (X, Y) in zip(points, points[1:] + points[:1], strict=True):
+        c = x * Y - X * y
+        s += c / 2
+        sx += c * (x + X) / 6
+        sy += c * (y + Y) / 6
+        sxx += c * (x * x + x * X + X * X) / 12
+        syy += c * (y * y + y * Y + Y * Y) / 12
+        sxy += c * (x * Y + 2 * x * y + 2 * X * Y + X * y) / 24
+    x0, y0 = sx / s, sy / s
+    return s, x0, y0, sxx - x0 * sx, syy - y0 * sy, sxy - x0 * sy
+
+
+def displacement_rows(x, y):
+    """Return the two rows of T at a point relative to the centroid."""
+    return [1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]
+
+
+def matrices(model):
+    """Return M, K and F, as matrices of mpmath."""
+    block, material, contact = model.block, model.block.material, model.contact
+    points = [(mpf(float(x)), mpf(float(y))) for x, y in block.corners]
+    s, x0, y0, s1, s2, s3 = integrals(points)
+    rho, E, mu = mpf(material.density), mpf(material.young), mpf(material.poisson)
+    M = mp.zeros(6)
+    M[0, 0] = M[1, 1] = s
+    M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
+    for i, j, value in ((2, 3, -s3), (2, 4, s3), (2, 5, (s1 - s2) / 2), (3, 5, s3 / 2), (4, 5, s3 / 2)):
+        M[i, j] = M[j, i] = value
+    M *= rho
+    G = E / (2 * (1 + mu))
+    lam = E * mu / (1 - mu**2) if material.hypothesis == "plane stress" else E * mu / ((1 + mu) * (1 - 2 * mu))
+    K = mp.zeros(6)
+    K[3, 3] = K[4, 4] = s * (lam + 2 * G)
+    K[3, 4] = K[4, 3] = s * lam
+    K[5, 5] = s * G
+    centred = [(x - x0, y - y0) for x, y in points]
+    ends = [centred[(model.base + i) % len(points)] for i in (0, 1)]
+    tx, ty = ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]
+    a = mp.sqrt(tx**2 + ty**2)
+    tx, ty = tx / a, ty / a
+    pn, ps = mpf(contact.normal), mpf(contact.shear)
+    for x, y in ends:
+        u, v = displacement_rows(x, y)
+        normal = [tx * b - ty * c for b, c in zip(v, u, strict=True)]
+        shear = [tx * b + ty * c for b, c in zip(u, v, strict=True)]
+        for i in range(6):
+            for j in range(6):
+                K[i, j] += pn * normal[i] * normal[j] + ps * shear[i] * shear[j]
+    (x1, y1), (x2, y2) = (centred[(model.top + i) % len(points)] for i in (0, 1))
+    length = mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
+    row = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)[1]
+    F = mp.matrix([-mpf(model.pressure) * length * t for t in row])
+    return M, K, F
+
+
+def decimal(x):
+    """Return a number of mpmath as a decimal one, with more digits than it has."""
+    return Decimal(mp.nstr(x, DIGITS + 5))
 
 
 def exact(x):
@@ -57,7 +119,7 @@ def solved(factors, b):
     return x
 
 
-class Oracle:
+class OpeningBlock:
     """The model and the scheme in numbers of many digits."""
 
     def __init__(self, model, scheme):
@@ -68,23 +130,28 @@ class Oracle:
             top=model.top,
             pressure=model.pressure,
         )
-        M, K0, _, _ = mp_reference.matrices(locked)
+        M, K0, _ = matrices(locked)
         self.M, self.K0, self.inverse = array(M), array(K0), array(M**-1)
         self.alpha, self.delta, self.gg, self.dt = map(exact, (scheme.alpha, scheme.delta, scheme.gg, scheme.step))
         points = [(mpf(float(x)), mpf(float(y))) for x, y in model.block.corners]
-        _, x0, y0, *_ = mp_reference.integrals(points)
+        _, x0, y0, *_ = integrals(points)
         self.centred = [(decimal(x - x0), decimal(y - y0)) for x, y in points]
-        self.p, self.ps, self.g0 = (exact(getattr(model.contact, name)) for name in ("stiffness", "shear", "gap"))
+        self.p, self.ps, self.g0 = map(exact, self.springs(model.contact))
         self.F = self._load(model)
         self._rows(model)
         self.D, self.V = zeros(6), zeros(6)
-        self.V[1] = exact(model.velocity)
+        self.V[1] = exact(getattr(model, "velocity", 0.0))
         self.A = self.inverse @ self.F if scheme.start == "consistent" else zeros(6)
         self.closed = (self.g0 == 0,) * 2
         self.r = [ZERO, ZERO]
         self.h = self.alpha * self.dt**2
         self.free = self.M + self.h * self.K0
         self.factors = {}  # of the matrix of the step, by closed corners and their shares
+
+    @staticmethod
+    def springs(contact):
+        """Return stiffness across and along the base, and the gap at t = 0."""
+        return contact.stiffness, contact.shear, contact.gap
 
     def _ends(self, edge):
         n = len(self.centred)
@@ -96,7 +163,7 @@ class Oracle:
         tx, ty = (x2 - x1) / self.a, (y2 - y1) / self.a
         self.normal, self.shear = [], []
         for x, y in ((x1, y1), (x2, y2)):
-            u, v = map(np.array, mp_reference.displacement_rows(x, y))
+            u, v = map(np.array, displacement_rows(x, y))
             self.normal.append(tx * v - ty * u)
             self.shear.append(tx * u + ty * v)
 
@@ -105,8 +172,8 @@ class Oracle:
         (x1, y1), (x2, y2) = self._ends(model.top)
         e, length = exact(model.eccentricity), ((x2 - x1) ** 2 + (y2 - y1) ** 2).sqrt()
         part = length - 2 * abs(e)
-        _, v = mp_reference.displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
-        whole, _ = mp_reference.displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
+        _, v = displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
+        whole, _ = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
         F = -exact(model.pressure) * part * np.array(v) + exact(model.traction) * length * np.array(whole)
         F[1] -= self.M[0, 0] * exact(model.gravity)
         return F
@@ -115,7 +182,7 @@ class Oracle:
         """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
         self._begin()
         found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
-        assert len(found) == 1, "the oracle needs exactly one contact state"
+        assert len(found) == 1, "one contact state agrees"
         D1, N, T, self.r, self.closed = found[0]
         self._moved(D1, N, T)
         return D1[1], N, T
@@ -197,11 +264,37 @@ class Oracle:
         return D1, N, T, r, closed
 
 
-def history(model, scheme, steps, kind=Oracle):
+class LockedBlock(OpeningBlock):
+    """The same whose corners stay closed, and pull."""
+
+    @staticmethod
+    def springs(contact):
+        return contact.normal, contact.shear, 0.0
+
+    def step(self):
+        """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
+        self._begin()
+        both, shares = (True, True), (ONE, ONE)
+        D1 = self._solve(both, shares)
+        D1, N, T, self.r, self.closed = self._accepted(D1, [row @ D1 for row in self.normal], both, shares)
+        self._moved(D1, N, T)
+        return D1[1], N, T
+
+
+def history(model, scheme, steps, kind=OpeningBlock):
     """Return v [m], the normal forces and the shear forces [N] of every step."""
     with mp.workdps(DIGITS), localcontext(Context(prec=DIGITS)):
-        oracle = kind(model, scheme)
-        return [_with_mpf(oracle.step()) for _ in range(steps)]
+        block = kind(model, scheme)
+        return [_with_mpf(block.step()) for _ in range(steps)]
+
+
+def locked_history(model, scheme, steps):
+    """Return v of the centroid and the contact pressure of every step, as lists."""
+    rows = history(model, scheme, steps, LockedBlock)
+    start, end = model.block.edge(model.base)
+    with mp.workdps(DIGITS):
+        width = mp.hypot(*(mpf(float(x)) - mpf(float(y)) for x, y in zip(end, start, strict=True)))
+        return [v for v, _, _ in rows], [sum(N) / width for _, N, _ in rows]
 
 
 def _with_mpf(values):
@@ -212,4 +305,7 @@ def _with_mpf(values):
 def lost(values, exact):
     """Return the maximum error over the maximum value."""
     with mp.workdps(DIGITS):
-        return mp_reference.lost(values, exact)
+        peak = max(abs(x) for x in exact)
+        if peak == 0:
+            return 0.0 if all(v == 0 for v in values) else float("inf")
+        return float(max(abs(mpf(float(v)) - x) for v, x in zip(values, exact, strict=True)) / peak)
