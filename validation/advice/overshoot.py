@@ -42,7 +42,7 @@ def start_rise(scene: Scene) -> float | None:
 
     Known it is of a whole block that stands on its springs at rest under loads that come on at once.
     """
-    if "block" not in scene.tables() or IMPULSES & {*features.of(scene)}:
+    if IMPULSES & {*features.of(scene)}:
         return None
     if scene.contact.gap or scene.block.velocity or scene.load.ramp:
         return None

@@ -186,14 +186,14 @@ def refuse_ramp(scene: Scene, what: str) -> None:
 
 
 def refuse_column(scene: Scene, what: str) -> None:
-    """Refuse a scene with a column where only a block has an answer.
+    """Refuse a scene with the feature of a kind where only a block, which has none, has an answer.
 
     Raises
     ------
     InputError
-        The scene has a column.
+        The scene is of a column, or of blocks in the plane.
     """
-    if "block" not in scene.tables():
+    if scene.kind.feature:
         raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
 
 
