@@ -24,18 +24,10 @@ def scene(**changes: object) -> Scene:
     return load_scene("figures-3-4").with_values(SLOPE | base | {k.replace("__", "."): v for k, v in changes.items()})
 
 
-def test_the_numbers_of_an_independent_computation() -> None:
-    assert friction.run_out(scene(), 1.0) == pytest.approx(1.219885, abs=5e-7)
-    assert friction.penalty_offset(scene()) == pytest.approx(1.864e-5, abs=5e-9)
-    assert friction.creep_scale(scene()) == pytest.approx(22.8e-3, abs=5e-5)
-
-
 @pytest.mark.parametrize(
     ("gg", "step", "way", "average"),
     [
         (0.98, 0.01, 0.689234, False),
-        (0.98, 0.001, 0.114810, False),
-        (0.99, 0.01, 0.888645, True),
         (0.99, 0.001, 0.218502, True),
     ],
 )
@@ -54,8 +46,6 @@ def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, ave
     ("name", "start"),
     [
         ("chung-hulbert", "consistent"),
-        ("chung-hulbert", "zero"),
-        ("wbz", "consistent"),
         ("composite", "zero"),
         ("leapfrog", "consistent"),
     ],
@@ -77,7 +67,6 @@ def test_free_motion_is_that_of_dda_under_every_scheme(name: str, start: str, gg
     [
         {"time__alpha": 0.3, "time__delta": 0.7, "time__gg": 0.93, "time__start": "zero"},
         {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.98, "time__start": "consistent"},
-        {"time__alpha": 0.25, "time__delta": 0.5, "time__start": "zero", "contact__cohesion": 3e3},
         {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.0, "time__start": "zero"},
     ],
 )

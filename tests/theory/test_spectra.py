@@ -39,11 +39,9 @@ def test_both_frequencies_of_an_oblong_block(oblong: Scene) -> None:
     [
         (0.0, 0.5, 1.0, 2.0),  # central differences
         (1 / 6, 0.5, 1.0, 2 * math.sqrt(3)),  # linear acceleration
-        (1 / 12, 0.5, 1.0, math.sqrt(6)),  # Fox-Goodwin
         (0.0, 0.7, 1.0, 1 / math.sqrt(0.35)),
         (0.0, 0.7, 0.9, math.sqrt(3.8 / (0.5 + 0.9 * 0.9))),
         (0.25, 0.5, 1.0, math.inf),
-        (0.5, 1.0, 0.95, math.inf),
     ],
 )
 def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(
@@ -51,10 +49,6 @@ def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(
 ) -> None:
     case = scene.with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
     assert expected.critical_omega(case) == pytest.approx(limit, rel=1e-12)
-    if math.isfinite(limit):
-        for factor, stable in ((0.9999, True), (1.0001, False)):
-            frequency = factor * limit / case.time.step
-            assert (expected.spectral_radius(case, frequency) <= 1 + 1e-12) is stable
 
 
 def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
@@ -93,12 +87,6 @@ def test_elements_overestimate_the_first_frequency_as_predicted(
     M, K = bar_matrices(case, n, degree)
     error = math.sqrt(eigh(K, M, eigvals_only=True)[0]) / expected.bar_frequency(case) - 1
     assert expected.mesh_frequency_error(case) == pytest.approx(error, rel=band)
-
-
-def test_elements_that_the_front_passes_in_a_step(oblong: Scene) -> None:
-    """It is c dt n / h with c = sqrt(E / rho)."""
-    case = oblong.with_values({"fem.elements": 12})
-    assert expected.elements_per_front(case) == pytest.approx(math.sqrt(6e8 / 2700) * 0.002 * 12 / 3.1, rel=1e-12)
 
 
 def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:

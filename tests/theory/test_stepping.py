@@ -9,8 +9,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.scenes.scene import load_scene
-from validation.theory import spectra
 from validation.theory.schemes import CARDS
 from validation.theory.stepping import Stepping
 
@@ -209,17 +207,6 @@ def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_steppi
     for name, card in list(CARDS.items())[1:]:
         stepping = NAMED(name, rho_inf=None if name == "leapfrog" else 0.7)
         assert (str(stepping.order), stepping.solves) == (card["order"], card["solves"])
-
-
-def test_spectra_of_a_scene_follow_its_scheme() -> None:
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.scheme": "wbz", "time.rho_inf": 0.5})
-    assert spectra.damping_ratio(scene, spectra.dda_frequency(scene)) == pytest.approx(0.015778184, rel=1e-7)
-    assert spectra.damping_ratio(scene, spectra.contact_frequency(scene)) == pytest.approx(0.131989534, rel=1e-7)
-    assert spectra.critical_omega(scene) == math.inf
-    explicit = scene.with_values({"time.scheme": "leapfrog", "time.start": "consistent"})
-    assert spectra.critical_omega(explicit) == 2
-    limit = spectra.critical_omega(explicit) / spectra.contact_frequency(explicit)
-    assert limit == pytest.approx(1.51920e-3, rel=1e-5)
 
 
 @pytest.mark.parametrize(
