@@ -58,4 +58,4 @@ def rise_of(stepping: Stepping, modes: tuple[Mode, ...]) -> float | None:
     if math.isfinite(stepping.critical_omega):
         return None
     omegas_dt = [mode.frequency * stepping.step for mode in modes]
-    return overshoot.greatest_rise(stepping.stages, omegas_dt, [mode.share for mode in modes], True)
+    return overshoot.greatest_rise(stepping.stages, omegas_dt, [mode.share for mode in modes])
