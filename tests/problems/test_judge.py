@@ -155,20 +155,6 @@ def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) 
         assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).status is word
 
 
-def test_data_of_columns_on_contacts() -> None:
-    springs, strength, young, density = (
-        "the contacts' stiffness",
-        "the contacts' strength",
-        "Young's modulus",
-        "the density",
-    )
-    assert set(changes(load_scene("field-stack"))) == {springs, density}  # no factor changes a rigid block's modulus
-    assert set(changes(load_scene("field-cradle"))) == {springs, young, density}
-    assert set(changes(load_scene("field-joint"))) == {springs, strength, young, density}
-    stops = load_scene("field-cradle").with_values({"column.stiffness": "inf"})
-    assert set(changes(stops)) == {young, density}
-
-
 @pytest.mark.parametrize(
     ("name", "values", "stiffness", "strength"),
     [
@@ -206,18 +192,6 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(
             assert [(one.height, one.gap) for one in after] == [(one.height, one.gap) for one in before]
         else:
             assert not any(map(math.isfinite, expected))
-
-
-def test_data_that_a_scene_has() -> None:
-    assert set(changes(problem("locked").scene)) == {"the springs", "Young's modulus", "the density", "the width"}
-    assert "tan(phi) of friction" in changes(load_scene("field-creep"))
-    assert set(changes(load_scene("field-column"))) == {"Young's modulus", "the density"}
-    larger = changes(load_scene("field-creep"))["tan(phi) of friction"]["contact.friction"]
-    assert math.tan(math.radians(larger)) == pytest.approx(1.01 * math.tan(math.radians(22.0)))
-    own, harder = load_scene("field-creep").contact, changes(load_scene("field-creep"))["the springs"]
-    assert own.shear_stiffness is not None
-    assert harder["contact.stiffness"] == pytest.approx(1.01 * own.stiffness)
-    assert harder["contact.shear_stiffness"] == pytest.approx(1.01 * own.shear_stiffness)
 
 
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.theory import spectra as expected
 from validation.theory import statics
 
@@ -60,35 +60,6 @@ def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
     assert expected.remaining_motion(case) == pytest.approx(max(radii) ** 7, rel=1e-10)
 
 
-def bar_matrices(scene: Scene, n: int, degree: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return M and K of n linear or quadratic bar elements on the base spring 2 p."""
-    w, h = statics.size(scene)
-    rho, E, length = scene.block.density, scene.block.young, h / n
-    if degree == 1:
-        mass, stiff = np.array([[2, 1], [1, 2]]) / 6, np.array([[1, -1], [-1, 1]])
-    else:
-        mass = np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / 30
-        stiff = np.array([[7, -8, 1], [-8, 16, -8], [1, -8, 7]]) / 3
-    M, K = np.zeros((2, degree * n + 1, degree * n + 1))
-    for i in range(n):
-        part = slice(degree * i, degree * (i + 1) + 1)
-        M[part, part] += rho * w * length * mass
-        K[part, part] += E * w / length * stiff
-    K[0, 0] += 2 * scene.contact.stiffness
-    return M, K
-
-
-@pytest.mark.parametrize(("degree", "n", "band"), [(1, 20, 0.02), (2, 6, 0.05)])
-def test_elements_overestimate_the_first_frequency_as_predicted(
-    oblong: Scene, degree: int, n: int, band: float
-) -> None:
-    """The leading term of the error; the next one is (b / n)^2 of it."""
-    case = oblong.with_values({"fem.elements": n, "fem.degree": degree})
-    M, K = bar_matrices(case, n, degree)
-    error = math.sqrt(eigh(K, M, eigvals_only=True)[0]) / expected.bar_frequency(case) - 1
-    assert expected.mesh_frequency_error(case) == pytest.approx(error, rel=band)
-
-
 def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:
     w, h = statics.size(oblong)
     b = expected.bar_modes(oblong, 4000)
@@ -114,35 +85,3 @@ def test_the_response_of_a_mode_is_the_scheme_s(scene: Scene, start: str) -> Non
         D = ahead + t.alpha * new
         V, A = t.discount * V + (1 - t.delta) * A + t.delta * new, new
         np.testing.assert_allclose(found[n], D, rtol=0, atol=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "quantity"),
-    [("figure-8[time.alpha=0.25,time.delta=0.5]", "displacement"), ("figure-9[time.gg=0.95]", "pressure")],
-)
-def test_the_predicted_error_of_quadratic_elements_is_theirs(name: str, quantity: str) -> None:
-    """Own quadratic elements, mode by mode, against the bar, where motion lasts and its phase is what is wrong.
-
-    The prediction has the leading term of each mode alone, and not the error of its share.
-    """
-    case = next(case for case in load_scene(name.partition("[")[0]).expand() if case.name == name)
-    n, t = case.fem.per_side, case.time
-    M, K = bar_matrices(case, n, 2)
-    squares, shapes = eigh(K, M)
-    w, h = statics.size(case)
-    F = np.zeros(len(M))
-    F[-1] = -case.load.pressure * w
-    row = np.zeros(len(M))
-    if quantity == "displacement":
-        row[n] = 1.0  # 2 n + 1 nodes: the middle one
-    else:
-        row[0] = -2 * case.contact.stiffness / w
-    weights = (row @ shapes) * (shapes.T @ F) / squares
-    mesh = expected.bar_response(case, np.sqrt(squares) * t.step) @ weights
-    b = expected.bar_modes(case, 40 * n)
-    static = row @ np.linalg.solve(K, F)
-    shares = expected.bar_shares(case, quantity, b)
-    speed = math.sqrt(case.block.young / case.block.density)
-    bar = static * (expected.bar_response(case, b / h * speed * t.step) @ shares + (1 - shares.sum()))
-    error = np.linalg.norm(mesh - bar) / np.linalg.norm(bar)
-    assert expected.mesh_error(case)[quantity] == pytest.approx(error, rel=0.2)
