@@ -12,6 +12,12 @@ from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
 
+def unread(scene: Scene, value: str) -> InputError:
+    """Return the error of a scene whose histories are not explained."""
+    rule = "compare takes scenes of a block, or of a column whose contacts open or slip, only"
+    return InputError(rule, source=scene.name, value=value)
+
+
 class DiagnosisHooks(Hooks):
     """What of a scene may be wrong in a program, and how a history of it is judged."""
 
@@ -41,7 +47,7 @@ class DiagnosisHooks(Hooks):
         InputError
             The history is zero throughout, or does not fit.
         """
-        raise InputError("compare does not take such a scene", source=scene.name, value=scene.kind_in_words)
+        raise unread(scene, scene.kind_in_words)
 
     def check(self, scene: Scene) -> None:
         """Refuse what `compare` does not step, before anything of it is run.
@@ -51,6 +57,7 @@ class DiagnosisHooks(Hooks):
         InputError
             With what is not known here.
         """
+        raise unread(scene, scene.kind_in_words)
 
     def rivals(self, scene: Scene) -> tuple[str, ...]:
         """Return the names of the solvers that a history is held against beside DDA."""

@@ -91,10 +91,6 @@ class Kind:
         """Whether a history of a scene may hold a column, beside those that solvers have of every scene."""
         return False
 
-    def motion_unread(self, scene: Any) -> str | None:
-        """Return None, or in words what of a scene keeps the motion of another program from being explained."""
-        return None
-
     def check(self, scene: Any) -> None:
         """Check tables against each other.
 
