@@ -83,10 +83,8 @@ def test_two_steps_solve_it_where_gg_is_below_one() -> None:
 
 LOADS = {
     "pressure": {"load.pressure": 2e6},
-    "pull": {"load.pressure": -2e6},
     "weight": {"load.gravity": 9.81},
     "both": {"load.pressure": 2e6, "load.gravity": 9.81},
-    "opposed": {"load.pressure": -1e4, "load.gravity": 9.81},
     "ramp": {"load.pressure": 2e6, "load.gravity": 9.81, "load.ramp": 0.2},
 }
 

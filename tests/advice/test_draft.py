@@ -19,8 +19,7 @@ def default(question: str, value: float) -> float:
     return value
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("rock", ["granite", "shale"])
+@pytest.mark.parametrize(("kind", "rock"), [*((kind, "granite") for kind in KINDS), ("slope", "shale")])
 def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock: str, tmp_path: Path) -> None:
     done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
     following = "show" if kind in MOVING else "advise"

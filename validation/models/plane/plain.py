@@ -6,8 +6,10 @@ import math
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from validation.errors import InputError
-from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, polar_moment
+from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, second_moments
 from validation.models.plane.joints import PlaneContactSection, PlaneTouchSection
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.outline import area
@@ -74,7 +76,7 @@ def _block(block: PlacedBlock) -> dict[str, Any]:
         "poisson": None if math.isinf(block.young) else block.poisson,
         "density_kg_per_m3": block.density,
         "mass_kg": mass,
-        "inertia_kg_m2": block.density * polar_moment(block.vertices),
+        "inertia_kg_m2": block.density * float(np.trace(second_moments(block.vertices))),
         "velocity_m_per_s": list(block.velocity),
         "spin_rad_per_s": block.spin,
     }

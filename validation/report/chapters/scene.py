@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.advice.hooks import AdviceHooks
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
 from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
@@ -101,7 +102,7 @@ def scene_section(
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
     scene = group.cases[0].scene
-    if features.linear(scene) and "block" in scene.tables():
+    if features.linear(scene) and AdviceHooks.of(scene).has_budget:
         table = damping_table(group)
         blocks += [table] if table.rows else []
     return blocks
