@@ -232,13 +232,6 @@ def test_programs_stand_beside_each_other(tmp_path: Path, monkeypatch: pytest.Mo
     assert site.returncode == 1 and (tmp_path / "site/index.html").exists()
 
 
-@pytest.mark.usefixtures("same_or_not")
-def test_the_table_is_a_page_to_print(tmp_path: Path) -> None:
-    done = typed("judge", "dda", "locked", "--beside", "same_or_not:rounded", "--out", tmp_path / "t.pdf")
-    assert done.returncode == 1, done.stderr
-    assert (tmp_path / "t.pdf").read_bytes().startswith(b"%PDF")
-
-
 def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A program is named without its folder; tables that are not asked are left alone."""
     monkeypatch.chdir(tmp_path)
@@ -264,15 +257,6 @@ def test_boxes_are_judged_by_numbers(undrawn: None) -> None:
     assert "plane.gravity: must be that of the problem" in refused(
         "judge", "dda", "impact", "--set", "plane.gravity=[0.0, -3.0]"
     )
-
-
-@pytest.mark.long
-def test_a_column_on_contacts_is_judged(undrawn: None) -> None:
-    """The step of the habit damps; names of columns carry their units."""
-    done = typed("judge", "dda", "mass-ratio")
-    assert done.returncode == 1, done.stderr
-    assert re.search(r"force_3_Pa +FAIL .* the contacts' stiffness", done.stdout)
-    assert re.search(r"displacement_2_m +PASS", done.stdout)
 
 
 def test_the_help_names_every_problem() -> None:

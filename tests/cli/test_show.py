@@ -10,9 +10,7 @@ from conftest import SCENE, thinned, typed
 
 from validation import solve
 from validation.errors import InputError
-from validation.report.render.terminal import lines
 from validation.report.scene.numbers import numbers
-from validation.report.scene.page import SceneDescription
 from validation.scenes.scene import load_scene, scene_names
 
 
@@ -44,17 +42,6 @@ def test_numbers_of_a_block_are_those_of_the_formulas(
     wanted |= {"w1 dt": w1 * dt, "wc": math.sqrt(product) / w1, "wc dt": math.sqrt(product) / w1 * dt, "n dt": 50 * dt}
     assert {name: found[name] for name in wanted} == pytest.approx(wanted, rel=1e-9)
     assert "dt stable" not in found and "Omega" not in found
-
-
-def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: Path) -> None:
-    explicit = ("--set", "time.alpha=0", "--set", "time.delta=0.5", "--set", "time.allow_unstable=true")
-    found = shown(scene_file, *explicit)
-    numbers = single(found)
-    fastest = max(numbers["w1"], numbers["wc"])  # central differences: w dt < 2
-    assert numbers["dt stable"] <= 2 / fastest * (1 + 1e-9)
-    assert list(found["remarks"]) == ["dt is beyond the stability limit: the solution grows without bound"]
-    below = shown(scene_file, *explicit, "--set", f"time.step={0.99 * numbers['dt stable']}")["remarks"]
-    assert not [text for text in below if "grow" in text]
 
 
 @pytest.mark.parametrize(
@@ -106,30 +93,8 @@ def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
     assert topples not in shown(scene_file, *slender)["remarks"]  # locked
 
 
-@pytest.mark.parametrize(("friction", "topples"), [(18.0, True), (10.0, False)])
-def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction: float, topples: bool) -> None:
-    """Half a metre by two on 20 degrees, as DDA moves it with the outline anew at every step: w/h = tan(14 degrees)."""
-    slender = load_scene("slope-sliding").expand()[0].with_values(
-        {
-            "block.width": 0.5, "block.height": 2.0, "block.young": 1.0e11,
-            "contact.stiffness": 1.0e10, "contact.shear_stiffness": 1.0e10, "contact.friction": friction,
-            "load.slope": 20.0, "time.step": 2.0e-3, "time.steps": 300, "run.geometry": "updated",
-            "run.columns": ["displacement", "rotation"],
-        }
-    )  # fmt: skip
-    turned = abs(solve(slender, "dda").history.columns["rotation"][-1])
-    assert (turned > 0.1) == topples
-    assert topples or turned < 0.01
-
-
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
 def test_every_built_in_scene_is_shown(name: str) -> None:
     found = shown(name)
     assert found["numbers"] and found["cases"] == len(load_scene(name).expand())
     assert typed("show", name).stdout.startswith(f"{name}: ")
-
-
-@pytest.mark.parametrize("name", ["slope-base", "rocking-release", "two-codes-friction", "waves-joint"])
-def test_a_page_keeps_to_the_width_of_a_terminal(name: str) -> None:
-    page = [text for text, _ in lines(SceneDescription.of(load_scene(name)).blocks(80), 80)]
-    assert max(map(len, page)) <= 80

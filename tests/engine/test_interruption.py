@@ -157,10 +157,3 @@ def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp
     assert len(list((tmp_path / "r" / "histories").iterdir())) == 1
     assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
     assert len(rows_of(tmp_path / "r")) == 2
-
-
-def test_a_damaged_history_is_one_line(scene_file, tmp_path):
-    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
-    next((tmp_path / "r" / "histories").glob("*.npz")).write_bytes(b"PK\x03\x04 broken")
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 2 and "delete it and run again" in done.stderr

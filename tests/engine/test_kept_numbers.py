@@ -26,12 +26,6 @@ from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 
-# ---- windows ------------------------------------------------------------------------------------------------------
-
-
-# ---- comparisons --------------------------------------------------------------------------------------------------
-
-
 # ---- metrics of one run -------------------------------------------------------------------------------------------
 
 
