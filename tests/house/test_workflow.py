@@ -159,11 +159,6 @@ def test_commands_and_options_of_a_page_exist(page: str) -> None:
                 assert {word for word in words if word.startswith("--")} <= known, line
 
 
-def test_the_page_on_ci_names_an_option_of_the_plug_in() -> None:
-    for path in ("docs/ci.md", "validation/entry/plugin.py"):
-        assert "--dda-solver" in (ROOT / path).read_text(encoding="utf-8")
-
-
 def first_cells(head: str) -> list[str]:
     """Return the names in the first column of the table of README.md under a head."""
     table = README.partition(f"| {head} |")[2].partition("\n\n")[0]
