@@ -36,6 +36,24 @@ def boxes_of(scene: Scene) -> BoxesOnGround:
         raise NotImplementedError(str(error)) from None
 
 
+def on_endless_ground(scene: Scene) -> BoxesOnGround:
+    """Return the boxes of a scene for a program whose ground is a plane without end.
+
+    Raises
+    ------
+    NotImplementedError
+        The scene is of something else, or a box stands, or would be carried by its velocity, beyond an end.
+    """
+    pile = boxes_of(scene)
+    for box in pile.boxes:
+        reach = max(box.width, box.height) / 2
+        carried = 0.0 if box.spin else box.velocity[0] * scene.time.duration  # one that spins turns about its corner
+        places = (box.x, box.x + carried)
+        if min(places) - reach < pile.ends[0] or max(places) + reach > pile.ends[1]:
+            raise NotImplementedError("a ground that ends below a box: this program's is a plane without end")
+    return pile
+
+
 def is_pile(scene: Scene) -> bool:
     """Whether a scene is of boxes on a ground, below each of which there is a force."""
     try:
