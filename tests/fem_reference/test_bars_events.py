@@ -129,7 +129,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("name", thinned(NUMBERS, 3))
+@pytest.mark.parametrize("name", thinned(NUMBERS, 4))
 def test_the_bars_move_as_another_program_computed(name: str) -> None:
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)

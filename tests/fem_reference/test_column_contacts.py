@@ -38,10 +38,6 @@ def still(steps: int, **parts: np.ndarray) -> Excitation:
     return Excitation(**(rest | parts))
 
 
-SIX = ground(*[(1.0, 2500.0, 1e9)] * 6)
-SPALL = ContactColumn(SIX, "unilateral", tuple(ColumnContact(float(j), 1e10) for j in range(6)), (0.0,) * 6)
-
-
 def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
     """A column of four strata with contacts between them, its drive, and a step."""
     random = np.random.default_rng(seed)
@@ -146,14 +142,3 @@ def test_contacts_that_never_slip_are_bonded_springs() -> None:
         size = np.abs(other.columns[name]).max()
         assert one.columns[name] == pytest.approx(other.columns[name], abs=1e-8 * size)
     assert one.factorisations == 1 and np.all(one.step_solves == 1)
-
-
-@pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])
-def test_touching_blocks_thrown_on_their_base_close_one_in_a_solve(courant: float, solves: int) -> None:
-    thrown = replace(SPALL, velocities=(-1.0,) * 6)
-    dt = courant / math.sqrt(1e9 / 2500)
-    result = solve_contacts(thrown, [1] * 6, 1, scheme(CONSTANT, dt), still(1))
-    assert result.step_solves[0] == solves
-    limited = solve_contacts(replace(thrown, solve_limit=solves - 1), [1] * 6, 1, scheme(CONSTANT, dt), still(3))
-    assert limited.outcome == "no consistent contact state" and len(limited.time) == 0
-    assert limited.notes == (f"step 1: the open-close iteration has not ended after {solves - 1} solves",)

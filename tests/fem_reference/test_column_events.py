@@ -53,7 +53,7 @@ def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
     return wrong
 
 
-LONG = {"A3", "A6", "S1", "S2", "S3"}  # whose motions take seconds
+LONG = {"A3", "A5", "A6", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])

@@ -239,7 +239,7 @@ def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> No
             assert (share, doubtful) == ((1.0, []) if clear else (0.0, functions))
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 3))
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 6))
 def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: bool) -> None:
     problem = slipping_problem(seed, moved)
     end = 6 * problem.height * (problem.density / problem.young) ** 0.5

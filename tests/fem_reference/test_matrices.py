@@ -1,4 +1,4 @@
-"""The finite-element matrices against the affine block, on every kind of mesh."""
+"""The finite-element matrices are those of DDA's block for affine motions, on every kind of mesh."""
 
 from itertools import product
 from pathlib import Path
@@ -10,6 +10,7 @@ from conftest import thinned
 from oracles.elements import INCLINED, make
 from skfem import MeshQuad, MeshTri
 
+import dda
 from fem_reference.mesh.model import assemble, build
 
 
@@ -19,28 +20,12 @@ def affine(x, y):
     return np.array([[one, zero, -y, x, zero, y / 2], [zero, one, x, zero, y, x / 2]])
 
 
-def block_matrices(problem):
-    """Mass, elastic stiffness and corner springs of the affine block, by exact quadrature."""
-    corners, c = problem.outline, problem.centroid
-    M = np.zeros((6, 6))
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        (ax, ay), (bx, by) = a - c, b - c
-        area = (ax * by - ay * bx) / 2
-        for x, y in (((ax + bx) / 2, (ay + by) / 2), (ax / 2, ay / 2), (bx / 2, by / 2)):
-            T = affine(np.array(x), np.array(y))
-            M += problem.density * area / 3 * T.T @ T
-    mu, E = problem.poisson, problem.young
-    if problem.hypothesis == "plane strain":
-        E, mu = E / (1 - mu**2), mu / (1 - mu)
-    K = np.zeros((6, 6))
-    K[3:, 3:] = E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]]) * problem.area
-    springs = np.zeros((6, 6))
-    for corner in corners[:2]:
-        T = affine(*(corner - c))
-        normal, tangential = problem.normal @ T, problem.tangent @ T
-        springs += problem.stiffness * np.outer(normal, normal)
-        springs += problem.shear_stiffness * np.outer(tangential, tangential)
-    return M, K, springs
+def block_of(problem):
+    """The block of one strain on the same springs under the same pressure."""
+    material = dda.Material(problem.density, problem.young, problem.poisson, problem.hypothesis)
+    contact = dda.Contact(problem.stiffness, problem.shear_stiffness)
+    block = dda.Block(problem.vertices, material)
+    return dda.TwoBlockModel(block, contact, problem.pressure, problem.base, problem.top)
 
 
 def write_mesh(path, problem, mesh):
@@ -97,14 +82,12 @@ def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poiss
     for dofs in (assembled.basis.nodal_dofs, assembled.basis.facet_dofs, assembled.basis.interior_dofs):
         component[dofs[1::2]] = 1
     T = np.where(component[:, None] == 0, fields[0].T, fields[1].T)
-    for matrix, expected in zip((assembled.M, assembled.K, assembled.springs), block_matrices(problem), strict=True):
+    block = block_of(problem)
+    for matrix, expected in ((assembled.M, block.mass), (assembled.K + assembled.springs, block.stiffness)):
         # The sums run over some hundred entries that cancel: rounding times their number.
         assert np.abs(T.T @ (matrix @ T) - expected).max() <= 1e-13 * np.abs(expected).max()
     assert assembled.observers["rotation"] @ T == pytest.approx([0, 0, 1, 0, 0, 0], abs=1e-12)
-    side = problem.outline[3] - problem.outline[2]
-    middle = (problem.outline[3] + problem.outline[2]) / 2 - problem.centroid
-    load = -problem.pressure * np.hypot(*side) * affine(*middle)[1]
-    assert np.abs(T.T @ assembled.F - load).max() <= 1e-13 * np.abs(load).max()
+    assert np.abs(T.T @ assembled.F - block.force).max() <= 1e-13 * np.abs(block.force).max()
 
 
 @pytest.mark.parametrize("elements", [1, 3, 4])

@@ -356,20 +356,11 @@ def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> 
 def test_polygons_on_files_of_gmsh(name: str, tmp_path: Path) -> None:
     scene = load_scene(name)
     assert scene.fem.mesh is not None and Path(scene.fem.mesh).read_text().startswith("$MeshFormat\n4.1")
-    for file in ("block.vtu", "block.xdmf"):
-        run = get_solver("fem").solve(scene, fields=tmp_path / file)
+    get_solver("fem").solve(scene, fields=tmp_path / "block.vtu")
     mesh, source = meshio.read(tmp_path / "block.vtu"), meshio.read(scene.fem.mesh)
     kind = "quad" if name == "quadrilateral" else "triangle"
     assert len(mesh.points) == len(source.points) and len(mesh.cells_dict[kind]) == len(source.cells_dict[kind])
     assert {tuple(p) for p in mesh.points.round(12)} == {tuple(p) for p in source.points.round(12)}
     stress = mesh.cell_data["stress"][0]
-    with meshio.xdmf.TimeSeriesReader(str(tmp_path / "block.xdmf")) as reader:
-        points, cells = reader.read_points_cells()
-        frames = [reader.read_data(k) for k in range(reader.num_steps)]
-    assert np.array_equal(points, mesh.points) and np.array_equal(cells[0].data, mesh.cells_dict[kind])
-    assert [time for time, *_ in frames] == pytest.approx(list(run.time))
-    last_points, last_cells = frames[-1][1:]
-    assert np.allclose(last_points["displacement"], mesh.point_data["displacement"], rtol=1e-12)
-    assert np.allclose(last_cells["stress"][0], stress, rtol=1e-9, atol=1e-3)
     # nearly at rest: the mean vertical stress over the cells is what the top carries
     assert -1.2 * scene.load.pressure < stress[:, 1].mean() < -0.6 * scene.load.pressure

@@ -23,6 +23,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers import user
+from validation.solvers.processes.user_worker import place_of
 from validation.solvers.processes.worker import WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.solvers.user import VARIABLE
@@ -260,6 +261,7 @@ def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene: Scen
         n for n, line in enumerate(lines) if "np.linalg.solve(np.zeros" in line
     )  # which raises inside numpy
     assert run.notes == (f"LinAlgError: Singular matrix (six_unknowns.py:{number}, in raises)",)
+    assert place_of(ValueError("of nobody's code"), ORACLES) == ""
 
 
 def test_a_scene_that_is_not_for_the_solver_is_not_run(scene: Scene) -> None:

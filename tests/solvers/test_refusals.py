@@ -19,6 +19,7 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
 from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.names import check_names
 from validation.solvers.registry import solve
 
 HERE = Path(__file__).parent
@@ -149,6 +150,19 @@ ASKS = [
         for name in ("fenicsx", "dda-textbook", "dda-60")
     ),
 ]  # fmt: skip
+
+
+def named(**gate: Any) -> None:
+    """Check the names in a scene with a gate."""
+    whole = {"pair": ["dda", "fem"], "metric": "pressure.l2", "band": [0.0, 1.0], "reason": "a test"} | gate
+    check_names(parse_scene(LOCKED.definition() | {"run": {"solvers": ["dda"]}, "gate": [whole]}, "mine"), "mine.toml")
+
+
+ASKS += [
+    (LOCKED, "gate.0.pair: must be solvers that run.solvers lists, got 'fem'", lambda scene: named()),
+    (LOCKED, "gate.0.pair: must name a solver and a reference", lambda scene: named(pair=["dda"])),
+    (LOCKED, "gate.0.metric: must be among", lambda scene: named(metric="pressure.l3")),
+]
 
 
 @pytest.mark.parametrize(("scene", "words", "ask"), ASKS)

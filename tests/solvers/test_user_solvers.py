@@ -26,31 +26,6 @@ def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     return load_scene(scene_file)
 
 
-ANSWERS = [  # of a process that stays
-    ("solve", Outcome.COMPLETED, ""),
-    ("table", Outcome.COMPLETED, ""),
-    ("Reporting", Outcome.COMPLETED, ""),
-    ("slack", Outcome.COMPLETED, ""),
-    ("raises", Outcome.RAISED, "ZeroDivisionError: division by zero"),
-    ("exits", Outcome.RAISED, "SystemExit: 3"),
-    ("nothing", Outcome.RAISED, "must return a History, a Run, a mapping of columns"),
-    ("not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 4"),
-    ("short", Outcome.WRONG_SHAPE, "displacement has shape (49,), not (50,)"),
-    ("with_step_zero", Outcome.WRONG_SHAPE, "step 0, the state at rest, is not reported"),
-    ("late", Outcome.WRONG_SHAPE, "time begins [0.004 0.006], not [0.002 0.004] s"),
-    ("pressure_only", Outcome.WRONG_SHAPE, "no column displacement, got contact_pressure"),
-]
-
-
-@pytest.mark.long
-def test_what_a_solver_does_is_named(scene: Scene) -> None:
-    """By one process, since each of them leaves it as it was."""
-    for attribute, outcome, words in ANSWERS:
-        run = completed(get_solver("named:Named"), scene.with_values({"title": f"my_solver:{attribute}"}))
-        assert run.outcome is outcome, (attribute, run.notes)
-        assert words in "; ".join(run.notes), attribute
-
-
 def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene: Scene, tmp_path: Path) -> None:
     """DDA takes no base that is elsewhere than at zero where contact opens; another program's answer stands."""
     (tmp_path / "base.csv").write_text("time,x,y\n0,0.001,0\n1,0.001,0\n")
