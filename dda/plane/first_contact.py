@@ -236,8 +236,8 @@ class Pairs:
         apart = np.stack([gap, -gap, -along, along - self.lengths])
         rate = np.stack([closing, -closing, -speed_along, speed_along])
         spin = self.motion_of_edges.spin
-        way = max(math.hypot(*(self.origin + self.velocity * instant)) for instant in (time, time + window))
-        bend = spin**2 * way + 2 * abs(spin) * math.hypot(*self.velocity)
+        distance = max(math.hypot(*(self.origin + self.velocity * instant)) for instant in (time, time + window))
+        bend = spin**2 * distance + 2 * abs(spin) * math.hypot(*self.velocity)
         bends = bend + (self.motion.spin - spin) ** 2 * np.linalg.norm(self.xi, axis=1)[:, None]
         w = np.maximum(apart, 0.0)
         root = np.sqrt(rate**2 + 2 * bends * w)

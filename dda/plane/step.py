@@ -46,7 +46,7 @@ from dda.plane.bodies import (
 )
 from dda.plane.detect import Detection
 from dda.plane.many import Many, find_many
-from dda.plane.places import Places, contact_way, flexibility_of, place_contacts, push_contacts, write_rows
+from dda.plane.places import Places, contact_displacement, flexibility_of, place_contacts, push_contacts, write_rows
 from dda.plane.taken import (
     Memory,
     Springs,
@@ -321,7 +321,7 @@ def free_contacts(march: March, memory: Memory) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
+        free[r] = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
@@ -343,11 +343,11 @@ def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) 
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, k)
-            rows.opening[k] = memory.rows.opening[k] + way
+            displacement = places.driven[k] + contact_displacement(plane.x, plane.blocks, places, k)
+            rows.opening[k] = memory.rows.opening[k] + displacement
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
-            after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
+            displacement = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
         rows.slip[r] = 0.0
