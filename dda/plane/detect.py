@@ -281,9 +281,9 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     touching_point = NONE
     slowest = -math.inf
     for turn in range(2):
-        own = p if turn == 0 else r
+        part = p if turn == 0 else r
         opposite = r if turn == 0 else p
-        for side in range(parts.first[own], parts.last[own]):
+        for side in range(parts.first[part], parts.last[part]):
             if kept >= 0 and side != kept:
                 continue
             before, lowest = front(corners.now, sides, parts, side, opposite)

@@ -431,16 +431,17 @@ def sweep(
             k = step if number % 2 == 0 else n - 1 - step
             r = n + k
             gap = work.q[k] + contact_displacement(many.x, blocks, places, k)
-            own = flexibility_of(blocks, places, length, k, k)
-            N = (own * after.force[k] - gap) / (own + laws.compliance[k])
+            flexibility = flexibility_of(blocks, places, length, k, k)
+            N = (flexibility * after.force[k] - gap) / (flexibility + laws.compliance[k])
             if laws.opens[k] == 1 and laws.lower[k] > N:
                 N = 0.0
             T = 0.0
             if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
                 displacement = work.q[r] + contact_displacement(many.x, blocks, places, r)
-                own = flexibility_of(blocks, places, length, r, r)
+                flexibility = flexibility_of(blocks, places, length, r, r)
                 limit = shear_limit(laws, k, N)
-                T = min(max((own * after.force[r] - displacement) / (own + laws.compliance[r]), -limit), limit)
+                sticking = (flexibility * after.force[r] - displacement) / (flexibility + laws.compliance[r])
+                T = min(max(sticking, -limit), limit)
             push(many, blocks, places, length, k, N, after)
             push(many, blocks, places, length, r, T, after)
     for k in range(n):

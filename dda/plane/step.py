@@ -419,18 +419,18 @@ def account_stage(
     add_contact_losses(march, laws, plane.ground, memory, after, late, length, sums)
     rows = after.rows
     old = memory.rows
-    own = 0.0  # work of forces on their own ways
+    own_work = 0.0  # work of forces along their own directions
     for r in range(2 * plane.places.count[0]):
         force = (1 - late) * old.force[r] + late * rows.force[r]
         if force != 0.0:
             sums[GIVEN] -= force * after.driven[r]
-            own += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
+            own_work += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
     for j in range(len(march.body.loads)):
         share = (1 - late) * room.start[2 + j] + late * room.end[2 + j]
         work = 0.0
         for i in range(len(after.z)):
             work += march.body.loads[j][i] * (after.z[i] - before.z[i])
-        own += share * work
+        own_work += share * work
         sums[GIVEN] += (share - march.body.stored[j]) * work
     for i in range(len(plane.D)):
         for k in range(6):
@@ -443,14 +443,14 @@ def account_stage(
         share = (1 - late) * room.start[loads.share[k]] + late * room.end[loads.share[k]]
         x, y = moved(plane.chords, i, plane.D[i], loads.at[k][0], loads.at[k][1])
         work = loads.force[k][0] * x + loads.force[k][1] * y
-        own += share * work
+        own_work += share * work
         sums[GIVEN] += (share - 1) * work
     if march.scheme.newmark:
         for i in range(len(after.z)):
             at_start = before.R[i] / dt2 + march.body.k[i] * before.z[i]
             at_end = after.R[i] / dt2 + march.body.k[i] * after.z[i]
-            own -= ((1 - late) * at_start + late * at_end) * (after.z[i] - before.z[i])
-        sums[ALGORITHMIC] += own
+            own_work -= ((1 - late) * at_start + late * at_end) * (after.z[i] - before.z[i])
+        sums[ALGORITHMIC] += own_work
 
 
 def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
