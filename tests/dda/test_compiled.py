@@ -40,7 +40,7 @@ def always(monkeypatch):
 def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
     case = CASES[name](3)
     fast = case.run()
-    monkeypatch.setattr(compiled, "SHORT", case.steps + 1)
+    monkeypatch.setattr(compiled, "SHORT", 10**9)
     plain = case.run()
     assert compiled.COMPILED in fast.notes[-1] and compiled.PLAIN in plain.notes[-1]
     for field, values, others in zip(plain.history._fields, plain.history, fast.history, strict=True):
