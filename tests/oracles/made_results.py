@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from validation.engine.finished import Finished
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.runs.history import History
 from validation.runs.results import Results
+from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.folders import get_study
 
@@ -131,6 +133,8 @@ def made_results(directory: Path) -> Results:
         "two": [made_rows(load_scene("figure-8").with_values(short)), made_rows(load_scene("figures-5-6"), **settled)],
         "solo": [made_rows(load_scene("unlocked").with_values(short), **lost, **absent)],
     }
+    scene, row, _ = contents["solo"][0][0]  # seconds of a run that did not complete are no cost
+    contents["solo"][0].append((scene, replace(row, solver="fem", key="lost", outcome=Outcome.OVERFLOW), None))
     verdicts = []
     for study, groups in contents.items():
         kept = [case for group in groups for case in group]

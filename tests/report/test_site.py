@@ -162,7 +162,6 @@ def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_pa
     kept_study(results, cases, study="mine", title=scene.title)
     first = PdfReader(build(results, tmp_path / "r.pdf")).pages[0].extract_text()
     assert "After @feng2017" in first and "cannot be drawn" not in first
-    assert pages.build(results, tmp_path / "site").exists()
 
 
 # ---- renderers ------------------------------------------------------------------------------------------------------
