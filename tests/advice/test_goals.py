@@ -52,7 +52,7 @@ def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its
     assert offer.settings["contact.stiffness"] == pytest.approx(modulus * width / (height * 0.05))
 
 
-@pytest.mark.parametrize("keep_springs", [False, True])
+@pytest.mark.parametrize("keep_springs", [pytest.param(False, marks=pytest.mark.long), True])
 def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs: bool) -> None:
     plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
     assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
@@ -74,6 +74,7 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_spring
             assert off == pytest.approx(plain.displacement_error, rel=0.5)
 
 
+@pytest.mark.long
 def test_a_quake_is_followed_in_the_contact_force_too() -> None:
     (offer,) = recommend(PAPER, "quake", 0.02)
     assert offer.is_reached and offer.force_error is not None and offer.force_error <= 0.02

@@ -121,6 +121,7 @@ def test_no_cause_of_a_random_history_is_wrong(name: str) -> None:
             assert cause(problem(name), found, standard(problem(name))).sentence.startswith(NOT_EXPLAINED)
 
 
+@pytest.mark.long
 def test_a_discount_beside_the_usual_scheme_is_named() -> None:
     found = named("locked", get_solver("dda").solve(problem("locked").scene.with_values({"time.gg": 0.97})).history)
     assert found.ids == ("scheme", "gg")

@@ -104,7 +104,6 @@ else:
     raise AssertionError("dda takes it")
 command("show", "swing.toml")
 command("run", "swing.toml", "--results", "results", "--jobs", "1")
-command("report", "swing", "--results", "results", "--site", "site")
 """
 )
 

@@ -28,6 +28,7 @@ from validation.solvers.contract import NotReported, Role, Solver
 from validation.solvers.registry import by_role, get_solver
 from validation.theory.stepping import Stepping
 
+ROUNDING = 1e-14  # of critical damping: what the roots of a step leave of none
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
 FIRST = "first axial"
 CONTACT = "contact"
@@ -69,8 +70,10 @@ class Damping(PlainAnswer):
 
 
 def number(value: float) -> float | None:
-    """Return a finite number, or None."""
-    return float(value) if math.isfinite(value) else None
+    """Return a finite number, zero where it is rounding, or None."""
+    if not math.isfinite(value):
+        return None
+    return float(value) if abs(value) > ROUNDING else 0.0
 
 
 def damping_ratio(scene: Scene, frequency: float) -> float:
