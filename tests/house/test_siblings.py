@@ -17,7 +17,6 @@ PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.
 # What starts first, its status, and the package that a folder has the name of; each package is tried below as well.
 STARTS = {
     "command": (["-m", "dda_validation", "list"], 2, "dda"),
-    "solve": (["-m", "dda_validation", "solve", "figures-3-4"], 2, "fem_reference"),
     "plug-in": ([*PYTEST, "--dda-solver", "my:solve"], pytest.ExitCode.USAGE_ERROR, "validation"),
 }
 SOLVE = ["solve", "figures-3-4", "--set", "time.step=0.002"]

@@ -60,7 +60,7 @@ def everything(
 
     check(goal, error, frequency)
     case = one_case(scene, assignments)
-    with _progress("advise", between_calls=True) as progress:
+    with _progress("advise") as progress:
         question = Question(
             source=_words(scene, assignments),
             error=error,
@@ -123,7 +123,7 @@ def step(
     from validation.advice.advice import advise as solve_for_damping
 
     case = one_case(scene, assignments)
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = solve_for_damping(case, target, solve_for)
     lines = [broken(advice.sentence)]
     for solution in advice.solutions:
@@ -153,7 +153,7 @@ def schemes(
     """
     from validation.advice.across import advise_across
 
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = advise_across(one_case(scene, assignments), target, at, no_gain)
     offers = advice.offers
     heads = [f"xi at {float(hertz):.4g} Hz" for hertz in (offers[0].hidden if offers else ())]
@@ -190,7 +190,7 @@ def wave(
     """
     from validation.advice.wave_advice import advise_wave
 
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = advise_wave(one_case(scene, assignments), fmax, loss, wavelengths, phase_error)
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", advice.present), ("advised", advice.advised)):

@@ -64,7 +64,7 @@ def compare(
     case = one_case(scene, assignments)
     DiagnosisHooks.of(case).check(case)  # before its file is taken for a wrong one
     foreign = read(history, parse_columns(columns), parse_scale(scale))
-    with _progress("compare", between_calls=True):
+    with _progress("compare"):
         answer = judge(case, foreign, tolerance)
     if report is not None:
         from validation.report.chapters.compare import write_page
