@@ -17,6 +17,8 @@ from typing import Any
 from latex2mathml.converter import convert
 from mkdocs.structure.files import File, Files
 
+from validation.scenes.plain import words
+
 ROOT = Path(__file__).parents[1]
 PACKAGES = ("dda", "fem_reference", "validation")
 LISTS = ("metrics", "keys", "solvers", "schemes", "scenes", "studies")  # of `dda-validate list`
@@ -48,7 +50,7 @@ def on_config(config: Any) -> None:
     pages: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
         pages.append({package: [f"reference/{name}.md" for name in (package, *rooms(package))]})
-    pages.append({"lists": [f"reference/{word}.md" for word in LISTS]})
+    pages.append({"lists": [f"reference/{word}.md" for word in (*LISTS, "lines")]})
     config.nav.append({"Reference": pages})
 
 
@@ -64,6 +66,9 @@ def on_files(files: Files, config: Any) -> None:
         printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         text = f"# {word.capitalize()}\n\nAs `dda-validate list {word}` prints them.\n\n```text\n{printed}```\n"
         files.append(File.generated(config, f"reference/{word}.md", content=text))
+    described = "".join(f"- `{name}`: {meaning}\n" for name, meaning in words())
+    text = f"# Lines of a scene\n\nWhat a program reads, beside `time.*` and `columns`.\n\n{described}"
+    files.append(File.generated(config, "reference/lines.md", content=text))
     for path in NOTEBOOKS:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name)
         files.append(File.generated(config, f"notebooks/{path.stem}.md", content=text))
