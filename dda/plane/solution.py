@@ -516,8 +516,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
         shear[at, column] = history.force[at, along]
         gap[at, column] = history.opening[at, number]
         slip[at, column] = history.path[at, number]
-        way = history.state[at, along]
-        state[at, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[at, number] == INSIDE)
+        shear_state = history.state[at, along]
+        state[at, column] = np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state) * (
+            history.state[at, number] == INSIDE
+        )
     return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
 
 

@@ -27,7 +27,6 @@ from dda.bodies.turning_body import turned
 WIDTH, HEIGHT = 2.0, 1.5
 CONSTANT, DISCOUNTED = Scheme(0.5, 1.0, 1.0, 1e-3), Scheme(0.5, 1.0, 0.98, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
-SPREAD = named_scheme("chung-hulbert", step=3e-4, gg=1.0, rho_inf=0.5)
 STIFF = {"stiffness": 1e11, "shear": 1e9, "friction": 0.5}
 CASES: list[tuple[Scheme, int, dict[str, Any]]] = [  # each opens or closes but the first two, which are pressed
     (CONSTANT, 200, {"pressure": 5e6}),
@@ -44,7 +43,7 @@ CASES: list[tuple[Scheme, int, dict[str, Any]]] = [  # each opens or closes but 
 
 
 @pytest.mark.parametrize(("scheme", "steps", "data"), CASES)
-def test_a_block_that_does_not_turn_is_the_block_on_a_base(scheme: Scheme, steps: int, data: dict[str, Any]) -> None:
+def test_a_block_that_does_not_turn_is_the_block_on_a_base(scheme, steps, data):
     values = {"poisson": 0.0, "stiffness": 1e9, "shear": 0.0, "friction": None, "gap": 0.0} | data
     poisson, p, shear, friction, gap = (values[key] for key in ("poisson", "stiffness", "shear", "friction", "gap"))
     pressure, gravity, velocity = (data.get(key, 0.0) for key in ("pressure", "gravity", "velocity"))

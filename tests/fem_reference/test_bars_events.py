@@ -17,7 +17,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import half_sine, sine, triangle
+from fem_reference.events.column_drive import half_sine, triangle
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -129,7 +129,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("name", thinned(NUMBERS, 3))
+@pytest.mark.parametrize("name", thinned(NUMBERS, 4))
 def test_the_bars_move_as_another_program_computed(name: str) -> None:
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
@@ -142,13 +142,6 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
-
-
-def test_a_wave_from_a_half_space_like_the_bar_doubles_at_its_end() -> None:
-    """A stiff joint of strength enough lets it pass; the joint's time of rise is 2 / k."""
-    problem = BarsProblem((UNIT,), (slips(1e5, 1e3),), base_impedance=1.0, base=sine(1.0, 0.1))
-    surface = solve(problem, 3.0).point(0, 1.0, [1.5, 2.75]).velocity
-    assert surface == pytest.approx([2 * math.sin(0.2 * math.pi * t) for t in (0.5, 1.75)], abs=1e-3)
 
 
 def test_cut_bars_that_stay_bonded_move_as_one() -> None:

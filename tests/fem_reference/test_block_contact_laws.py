@@ -1,4 +1,4 @@
-"""The exact block on dashpots and under an impact law: an independent program, closed forms, balances, refusals."""
+"""The exact block on dashpots and under an impact law: an independent program, closed forms, what is proven."""
 
 import math
 from dataclasses import replace
@@ -140,6 +140,3 @@ def test_accumulation_that_is_not_proven_is_refused(monkeypatch: pytest.MonkeyPa
 def test_impacts_count_against_the_limit() -> None:
     with pytest.raises(TooManySwitchesError):
         solve(replace(RIGID, restitution=1.0), 0.05, limit=20)
-
-
-# -- what is refused

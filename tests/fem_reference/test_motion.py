@@ -1,4 +1,4 @@
-"""A foundation's motion is a record of increasing instants and finite numbers."""
+"""A foundation's motion is linear between its instants and held beyond them."""
 
 from __future__ import annotations
 

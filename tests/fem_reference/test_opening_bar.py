@@ -1,4 +1,4 @@
-"""The bar on a spring that carries no tension under the Newmark scheme: locked bar, elements, exact motion."""
+"""The bar on a spring that carries no tension under the Newmark scheme: its closed forms and the exact motion."""
 
 from dataclasses import replace
 

@@ -202,7 +202,11 @@ ASKS: dict[str, list[Callable[[], object]]] = {
         lambda: bars_events.solve(PAIR, 1.0).at([2.0]),
         lambda: sliding_block.solve(SLIDER, STILL, 1.0).at([2.0]),
     ],
-    "height": [lambda: bars_events.solve(PAIR, 1.0).point(0, 2.0, [0.5])],
+    "height": [
+        lambda: solve_line(ON_WAVES, [1, 1], 1, AVERAGE, rest(3), (), [2.5]),
+        lambda: solve_line(ON_WAVES, [1, 1], 1, AVERAGE, rest(3), (), [-0.5]),
+        lambda: bars_events.solve(PAIR, 1.0).point(0, 2.0, [0.5]),
+    ],
     "drive": [lambda: bars_events.solve(replace(PAIR, top=ricker(1.0, 2.0)), 1.0)],
     "tilt": [lambda: ROCKER.quarter_period(1.0), lambda: rocking.solve(ROCKER, 1.0, 2.0)],
     "recorded": [lambda: sliding_block.recorded([0, 1], [1]), lambda: sliding_block.recorded([0.5, 1], [1, 1])],

@@ -1,4 +1,4 @@
-"""The restitution map of a penalty contact: its table, its limits, and the scheme that it stands for."""
+"""The restitution map of a penalty contact: its table."""
 
 import math
 

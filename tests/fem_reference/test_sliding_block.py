@@ -1,4 +1,4 @@
-"""Newmark's sliding block: closed forms, an independent integration, identities."""
+"""Newmark's sliding block: a closed form and an independent integration."""
 
 import math
 

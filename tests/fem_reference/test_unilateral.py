@@ -1,4 +1,4 @@
-"""Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
+"""Elements on a base that carries no tension: digits on stiff springs and in long flights, coarse meshes."""
 
 from dataclasses import replace
 
@@ -7,43 +7,9 @@ import pytest
 from oracles.elements import make
 
 from fem_reference import Scheme, Unilateral, solve_unilateral
-from fem_reference.events.bar_events import solve as exact
-from fem_reference.problem.bar import BarProblem
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-
-
-def bar_of(problem, contact=None):
-    """The exact bar of a square problem."""
-    contact = Unilateral() if contact is None else contact
-    width, height = problem.rectangle
-    loads = {"pressure": problem.pressure, "gravity": problem.gravity, "gap": contact.gap, "velocity": contact.velocity}
-    return BarProblem(height, width, problem.density, problem.young, 2 * problem.stiffness, **loads)
-
-
-def distances(problem, scheme, steps, contact=None):
-    """Relative L2 distances of displacement and contact pressure from the exact bar, and the run."""
-    run = solve_unilateral(problem, scheme, steps, contact, columns=("displacement", "contact_pressure", "largest_gap"))
-    truth = exact(bar_of(problem, contact), 1.001 * run.time[-1]).at(run.time)
-    pairs = [(run.columns[name], getattr(truth, name)) for name in ("displacement", "contact_pressure")]
-    return [float(np.linalg.norm(a - b) / np.linalg.norm(b)) for a, b in pairs], run
-
-
-@pytest.mark.parametrize(
-    ("change", "contact"),
-    [
-        pytest.param({"pressure": 0.0}, Unilateral(velocity=-0.7), marks=pytest.mark.long),
-        ({"pressure": 0.0, "gravity": 9.81}, Unilateral(gap=1e-3, velocity=-0.2)),
-        ({"pressure": 2e6, "gravity": 30.0}, Unilateral(gap=5e-4)),
-    ],
-)
-def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
-    problem = replace(make(((0, 0), (1.5, 0), (1.5, 2), (0, 2)), elements=128, degree=1, p=3e9), **change)
-    error, run = distances(problem, replace(AVERAGE, step=2.5e-5), 800, contact)
-    assert np.all(run.columns["contact_pressure"][:5] == 0) == (contact.gap > 0)
-    # twice what order one leaves of the coarser runs of the test above at this mesh
-    assert error[0] < 0.02 and error[1] < 0.1
 
 
 def test_a_nearly_rigid_base_keeps_its_digits():

@@ -27,13 +27,13 @@ FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the pa
 def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
     for ratio, frequency in FREQUENCIES.items():
         scene = closed.stiffer(PAPER, ratio)
-        step = closed.step_for(scene, 0.05)
+        (step,) = closed.steps_for(scene, [0.05])
         assert step is not None and closed.first_damping(closed.timed(scene, step=step)) == pytest.approx(
             0.05, rel=1e-9
         )
         assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
-    assert closed.step_for(PAPER, 0.5) is None  # 0.373 is the greatest
-    assert closed.step_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), 0.05) is None
+    assert closed.steps_for(PAPER, [0.5]) == [None]  # 0.373 is the greatest
+    assert closed.steps_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), [0.05]) == [None]
 
 
 def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step() -> None:

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import thinned
 
-from validation.errors import InputError
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.bars import BarsOfColumn
 from validation.solvers.registry import get_solver, solve
 
@@ -67,37 +65,6 @@ def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     fine = scene_of(column, columns, 16, input=drive, time=time)
     assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
     assert distance(fine, 16, exact) < 0.12
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"input": {"shape": "ricker", "velocity": 0.1, "frequency": 50.0}}, "Ricker"),
-        ({"time": {"gg": 0.99}}, "gg is below 1"),
-        ({"column": {"layer": [LAYERS[0], LAYERS[1] | {"young": math.inf}]}}, "rigid blocks"),
-    ],
-)
-def test_what_has_no_exact_waves_is_refused_by_name(change: dict[str, Any], reason: str) -> None:
-    tables = {"input": PULSE} | change
-    scene = scene_of(OPENS | tables.pop("column", {}), ["displacement"], **tables)
-    with pytest.raises(InputError, match=reason):
-        solve(scene, "bars-events")
-
-
-@pytest.mark.long
-def test_switches_carry_the_height_of_their_contact() -> None:
-    scene = load_scene("columns-cradle").expand()[0]
-    exact = get_solver("bars-events").prepare(scene)
-    run = exact.run()
-    switches = exact.switches()
-    assert [(one.corner, one.opens) for one in switches[:3]] == [("2 m", False), ("3 m", False), ("1 m", True)]
-    assert switches[2].time == pytest.approx(2.2732050806379, rel=1e-13)
-    assert any("40 and in 80 digits" in note for note in run.notes)
-    elements = get_solver("fem").prepare(scene)
-    elements.run()
-    assert [(one.corner, one.opens) for one in elements.switches()[:2]] != []
-    opened = [one.time for one in elements.switches() if one.corner == "3 m" and one.opens]
-    assert opened[-1] == pytest.approx(4.375314148121, abs=0.05)
 
 
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:

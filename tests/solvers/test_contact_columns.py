@@ -11,7 +11,6 @@ from conftest import thinned
 
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.errors import InputError
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.registry import get_solver
@@ -98,20 +97,6 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int,
     switches = prepared.switches()
     assert {switch.opens for switch in switches} == {None}
     assert {switch.slips for switch in switches} == {True, False}
-
-
-@pytest.mark.parametrize(
-    ("column", "columns", "value"),
-    [
-        ({"heights": [0.5]}, ["gap_1"], "gap_1"),
-        ({"heights": [0.5]}, ["displacement_2"], "displacement_2"),
-    ],
-)
-def test_a_height_without_a_contact_has_no_gap(column: dict[str, Any], columns: list[str], value: str) -> None:
-    with pytest.raises(InputError) as refused:
-        get_solver("dda").prepare(scene_of(column, columns))
-    assert refused.value.field == "run.columns"
-    assert value in str(refused.value)
 
 
 def test_an_explicit_step_of_welded_faces_is_refused() -> None:

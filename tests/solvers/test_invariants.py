@@ -16,8 +16,9 @@ import pytest
 from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.plain_newmark import stepped
-from oracles.stepped_vibration import Rule
+from oracles.stepped_vibration import Rule, amplitudes
 
+from validation import response
 from validation.metrics.contact import imbalance
 from validation.runs.history import Array
 from validation.runs.run import Outcome
@@ -295,6 +296,11 @@ def test_what_a_contact_does_keeps_momentum_and_energy(solver: str, name: str, r
     if "slip" not in name:  # whose force is that of friction
         assert record.force.min() >= 0
     assert record.penetration.min() >= 0 <= record.gap.min()
+    if name not in ("dashpots", "impact"):  # let go before springs have come back; act on velocities alone
+        assert not record.penetration[record.open_share == 1].any()
+    if name == "landing" and record.rebounds is not None:
+        speed = np.hypot(1.0, np.sqrt(2 * 9.81 * 0.005))  # of the fall through the gap; steps know it to g dt
+        assert record.rebounds[0].closing == pytest.approx(speed, abs=9.81 * scene.time.step)
     assert record.open_share.min() >= 0 and record.open_share.max() <= 1
     if record.energies:
         assert imbalance(record) < 1e-11
@@ -388,3 +394,28 @@ def adaptively(M: Array, K: Array, F: Array, rows: Array, rule: Rule, floor: flo
         found.append(rows @ D)
     assert kinetic[-1] < max(kinetic)
     return np.array(found).T
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("name", [name for name in LINEAR_STEPS if name != "adaptive"])
+def test_a_response_is_where_stepped_vibrations_end(name: str, solver: str, records: Path) -> None:
+    """Steps of full matrices in their modes, under the load as cos(wt), until what begins has gone by gg."""
+    scene = made(name, records).with_values({"time.gg": 0.97, "run.columns": USUAL})
+    M, K, F, rows = matrices(get_solver(solver).prepare(scene))
+    at_rest = static(solver, scene)
+    for omega in (0.3, 1.1):
+        w = omega / scene.time.step
+        amplitude = amplitudes(rule_of(scene), M, K, F, rows, w)
+        assert amplitude is not None
+        found = response(scene, w / 2 / np.pi, solver)
+        for column, expected in zip(USUAL, amplitude, strict=True):
+            closed = complex(found.columns[column][0])
+            assert abs(closed - expected) <= 1e-9 * abs(expected) + 1e-11 * abs(at_rest[column]), column
+
+
+def test_a_damped_bar_answers_as_its_fine_mesh(records: Path) -> None:
+    scene = made("damped", records).with_values({"time.gg": 0.97, "fem.elements": 48})
+    for frequency in (13.0, 60.0):
+        bar, mesh = (response(scene, frequency, solver).columns for solver in ("bar", "fem"))
+        for column in USUAL:
+            assert bar[column] == pytest.approx(mesh[column], rel=1e-6), column

@@ -1,4 +1,4 @@
-"""Scenes with updated geometry: columns, contact record and refusals of the adapter."""
+"""Scenes with updated geometry: columns, alarms and a base that moves."""
 
 import math
 

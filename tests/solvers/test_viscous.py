@@ -1,13 +1,10 @@
-"""Damping tables, C = a0 M + a1 K: histories, spectra, exact motions, the damping budget, and who refuses them."""
+"""Damping tables, C = a0 M + a1 K: the radius of the step and the damping budget."""
 
 import numpy as np
 import pytest
 
-from validation import advise, damping, load_scene
+from validation import damping, load_scene
 from validation.advice.rayleigh import Rayleigh
-from validation.advice.wave_advice import advise_wave
-from validation.diagnosis.judgement import compare
-from validation.errors import InputError
 from validation.solvers.registry import get_solver
 
 TABLES = {"damping.mass": 20.0, "damping.stiffness": 3e-4}
@@ -32,9 +29,3 @@ def test_the_budget_has_a_viscous_part_that_rayleighs_formula_gives() -> None:
     exact = get_solver("continuum").prepare(BLOCK).modes()[0]
     rate = -2 * np.log(abs(exact.eigenvalues[0])) / BLOCK.time.step
     assert rate == pytest.approx(20.0 + 3e-4 * exact.frequency**2, rel=1e-9)
-
-
-def test_who_knows_the_schemes_own_damping_only_refuses_it() -> None:
-    for act in (lambda: advise(BLOCK, 0.05), lambda: advise_wave(BLOCK, 5.0, 0.1), lambda: compare(BLOCK, None)):  # type: ignore[arg-type]
-        with pytest.raises(InputError, match="damping tables"):
-            act()

@@ -16,8 +16,9 @@ from faults.seams import Seam
 
 import dda
 from validation.models.plane import limits
+from validation.models.plane.canon import half_truss
 from validation.scenes.scene import load_scene
-from validation.studies.standing.formulas import half_truss, turned_columns
+from validation.studies.standing.formulas import turned_columns
 from validation.suite.bands import cases
 from validation.suite.folders import get_study
 

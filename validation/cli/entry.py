@@ -86,7 +86,7 @@ for command in (*app.registered_commands, *parts.registered_commands):
     # typer keeps the line breaks of a docstring, which are not those of a terminal
     paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
-    command.epilog = f"Page: {page_of(command.name if panels else 'advise')}"
+    command.epilog = f"Page: {page_of(command.name if panels and command.name else 'advise')}"
 app.registered_commands.sort(key=lambda command: ORDER.index(command.name or ""))
 (group,) = app.registered_groups
 group.epilog = f"Page: {page_of('advise')}"

@@ -116,7 +116,7 @@ def judge(
         extras.require("--out", *(extras.PDF if out.suffix == ".pdf" else extras.SITE))
     if assignments and not asked:
         raise InputError("goes with a problem or a scene", field="--set", value=assignments[0])
-    with all_defects(), _progress("judge", between_calls=True) as progress:
+    with all_defects(), _progress("judge") as progress:
         problems = [_asked(name, assignments) for name in asked or ()]
         sets: list[AnswerSet] = []
         for one in _sources([source, *(beside or ())]):
@@ -334,7 +334,7 @@ def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json:
             raise InputError(f"must be all or one of {', '.join(known)}", field="--study", value=repr(name))
     gates = [name for name, (study, _) in applying().items() if study in studies or "all" in studies]
     reports = []
-    with tempfile.TemporaryDirectory() as place, _progress("judge", between_calls=True) as progress:
+    with tempfile.TemporaryDirectory() as place, _progress("judge") as progress:
         session = Session(source, Results(Path(place)))
         for number, name in enumerate(gates):
             progress(number, len(gates), name)

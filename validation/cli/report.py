@@ -72,7 +72,7 @@ def report(
     store = Results(results)
     names = studies or None
     if out is not None:
-        with _progress("report", between_calls=True):
+        with _progress("report"):
             build(store, out, names, appendix)
         echo(f"wrote {out}")
     if site is not None:

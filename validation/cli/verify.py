@@ -70,7 +70,7 @@ def verify(
     check_loads(solver)
     # What another answers is kept nowhere: its rows have the name of `dda`.
     place = nullcontext(results) if solver == JUDGED else tempfile.TemporaryDirectory()
-    with place as directory, _progress("verify", between_calls=True) as progress:
+    with place as directory, _progress("verify") as progress:
         verdicts, remarks = judged(shown, Results(Path(directory)), solver, jobs or default_jobs(), progress)
     if as_json:
         echo_json([verdict.record(shown.study) for verdict in verdicts])

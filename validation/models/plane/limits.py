@@ -65,7 +65,9 @@ def _lies_on(points: Array, number: int, along: Array) -> bool:
     return False
 
 
-def can_rest(outlines: Sequence[Outline], held: Sequence[bool], mu: float | None) -> bool:
+def can_rest(
+    outlines: Sequence[Outline], held: Sequence[bool], mu: float | None, gravity: tuple[float, float] = (0.0, -1.0)
+) -> bool:
     """Return whether forces at contacts of friction mu balance the weights of blocks of one density.
 
     Parameters
@@ -74,14 +76,17 @@ def can_rest(outlines: Sequence[Outline], held: Sequence[bool], mu: float | None
         Corners of every block [m], and whether it is fixed.
     mu
         tan(phi) of all contacts, None where nothing can slide.
+    gravity
+        In which direction the weights act.
     """
     rows = {number: 3 * place for place, number in enumerate(k for k, fixed in enumerate(held) if not fixed)}
     points = list(contact_points(outlines))
     balance = np.zeros((3 * len(rows), 2 * len(points)))
     weights = np.zeros(3 * len(rows))
     for number, row in rows.items():
-        weights[row + 1] = area(outlines[number])
-        weights[row + 2] = moment(outlines[number])
+        x, y = centroid(outlines[number])
+        borne = -area(outlines[number]) * np.array(gravity) / math.hypot(*gravity)
+        weights[row : row + 3] = [*borne, x * borne[1] - y * borne[0]]
     slides = []
     for column, point in enumerate(points):
         along = np.array([point.normal[1], -point.normal[0]])
@@ -101,16 +106,11 @@ def can_rest(outlines: Sequence[Outline], held: Sequence[bool], mu: float | None
         A_ub=np.array(slides) if slides else None,
         b_ub=np.zeros(len(slides)) if slides else None,
         A_eq=balance,
-        b_eq=weights / np.sum(weights[1::3]),
+        b_eq=weights / np.max(np.abs(weights)),
         bounds=[(0.0, None), (None, None)] * len(points),
         method="highs",
     )
     return bool(solution.status == 0)
-
-
-def moment(outline: Outline) -> float:
-    """Return the first moment of an area about the vertical axis [m3]."""
-    return area(outline) * centroid(outline)[0]
 
 
 def drawn(section: GeneratorSection) -> tuple[list[Outline], list[bool]]:

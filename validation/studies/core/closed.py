@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -58,18 +59,20 @@ def over_steps(scene: Scene, steps: Array) -> Array:
     return np.array([stepping.at(float(step)).damping_ratio(frequency * float(step)) for step in steps])
 
 
-def step_for(scene: Scene, ratio: float) -> float | None:
-    """Return the least time step [s] that damps the first axial mode by a ratio, or None where none does."""
+def steps_for(scene: Scene, ratios: Iterable[float]) -> list[float | None]:
+    """Return the least time step [s] that damps the first axial mode by each ratio, None where none does."""
     from scipy.optimize import brentq
 
     steps = np.geomspace(LOWEST, HIGHEST, POINTS) / spectra.dda_frequency(scene)
-    above = over_steps(scene, steps) - ratio
-    with np.errstate(invalid="ignore"):
-        crossed = np.flatnonzero((above[:-1] < 0) & (above[1:] >= 0))
-    if not crossed.size:
-        return None
-    i = int(crossed[0])
-    return float(brentq(lambda step: over_steps(scene, np.array([step]))[0] - ratio, steps[i], steps[i + 1]))
+    damping = over_steps(scene, steps)
+    least: list[float | None] = []
+    for ratio in ratios:
+        with np.errstate(invalid="ignore"):
+            crossed = np.flatnonzero((damping[:-1] < ratio) & (damping[1:] >= ratio))[:1]
+        bracket = [(steps[i], steps[i + 1]) for i in crossed]
+        found = [brentq(lambda step, by=ratio: over_steps(scene, np.array([step]))[0] - by, *ends) for ends in bracket]
+        least.append(float(found[0]) if found else None)
+    return least
 
 
 def most_damped(scene: Scene) -> float:

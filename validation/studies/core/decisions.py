@@ -111,7 +111,7 @@ def _stiffness(ratio: float, _: Finished) -> Mapping[str, Value]:
     scene = closed.stiffer(closed.constant(paper()), ratio)
     frequency = spectra.dda_frequency(scene)
     excess = frequency / spectra.bar_frequency(scene) - 1
-    steps = {f"{100 * xi:g} %": closed.step_for(scene, xi) for xi in TARGETS}
+    steps = {f"{100 * xi:g} %": step for xi, step in zip(TARGETS, closed.steps_for(scene, TARGETS), strict=True)}
     return {"frequency": frequency, "excess": excess, **steps}
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.engine.finished import Derived, Finished
+from validation.models.plane.canon import friction_of, half_truss, stiffness_of
 from validation.models.plane.limits import (
     flat_height,
     harmonic,
@@ -28,10 +29,8 @@ from validation.models.plane.limits import (
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.row import Value
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
-from validation.theory.truss import HalfTruss
 
 REST = 1e-6  # of the weight: what is left of oscillations after a second of a damping of 5/s and more, exp(-c t)
 LEVER = 0.1  # least share of an unbalanced weight that moves the centroid which moves most
@@ -85,7 +84,7 @@ def _dip(plane: PlaneSection) -> float:
 
 def _stepped(plane: PlaneSection) -> tuple[float, float]:
     columns = plane.columns[0]
-    limit = stepped_dip(columns.heights, columns.width, columns.rise, _coefficient(plane))
+    limit = stepped_dip(columns.heights, columns.width, columns.rise, friction_of(plane))
     return math.degrees(limit), math.radians(columns.dip) / limit - 1
 
 
@@ -114,7 +113,7 @@ def bracket_of(plane: PlaneSection) -> Bracket:
     """Return the greatest heights on a flat base, or the least friction of the book's columns, which have steps."""
     columns = plane.columns[0]
     dip = math.radians(columns.dip)
-    mu = _coefficient(plane)
+    mu = friction_of(plane)
     if columns.rise:
         recursion, program = stepped_friction(columns.heights, columns.width, columns.rise, dip)
         return Bracket(recursion, program, recursion / mu, program / mu)
@@ -151,7 +150,7 @@ def _leaning(plane: PlaneSection) -> tuple[float, float]:
     block = plane.block[0]
     length, thickness = block.rectangle or (math.nan, math.nan)
     limit = leaning_friction(math.radians(block.turned), length / thickness)
-    return limit, 1 - _coefficient(plane) / limit
+    return limit, 1 - friction_of(plane) / limit
 
 
 def _keystone(plane: PlaneSection) -> tuple[float, float]:
@@ -159,12 +158,7 @@ def _keystone(plane: PlaneSection) -> tuple[float, float]:
     outline = np.array(plane.block[0].vertices)
     first, second = (float(np.ptp(outline[k : k + 2, 0])) for k in (0, 2))
     narrowing = math.atan((first - second) / 2 / float(np.ptp(outline[:, 1])))
-    return 0.0, math.copysign(narrowing / math.atan(_coefficient(plane)), -narrowing * plane.gravity[1])
-
-
-def _coefficient(plane: PlaneSection) -> float:
-    """Return tan(phi)."""
-    return (plane.contact.friction_coefficient if plane.contact else None) or 0.0
+    return 0.0, math.copysign(narrowing / math.atan(friction_of(plane)), -narrowing * plane.gravity[1])
 
 
 LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] = {
@@ -257,16 +251,11 @@ def seats(finished: Finished) -> Mapping[str, Value]:
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
         forces = [float(finished.needed_history(case.name, "dda").columns[column][-1]) for case in (soft, stiff)]
         ratios = [force / (weight * inner) - 1 for force in forces]
-        stiffer = _stiffness(stiff) / _stiffness(soft)
+        stiffer = stiffness_of(stiff) / stiffness_of(soft)
         values[f"soft {number}"] = ratios[0]
         values[f"stiff {number}"] = ratios[1]
         values[f"rigid {number}"] = (stiffer * ratios[1] - ratios[0]) / (stiffer - 1)
     return values
-
-
-def _stiffness(case: Scene) -> float:
-    contact = case.table(PlaneSection).contact
-    return contact.stiffness if contact else math.inf
 
 
 def second_correction() -> Band:
@@ -280,33 +269,12 @@ def second_correction() -> Band:
     length, height = pile.rectangle
     weight = pile.count * soft.table(PlaneSection).density * length * height * 9.81
     share = (sum(pile.offsets) + length / 2) / harmonic(pile.count, length)
-    tilt = pile.count * weight / (_stiffness(soft) * length)
+    tilt = pile.count * weight / (stiffness_of(soft) * length)
     first = tilt * pile.count * height / 2 / ((1 - share) * length / 2)
     return -(first**2), first**2
 
 
 # ---- half a truss ---------------------------------------------------------------------------------------------------
-
-
-def half_truss(scene: Scene) -> HalfTruss:
-    """Return the exact problem of a scene of half a truss."""
-    plane = scene.table(PlaneSection)
-    blocks = {block.name: block for block in plane.block}
-    outline = np.array(blocks["half"].vertices)
-    length, height = (float(extent) for extent in np.ptp(outline, axis=0))
-    crown = plane.pair[0].stiffness or math.inf
-    span = min(x for x, _ in blocks["crown"].outline)
-    return HalfTruss(
-        length=length,
-        height=height,
-        mass=plane.density * area(blocks["half"].outline),
-        turned=-math.radians(blocks["half"].turned),
-        place=blocks["half"].at,
-        span=span,
-        abutment=_stiffness(scene),
-        crown=crown,
-        gravity=-plane.gravity[1],
-    )
 
 
 def at_rest(scene: Scene, history: History) -> Mapping[str, Value]:
