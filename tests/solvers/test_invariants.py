@@ -194,7 +194,7 @@ def pairs(solver: str) -> list[Any]:
 
 
 EVERY = pytest.mark.parametrize(("solver", "name"), [pair for solver in BUILT_IN for pair in pairs(solver)])
-SOME = pytest.mark.parametrize(("solver", "name"), thinned(EVERY.args[1], 2))
+SOME = pytest.mark.parametrize(("solver", "name"), thinned(EVERY.args[1], 3))
 
 
 LINEAR = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] not in NOT_LINEAR]
