@@ -157,7 +157,7 @@ def made_results(directory: Path) -> Results:
             "provenance": {"commit": study, "system": "Linux"},
             "alarms": [ALARM | {"scene": name} for name in names],
         }
-        budgets = [budget(names[0])] if study == "mine" else []
+        budgets = [budget(name) for name in names[:2]] if study == "mine" else []
         kept_study(results, kept, pairs, study=study, title=f"Study {study}", budgets=budgets, **parts)
         results.write_verdicts(study, [verdict for verdict in verdicts if verdict["study"] == study])
     return results

@@ -60,6 +60,11 @@ def test_names_are_nudged_apart_as_little_as_they_may_within_their_limits(places
 def test_each_solver_has_one_style_and_no_two_share_it():
     styles = [curves.style_of(name) for name in SOLVERS]
     assert len({(s.color, s.dash) for s in styles}) == len(SOLVERS)
+    others = [curves.style_of(f"solver {number}") for number in range(200)]
+    assert {style.dash for style in others} == {(6.0, 2.0), (3.0, 1.5, 1.0, 1.5), (1.5, 1.0)}
+    assert len({style.color for style in others}) == 6 and {(style.width, style.layer) for style in others} == {
+        (1.0, 2)
+    }
     assert curves.style_of("abaqus") == curves.LineStyle("#cc79a7", (1.5, 1.0), 1.0, 2)  # depends on the name alone
 
 
