@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from conftest import typed
 
-from validation.advice.spectra import ModeDamping, runs
+from validation.advice.spectra import ModeDamping, mode_damping, runs, steps_to
+from validation.scenes.scene import load_scene
 
 OPTIONS = ("--set", "time.gg=0.98")
 
@@ -47,6 +48,14 @@ def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> 
     bar = 1.0768740 / 2 * math.sqrt(1e9 / 2700)  # b tan b = 2, w = (b/2) sqrt(E/rho)
     expected = {"frequency": bar, "damping": of_scheme(0.002 * bar, 0.98)[0]}
     assert found["references"]["bar"] == pytest.approx(expected, rel=1e-5)
+
+
+@pytest.mark.parametrize("frequency", [10.0, 344.561, 3464.0, 4.055e6])
+def test_what_a_scheme_does_not_damp_keeps_all_of_itself_and_never_rings_down(frequency: float) -> None:
+    scene = load_scene("figures-3-4").with_values({"time.step": 2.2e-6, "time.alpha": 0.25, "time.delta": 0.5})
+    mode = mode_damping(scene, "contact", frequency)
+    assert mode.damping == 0.0 and mode.spectral_radius == 1.0
+    assert steps_to(0.01, mode.spectral_radius) == math.inf
 
 
 def test_what_has_no_damping_ratio_of_its_own_is_not_split() -> None:
