@@ -33,6 +33,7 @@ from markdown.postprocessors import Postprocessor
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("dda", "fem_reference", "validation")
+LISTS = ("metrics", "keys", "solvers", "schemes", "scenes", "studies")  # of `dda-validate list`
 NOTEBOOKS = sorted((ROOT / "docs/notebooks").glob("*.ipynb"))
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 # Text of repositories, not of the site: the paper has a form of its own, folders of examples a README where they stand.
@@ -88,6 +89,7 @@ def settings() -> dict[str, Any]:
     reference: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
         reference.append({package: [f"reference/{name}.md" for name in (package, *rooms(package))]})
+    reference.append({"lists": [f"reference/{word}.md" for word in LISTS]})
     config["nav"] += [{"Versions": "changelog.md"}, {"Reference": reference}]
     config["copyright"] = f"dda-validation {built_from()}"
     config["plugins"][-1]["mkdocstrings"]["handlers"]["python"]["paths"] = [str(ROOT)]
@@ -95,16 +97,21 @@ def settings() -> dict[str, Any]:
 
 
 def write_pages(docs: Path) -> None:
-    """Write all pages: those of docs, the names that packages export, what is in rooms, notebooks, the changelog."""
+    """Write all pages: those of docs, of the packages' names and rooms, lists of the command, notebooks, versions."""
     shutil.copytree(ROOT / "docs", docs, ignore=shutil.ignore_patterns(*NO_PAGES), dirs_exist_ok=True)
     for page in docs.glob("*.md"):
         text = page.read_text(encoding="utf-8")
-        page.write_text(text + links_to_results(page.name), encoding="utf-8")
+        page.write_text(text + links_to_results(text), encoding="utf-8")
     for package in PACKAGES:
         for name in (package, *rooms(package)):
             whole = "true" if name != package else "false"
             text = f"# `{name}`\n\n::: {name}\n    options:\n      show_submodules: {whole}\n"
             (docs / f"reference/{name}.md").write_text(text, encoding="utf-8")
+    for word in LISTS:
+        command = [sys.executable, "-m", "validation", "list", word]
+        printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
+        text = f"# {word.capitalize()}\n\nAs `dda-validate list {word}` prints them.\n\n```text\n{printed}```\n"
+        (docs / f"reference/{word}.md").write_text(text, encoding="utf-8")
     for path in NOTEBOOKS:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name, PROJECT["urls"]["Repository"])
         (docs / f"notebooks/{path.stem}.md").write_text(text, encoding="utf-8")
@@ -145,14 +152,12 @@ def notebook_page(notebook: dict[str, Any], name: str, repository: str) -> str:
     return "\n\n".join(parts) + "\n"
 
 
-def links_to_results(name: str) -> str:
-    """Return links to the studies with results that README's table leads to a page from; `make docs` writes these."""
+def links_to_results(text: str) -> str:
+    """Return links to the studies with results that a page calls so; `make docs` writes their pages."""
     if not (ROOT / "reports/results/verdicts.json").is_file():
         return ""
-    studies: list[str] = []
-    for line in (ROOT / "README.md").read_text(encoding="utf-8").splitlines():
-        if line.startswith("| `") and f"](docs/{name})" in line:
-            studies += re.findall(r"`([\w-]+)`", line.split("|")[1])
+    called = re.findall(r"\bstud(?:y|ies)\s+((?:`[\w-]+`(?:,\s+|\s+and\s+)?)+)", text)
+    studies = dict.fromkeys(name for names in called for name in re.findall(r"[\w-]+", names.replace(" and ", " ")))
     present = [study for study in studies if (ROOT / "reports/results/studies" / f"{study}.json").is_file()]
     links = [f'<a href="gallery/study-{study}.html">{study}</a>' for study in present]
     return f"\n<p>Results in the gallery: {', '.join(links)}.</p>\n" if links else ""

@@ -1,20 +1,17 @@
-"""`list WORD`: one line for each metric, study, scene and solver; the page of metrics is the catalogue."""
+"""`list WORD`: one line for each metric, study, scene and solver."""
 
 import math
-from pathlib import Path
 
 import pytest
 from conftest import typed
 
 from validation.cli.printing import output
-from validation.metrics.catalogue import CATALOGUE, KIND, Metric
+from validation.metrics.catalogue import CATALOGUE
 from validation.scenes.keys import keys_of, range_of
 from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
 from validation.solvers import registry
 from validation.solvers.registry import get_solver, solver_names
 from validation.suite.folders import get_study, study_names
-
-PAGE = Path(__file__).parents[2] / "docs" / "metrics.md"
 
 
 def listed(word: str) -> list[str]:
@@ -96,13 +93,3 @@ def test_what_a_key_goes_with_is_a_key_and_one_of_its_words(place: str) -> None:
             ranges = {name: range_of(field) for name, field, _ in keys_of(tables_of_scenes()[section or place])}
             assert partner in ranges, (name, requirement)
             assert set(words.split(" or ")) <= {"", *ranges[partner].split(" or ")}, (name, requirement)
-
-
-def row(metric: Metric) -> str:
-    return f"| `{metric.id}` | {metric.unit} | {', '.join(sorted(metric.needs))} | {metric.says} |"
-
-
-def test_the_page_of_metrics_is_the_catalogue() -> None:
-    table = [line for line in PAGE.read_text(encoding="utf-8").splitlines() if line.startswith("| `")]
-    expected = [row(metric) for metric in (*CATALOGUE.values(), KIND)]
-    assert table == expected, "write these lines into docs/metrics.md:\n" + "\n".join(expected)

@@ -144,7 +144,7 @@ def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own
 def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
     added: float, mass: float, benign: bool
 ) -> None:
-    assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/judge.md says
+    assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
     v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
     assert benign_springs(target().column, v) is benign
 

@@ -44,15 +44,15 @@ def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fi
         p = one.program
         given = (answer.scheme["alpha"], answer.scheme["delta"], answer.scheme["gg"])
         assert given == pytest.approx((p.alpha, p.delta, p.gg), abs=allowed), i
-        assert (None if answer.opened is None else list(answer.opened)) == history.opened, i
+        assert answer.opened == history.opened, i
     assert wrong == []
     assert sum(hidden(one, answer) for one, answer, _ in fifty) <= 1
 
 
 @pytest.mark.long
-def test_the_matrix_of_the_documentation_is_this_one(fifty) -> None:
+def test_the_counts_of_the_documentation_are_these(fifty) -> None:
     page = confusion.PAGE.read_text()
-    found = page_with(confusion.matrix(fifty), page, confusion.BEGIN, confusion.END)
+    found = page_with(confusion.table(fifty), page, confusion.BEGIN, confusion.END)
     assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 

@@ -1,4 +1,4 @@
-"""A thousand histories of known origin by three generators, what `compare` makes of them, and the table of the docs.
+"""A thousand histories of known origin by three generators, what `compare` makes of them, and the counts of the docs.
 
 The generators share nothing with what judges: a plain DDA code (`plain_block`), the finite elements of `fem_reference`
 with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
@@ -6,7 +6,7 @@ scheme or summed in closed form. Causes are single ones of the catalogue, pairs,
 digits, noise, steps, schemes and scenes are drawn at random.
 
 ``PYTHONPATH=.:tests python tests/oracles/calibration.py [COUNT [PROCESSES]]`` judges so many, a thousand by default,
-and writes the table to docs/judge.md.
+and writes the counts to docs/compare.md.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from oracles.pages import page_with
+from oracles.pages import page_with, summary
 from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
 
@@ -28,9 +28,15 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 BEGIN, END = "<!-- calibration: made by tests/oracles/calibration.py -->\n", "<!-- end of calibration -->\n"
 UNKNOWN, SAME = "unexplained", "same"
+WORDS = {
+    "right": "were named right",
+    "silent": "not explained",
+    "hidden": "called the same within digits and noise",
+    "wrong": "named wrong",
+}
 SCHEMES = ((0.5, 1.0), (0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))
 
 
@@ -272,20 +278,8 @@ def verdict(one: Judged) -> str:
 
 
 def table(found: list[Judged]) -> str:
-    """Return the confusion matrix by kind of cause, and the share of named causes that are right."""
-    names = sorted({_kind(one.causes) for one in found})
-    columns = ("right", "silent", "hidden", "wrong")
-    counts = Counter((_kind(one.causes), verdict(one)) for one in found)
-    lines = [
-        "| what was done | histories | named right | not explained | same, within digits and noise | named wrong |"
-    ]
-    lines.append("|---|" + "---:|" * 5)
-    for name in names:
-        each = [counts[name, column] for column in columns]
-        lines.append(f"| {name} | {sum(each)} | " + " | ".join(str(n) if n else "" for n in each) + " |")
-    total = [sum(counts[name, column] for name in names) for column in columns]
-    lines.append(f"| **all** | {sum(total)} | " + " | ".join(map(str, total)) + " |")
-    return "\n".join(lines) + "\n"
+    """Return the paragraph of the page."""
+    return summary(Counter((_kind(one.causes), verdict(one)) for one in found), WORDS)
 
 
 def _kind(causes: tuple[str, ...]) -> str:

@@ -1,8 +1,8 @@
-"""Made histories of other time schemes and contact methods, what `compare` makes of them, and the table of the docs.
+"""Made histories of other schemes and contact methods, what `compare` makes of them, and the counts of its page.
 
 Schemes, numbers, stiffness, time step, rows, digits, noise, the scene's own scheme and what is recorded are drawn at
 random; one in seven programs is in no catalogue. The histories come from `scheme_histories`, which shares nothing with
-what judges. ``PYTHONPATH=.:tests python tests/oracles/compared_schemes.py 0 300`` judges so many and writes the table.
+what judges. ``PYTHONPATH=.:tests python tests/oracles/compared_schemes.py 0 300`` judges so many and writes them.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from oracles.pages import page_with
+from oracles.pages import page_with, summary
 from oracles.scheme_histories import Body, Run, rounded
 
 from validation import load_scene
@@ -25,7 +25,7 @@ from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
-PAGE = Path(__file__).parents[2] / "docs" / "judge.md"
+PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 BEGIN, END = "<!-- schemes: made by tests/oracles/compared_schemes.py -->\n", "<!-- end of schemes -->\n"
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))
 SCENES: tuple[dict[str, Any], ...] = (
@@ -233,20 +233,18 @@ def _is(name: tuple[str, float | None, tuple[float, float] | None], own: set[str
     return abs(alpha - pair[0]) < TOLERANCE and abs(delta - pair[1]) < TOLERANCE
 
 
-COLUMNS = ("right", "alike", "silent", "same", "wrong")
+WORDS = {
+    "right": "were named right",
+    "alike": "were among those alike",
+    "silent": "not explained",
+    "same": "called the same within digits and noise",
+    "wrong": "named wrong",
+}
 
 
 def table(judged: Sequence[tuple[Case, Answer]]) -> str:
-    """Return the counts by method."""
-    counts = Counter((kind_of(case.run), verdict(case, answer)) for case, answer in judged)
-    lines = ["| program | histories | named right | alike | not explained | same within digits and noise | wrong |"]
-    lines.append("|---|" + "---:|" * 6)
-    for name in sorted({name for name, _ in counts}):
-        each = [counts[name, column] for column in COLUMNS]
-        lines.append(f"| {name} | {sum(each)} | " + " | ".join(str(n) if n else "" for n in each) + " |")
-    totals = [sum(counts[name, column] for name in {name for name, _ in counts}) for column in COLUMNS]
-    lines.append(f"| **all** | {sum(totals)} | " + " | ".join(map(str, totals)) + " |")
-    return "\n".join(lines) + "\n"
+    """Return the paragraph of the page."""
+    return summary(Counter((kind_of(case.run), verdict(case, answer)) for case, answer in judged), WORDS)
 
 
 def kind_of(run: Run) -> str:

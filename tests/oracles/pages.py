@@ -2,6 +2,8 @@
 
 import csv
 import re
+import textwrap
+from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -11,9 +13,24 @@ FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of s
 
 def write_my_solver(directory: Path) -> None:
     """Write the solver that the documentation shows."""
-    page = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
+    page = (ROOT / "docs/tutorial.md").read_text(encoding="utf-8")
     files = {file: text for _, file, text in BLOCK.findall(page)}
     (directory / "my_solver.py").write_text(files["my_solver.py"])
+
+
+def summary(counts: Counter[tuple[str, str]], words: dict[str, str]) -> str:
+    """Return a paragraph: how many histories had each verdict, and of each kind how many were named right.
+
+    ``counts`` are of (kind, verdict), ``words`` what the paragraph calls a verdict; "right" and "wrong" are among them.
+    """
+    totals = {verdict: sum(n for (_, other), n in counts.items() if other == verdict) for verdict in words}
+    outcomes = ", ".join(f"{totals[verdict]} {word}" for verdict, word in words.items())
+    shares = []
+    for kind in sorted({kind for kind, _ in counts}):
+        wrong = f" ({counts[kind, 'wrong']} wrong)" if counts[kind, "wrong"] else ""
+        shares.append(f"{kind} {counts[kind, 'right']}/{sum(counts[kind, verdict] for verdict in words)}{wrong}")
+    text = f"Of {counts.total()} histories {outcomes}. Named right, by what was done: {', '.join(shares)}."
+    return textwrap.fill(text, 120) + "\n"
 
 
 def page_with(table: str, page: str, begin: str, end: str) -> str:

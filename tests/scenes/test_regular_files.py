@@ -21,7 +21,7 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.record import read_record
-from validation.scenes.scene import load_scene, parse_assignment
+from validation.scenes.scene import load_scene
 
 MARK = b"\xef\xbb\xbf"
 TABLE = b"time,x\n0,0\n1,0.5\n2,1\n"
@@ -80,14 +80,6 @@ def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe: Path, tmp_path: Path) -> 
     path.write_text(SCENE + f'[sweep]\n"load.base_motion" = ["{pipe.name}"]\n')
     with pytest.raises(InputError, match=r"base_motion: .*must be a regular file, got a pipe"):
         load_scene(path).expand()
-
-
-def test_a_file_that_is_not_there_is_told_where_it_is_read(tmp_path: Path) -> None:
-    path = tmp_path / "scene.toml"
-    path.write_text(SCENE + '\n[run]\nsolvers = ["dda"]\n')
-    scene = load_scene(path).with_values({"load.base_motion": str(tmp_path / "absent.csv")})
-    with pytest.raises(InputError, match="cannot be read: No such file"):
-        read_record(Path(str(scene.load.base_motion)))
 
 
 def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path: Path) -> None:
@@ -183,17 +175,3 @@ def test_a_pipe_in_a_results_directory_is_not_waited_for(name: str, tmp_path: Pa
         results.whole("s", histories=True)
         results.write_verdicts("s", [])
     assert error.value.value == "a pipe"
-
-
-@pytest.mark.parametrize(
-    ("assignment", "words"),
-    [
-        ("time.step=" + "9" * 5001, "must have at most 4000 characters"),
-        ("time.step=" + "9" * 4000, "time.step"),
-        ("block.side=2\nyoung=3", "must be one line"),
-        ("fem.mesh=a\0b", "NUL"),
-    ],
-)
-def test_an_assignment_is_read_whole_or_refused(assignment: str, words: str, scene_file: Path) -> None:
-    with pytest.raises(InputError, match=words):
-        load_scene(scene_file).with_values(dict([parse_assignment(assignment)]))

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.pages import BLOCK, ROOT
+from oracles.pages import ROOT
 
 from validation.engine.measure import completed
 from validation.errors import InputError
@@ -22,8 +22,8 @@ from validation.solvers.user import VARIABLE
 from validation.suite.own_solver.gates import applying
 from validation.suite.own_solver.session import Session
 
-PAGE = (ROOT / "docs/judge.md").read_text(encoding="utf-8")
-FILES = {file: text for _, file, text in BLOCK.findall(PAGE)}
+PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
+PROGRAM = (ROOT / "docs/examples/judge/block.cpp").read_text(encoding="utf-8")
 LOCKED = load_scene("field-locked")
 SPRINGS, DENSITY, PRESSURE = (
     "contact.stiffness_N_per_m",
@@ -50,7 +50,7 @@ def compiled(tmp_path_factory: pytest.TempPathFactory):
 
     def compile_with(old: str, new: str) -> str:
         place = tmp_path_factory.mktemp("program")
-        text = FILES["block.cpp"]
+        text = PROGRAM
         assert old in text
         text = text.replace(old, new)
         if "late" in new:
@@ -117,7 +117,7 @@ def test_what_cannot_be_started_and_kinds_without_words(tmp_path: Path) -> None:
     path.write_bytes(b"\x7fELF no such thing")
     assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
     plane = completed(get_solver(str(path)), load_scene("patch-strip").expand()[0])
-    assert plane.outcome is Outcome.NOT_APPLICABLE and "plain data hold rigid blocks" in plane.notes[0]
+    assert plane.outcome is Outcome.NOT_APPLICABLE and "plain data hold blocks" in plane.notes[0]
 
 
 def test_a_program_is_told_what_problems_never_have() -> None:

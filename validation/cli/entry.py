@@ -23,6 +23,7 @@ from validation.cli import (
     run,
     show,
     verdicts,
+    verify,
     waves,
     work,
 )
@@ -44,12 +45,13 @@ COMMANDS = (
     compare,
     judge,
     verdicts,
+    verify,
     waves,
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("new", "list", "show", "run", "solve"),
-    "Results": ("report", "rows", "claims", "diff"),
+    "Results": ("report", "rows", "claims", "verify", "diff"),
     "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise",),
 }
@@ -57,6 +59,7 @@ PAGES = {  # of the documentation, each with the commands that it is about
     "tutorial.md": ("new", "list", "show", "run", "solve"),
     "gallery.md": ("report", "rows"),
     "claims.md": ("claims",),
+    "verification.md": ("verify",),
     "ci.md": ("diff",),
     "judge.md": ("judge", "compare", "export-pack"),
     "choose.md": ("advise",),
@@ -70,7 +73,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no
 
 def page_of(name: str) -> Path:
     """Return the page of a command: of the checkout, or where the wheel has put it below its environment."""
-    page = next((page for page, names in PAGES.items() if name in names), "index.md")
+    page = next(page for page, names in PAGES.items() if name in names)
     packages = Path(__file__).resolve().parents[2]
     installed = [folder / "share/doc/dda-validation" for folder in packages.parents]
     folders = (packages / "docs", packages / "share/doc/dda-validation", *installed)
@@ -78,7 +81,7 @@ def page_of(name: str) -> Path:
 
 
 for command in (*app.registered_commands, *parts.registered_commands):
-    command.name = command.name or getattr(command.callback, "__name__", "")
+    command.name = command.name or str(getattr(command.callback, "__name__", ""))
     panels = [group for group, names in GROUPS.items() if command.name in names]
     command.rich_help_panel = panels[0] if panels else None  # the parts of a command stand in one
     # typer keeps the line breaks of a docstring, which are not those of a terminal

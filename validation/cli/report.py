@@ -31,7 +31,11 @@ def report(
         Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
     ] = None,
     appendix: Annotated[
-        bool, typer.Option("--appendix", help="In the PDF, list the gates that passed, by the reason of their band.")
+        bool,
+        typer.Option(
+            "--appendix",
+            help="In the PDF, print what is verified, and list the gates that passed by the reason of their band.",
+        ),
     ] = False,
     docs: Annotated[
         str,

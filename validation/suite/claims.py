@@ -23,7 +23,6 @@ from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.history import Array
-from validation.runs.numbers import measured_text
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import about, cases, gate
@@ -243,12 +242,10 @@ def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
     """Return a register as a Markdown page, from the derived rows of its study."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):
-        listed = "; ".join(f"{k} {measured_text(v)}" for k, v in entry["numbers"].items())
         condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
         parts += [
             f"## {entry['id']}: {entry['verdict']}{condition}",
-            f"**The paper** ({entry['place']}): {entry['says']}",
-            f"**Measured:** {listed}.",
-            f"**Why:** {entry['why']}.",
+            f"> {entry['says']} ({entry['place']})",
+            f"Why: {entry['why']}.",
         ]
     return "\n\n".join(parts) + "\n"

@@ -6,7 +6,7 @@ said:
 1. One model, stepped by two programs: places agree to n eps L, forces to that times the spring, with n steps and L the
    largest coordinate: each step rounds places, and a spring multiplies what is rounded.
 2. The block that turns has its inertia from its outline at rest, the plane has it from the outline as it is strained
-   (docs/plane-step.md: J = tr U S U, centrifugal forces). What lies between is a multiple of the strain, 1/E; the next
+   (`dda.plane.bodies`: J = tr U S U, centrifugal forces). What lies between is a multiple of the strain, 1/E; the next
    term is of springs and block in series, a share p/E of it.
 3. Small motion keeps the directions and arms of t = 0, which change with the load N: by the turn, N h over its
    stiffness p l^2 / 2, by sinking, N / (p h), by strain, N / (E l), twice that while the block swings. What
@@ -103,7 +103,7 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Mapping[str,
         ours = in_plane(plane, column)
         if "force" in column or "pressure" in column:
             quantity = "force"
-            values = values * (special.block.base_length if special.kind.name == "block" else 1.0)
+            values = values * (1.0 if special.kind.feature else special.block.base_length)  # a column is of unit width
         else:
             quantity = "rotation" if column == "rotation" else "displacement"
             ours = ours - ours[0]

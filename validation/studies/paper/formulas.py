@@ -27,9 +27,9 @@ CLAIMS_OF_THE_PAPER = Register(
     study="paper",
     title="The paper's statements and slips",
     page="docs/claims.md",
-    introduction="Every line is computed: the verdict follows from the measured numbers and is a gate of the study "
-    "`paper`. This page is written by `dda-validate claims --out docs/claims.md`, and a test compares it with a fresh "
-    "run. Numbers below 1e-12 are written as 0.",
+    introduction="Statements (C) of the paper and slips (S) of its equations. Each verdict follows from measured "
+    "numbers, which `dda-validate claims --json` prints, and is a gate of the study `paper`. This page is written by "
+    "`dda-validate claims --out docs/claims.md`, and a test compares it with a fresh run.",
     claims=CLAIMS,
 )
 COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
