@@ -31,6 +31,8 @@ from markdown import Markdown
 from markdown.extensions import Extension
 from markdown.postprocessors import Postprocessor
 
+from validation.scenes.plain import words
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("dda", "fem_reference", "validation")
 LISTS = ("metrics", "keys", "solvers", "schemes", "scenes", "studies")  # of `dda-validate list`
@@ -89,7 +91,7 @@ def settings() -> dict[str, Any]:
     reference: list[Any] = ["reference/index.md"]
     for package in PACKAGES:
         reference.append({package: [f"reference/{name}.md" for name in (package, *rooms(package))]})
-    reference.append({"lists": [f"reference/{word}.md" for word in LISTS]})
+    reference.append({"lists": [f"reference/{word}.md" for word in (*LISTS, "lines")]})
     config["nav"] += [{"Versions": "changelog.md"}, {"Reference": reference}]
     config["copyright"] = f"dda-validation {built_from()}"
     config["plugins"][-1]["mkdocstrings"]["handlers"]["python"]["paths"] = [str(ROOT)]
@@ -112,6 +114,9 @@ def write_pages(docs: Path) -> None:
         printed = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True).stdout
         text = f"# {word.capitalize()}\n\nAs `dda-validate list {word}` prints them.\n\n```text\n{printed}```\n"
         (docs / f"reference/{word}.md").write_text(text, encoding="utf-8")
+    described = "".join(f"- `{name}`: {meaning}\n" for name, meaning in words())
+    text = f"# Lines of a scene\n\nWhat a program reads, beside `time.*` and `columns`.\n\n{described}"
+    (docs / "reference/lines.md").write_text(text, encoding="utf-8")
     for path in NOTEBOOKS:
         text = notebook_page(json.loads(path.read_text(encoding="utf-8")), path.name, PROJECT["urls"]["Repository"])
         (docs / f"notebooks/{path.stem}.md").write_text(text, encoding="utf-8")

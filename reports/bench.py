@@ -522,17 +522,15 @@ def least_seconds(run: Callable[[], History], repeats: int) -> float:
 
 
 def grown(name: str, sizes: Sequence[int], seconds: Callable[[int], float]) -> str:
-    """Return a line of the growth table: the exponent is that of the upper two thirds of the sizes."""
+    """Return seconds at the greatest size, and the exponent of their growth over the upper two thirds of the sizes."""
     spent = [seconds(n) for n in sizes]
     part = slice(len(sizes) // 3, None)
     exponent = np.polyfit(np.log(sizes[part]), np.log(spent[part]), 1)[0]
-    return (
-        f"| {name} | {', '.join(f'{n:,}' for n in sizes)} | {', '.join(f'{t:.2g}' for t in spent)} | {exponent:.2f} |"
-    )
+    return f"- {name}: {spent[-1]:.2g} s at {sizes[-1]:,}, as n^{exponent:.2f}"
 
 
 def growth(quick: bool) -> list[str]:
-    """Return the lines of the growth table."""
+    """Return a line for each growth."""
     model, steps, meshes = dda_model(), [10**3, 10**4, 10**5, 10**6], [4, 8, 16, 32, 64, 128]
     meshes = meshes[:-1] if quick else meshes
     return [
@@ -590,7 +588,9 @@ def threads_line(repeats: int = 2) -> str:
     ratio = min(typed) / min(single)
     if ratio > AS_TYPED:
         raise SystemExit(f"run {TYPED}: as typed {ratio:.2f} times as long as on one BLAS thread, above {AS_TYPED}")
-    return f"| run {TYPED} | {min(typed):.2g} | {min(single):.2g} | **{ratio:.2f}** | {AS_TYPED} |"
+    return (
+        f"`run {TYPED}` takes {min(typed):.2g} s as typed, **{ratio:.2f}** of that on one thread (at most {AS_TYPED})."
+    )
 
 
 PAGE = """# Speed
@@ -626,8 +626,6 @@ settings of `examples/peers` (MuJoCo) and fifty iterations without slop (pymunk)
 
 ## Growth
 
-| what | sizes | seconds | exponent |
-|---|---|---|---|
 {growth}
 
 A history keeps 8 (1 + columns) bytes a step, and while it is made a block of steps more. The elements keep 8 bytes
@@ -635,11 +633,7 @@ times unknowns times vectors of the small space (at most 400), beside the factor
 
 ## Threads
 
-A command as typed over the same with OMP_NUM_THREADS=1: every process takes one BLAS thread, unless the environment
-says otherwise.
-
-| what | as typed [s] | one thread [s] | ratio | at most |
-|---|---|---|---|---|
+Every process takes one BLAS thread, unless the environment says otherwise.
 {threads}
 """
 

@@ -27,7 +27,7 @@ from validation.solvers.names import check_names
 from validation.suite.matrix import phenomena, phenomenon, verify
 
 DOCS = ROOT / "docs"
-PAGES = ("extending.md", "columns.md", "methods.md", "subblocks.md")
+PAGES = ("extending.md", "columns.md", "methods.md", "plane.md", "subblocks.md")
 # Pages that take seconds each.
 LONG = (
     "stacks.md",
@@ -78,7 +78,6 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
         beside(finished_cases, tmp_path / name)
     if page == "judge.md" and not (shutil.which("g++") and shutil.which("gfortran")):
         pytest.skip("NOT RUN: there is no compiler of C++ and Fortran")
-    write_my_solver(tmp_path)
     for folder in ("judge", "scenes", "extend"):
         shutil.copytree(DOCS / "examples" / folder, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
@@ -106,6 +105,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
 def test_commands_print_what_the_page_shows(
     page: str, outputs: int, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    write_my_solver(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     (tmp_path / "reports").mkdir()

@@ -96,7 +96,7 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
 
 
 def band(edges):
-    return chapters_gates.band({"band": edges})
+    return chapters_gates.band_cell(*edges)
 
 
 def told(words):

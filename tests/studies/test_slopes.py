@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Callable
 from dataclasses import replace
@@ -18,11 +17,7 @@ from faults.kill_matrix import cases_of, check_kill_matrix
 from oracles.sliding_dda import Slider, run
 
 from validation import solve
-from validation.engine.finished import Finished
-from validation.engine.judge import evaluate
-from validation.engine.run import finish
-from validation.gates.gate import Gate, Status
-from validation.runs.results import Results
+from validation.gates.gate import Gate
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.rigid.sliding import rigid_slide
@@ -86,16 +81,6 @@ def test_the_record_of_the_shaking_is_its_formula() -> None:
     assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
 
 
-def judged(gates: list[Gate], names: set[str], directory: Path) -> dict[str, Status]:
-    """Run the cases of some scenes of the study of creep and judge gates on them."""
-    study, own = get_study("creep"), cases_of(get_study("creep"), gates)
-    assert {case.scene.name.partition("[")[0] for case in own} <= names
-    results = Results(directory)
-    finished = finish(own, study, results)
-    derived = Finished(finished.rows, results, study.recipes())
-    return {gate.id: evaluate(gate, derived).status for gate in gates}
-
-
 def gates_of(*scenes: str) -> list[Gate]:
     """Return the gates of the study of creep on some scenes."""
     return [gate for gate in get_study("creep").gates() if gate.scene.partition("[")[0] in scenes]
@@ -108,21 +93,10 @@ CREEP = [
 ]
 
 
-def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
     gates = [g for g in gates_of(creep.STEPS, creep.LAGGED) if g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"]
-    names = {creep.STEPS, creep.LAGGED}
-    sound = judged(gates, names, tmp_path / "sound")
-    assert set(sound.values()) == {Status.PASS}
-    bitten: set[str] = set()
-    for number, fault in enumerate(CREEP):
-        with monkeypatch.context() as patch:
-            fault.seam.wrap(patch, fault.replacement)
-            failed = {k for k, v in judged(gates, names, tmp_path / str(number)).items() if v is not Status.PASS}
-        assert failed, fault.name
-        bitten |= failed
-    assert bitten == set(sound)
+    study = get_study("creep")
+    check_kill_matrix(study, cases_of(study, gates), gates, CREEP, tmp_path, finished_cases)
 
 
 @pytest.mark.long
@@ -211,34 +185,3 @@ def test_the_creep_of_the_exact_block_scales_with_g_over_w_n_by_a_factor_of_slop
     history = solve(case, "block-events").history
     way = creep.slid(history.columns)[-1]
     assert way / history.time[-1] / friction.creep_scale(case) == pytest.approx(factor, rel=0.03)
-
-
-@functools.cache
-def exact_displacement(name: str) -> np.ndarray:
-    """Return the exact motion of a case, which no scheme enters."""
-    case = next(case for case in load_scene("slope-exact-average").expand() if case.name == name)
-    return np.asarray(solve(case, "block-events").history.displacement)
-
-
-@pytest.mark.long  # the gates on the orders of `creep.REFINED` stand for it
-@pytest.mark.parametrize(
-    ("alpha", "delta", "start", "order"),
-    [
-        (1 / 3, 0.5, "consistent", 2.0),
-        (0.5, 0.5, "consistent", 2.0),
-        (0.25, 0.5, "zero", 1.0),
-        (0.3025, 0.6, "consistent", 1.0),
-    ],
-)
-def test_every_scheme_of_delta_one_half_has_order_two_from_the_consistent_start(
-    alpha: float, delta: float, start: str, order: float
-) -> None:
-    cases = load_scene("slope-exact-average").expand()[:3]
-    values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
-    errors = []
-    for case in cases:
-        own = solve(case.with_values(values), "dda").history
-        errors.append(np.linalg.norm(own.displacement - exact_displacement(case.name)))
-    steps = [case.time.step for case in cases]
-    sizes = np.array(errors) / np.sqrt([case.time.steps for case in cases])
-    assert np.polyfit(np.log(steps), np.log(sizes), 1)[0] == pytest.approx(order, abs=0.12)

@@ -181,5 +181,7 @@ def _verdict_row(verdict: Verdict) -> tuple[str, ...]:
     margin = gate.margin(verdict.value) if isinstance(verdict.value, float) else None
     until = "" if gate.until is None else f" up to {gate.until:g} s"
     measured = f"{gate.scene}, {' against '.join(gate.pair)}: {words_of(gate.metric)}{until}"
-    value = noted_value(gate, verdict.value) if verdict.value is not None else verdict.why or DASH
+    value = verdict.why or DASH
+    if verdict.status is not Status.NOT_RUN and verdict.value is not None:
+        value = noted_value(gate, verdict.value)
     return str(verdict.status), measured, value, band_of(gate), margin_cell(margin)

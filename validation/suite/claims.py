@@ -245,7 +245,6 @@ def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
         condition = f" ({entry['condition']})" if entry["verdict"] == Finding.CONDITIONAL.words else ""
         parts += [
             f"## {entry['id']}: {entry['verdict']}{condition}",
-            f"> {entry['says']} ({entry['place']})",
-            f"Why: {entry['why']}.",
+            f"*{entry['says']}* ({entry['place']}): {entry['why']}.",
         ]
     return "\n\n".join(parts) + "\n"

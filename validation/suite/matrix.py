@@ -10,7 +10,7 @@ import difflib
 import functools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from itertools import chain
 
@@ -19,7 +19,8 @@ from validation.engine.finished import Derived
 from validation.engine.judge import evaluate, existing
 from validation.engine.run import Progress, finish
 from validation.errors import InputError
-from validation.gates.gate import Gate, Verdict
+from validation.gates.gate import Gate, Status, Verdict
+from validation.metrics.values import NOT_REPORTED
 from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -192,4 +193,12 @@ def verify(
             notes[f"{case.make_solver().name}: {row.outcome}: {'; '.join(row.notes)}"] += 1
         notes.update(f"{note}: it was judged itself" for note in row.notes if note.startswith(SAME_AS))
     remarks = [f"{count} of {len(cases)} runs: {note}" for note, count in notes.items()]
-    return [evaluate(gate, finished) for gate in existing(gates, scenes, finished)], remarks
+    verdicts = [evaluate(gate, finished) for gate in existing(gates, scenes, finished)]
+    return [_reported(verdict) for verdict in verdicts], remarks
+
+
+def _reported(verdict: Verdict) -> Verdict:
+    """Return a verdict that is no failure where the solver has no way to report what is asked."""
+    if verdict.value != NOT_REPORTED:
+        return verdict
+    return replace(verdict, status=Status.NOT_RUN, why=f"not reported: {verdict.gate.metric}")

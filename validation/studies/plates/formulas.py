@@ -136,9 +136,10 @@ def with_fenicsx() -> list[Scene]:
 
 def exact(case: Scene) -> float:
     """Return by how much the points part in closed form [m]."""
+    plane = case.table(PlaneSection)
     if "disc" in case.name:
-        return 2 * disc_widening(PRESSURE, HALF_ARC, YOUNG, POISSON)
-    return 2 * hole_displacement(INNER, 0.0, TENSION, YOUNG, POISSON)
+        return 2 * disc_widening(PRESSURE, HALF_ARC, plane.young, plane.poisson)
+    return 2 * hole_displacement(INNER, 0.0, TENSION, plane.young, plane.poisson)
 
 
 def exact_stress(case: Scene) -> tuple[float, float]:
@@ -149,32 +150,37 @@ def exact_stress(case: Scene) -> tuple[float, float]:
     return float(s_xx), float(s_yy)
 
 
-@functools.cache
-def linear(name: str) -> tuple[float, float]:
-    """Return what linear elements on its triangles have, joined by springs if glued softly.
+def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
+    """Return what linear elements on its triangles have, joined by springs if glued softly and not asked for firm glue.
 
     By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
     """
-    case = next(scene for scene in scenes() if scene.name == name)
     plane = case.table(PlaneSection)
-    stressed = STRESSED["disc" if "disc" in name else "hole"]
-    triangles = [triangle for triangle in plane.polygons if stressed in triangle]
+    spring = math.inf if firm or plane.glue == FIRM else plane.glue * plane.young
+    stressed = STRESSED["disc" if "disc" in case.name else "hole"]
+    return _linear(plane.polygons, plane.tractions, plane.young, plane.poisson, spring, stressed)
+
+
+@functools.cache
+def _linear(
+    polygons: tuple[Triangle, ...],
+    tractions: tuple[tuple[tuple[Point, Point], Point], ...],
+    young: float,
+    poisson: float,
+    spring: float,
+    stressed: Point,
+) -> tuple[float, float]:
+    triangles = [triangle for triangle in polygons if stressed in triangle]
     places = [(1.0, 0.0), (-1.0, 0.0), *(corner for triangle in triangles for corner in triangle)]
     loads = []
-    for (start, end), traction in plane.tractions:
+    for (start, end), traction in tractions:
         length = math.dist(start, end)
         half = traction[0] * length / 2, traction[1] * length / 2
         loads.append((start, end, half, half))
-    spring = math.inf if plane.glue == FIRM else plane.glue * plane.young
-    right, left, *corners = displacements(plane.polygons, loads, YOUNG, POISSON, places, spring)
+    right, left, *corners = displacements(polygons, loads, young, poisson, places, spring)
     moved = np.reshape(corners, (-1, 3, 2))
-    stresses = [stress(*pair, YOUNG, POISSON)[0] for pair in zip(triangles, moved, strict=True)]
+    stresses = [stress(*pair, young, poisson)[0] for pair in zip(triangles, moved, strict=True)]
     return float(right[0] - left[0]), float(np.mean(stresses))
-
-
-def firm_of(case: Scene) -> str:
-    """Return the name of the scene that is glued firmly, of the same triangles."""
-    return "plates-hole-8" if "glue" in case.name else case.name
 
 
 def cells(case: Scene) -> int:
@@ -193,7 +199,7 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
-        "glue": blocks / linear(firm_of(case))[0] - 1,
+        "glue": blocks / linear(case, firm=True)[0] - 1,
     }
     stress_xx, stress_yy = (or_nan(finished.rows[case.name, "dda"].metrics[name]) for name in STRESS)
     exact_xx, exact_yy = exact_stress(case)
@@ -206,7 +212,7 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
         values |= {
             "outline": elements / exact(case) - 1,
             "outline size": abs(elements / exact(case) - 1),
-            "strain": linear(case.name)[0] / elements - 1,
+            "strain": linear(case)[0] / elements - 1,
         }
     return values
 
@@ -226,7 +232,7 @@ def glue_order(finished: Finished) -> Mapping[str, Value]:
     """Return the order with which glue's error falls with its stiffness."""
     softs = []
     for case in by_shape()["glue"][-2:]:
-        softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(firm_of(case))[0] - 1)
+        softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(case, firm=True)[0] - 1)
     return {"order": math.log(abs(softs[0] / softs[1])) / math.log(GLUES[-1] / GLUES[-2])}
 
 
@@ -260,13 +266,13 @@ def glued(case: Scene) -> Band:
     Linear elements have no joints: above those stands what firm glue adds, 3 l/2gh. A joint of length l gives way by
     l/2g of a strain where the block behind it gives way by its height h; a triangle has three.
     """
-    low, high = near(linear(case.name)[0], ROUNDING)
+    low, high = near(linear(case)[0], ROUNDING)
     return low, high * (1 + gives_way(case))
 
 
 def glued_stress(case: Scene) -> Band:
     """Return s_xx of the same triangles where it is looked at [Pa]; band: rounding, and what firm glue changes."""
-    _, value = linear(case.name)
+    _, value = linear(case)
     return near(value, ROUNDING + gives_way(case))
 
 
@@ -292,4 +298,4 @@ def sagitta(case: Scene) -> Band:
 def first_order_in_glue() -> Band:
     """Return 1 -/+ C/g, the next term, with the softer of both glues."""
     _, soft, _ = by_shape()["glue"]
-    return about(1.0, linear(soft.name)[0] / linear(firm_of(soft))[0] - 1)
+    return about(1.0, linear(soft)[0] / linear(soft, firm=True)[0] - 1)
