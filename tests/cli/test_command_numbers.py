@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,8 +19,6 @@ from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report.render.terminal import lines
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
-from validation.suite.claims import page
 
 # ---- solve and run ------------------------------------------------------------------------------------------------
 
@@ -133,14 +130,6 @@ def test_rows_are_written_under_their_names(made: Results, tmp_path: Path) -> No
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("rest", [3e-15, -8e-14, 0.0])
-def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_same_everywhere(rest: float) -> None:
-    numbers = {"verdict": 2.0, "rest": rest, "share": 0.0123456, "other": "undefined", "small": 3.456e-11}
-    text = page(replace(CLAIMS_OF_THE_PAPER, claims=CLAIMS[:1]), [{"name": CLAIMS[0].id, "metrics": numbers}])
-    assert f"## {CLAIMS[0].id}: confirmed\n" in text
-    assert "**Measured:** rest below 1e-12; share 0.01235; other undefined; small 3.456e-11." in text
 
 
 def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:

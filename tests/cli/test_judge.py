@@ -379,6 +379,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) 
     ("arguments", "said"),
     [
         (("dda", "nonsense"), "nonsense: no such scene file"),
+        (("mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
         (("mine/locked.csv",), "asked: must name the one problem or scene that a table answers"),
         (("nowhere:solve", "locked"), "solver: must be a module that Python finds"),
         (("installed",), "no other package brings a solver"),

@@ -59,8 +59,10 @@ PAGES = {  # of the documentation, each with the commands that it is about
     "tutorial.md": ("new", "list", "show", "run", "solve"),
     "gallery.md": ("report", "rows"),
     "claims.md": ("claims",),
+    "verification.md": ("verify",),
     "ci.md": ("diff",),
-    "judge.md": ("judge", "compare", "export-pack"),
+    "judge.md": ("judge", "export-pack"),
+    "compare.md": ("compare",),
     "choose.md": ("advise",),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
@@ -72,7 +74,7 @@ USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no
 
 def page_of(name: str) -> Path:
     """Return the page of a command: of the checkout, or where the wheel has put it below its environment."""
-    page = next((page for page, names in PAGES.items() if name in names), "index.md")
+    page = next(page for page, names in PAGES.items() if name in names)
     packages = Path(__file__).resolve().parents[2]
     installed = [folder / "share/doc/dda-validation" for folder in packages.parents]
     folders = (packages / "docs", packages / "share/doc/dda-validation", *installed)
