@@ -74,7 +74,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
         beside(finished_cases, tmp_path / name)
     if page == "judge.md" and not (shutil.which("g++") and shutil.which("gfortran")):
         pytest.skip("NOT RUN: there is no compiler of C++ and Fortran")
-    for folder in ("judge", "scenes", "extend"):
+    for folder in ("extend",) if page == "extending.md" else ("judge", "scenes"):
         shutil.copytree(DOCS / "examples" / folder, tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
