@@ -47,7 +47,7 @@ portable: $(READY)  ## the tests under other kernels, versions and Pythons, and 
 	$(BIN)/python .ci/portable
 
 docs: $(DOCS)  ## the documentation site, in site/, with the gallery of the results that are there
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet
+	$(BIN)/python .ci/site_pages.py
 	@if [ -f reports/results/verdicts.json ]; then $(BIN)/dda-validate report --site site/gallery --docs ..; \
 	else echo "no results for the gallery: make report, then make docs again"; fi
 	@echo site/index.html

@@ -73,7 +73,7 @@ class Detection(NamedTuple):
     head: Any  # (b,) work: first contact of the step before of a block
     depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
     before: Matrix  # (n, 2) where the corners were when the last step that was accepted began [m]
-    way: Vector  # (b,) how far the corners of each moved in it, at most [m]
+    travel: Vector  # (b,) how far the corners of each moved in it, at most [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
     previous: FoundContacts
@@ -100,7 +100,7 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         head=np.full(len(polygons), NONE),
         depth=np.zeros(len(polygons)),
         before=np.full((sum(map(len, polygons)), 2), math.inf),
-        way=np.zeros(len(polygons)),
+        travel=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=found_contacts(most),
         previous=found_contacts(most),
@@ -145,15 +145,15 @@ def find_contacts(detection: Detection) -> int:
     for block in range(blocks):
         head[block] = NONE
         detection.depth[block] = 0.0
-        detection.way[block] = 0.0
+        detection.travel[block] = 0.0
     for corner in range(len(corners.block)):
         x = corners.now[corner][0] - detection.before[corner][0]
         y = corners.now[corner][1] - detection.before[corner][1]
         block = corners.block[corner]
-        way = math.hypot(x, y)
-        if way == math.inf:  # before the first step
-            way = REACH * detection.size / 2
-        detection.way[block] = max(detection.way[block], way)
+        distance = math.hypot(x, y)
+        if distance == math.inf:  # before the first step
+            distance = REACH * detection.size / 2
+        detection.travel[block] = max(detection.travel[block], distance)
     for number in range(detection.count[1] - 1, -1, -1):
         corner = previous.corner[number]
         start = previous.edge[number]
@@ -251,7 +251,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     j = parts.block[r]
     pressed = max(SOFT * size, PRESSED * max(detection.depth[i], detection.depth[j]))
     soft = min(pressed, margin)
-    deepest = min(pressed + detection.way[i] + detection.way[j], DEEP * size)
+    deepest = min(pressed + detection.travel[i] + detection.travel[j], DEEP * size)
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
@@ -281,9 +281,9 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     touching_point = NONE
     slowest = -math.inf
     for turn in range(2):
-        own = p if turn == 0 else r
+        part = p if turn == 0 else r
         opposite = r if turn == 0 else p
-        for side in range(parts.first[own], parts.last[own]):
+        for side in range(parts.first[part], parts.last[part]):
             if kept >= 0 and side != kept:
                 continue
             before, lowest = front(corners.now, sides, parts, side, opposite)

@@ -189,13 +189,13 @@ def separation(ring: Array, points: Array) -> float:
 class Pairs:
     """All corners of a polygon that can touch, beside all edges of another one, in the axes of the latter."""
 
-    def __init__(self, own: Array, other: Array, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
-        """Take corners from `own` and edges from `other`."""
-        ring = without_straight_corners(own)
-        self.corners = [corner for corner, sine in zip(ring, turns_of(own, ring), strict=True) if sine > 0]
+    def __init__(self, outline: Array, other: Array, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
+        """Take corners from `outline` and edges from `other`."""
+        ring = without_straight_corners(outline)
+        self.corners = [corner for corner, sine in zip(ring, turns_of(outline, ring), strict=True) if sine > 0]
         self.ring = ring
         self.edges = without_straight_corners(other)
-        self.xi = own[self.corners]
+        self.xi = outline[self.corners]
         self.starts = other[self.edges]
         sides = np.roll(self.starts, -1, axis=0) - self.starts
         self.lengths = np.linalg.norm(sides, axis=1)
@@ -236,8 +236,8 @@ class Pairs:
         apart = np.stack([gap, -gap, -along, along - self.lengths])
         rate = np.stack([closing, -closing, -speed_along, speed_along])
         spin = self.motion_of_edges.spin
-        way = max(math.hypot(*(self.origin + self.velocity * instant)) for instant in (time, time + window))
-        bend = spin**2 * way + 2 * abs(spin) * math.hypot(*self.velocity)
+        distance = max(math.hypot(*(self.origin + self.velocity * instant)) for instant in (time, time + window))
+        bend = spin**2 * distance + 2 * abs(spin) * math.hypot(*self.velocity)
         bends = bend + (self.motion.spin - spin) ** 2 * np.linalg.norm(self.xi, axis=1)[:, None]
         w = np.maximum(apart, 0.0)
         root = np.sqrt(rate**2 + 2 * bends * w)

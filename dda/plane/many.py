@@ -47,7 +47,7 @@ from dda.plane.elimination import (
     order_blocks,
     solve_blocks,
 )
-from dda.plane.places import Places, contact_way, flexibility_of, push_contacts
+from dda.plane.places import Places, contact_displacement, flexibility_of, push_contacts
 
 TOGETHER = 8  # solves in which all states are updated at once
 RESTARTS = 6  # of sweeps, each longer than the last one
@@ -174,27 +174,27 @@ def update_all(laws: Laws, after: Rows, work: Work, slack: float) -> int:
     for k in range(n):
         r = n + k
         state = work.tried[k]
-        way = work.tried[r]
+        shear_state = work.tried[r]
         if state != INSIDE:
             if work.z[k] < -slack:
                 state = INSIDE
-                way = INSIDE
+                shear_state = INSIDE
         elif laws.opens[k] == 1 and not (after.force[k] - laws.lower[k]) * laws.compliance[k] >= -slack:
             state = LOWER
-            way = INSIDE
+            shear_state = INSIDE
         elif laws.slips and not is_smooth(laws, k):
-            if way != INSIDE:
-                if way * work.z[r] > slack:
-                    way = INSIDE
+            if shear_state != INSIDE:
+                if shear_state * work.z[r] > slack:
+                    shear_state = INSIDE
             else:
                 limit = shear_limit(laws, k, after.force[k])
                 more = abs(after.force[r]) - limit * (1 + ROUNDING)
                 if more * laws.compliance[r] > slack:
-                    way = UPPER if after.force[r] > 0 else LOWER
-        if state != work.tried[k] or way != work.tried[r]:
+                    shear_state = UPPER if after.force[r] > 0 else LOWER
+        if state != work.tried[k] or shear_state != work.tried[r]:
             wrong += 1
             work.tried[k] = state
-            work.tried[r] = way
+            work.tried[r] = shear_state
     return wrong
 
 
@@ -240,8 +240,8 @@ def solve_states(
             share = max(crossing_share(laws, before.opening[k], k, N), LEAST_SHARE)
             if abs(share - work.beta[k]) > CROSSED * share:
                 settled = False
-            way = work.q[n + k] + contact_way(many.x, blocks, places, n + k)
-            many.kappa[k] = (after.force[n + k] * laws.compliance[n + k] + way) / N if N > 0 else 0.0
+            displacement = work.q[n + k] + contact_displacement(many.x, blocks, places, n + k)
+            many.kappa[k] = (after.force[n + k] * laws.compliance[n + k] + displacement) / N if N > 0 else 0.0
             many.normal[k] = N
             work.beta[k] = share
         if settled:
@@ -272,12 +272,12 @@ def assemble(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Len
         if work.tried[k] != INSIDE:
             continue
         r = n + k
-        way = work.tried[r]
+        shear_state = work.tried[r]
         stiffness = 1 / laws.compliance[k]
         add_row(many, blocks, places, k, k, k, stiffness, -stiffness * work.q[k])
-        if way != INSIDE:
-            slope = way * laws.friction[k] * stiffness
-            add_row(many, blocks, places, k, r, k, slope, way * laws.upper[r] - slope * work.q[k])
+        if shear_state != INSIDE:
+            slope = shear_state * laws.friction[k] * stiffness
+            add_row(many, blocks, places, k, r, k, slope, shear_state * laws.upper[r] - slope * work.q[k])
         elif not is_smooth(laws, k):
             along = work.beta[k] / laws.compliance[r]
             add_row(many, blocks, places, k, r, r, along, -along * work.q[r])
@@ -343,15 +343,15 @@ def add_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Wor
             after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(whole * work.q[k] + contact_way(many.x, blocks, places, k)) / laws.compliance[k]
+        N = -(whole * work.q[k] + contact_displacement(many.x, blocks, places, k)) / laws.compliance[k]
         after.force[k] += N
         if work.tried[r] != INSIDE:
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            way = whole * work.q[r] + contact_way(many.x, blocks, places, r)
+            displacement = whole * work.q[r] + contact_displacement(many.x, blocks, places, r)
             if many.kappa[k] != 0.0:
-                way += many.kappa[k] * (N - whole * many.normal[k])
-            after.force[r] -= way * work.beta[k] / laws.compliance[r]
+                displacement += many.kappa[k] * (N - whole * many.normal[k])
+            after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 
 def write_openings(
@@ -368,10 +368,10 @@ def write_openings(
         after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
         after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
         if work.tried[k] != INSIDE:
-            work.z[k] = work.q[k] + contact_way(many.x, blocks, places, k)
+            work.z[k] = work.q[k] + contact_displacement(many.x, blocks, places, k)
             after.opening[k] = work.z[k]
         elif work.tried[r] != INSIDE:
-            z = work.q[r] + contact_way(many.x, blocks, places, r)
+            z = work.q[r] + contact_displacement(many.x, blocks, places, r)
             if before.state[k] != INSIDE:
                 z *= crossing_share(laws, before.opening[k], k, after.force[k])
             work.z[r] = z + laws.compliance[r] * after.force[r]
@@ -430,17 +430,18 @@ def sweep(
         for step in range(n):
             k = step if number % 2 == 0 else n - 1 - step
             r = n + k
-            gap = work.q[k] + contact_way(many.x, blocks, places, k)
-            own = flexibility_of(blocks, places, length, k, k)
-            N = (own * after.force[k] - gap) / (own + laws.compliance[k])
+            gap = work.q[k] + contact_displacement(many.x, blocks, places, k)
+            flexibility = flexibility_of(blocks, places, length, k, k)
+            N = (flexibility * after.force[k] - gap) / (flexibility + laws.compliance[k])
             if laws.opens[k] == 1 and laws.lower[k] > N:
                 N = 0.0
             T = 0.0
             if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
-                way = work.q[r] + contact_way(many.x, blocks, places, r)
-                own = flexibility_of(blocks, places, length, r, r)
+                displacement = work.q[r] + contact_displacement(many.x, blocks, places, r)
+                flexibility = flexibility_of(blocks, places, length, r, r)
                 limit = shear_limit(laws, k, N)
-                T = min(max((own * after.force[r] - way) / (own + laws.compliance[r]), -limit), limit)
+                sticking = (flexibility * after.force[r] - displacement) / (flexibility + laws.compliance[r])
+                T = min(max(sticking, -limit), limit)
             push(many, blocks, places, length, k, N, after)
             push(many, blocks, places, length, r, T, after)
     for k in range(n):

@@ -43,7 +43,7 @@ def unsettled_contacts(
     found = march.method.detection.contacts
     if outcome == TOO_DEEP:
         return (found_contact(march, found.corner[0], found.edge[0]),)
-    if outcome != NONE or march.scheme.stages > 1:  # of two stages nobody says which one failed
+    if outcome != NONE:
         return ()
     is_cut = history.cuts[reached + 1] > 0
     present = stated_contacts(model)
@@ -66,7 +66,7 @@ def found_contact(march: March, corner: int, edge: int) -> PlaneContact:
 
 
 def flipping_contacts(march: March, is_cut: bool) -> list[int]:
-    """Return the contacts whose states change as the search of the step that failed goes round, by their numbers.
+    """Return the contacts whose states change as the search of the stage that failed goes round, by their numbers.
 
     The search goes on from the states in which it was given up until it comes back to states that it had: those in
     between are gone through for ever.
@@ -80,8 +80,10 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
     work = march.work
     contacts = plane.places.count[0]
     laws = laws_for(march.laws, contacts)
-    before = plane.first.rows
-    length = march.last.part if is_cut else march.last.whole
+    is_second = plane.made[0] > 0
+    before = (plane.second if is_second else plane.first).rows
+    stage = march.last if is_second or march.scheme.stages == 1 else march.first
+    length = stage.part if is_cut else stage.whole
     after = rows_of(np.zeros(len(before.force)), np.zeros(len(before.force)))
     first_met: dict[tuple[int, ...], int] = {}
     states: list[tuple[int, ...]] = []

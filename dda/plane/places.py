@@ -121,9 +121,9 @@ def write_rows(
         end_y = sin * nx + cos * ny
         # the corner from its foot
         gap = before.opening[k]
-        way = before.opening[n + k] if places.bonded[k] == 1 else 0.0
-        dx = gap * places.normal[k][0] + way * places.normal[k][1]
-        dy = gap * places.normal[k][1] - way * places.normal[k][0]
+        stretch = before.opening[n + k] if places.bonded[k] == 1 else 0.0
+        dx = gap * places.normal[k][0] + stretch * places.normal[k][1]
+        dy = gap * places.normal[k][1] - stretch * places.normal[k][0]
         ux, uy = moved(chords, i, D[i], at[0], at[1])
         vx, vy = moved(chords, j, D[j], foot[0], foot[1])
         mean_x = dx + (ux - vx) / 2
@@ -160,11 +160,11 @@ def write_rows(
             by_modes(blocks, j, chords, chord_j, False, places.B[r][1])
             by_modes(blocks, i, chords, force_i, True, places.F[r][0])
             by_modes(blocks, j, chords, force_j, True, places.F[r][1])
-            nx, ny = ny, -nx  # the way along the edge
+            nx, ny = ny, -nx  # the direction along the edge
             end_x, end_y = end_y, -end_x
 
 
-def contact_way(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
+def contact_displacement(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
     """Return B x of a row [m]."""
     n = places.count[0]
     k = r if r < n else r - n

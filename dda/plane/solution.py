@@ -185,6 +185,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         springs=springs,
         first=memories[0],
         second=memories[1],
+        made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
         many=many_of(blocks, c),
@@ -515,8 +516,10 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
         shear[at, column] = history.force[at, along]
         gap[at, column] = history.opening[at, number]
         slip[at, column] = history.path[at, number]
-        way = history.state[at, along]
-        state[at, column] = np.where(way == INSIDE, STICKS, -SLIPS * way) * (history.state[at, number] == INSIDE)
+        shear_state = history.state[at, along]
+        state[at, column] = np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state) * (
+            history.state[at, number] == INSIDE
+        )
     return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
 
 

@@ -46,7 +46,7 @@ from dda.plane.bodies import (
 )
 from dda.plane.detect import Detection
 from dda.plane.many import Many, find_many
-from dda.plane.places import Places, contact_way, flexibility_of, place_contacts, push_contacts, write_rows
+from dda.plane.places import Places, contact_displacement, flexibility_of, place_contacts, push_contacts, write_rows
 from dda.plane.taken import (
     Memory,
     Springs,
@@ -111,6 +111,7 @@ class Plane(NamedTuple):
     springs: Springs
     first: Memory  # of a step, or of the first of two stages
     second: Memory
+    made: Any  # (1,) 0, or 1 where the stage that was made last is the second
     dropped: Vector  # (1,) energy of contacts that are no more [J]
     dense: int  # contacts up to which the equations are those of their forces
     many: Many
@@ -132,6 +133,7 @@ def make_stage(
     room = march.room
     places = plane.places
     memory = memory_of(plane, stage)
+    plane.made[0] = 0 if stage.numbers.begin == 0 else 1
     length = length_in_plane(march, stage, part.ratio)
     prescribe(march, course, stage, part)
     begin_step(march, start, length)
@@ -321,7 +323,7 @@ def free_contacts(march: March, memory: Memory) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
+        free[r] = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
@@ -343,11 +345,11 @@ def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) 
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            way = places.driven[k] + contact_way(plane.x, plane.blocks, places, k)
-            rows.opening[k] = memory.rows.opening[k] + way
+            displacement = places.driven[k] + contact_displacement(plane.x, plane.blocks, places, k)
+            rows.opening[k] = memory.rows.opening[k] + displacement
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            way = places.driven[r] + contact_way(plane.x, plane.blocks, places, r)
-            after.path[r] = memory.path[r] + memory.rows.opening[r] + way - rows.opening[r]
+            displacement = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
         rows.slip[r] = 0.0
@@ -419,18 +421,18 @@ def account_stage(
     add_contact_losses(march, laws, plane.ground, memory, after, late, length, sums)
     rows = after.rows
     old = memory.rows
-    own = 0.0  # work of forces on their own ways
+    own_work = 0.0  # work of forces along their own directions
     for r in range(2 * plane.places.count[0]):
         force = (1 - late) * old.force[r] + late * rows.force[r]
         if force != 0.0:
             sums[GIVEN] -= force * after.driven[r]
-            own += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
+            own_work += force * (rows.opening[r] - old.opening[r] + (after.path[r] - memory.path[r]) - after.driven[r])
     for j in range(len(march.body.loads)):
         share = (1 - late) * room.start[2 + j] + late * room.end[2 + j]
         work = 0.0
         for i in range(len(after.z)):
             work += march.body.loads[j][i] * (after.z[i] - before.z[i])
-        own += share * work
+        own_work += share * work
         sums[GIVEN] += (share - march.body.stored[j]) * work
     for i in range(len(plane.D)):
         for k in range(6):
@@ -443,14 +445,14 @@ def account_stage(
         share = (1 - late) * room.start[loads.share[k]] + late * room.end[loads.share[k]]
         x, y = moved(plane.chords, i, plane.D[i], loads.at[k][0], loads.at[k][1])
         work = loads.force[k][0] * x + loads.force[k][1] * y
-        own += share * work
+        own_work += share * work
         sums[GIVEN] += (share - 1) * work
     if march.scheme.newmark:
         for i in range(len(after.z)):
             at_start = before.R[i] / dt2 + march.body.k[i] * before.z[i]
             at_end = after.R[i] / dt2 + march.body.k[i] * after.z[i]
-            own -= ((1 - late) * at_start + late * at_end) * (after.z[i] - before.z[i])
-        sums[ALGORITHMIC] += own
+            own_work -= ((1 - late) * at_start + late * at_end) * (after.z[i] - before.z[i])
+        sums[ALGORITHMIC] += own_work
 
 
 def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:

@@ -1,6 +1,6 @@
 r"""Whole histories as matrix products over blocks of steps.
 
-From step 1 on, M A + K D = F, so that a mode's state is (u, p): the displacement over its static
+From step 1 on, M A + C V + K D = F, so that a mode's state is (u, p): the displacement over its static
 value and, in the same measure, the momentum dt V. A step of the scheme is an affine map of (u, p),
 and step jB + i of a history is the product of a row of i steps and a column of jB steps: the whole
 history is one matrix product for each column. Rows and columns are doubled, from 1, 2, 4, ... steps
@@ -22,7 +22,7 @@ import numpy as np
 from dda.model.arrays import Array
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
-from dda.scheme.roots import state_matrix
+from dda.scheme.roots import polynomial, state_matrix
 from dda.scheme.stage import Stage, Table
 
 BLOCK = 1024  # most steps in a row: its products stay in the cache
@@ -41,8 +41,6 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
     A power of a growing map overflows before the history does.
     """
-    if scheme.damped:
-        return "viscous damping"
     if scheme.averages:
         return f"{scheme.name} carries the acceleration beside displacement and momentum"
     omegas = [scheme.step * w for w in frequencies.tolist()]
@@ -53,6 +51,9 @@ def why_stepped(scheme: Scheme, frequencies: Array) -> str | None:
 
 def _grows(scheme: Scheme, omega: float) -> bool:
     """Tell whether the step of a mode has a root outside the unit circle, or on it at -1."""
+    if scheme.damped:
+        _, slope, product = polynomial(scheme, omega).tolist()
+        return not (4 - 2 * slope + product > 0 and product - slope <= GROWTH_ROUNDING)
     if scheme.table is not None:
         change = state_matrix(scheme, omega * omega)
         trace = 2 + float(np.trace(change))
@@ -123,7 +124,8 @@ def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Arr
 
 def with_all_digits(scheme: Scheme) -> Scheme:
     """Return the scheme in decimal numbers, which `staged_step` takes in place of doubles."""
-    fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
+    numbers = ("alpha", "delta", "gg", "step", "mass_damping", "stiffness_damping")
+    fields: dict[str, Any] = {name: Decimal(getattr(scheme, name)) for name in numbers}
     if scheme.table is not None:
         rows: list[list[Any]] = [[Decimal(number) for number in stage] for stage in scheme.table.stages]
         lag: Any = Decimal(scheme.lag)
@@ -154,7 +156,8 @@ def _mode(exact: Scheme, w: float, levels: int) -> tuple[Array, tuple[float, flo
 def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
     """Return the map of one step, and (u, p) at step 1, from the scheme's own step.
 
-    Under the load F = k the static displacement is 1, so that D is u and P is p.
+    Under the load F = k the static displacement is 1, so that D is u and P is p; the inertia force of a state is
+    k - k D - e P.
     """
     frequency: Any = Decimal(w)
     zero: Any = Decimal(0)
@@ -171,7 +174,7 @@ def _one_step(exact: Scheme, w: float) -> tuple[Map, tuple[int, int]]:
 
         e, g = step(zero, zero, k)
         a, c = step(one, zero, zero)
-        b, d = step(zero, one, k)
+        b, d = step(zero, one, k - newmark.viscosity(exact, k))
         first = step(*newmark.rest(exact, k, zero, k)[:3])
         return (a - e, b - e, c - g, d - g, e, g), first
 

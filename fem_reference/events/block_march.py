@@ -66,7 +66,9 @@ class BlockMarch(March):
         v = column([-vx, arb(self.problem.velocity) - vy, *[arb(0)] * 4])
         is_open = u[1, 0] > 0 and not self.block.locked  # a base that begins below the block pulls at a locked one
         states = (OPEN, OPEN) if is_open or self.block.contact else (STICKS, STICKS)
-        return Start(arb(0), u, v, [-x.mid(), -x.mid()]), states
+        # Springs that never let go are unstrained where the base's record is zero, others where their corner touches.
+        reference = arb(0) if self.block.locked else -x.mid()
+        return Start(arb(0), u, v, [reference, reference]), states
 
     def take_drives(self, moment: float) -> None:
         """Take the path of the base from a row of its record on, from which the block is seen."""

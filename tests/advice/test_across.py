@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import json
-
 import pytest
-from conftest import refused, thinned, typed
+from conftest import thinned
 
 from validation import InputError, advise_across, damping, load_scene
 from validation.advice.across import GAIN, STEPS, SchemeAdvice
@@ -60,9 +58,3 @@ def test_what_is_refused(values: dict[str, float], field: str) -> None:
     with pytest.raises(InputError) as error:
         advise_across(LOCKED, **values)
     assert error.value.field == field
-
-
-def test_the_command_is_the_function(five: SchemeAdvice) -> None:
-    done = typed("advise", "schemes", *BASE, "--damping", 0.05, "--at", 5, "--no-gain", "--json")
-    assert json.loads(done.stdout) == json.loads(json.dumps(five.as_dict()))
-    assert "column" in refused("advise", "schemes", "columns-weight", "--damping", 0.05)

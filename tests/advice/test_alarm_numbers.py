@@ -11,7 +11,8 @@ import pytest
 from oracles.made_cases import made_row
 
 from validation.advice import budget
-from validation.advice.alarms import TENSION, alarms, fixed_discount
+from validation.advice.alarms import alarms, fixed_discount
+from validation.advice.block_alarms import TENSION
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 from conftest import beside
 
-from validation.advice.alarms import RINGING, Alarm, alarms
+from validation.advice.alarms import Alarm, alarms
+from validation.advice.block_alarms import RINGING
 from validation.advice.coarse import AGREEMENT, SAMPLED
 from validation.engine.run import finish
 from validation.scenes.scene import Scene, load_scene

@@ -14,7 +14,7 @@ from typer.testing import CliRunner
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
 from validation.cli.app import app
 from validation.report.chapters.alarms import alarm_lines
-from validation.report.front.groups import groups_of_studies
+from validation.report.chapters.data import groups_of_studies
 from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns
@@ -121,7 +121,7 @@ def test_run_show_and_the_report_warn(tmp_path: Path) -> None:
     printed = CliRunner().invoke(app, ["run", str(source), "--results", str(results)])
     assert printed.exit_code == 0 and all(kind in printed.output for kind in BOTH)
     assert "[[gate]]" not in printed.output
-    first_page = alarm_lines(groups_of_studies(Results(results), ["granite"]))
+    first_page = alarm_lines(groups_of_studies(Results(results), [Results(results).manifest("granite")]))
     assert all(any(kind in line.text for line in first_page) for kind in BOTH)
     refined = CliRunner().invoke(app, ["run", str(source), "--results", str(results), "--set", "time.step=1e-5"])
     assert "[[gate]]" in refined.output and not any(kind in refined.output for kind in BOTH)

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import typed
+
+from validation.advice.spectra import ModeDamping, runs
 
 OPTIONS = ("--set", "time.gg=0.98")
 
@@ -44,3 +47,11 @@ def test_damping_as_plain_data_is_in_fractions_and_seconds(scene_file: Path) -> 
     bar = 1.0768740 / 2 * math.sqrt(1e9 / 2700)  # b tan b = 2, w = (b/2) sqrt(E/rho)
     expected = {"frequency": bar, "damping": of_scheme(0.002 * bar, 0.98)[0]}
     assert found["references"]["bar"] == pytest.approx(expected, rel=1e-5)
+
+
+def test_what_has_no_damping_ratio_of_its_own_is_not_split() -> None:
+    """At gg < 1 a mode may oscillate that without the discount has a root that is not positive."""
+    mode = ModeDamping("contact", 1e3, 0.4, 0.6, 2.0, None, None, 0.1, -0.2)
+    assert runs(mode) == "is damped at 40 % of critical, kinetic and algorithmic"
+    assert runs(replace(mode, algorithmic=0.1, kinetic=0.3)).endswith("10 % algorithmic and 30 % kinetic")
+    assert runs(replace(mode, algorithmic=0.4, kinetic=0.0)).endswith("all of it algorithmic")

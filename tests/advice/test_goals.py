@@ -11,11 +11,11 @@ from conftest import typed
 
 from validation import damping, load_scene, solve
 from validation.advice import goals
-from validation.advice.cuts import CutHooks
 from validation.advice.goals import Recommendation, recommend
 from validation.advice.overview import overview
 from validation.errors import InputError
-from validation.models.plane import cuts
+from validation.models.column.pages import recommended_cut as cut_column
+from validation.models.plane import pages
 from validation.scenes.scene import Scene, parse_assignment
 from validation.solvers.registry import get_solver
 from validation.theory import landing
@@ -52,7 +52,7 @@ def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its
     assert offer.settings["contact.stiffness"] == pytest.approx(modulus * width / (height * 0.05))
 
 
-@pytest.mark.parametrize("keep_springs", [False, True])
+@pytest.mark.parametrize("keep_springs", [pytest.param(False, marks=pytest.mark.long), True])
 def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs: bool) -> None:
     plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
     assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
@@ -74,11 +74,11 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_spring
             assert off == pytest.approx(plain.displacement_error, rel=0.5)
 
 
+@pytest.mark.long
 def test_a_quake_is_followed_in_the_contact_force_too() -> None:
-    (offer,) = recommend(PAPER, "quake", 0.05)
-    (finer,) = recommend(PAPER, "quake", 0.01)
-    assert offer.is_reached and finer.is_reached and finer.steps > offer.steps
-    assert "sideways" in offer.condition and finer.force_error is not None and finer.force_error <= 0.01
+    (offer,) = recommend(PAPER, "quake", 0.02)
+    assert offer.is_reached and offer.force_error is not None and offer.force_error <= 0.02
+    assert "sideways" in offer.condition
 
 
 @pytest.mark.parametrize(
@@ -88,9 +88,10 @@ def test_a_quake_is_followed_in_the_contact_force_too() -> None:
 def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene: Scene, goal: str) -> None:
     with pytest.raises(InputError) as error:
         recommend(scene, goal, 0.05)
-    answer = overview(scene, (goal, "wave"))
+    others = ("wave",) if goal == "static" else ()
+    answer = overview(scene, (goal, *others))
     assert answer.refused == {goal: error.value.rule}
-    assert [offer.goal for offer in answer.recommendations] == ["wave"]
+    assert tuple(offer.goal for offer in answer.recommendations) == others
 
 
 def test_the_present_settings_are_told_with_their_numbers() -> None:
@@ -107,14 +108,9 @@ def test_the_present_settings_are_told_with_their_numbers() -> None:
     assert "may gain energy" in facts["switching"] and "0.99" in facts["discount"]
 
 
-@pytest.mark.parametrize(
-    "words",
-    [
-        pytest.param(("figures-3-4", "--set", "time.step=0.002", "--set", "time.gg=0.98"), marks=pytest.mark.long),
-        ("slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.01", "--set", "time.steps=20"),
-    ],
-)
-def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
+@pytest.mark.long
+def test_every_command_that_is_named_runs() -> None:
+    words = ("slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.01", "--set", "time.steps=20")
     page = typed("advise", *words, "--goal", "static").stdout
     commands = re.findall(r"(?:more on .*|next): dda-validate (.*)$", page, re.M)
     assert len(commands) == 5
@@ -129,19 +125,19 @@ def test_every_command_that_is_named_runs(words: tuple[str, ...]) -> None:
 
 def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
     scene = load_scene("waves-base").expand()[0]
-    _, offer = CutHooks.of(scene).recommended(scene, 0.05)
+    _, offer = cut_column(scene, 0.05)
     case = with_settings(scene, offer, **{"time.steps": offer.steps, "run.columns": ["displacement"]})
     a, b = (solve(case, name).displacement for name in ("dda", "layers"))
     assert np.linalg.norm(a - b) / np.linalg.norm(b) == pytest.approx(offer.displacement_error, rel=1e-9)
     assert offer.is_reached and "50 Hz" in offer.condition
     with pytest.raises(InputError):
-        CutHooks.of(scene).recommended(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
+        cut_column(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
 
 
 def test_a_beam_of_squares_that_lock_is_cut_into_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cuts, "MOST_BLOCKS", 100)  # squares lock in any number
+    monkeypatch.setattr(pages, "MOST_BLOCKS", 100)  # squares lock in any number
     scene = load_scene("beams-squares").expand()[0].with_values({"plane.subdivide": [1, 8]})
-    sentence, offer = CutHooks.of(scene).recommended(scene, 0.5)
+    sentence, offer = pages.recommended_cut(scene, 0.5)
     assert offer.settings["plane.pattern"] == "triangles" and offer.is_reached
     case = with_settings(scene, offer)
     euler = 1e4 * 8**3 / (3 * 1e9 / 12)  # and 2 % of shear

@@ -3,7 +3,6 @@
 import copy
 import math
 import tomllib
-from pathlib import Path
 
 import pytest
 from conftest import SCENE, refused
@@ -15,7 +14,6 @@ from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, parse_scene
-from validation.solvers import memory
 from validation.solvers.registry import get_solver
 
 DATA = tomllib.loads(SCENE)
@@ -147,8 +145,3 @@ def test_what_cannot_fit_is_refused_with_the_estimate(solver, values, words):
         solve(scene, solver)
     assert words in str(caught.value)
     assert completed(get_solver(solver), scene).outcome is Outcome.REFUSED
-
-
-def test_a_mesh_file_that_is_not_there_is_said_where_it_is_read(tmp_path):
-    scene = parse_scene(DATA | {"fem": {"mesh": str(Path(tmp_path) / "no.msh")}}, "x.toml")
-    assert memory.needed(scene, get_solver("fem"))[1] == "time.steps"

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,32 +15,15 @@ from oracles.pages import table
 from validation import load_scene
 from validation.cli.printing import tables
 from validation.cli.run import _status
-from validation.gates.changes import against, changes, markdown
+from validation.gates.changes import changes, markdown
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.report.render.terminal import lines
-from validation.runs.files import read_csv
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
 from validation.suite.claims import page
 
 # ---- solve and run ------------------------------------------------------------------------------------------------
-
-
-def test_solve_prints_the_last_values_and_the_duration(scene_file: Path, tmp_path: Path) -> None:
-    done = typed("solve", scene_file, "--solver", "bar", "--csv", tmp_path / "h.csv")
-    history = read_csv(tmp_path / "h.csv")
-    assert done.stdout.startswith(
-        f"small bar: 50 steps to t = 0.1 s; last: displacement {history.displacement[-1]:.6g}, "
-        f"contact_pressure {history.contact_pressure[-1]:.6g}; "
-    )
-    assert history.time[-1] == pytest.approx(0.1) and history.displacement[-1] != history.displacement[0]
-
-
-def test_solve_says_what_a_solver_does_not_report(scene_file: Path) -> None:
-    done = typed("solve", scene_file, "--solver", "bar", "--set", 'run.columns=["displacement", "rotation"]')
-    assert done.returncode == 0 and done.stderr.splitlines()[-1] == "note: not reported: rotation"
-    assert "rotation" not in done.stdout
 
 
 def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
@@ -119,21 +101,6 @@ def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> N
     ]
 
 
-def test_a_baselines_other_studies_are_not_lost_gates(tmp_path: Path) -> None:
-    (tmp_path / "old.json").write_text(json.dumps([*OLD, verdict("x", "PASS", 0.5, "other")]))
-    assert [(c.kind, c.id) for c in against(tmp_path / "old.json", NEW[:3])] == [("worse", "a"), ("value", "b")]
-
-
-def test_differences_are_printed_as_before_and_after() -> None:
-    differing, count = tables.change_blocks(changes(OLD, NEW[:3]))
-    assert [column.title for column in differing.columns] == ["change", "study", "gate", "before", "after"]
-    assert differing.rows == (
-        ("worse", "s", "a", "PASS 0.5", "FAIL 0.875"),
-        ("value", "s", "b", "FAIL 0.125", "FAIL 0.1"),
-    )
-    assert count.text == "2 gates differ: 1 worse, 1 value"
-
-
 # ---- rows and plot ------------------------------------------------------------------------------------------------
 
 
@@ -174,16 +141,6 @@ def test_the_page_of_claims_gives_no_digits_of_what_rounding_leaves_and_is_the_s
     text = page(replace(CLAIMS_OF_THE_PAPER, claims=CLAIMS[:1]), [{"name": CLAIMS[0].id, "metrics": numbers}])
     assert f"## {CLAIMS[0].id}: confirmed\n" in text
     assert "**Measured:** rest below 1e-12; share 0.01235; other undefined; small 3.456e-11." in text
-
-
-@pytest.mark.parametrize(
-    ("verdict", "head"), [(2.0, "confirmed"), (1.0, "confirmed under a condition (only so)"), (0.0, "refuted")]
-)
-def test_a_condition_is_told_of_what_holds_under_it_alone(verdict: float, head: str) -> None:
-    claim = replace(CLAIMS[0], condition="only so")
-    assert f"## C1: {head}\n" in page(
-        replace(CLAIMS_OF_THE_PAPER, claims=(claim,)), [{"name": "C1", "metrics": {"verdict": verdict}}]
-    )
 
 
 def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:

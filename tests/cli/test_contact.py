@@ -18,14 +18,6 @@ from validation.runs.run import Outcome
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
 
-@pytest.mark.long
-def test_a_smaller_penetration_asks_for_stiffer_springs() -> None:
-    scene = load_scene("unlocked-constant").expand()[0].with_values({"time.steps": 400})
-    rows = {"block-events": execute(Case(scene, "block-events"), "", "")[0]}
-    now, stiffer = (contact_page.answer(scene, rows, depth)["needed"]["stiffness"] for depth in (1e-4, 1e-5))
-    assert stiffer == pytest.approx(100 * now, rel=0.05)
-
-
 def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
     stop = ("contact.stiffness=inf", "contact.shear_stiffness=0", 'contact.rule="impact"', "contact.restitution=0.5")
     sets = [word for value in (*stop, "time.step=0.001", "time.steps=8") for word in ("--set", value)]
@@ -71,14 +63,3 @@ def test_when_a_block_first_opens_and_lands(
     scene = load_scene("unlocked-constant").with_values({"contact.gap": gap, "block.velocity": velocity})
     run = {"switches.first_opening": opening, "switches.first_closing": closing}
     assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words  # type: ignore[arg-type]
-
-
-@pytest.mark.long
-def test_a_slope_says_where_the_exact_block_hops_and_advises_no_landing_unasked() -> None:
-    slope = ("field-sliding", "--set", "load.slope=30", "--set", "contact.friction=20", "--set", "time.steps=74")
-    hops = typed("advise", "contact", *slope, "--set", "contact.gap=0.5").stdout
-    assert "hops        the exact block is open for 98.7 % of the time and moves 0.7038 m" in hops
-    assert "by 0.49635 m" in hops and "penetration below" not in hops
-    stays = typed("advise", "contact", *slope, "--penetration", "1e-3").stdout
-    assert "hops  " not in stays and "A gap may open faster than it closed without any gain of energy" in stays
-    assert "Asked for: a penetration below 0.001 m" in stays

@@ -86,7 +86,7 @@ def test_the_version_is_that_of_the_distribution() -> None:
     assert (done.returncode, done.stdout) == (0, f"dda-validate {importlib.metadata.version('dda-validation')}\n")
 
 
-def test_no_command_shows_thecommand_line() -> None:
+def test_no_command_shows_the_commands_once() -> None:
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
-    assert "export-pack" in done.stdout
+    assert done.stdout.count("export-pack") == 1

@@ -11,7 +11,7 @@ import pytest
 import typer
 from conftest import SCENE, beside, typed
 from oracles.answers import answered
-from oracles.pages import write_my_solver
+from oracles.pages import ROOT, write_my_solver
 
 from validation import load_scene, solve
 from validation.cli import app as command_line
@@ -47,6 +47,13 @@ def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -
     for words in examples(name):
         known = {option for parameter in COMMANDS[command_of(words)].params for option in parameter.opts}
         assert {word for word in words if word.startswith("--")} <= known
+
+
+@pytest.mark.parametrize("name", {*GROUP, *COMMANDS})
+def test_the_page_that_a_command_names_is_there(name: str) -> None:
+    epilog = (GROUP | COMMANDS)[name].epilog
+    page = Path(epilog.removeprefix("Page: "))
+    assert page.is_file() and page.is_relative_to(ROOT / "docs")
 
 
 @pytest.mark.long

@@ -7,6 +7,7 @@ where that is not 0.
 """
 
 import atexit
+import json
 import re
 import shlex
 import shutil
@@ -52,6 +53,9 @@ band = [0.0, 1e-6]
 reason = "the same model and scheme"
 """
 GATED = '[[gate]]\npair = ["{}"]\nmetric = "{}"\nband = [{}]\nreason = "r"\n'
+BETWEEN = GATED.format('dda", "bar', "displacement.l2", "0, {}")
+VERDICT = {"study": "s", "id": "a", "verdict": "PASS", "value": 0.5, "band": [0.25, 0.75], "reason": "why"}
+NEW_VERDICTS = [VERDICT | {"verdict": "FAIL", "value": 0.875}, VERDICT | {"id": "b", "value": 0.4}]
 REFUSED = {  # what is added to a scene of no tables [run], [[gate]]
     "unknown-solver": '[run]\nsolvers = ["dda", "sofa"]',
     "unknown-pair": GATED.format("sofa", "displacement.final", "0, 1"),
@@ -87,6 +91,8 @@ def history(**values: object) -> np.ndarray:
 @cache
 def desk() -> Path:
     """Return a folder with what a user has there: histories by programs with one slip each, scenes, broken solvers."""
+    from oracles.answers import answered
+
     place = Path(tempfile.mkdtemp())
     atexit.register(shutil.rmtree, place)
     right = history()
@@ -109,6 +115,13 @@ def desk() -> Path:
     np.savetxt(place / "four-digits.csv", right.T, "%.4g", ",", header=header, comments="")
     (place / "broken.py").write_text(BROKEN)
     (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    answered(place / "answers", 1.01, ("locked", "column"))
+    (place / "twin").mkdir()
+    (place / "twin/mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    (place / "gated.toml").write_text(SCENE.replace("SOLVER", '"bar"') + BETWEEN.format(1))
+    (place / "strict.toml").write_text(SCENE.replace("SOLVER", '"bar"') + BETWEEN.format("1e-9"))
+    (place / "before.json").write_text(json.dumps([VERDICT, VERDICT | {"id": "b"}]))
+    (place / "after.json").write_text(json.dumps(NEW_VERDICTS))
     for name, more in REFUSED.items():
         (place / f"{name}.toml").write_text(SCENE.partition("[run]")[0] + more)
     for name, blocks in {"number": "3", "numbers": "[3]", "no": "[]", "table": "{}", "word": '"one"'}.items():

@@ -6,13 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import SCENE, thinned, typed
+from conftest import thinned, typed
 
 from validation import solve
 from validation.errors import InputError
-from validation.report.render.terminal import lines
 from validation.report.scene.numbers import numbers
-from validation.report.scene.page import SceneDescription
 from validation.scenes.scene import load_scene, scene_names
 
 
@@ -46,17 +44,6 @@ def test_numbers_of_a_block_are_those_of_the_formulas(
     assert "dt stable" not in found and "Omega" not in found
 
 
-def test_a_conditional_scheme_shows_its_limit_and_a_step_beyond_it(scene_file: Path) -> None:
-    explicit = ("--set", "time.alpha=0", "--set", "time.delta=0.5", "--set", "time.allow_unstable=true")
-    found = shown(scene_file, *explicit)
-    numbers = single(found)
-    fastest = max(numbers["w1"], numbers["wc"])  # central differences: w dt < 2
-    assert numbers["dt stable"] <= 2 / fastest * (1 + 1e-9)
-    assert list(found["remarks"]) == ["dt is beyond the stability limit: the solution grows without bound"]
-    below = shown(scene_file, *explicit, "--set", f"time.step={0.99 * numbers['dt stable']}")["remarks"]
-    assert not [text for text in below if "grow" in text]
-
-
 @pytest.mark.parametrize(
     ("name", "values"),
     [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]})],
@@ -87,49 +74,8 @@ def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scen
     assert "depends on where in the step the block lands" in words[5e-3][2]
 
 
-def test_a_slope_shows_what_it_asks_of_friction(scene_file: Path) -> None:
-    text = SCENE.replace("pressure = 5.0e6", "gravity = 9.81\nslope = 30.0")
-    scene_file.write_text(text.replace("[load]", 'law = "unilateral"\nfriction = 25.0\n\n[load]'))
-    found = shown(scene_file)
-    numbers = single(found)
-    assert numbers["tan phi"] == pytest.approx(math.tan(math.radians(25)))
-    assert numbers["tan b"] == pytest.approx(math.tan(math.radians(30))) and numbers["w/h"] == 1
-    assert "tan b > tan phi: the block slides" in found["remarks"]
-    assert "tan b > w/h: the block topples" not in found["remarks"]
-    slender = ("--set", "load.slope=20", "--set", "block.width=0.5", "--set", "block.height=2.0")
-    remarks = {phi: shown(scene_file, *slender, "--set", f"contact.friction={phi}")["remarks"] for phi in (25, 18, 10)}
-    topples, slides = "tan b > w/h: the block topples", "tan b > tan phi: the block slides"
-    assert topples in remarks[25] and slides not in remarks[25]
-    assert topples in remarks[18] and slides in remarks[18]
-    assert topples not in remarks[10] and slides in remarks[10]  # tan(phi) < w/h: its friction cannot tip it
-    scene_file.write_text(text)
-    assert topples not in shown(scene_file, *slender)["remarks"]  # locked
-
-
-@pytest.mark.parametrize(("friction", "topples"), [(18.0, True), (10.0, False)])
-def test_a_block_that_slides_topples_only_where_its_friction_can_tip_it(friction: float, topples: bool) -> None:
-    """Half a metre by two on 20 degrees, as DDA moves it with the outline anew at every step: w/h = tan(14 degrees)."""
-    slender = load_scene("slope-sliding").expand()[0].with_values(
-        {
-            "block.width": 0.5, "block.height": 2.0, "block.young": 1.0e11,
-            "contact.stiffness": 1.0e10, "contact.shear_stiffness": 1.0e10, "contact.friction": friction,
-            "load.slope": 20.0, "time.step": 2.0e-3, "time.steps": 300, "run.geometry": "updated",
-            "run.columns": ["displacement", "rotation"],
-        }
-    )  # fmt: skip
-    turned = abs(solve(slender, "dda").history.columns["rotation"][-1])
-    assert (turned > 0.1) == topples
-    assert topples or turned < 0.01
-
-
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
 def test_every_built_in_scene_is_shown(name: str) -> None:
     found = shown(name)
     assert found["numbers"] and found["cases"] == len(load_scene(name).expand())
     assert typed("show", name).stdout.startswith(f"{name}: ")
-
-
-@pytest.mark.parametrize("name", ["slope-base", "rocking-release", "two-codes-friction", "waves-joint"])
-def test_a_page_keeps_to_the_width_of_a_terminal(name: str) -> None:
-    page = [text for text, _ in lines(SceneDescription.of(load_scene(name)).blocks(80), 80)]
-    assert max(map(len, page)) <= 80

@@ -10,7 +10,6 @@ import pytest
 import typer
 
 from validation import load_scene, response
-from validation.advice import rayleigh
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
 from validation.cli.printing import tables
@@ -19,15 +18,10 @@ from validation.gates.gate import Status
 from validation.problems.answers import Answer, AnswerSet, stated_by
 from validation.report.figures import response as figures
 from validation.report.render.terminal import STYLES, lines
-from validation.report.scene import numbers
 from validation.runs.run import Outcome, Run
 from validation.suite import judging
-from validation.theory.stepping import Stepping
 
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
-SITE = load_scene("waves-site").with_values({"time.steps": 10})
-
-
 # ---- statuses -----------------------------------------------------------------------------------------------------
 
 
@@ -59,14 +53,6 @@ def test_what_got_worse_is_red_and_what_got_better_green() -> None:
 # ---- show ---------------------------------------------------------------------------------------------------------
 
 
-def test_the_thinnest_block_of_a_column_sets_its_stable_step() -> None:
-    explicit = SITE.with_values({"time.alpha": 0.0, "time.delta": 0.5})
-    (found,) = [number.value for number in numbers.numbers(explicit) if number.name == "dt stable"]
-    heights, speeds = np.array([1.5, 1.0, 0.5, 0.5]), np.array([500.0, 350.0, 220.0, 150.0])
-    free = float(np.min(2 * heights / (np.sqrt(12) * speeds)))  # of the thinnest block by itself
-    assert free <= found <= 1.02 * free  # the solver's own: neighbours hold it, so that its frequency is lower
-
-
 # ---- figures of frequencies ---------------------------------------------------------------------------------------
 
 
@@ -83,20 +69,3 @@ def test_what_is_stepped_is_drawn_up_to_half_the_sampling_and_the_exact_answer_t
     every = [True] * 4
     assert seen == {"dda as stepped": [True, True, False, False], "dda, exact in time": every, "continuum": every}
     assert [curve.dashed for curve in caught] == [False, True, False]
-
-
-def test_ratios_are_drawn_under_their_own_names(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    caught: dict[str, Any] = {}
-    monkeypatch.setattr(figures, "ratio_figure", lambda frequency, lines: caught.update(lines, f=frequency))
-    monkeypatch.setattr(figures, "save_as", lambda figure, path: path)
-    scheme = Stepping(0.01, 0.5, 1.0, 0.9)
-    cli_waves._draw_ratios(scheme, (1.0, 30.0), tmp_path / "r.svg")
-    f = caught.pop("f")
-    wanted = {
-        "as stepped": rayleigh.ratio(scheme, f),
-        "Rayleigh, leading order": rayleigh.hidden(scheme).ratio(f),
-        "Rayleigh, exact at both ends": rayleigh.matched(scheme, 1.0, 30.0).ratio(f),
-    }
-    assert all(np.allclose(caught[name], wanted[name]) for name in wanted) and list(caught) == list(wanted)
-    middle = [float(values[150]) for values in caught.values()]
-    assert len({round(value, 4) for value in middle}) == 3

@@ -32,36 +32,7 @@ def gated(band: str, pair: str = '["dda", "bar"]', solvers: str = '["dda", "bar"
 
 
 WIDE, TIGHT = gated("[0.0, 1.0]"), gated("[0.0, 1e-3]")
-MINE = """
-import numpy as np
-def raises(scene): raise ValueError("no")
-def overflows(scene): return np.full(scene.time.steps, np.inf), np.zeros(scene.time.steps)
-def nothing(scene): return np.full(scene.time.steps, np.nan), np.zeros(scene.time.steps)
-def short(scene): return np.zeros(3), np.zeros(3)
-def millimetres(scene):
-    from validation import solve
-    run = solve(scene, "dda")
-    return 1000 * run.displacement, run.contact_pressure
-"""
-
-
 # ---- nothing measured -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("way", thinned(["raises", "overflows", "nothing", "short", "millimetres"], 5))
-def test_a_case_that_ends_badly_is_no_green(way: str, scene_file: Path, tmp_path: Path) -> None:
-    (tmp_path / "odd_ends.py").write_text(MINE)
-    scene_file.write_text(SCENE + RUN.format(f'["dda", "odd_ends:{way}"]'))
-    done = typed("run", scene_file, "--results", "r", cwd=tmp_path)
-    assert done.returncode == 1
-    assert f"small: ended without a measurement: small odd_ends:{way}" in done.stdout
-    (tmp_path / "r/verdicts.json").write_text("[]")
-    assert typed("run", scene_file, "--results", "r", "--baseline", "r", cwd=tmp_path).returncode == 1
-
-
-def test_a_scene_without_gates_that_ran_well_says_that_nothing_was_judged(scene_file: Path, tmp_path: Path) -> None:
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 0 and "small: has no gates: nothing was judged" in done.stdout
 
 
 def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(
@@ -80,33 +51,6 @@ def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_
     assert done.returncode == 0 and "1 PASS, 0 FAIL" in done.stdout and "[[gate]]" not in done.stdout
 
 
-def test_a_scene_of_one_solver_says_that_a_second_one_is_missing(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE + RUN.format('["dda"]'))
-    assert "name two solvers or more that apply" in typed("run", scene_file, "--results", tmp_path / "r").stdout
-
-
-def test_a_scene_of_which_one_solver_completed_says_that_the_other_did_not(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["dda", "bar"]'))
-    shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
-    assert "only runs that complete are compared, and 1 of 2 did: --verbose shows" in shown
-    assert "two solvers or more" not in shown
-
-
-def test_gates_of_which_none_was_judged_are_no_green(scene_file: Path, tmp_path: Path) -> None:
-    text = gated("[-1.0, 1.0]", '["dda-textbook"]', '["dda", "dda-textbook"]')
-    scene_file.write_text(text.replace("steps = 50", "steps = 50\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
-    for options in ([], ["--baseline", tmp_path / "r"]):
-        done = typed("run", scene_file, "--results", tmp_path / "r", *options)
-        assert done.returncode == 1
-        assert "small: none of its 1 gates was judged, all are NOT RUN" in done.stdout
-
-
-def test_where_no_solver_applies_nothing_is_green(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(SCENE.replace("young = 1.0e9", "young = 1.0e9\npoisson = 0.3") + RUN.format('["bar"]'))
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 1 and "small: no case was measured" in done.stdout
-
-
 def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp_path: Path) -> None:
     scene_file.write_text(SCENE.replace("steps = 50", "steps = 3000\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
     unstable = load_scene(scene_file).with_values({"time.step": 0.1})
@@ -123,25 +67,6 @@ def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp
 
 
 # ---- required solvers -----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("name", ["BAR", "Dda", "sofa", "", "dda fem"])
-def test_an_unknown_required_solver_is_refused_before_anything_runs(
-    name: str, scene_file: Path, tmp_path: Path
-) -> None:
-    done = typed("run", scene_file, "--results", tmp_path / "r", "--require", name)
-    assert done.returncode == 2 and "--require: must be among dda, " in done.stderr
-    assert not (tmp_path / "r").exists()
-
-
-def test_a_required_solver_without_a_judged_gate_is_no_green(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(WIDE)
-    options = ("--results", tmp_path / "r", "--require")
-    done = typed("run", scene_file, *options, "fem")
-    assert done.returncode == 1 and "--require fem: no gate on it was judged" in done.stdout
-    assert typed("run", scene_file, *options, "bar").returncode == 0
-    assert typed("run", scene_file, *options, "bar", "--require", "fem").returncode == 1
-    assert typed("run", scene_file, *options, "fem", "--baseline", tmp_path / "r").returncode == 1
 
 
 def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
@@ -166,11 +91,6 @@ def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
     scene_file.write_text(gated("[-1.0, -0.5]", '["dda"]'))
     done = typed("run", scene_file, "--results", "r", "--baseline", where, cwd=tmp_path)
     assert done.returncode == 1 and "1 gate differs: 1 worse" in done.stdout
-
-
-def test_an_infinite_band_is_refused(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(gated("[-inf, inf]"))
-    assert "gate.0.band.0: must be a finite number" in refused("run", scene_file, "--results", tmp_path / "r")
 
 
 def edited(path: Path, change: object) -> None:
@@ -204,37 +124,6 @@ def test_a_baseline_that_is_none_is_refused_before_anything_runs(name: str, scen
 
 
 # ---- names ----------------------------------------------------------------------------------------------------------
-
-
-def test_two_files_of_one_stem_are_refused_by_name(tmp_path: Path) -> None:
-    for directory in ("a", "b"):
-        (tmp_path / directory).mkdir()
-        (tmp_path / directory / "same.toml").write_text(TIGHT if directory == "a" else WIDE)
-    done = typed("run", "a/same.toml", "b/same.toml", cwd=tmp_path)
-    assert done.returncode == 2 and "b/same.toml: must not have the name of a/same.toml" in done.stderr
-    assert not (tmp_path / "reports").exists()
-    done = typed("run", "b/same.toml", "b/same.toml", cwd=tmp_path)
-    assert done.returncode == 0 and "1 PASS" in done.stdout, "one file named twice is one study"
-
-
-@pytest.mark.parametrize("name", ["core", "limits", "Core"])
-def test_a_file_with_a_studys_name_is_refused(name: str, tmp_path: Path) -> None:
-    (tmp_path / f"{name}.toml").write_text(WIDE)
-    assert f"{name}.toml: must not have the name of the study {name}" in refused("run", f"{name}.toml", cwd=tmp_path)
-    assert not (tmp_path / "reports").exists()
-
-
-def test_a_file_and_a_built_in_scene_of_one_name_do_not_run_together(tmp_path: Path) -> None:
-    (tmp_path / "figure-8.toml").write_text(WIDE)
-    done = typed("run", "figure-8", "figure-8.toml", cwd=tmp_path)
-    assert done.returncode == 2 and "figure-8.toml: must not have the name of figure-8" in done.stderr
-
-
-def test_two_gates_of_one_id_are_refused(scene_file: Path, tmp_path: Path) -> None:
-    scene_file.write_text(WIDE + GATE.format('["dda", "bar"]', "displacement.l2", "[0.0, 1e-3]"))
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 2 and "gate.1: must not repeat pair and metric of another gate" in done.stderr
-    assert not (tmp_path / "r").exists()
 
 
 # ---- files and streams ----------------------------------------------------------------------------------------------

@@ -41,16 +41,3 @@ def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option:
     assert header == "frequency,displacement,displacement_phase,contact_pressure,contact_pressure_phase"
     table = np.loadtxt(path, delimiter=",", skiprows=1)
     assert np.array_equal(table, response(SCENE, np.linspace(2, 180, 7), "bar", exact).table())
-
-
-@pytest.mark.long
-def test_the_figure_is_written_in_each_kind_and_the_words_name_peaks_and_alias(tmp_path: Path) -> None:
-    for ending in ("svg", "pdf", "png"):
-        path = tmp_path / f"r.{ending}"
-        text = said("advise", "response", *CASE, "--to", "300", "--points", "120", "--figure", str(path))
-        assert path.stat().st_size > 5000
-    assert (tmp_path / "r.pdf").read_bytes()[:4] == b"%PDF"
-    assert "exact in time" in text
-    assert "no step is run" in text
-    assert "above 250 Hz, 1 / (2 dt), the steps see a load as its alias" in text
-    assert "alias" not in said("advise", "response", *CASE, "--points", "5", "--log")

@@ -20,8 +20,7 @@ from dda import (
     solve_unilateral,
 )
 from validation.theory import stages
-from validation.theory.rebound import Advance, midpoints, rebounds, spring_steps
-from validation.theory.restitution import restitution
+from validation.theory.rebound import midpoints, rebounds, spring_steps
 
 MASS = 1.3 * 0.9 * 2350.0
 V = 0.7
@@ -47,7 +46,7 @@ def rigid_rebound(scheme, omega, theta, zeta=0.0, rule="newmark", young=1e22, st
     return result.velocity[-1] / V
 
 
-def check_rebounds(scheme, advance: Advance, omega, tolerance=1e-6, **given):
+def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
     expected = rebounds(advance, PHASES)
     measured = [rigid_rebound(scheme, omega, float(theta), **given) for theta in PHASES]
     assert measured == pytest.approx(expected, abs=tolerance)
@@ -68,11 +67,6 @@ SCHEMES = {
 def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, omega, zeta):
     scheme, table = SCHEMES[name]
     check_rebounds(scheme, spring_steps(table, omega, zeta=zeta), omega, zeta=zeta)
-
-
-@pytest.mark.parametrize("zeta", [0.1, 0.3, 0.9, 1.5])
-def test_small_steps_rebound_by_the_closed_form(zeta):
-    assert rigid_rebound(average(1e-3), 0.02, 0.4, zeta) == pytest.approx(restitution(zeta), abs=2e-3)
 
 
 # ---- impulses --------------------------------------------------------------------------------------------------------

@@ -1,16 +1,12 @@
 """One block with friction: histories known by their events, sliding as an identity."""
 
-from dataclasses import replace
-from itertools import product
-
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.frictional import KNOWN, shaken, sliding, square
+from oracles.frictional import KNOWN, shaken
 from oracles.unilateral_checks import DT, apart
 
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
-from dda.bodies.turning_block import RollingModel
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
 AVERAGE = (0.25, 0.5, "consistent")
@@ -29,23 +25,6 @@ def test_a_history_is_near_that_of_its_events(name, time):
     coarse, fine = error(name, 300, time), error(name, 900, time)
     assert fine < coarse / 4  # second order: a ninth, but for where a switch falls within its step
     assert fine < 3e-4 * np.linalg.norm(KNOWN[name].at[time])
-
-
-SLIDING = [(0.5, 1.0, 1.0, "zero"), (0.25, 0.5, 0.98, "consistent"), (0.7, 0.8, 0.9, "zero")]
-
-
-@pytest.mark.parametrize(("p", "scheme"), thinned(product([1e7, 1e9, 1e13, np.inf], SLIDING), 5))
-def test_sliding_is_the_free_recursion_to_rounding(p, scheme):
-    alpha, delta, gg, start = scheme
-    law = Unilateral(p, 3 * min(p, 1e13), friction=0.27)  # so stiff in shear that it slips from the first step on
-    for gap, dt, moving in ((0.0, 1e-3, False), (1e-4, 3e-4, True), (0.0, 2e-2, False)):
-        motion = shaken(np.random.default_rng(3), 2e-6) if moving else None
-        model = UnilateralModel(square(0.2), replace(law, gap=gap), gravity=9.81, slope=35.0, motion=motion)
-        turning = RollingModel(model.block, model.contact, model.load)
-        place = 120 * np.finfo(float).eps  # of the centroid at 1 m, which a block that turns keeps in place of its way
-        for body, rounding in ((model, 0.0), (turning, place)):
-            own, must, parts = sliding(body, Scheme(alpha, delta, gg, dt, start), 120)
-            assert len(own) > 12 and np.max(np.abs(own - must)) < 1e-12 * np.max(parts) + rounding
 
 
 @pytest.mark.parametrize("turned", thinned([50.0, -30.0], 2))

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.frictional import rubbing_model
 
 import dda.bodies.glued_step as step
 from dda import (
@@ -23,7 +22,6 @@ from dda import (
 )
 from dda.bodies.glued_step import make_stage
 from dda.contact.rows import NONE
-from dda.march import compiled
 from dda.march.step import steps_by
 
 MATERIAL = Material(2700.0, 1e9, 0.2)
@@ -69,17 +67,3 @@ def test_a_cut_step_begins_from_the_saved_state(monkeypatch):
         assert all(np.array_equal(one, other) for one, other in zip(given[0][2], copy, strict=True))
     assert result.step_cuts.tolist() == [2, 0, 0]
     assert result.velocity == pytest.approx(-0.8 * 0.9 ** np.arange(1, 4), rel=1e-12)
-
-
-@pytest.mark.long
-def test_points_are_the_same_compiled_and_plain(monkeypatch):
-    pytest.importorskip("numba")
-    results = []
-    for least in (0, 10**9):
-        for name in ("SHORT", "LONG", "ANEW"):
-            monkeypatch.setattr(compiled, name, least)
-        results.append(run(rubbing_model(1), (2, 1), steps=40, glue=1e13))
-    fast, plain = results
-    assert compiled.COMPILED in fast.notes[-1] and compiled.PLAIN in plain.notes[-1]
-    for values, others in zip(fast.history, plain.history, strict=True):
-        assert np.all(np.abs(values - others) <= 1e-14 * np.max(np.abs(others), axis=0, initial=0.0))

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from dda.march.compiled import as_lists, as_record, compiled
 from dda.plane.elimination import (
     MISSING,
     block_matrix,
@@ -76,19 +75,3 @@ def test_a_zero_pivot_is_told():
     matrix.blocks[matrix.number[1, 2]] = 0.0
     matrix.blocks[matrix.number[3, 2]] = 0.0
     assert not factor_blocks(matrix)
-
-
-def test_lists_and_compiled_code_solve_as_arrays_do():
-    pytest.importorskip("numba")
-    matrix, _, _ = filled("random", 15, 3, most=300)
-    right = np.random.default_rng(5).normal(size=(15, 3))
-    lists = as_lists(matrix)
-    x = right.tolist()
-    assert order_blocks(lists) == order_blocks(matrix)
-    assert factor_blocks(lists)
-    solve_blocks(lists, x)
-    record = as_record(matrix)
-    y = right.copy()
-    assert compiled(factor_blocks, (record,))(record)
-    compiled(solve_blocks, (record, y))(record, y)
-    assert np.array(x) == pytest.approx(y, rel=1e-14, abs=1e-16)

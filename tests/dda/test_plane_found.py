@@ -78,19 +78,6 @@ def test_a_block_slides_over_a_flush_seam(stiffness):
     assert result.displacement[-1, 2, 0] == pytest.approx(0.2, abs=1e-3)
 
 
-def test_a_wall_without_gaps_stands():
-    rows = 3
-    bricks = [fixed(box(-1, -1, 6, 1))]
-    for row in range(rows):
-        bricks += [moving(box(column + 0.5 * (row % 2), row)) for column in range(3)]
-    springs = ContactSprings(1e8, 4e7, friction=0.6)
-    result = history(bricks, springs, 60)
-    weight = rows * DENSITY * 9.81
-    assert np.max(np.abs(result.displacement)) < 4 * rows * weight / 1e8  # each joint under all that lies on it, twice
-    assert np.median(result.solves[2:]) <= 4  # one in each of two to four rounds
-    assert np.sum(result.cuts) == 0
-
-
 def pile(count, seed):
     """Return polygons above the floor of a box."""
     random = np.random.default_rng(seed)
@@ -143,7 +130,7 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
 
 
 @pytest.mark.parametrize(
-    ("count", "steps"), [(12, 300), pytest.param(200, 400, marks=pytest.mark.long)], ids=["some", "many"]
+    ("count", "steps"), [(6, 200), pytest.param(200, 400, marks=pytest.mark.long)], ids=["some", "many"]
 )
 def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
     """Rounding, 1e-15 of places, grows with every impact: a thousand times in the first that each block has."""
@@ -164,9 +151,13 @@ def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
 
 
 # least ratio of the errors of angular momentum, by steps of which one is a quarter of the other: 4^order is 16 and 4
-@pytest.mark.parametrize(("alpha", "delta", "ratio"), [(0.25, 0.5, 8), (0.5, 1.0, 3)], ids=["average", "constant"])
+@pytest.mark.parametrize(
+    ("alpha", "delta", "ratio"),
+    [(0.25, 0.5, 8), pytest.param(0.5, 1.0, 3, marks=pytest.mark.long)],
+    ids=["average", "constant"],
+)
 def test_blocks_that_fly_at_each_other_keep_their_momentum(alpha, delta, ratio):
-    polygons = pile(12, 3)[3:]
+    polygons = pile(6, 3)[3:]
     places = np.array([block.block.section.centroid for block in polygons])
     inwards = 2 * (places.mean(axis=0) - places)
     blocks = [
@@ -179,7 +170,7 @@ def test_blocks_that_fly_at_each_other_keep_their_momentum(alpha, delta, ratio):
     for step in (1e-3, 2.5e-4):
         scheme = Scheme(step=step, gg=1.0, alpha=alpha, delta=delta, start="consistent")
         result = solve_plane(model, scheme, round(0.3 / step), compiled=False)
-        assert result.outcome == "completed" and len(result.contacts) > 12
+        assert result.outcome == "completed" and len(result.contacts) >= 6
         change = np.abs(result.momentum - result.momentum[0])
         assert np.max(change[:, :2]) < 1e-10 * size
         assert np.max(np.abs(result.energy["balance"])) < 1e-10 * result.energy["kinetic"][0]

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.plane_scenes import AVERAGE, CONSTANT, GRAVITY, SCHEMES, floor, rectangle, scheme
+from oracles.plane_scenes import CONSTANT, GRAVITY, SCHEMES, floor, rectangle, scheme
 
 from dda import ContactSprings, CornerOnEdge, PlaneBlock, PlaneModel, solve_plane
 from dda.contact.rows import OUTCOMES, TOO_DEEP
@@ -26,9 +26,8 @@ def drop(height=0.05, young=math.inf):
     )
 
 
-@pytest.mark.parametrize("young", [math.inf, 1e9])
-def test_a_block_that_is_dropped_comes_to_rest_on_its_springs(equations, young):
-    result = solve_plane(drop(young=young), scheme((0.5, 1.0, 0.98), 1e-3), 600, every=10, compiled=False)
+def test_a_block_that_is_dropped_comes_to_rest_on_its_springs(equations):
+    result = solve_plane(drop(young=1e9), scheme((0.5, 1.0, 0.98), 1e-3), 600, every=10, compiled=False)
     weight = 5400.0 * GRAVITY
     assert result.outcome == "completed" and len(result.contacts) == 2
     assert {contact[2:] for contact in result.contacts} == {(0, 2)}
@@ -44,40 +43,15 @@ def test_a_block_that_is_dropped_comes_to_rest_on_its_springs(equations, young):
 def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name, equations):
     block = PlaneBlock(rectangle(0, 0.002, 2, 1), 2700.0, 1e9, 0.2, velocity=(3.0, -1.0), spin=-0.01)
     corners = [CornerOnEdge(1, corner, 0, 2, SPRINGS) for corner in (0, 1)]
-    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 150)
+    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 100)
     free = PlaneModel([floor(), block], gravity=(0, -GRAVITY), found=SPRINGS)
-    found = solve_plane(free, SCHEMES[name], 150, compiled=False)
+    found = solve_plane(free, SCHEMES[name], 100, compiled=False)
     assert np.abs(found.displacement - stated.displacement).max() <= 1e-9 * np.abs(stated.displacement).max()
     columns = [found.contacts.index((1, corner, 0, 2)) for corner in (0, 1)]
     assert found.normal[:, columns] == pytest.approx(stated.normal, abs=1e-7 * stated.normal.max())
     assert np.array_equal(found.state[:, columns], stated.state)
     if name in ("average", "constant"):
         assert np.abs(found.energy["balance"]).max() <= 1e-10 * found.energy["kinetic"].max()
-
-
-def test_a_corner_that_lands_beside_a_corner_gains_no_energy(equations):
-    half = math.sqrt(0.5)
-    diamond = np.array([(0, -half), (half, 0), (0, half), (-half, 0)]) + np.array([1 - 1e-3, half + 0.01])
-    blocks = [
-        PlaneBlock(rectangle(-1, -2, 2, 2), 2500.0, fixed=True),
-        PlaneBlock(diamond, 2500.0, velocity=(0.0, -1.0)),
-    ]
-    result = solve_plane(PlaneModel(blocks, found=ContactSprings(1e8)), scheme(AVERAGE, 1e-4), 600, compiled=False)
-    assert result.contacts == ((1, 0, 0, 2),)
-    assert result.energy["kinetic"][-1] == pytest.approx(1250.0, rel=1e-3)  # 16 steps of 0.1 ms in contact
-    assert result.velocity[-1, 1, 1] == pytest.approx(1.0, rel=1e-3)
-
-
-def test_a_square_comes_to_rest_on_the_ledge_of_a_block_that_is_not_convex(equations):
-    corner = np.array([(0, 0), (4, 0), (4, 1), (2, 1), (2, 3), (0, 3)], dtype=float)
-    turn = np.array([[math.cos(0.3), math.sin(0.3)], [-math.sin(0.3), math.cos(0.3)]])
-    square = (rectangle(0, 0, 0.8, 0.8) - 0.4) @ turn + [2.62, 2.0]
-    blocks = [PlaneBlock(corner, 2500.0, fixed=True), PlaneBlock(square, 2500.0, velocity=(-0.5, 0.0))]
-    model = PlaneModel(blocks, gravity=(0, -GRAVITY), found=ContactSprings(1e8, 4e7, 0.3))
-    result = solve_plane(model, scheme(CONSTANT, 1e-3), 1500, every=50, compiled=False)
-    energy = result.energy
-    assert result.outcome == "completed" and np.abs(energy["balance"]).max() <= 1e-10 * energy["kinetic"].max()
-    assert energy["kinetic"][-1] < 1e-3 and result.centroid[-1, 1, 1] == pytest.approx(1.4, abs=1e-3)
 
 
 @pytest.mark.parametrize("young", [math.inf, pytest.param(1e9, marks=pytest.mark.long)])
@@ -89,7 +63,7 @@ def test_a_wall_without_gaps_stands(young):
             PlaneBlock(rectangle(left + 0.4 * k, 0.2 * row, 0.4, 0.2), 2000.0, young, 0.2) for k in range(4 - row % 2)
         ]
     model = PlaneModel(blocks, gravity=(0, -GRAVITY), found=ContactSprings(1e9, 4e8, 0.6))
-    result = solve_plane(model, scheme((0.5, 1.0, 0.9), 1e-3), 150, every=10, compiled=False)
+    result = solve_plane(model, scheme((0.5, 1.0, 0.9), 1e-3), 80, every=10, compiled=False)
     weight = 14 * 2000.0 * 0.08 * GRAVITY
     assert result.outcome == "completed" and np.abs(result.velocity[-1]).max() < 1e-4
     under = [contact.on == 0 or contact.block == 0 for contact in result.contacts]

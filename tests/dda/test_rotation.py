@@ -89,19 +89,6 @@ def test_small_motion_is_the_limit_of_small_loads(scheme):
         assert np.max(np.abs(turning.energies[name] - values)) < share * np.max(small.energies["kinetic"]), name
 
 
-def test_a_dead_load_keeps_its_direction_and_its_point():
-    """What it gives to a weightless block in flight is q L times the fall of its point."""
-    block = Block.rectangle(1.0, 2.0, Material(2700.0, 1e12, 0.0))
-    model = RollingModel(block, FAR, Load(1e4, 0.2, 2e3))
-    result = solve_unilateral(model, Scheme(*AVERAGE, 1.0, 4e-3, "consistent"), 150)
-    assert abs(result.angle[-1]) > 0.25
-    e = result.energies
-    assert np.max(np.abs(e["kinetic"] + e["load"])) < 1e-4 * np.max(e["kinetic"])
-    pressed = (result.outline[:, 3] * 0.3 + result.outline[:, 2] * 0.7)[-1] - np.array([0.7, 102.0])
-    middle = result.outline[-1, 2:].mean(axis=0) - np.array([0.5, 102.0])
-    assert e["load"][-1] == pytest.approx(1e4 * 0.6 * pressed[1] - 2e3 * middle[0], rel=1e-9)
-
-
 def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
     scheme, rocking = Scheme(*CONSTANT, 1.0, 5e-3), replace(HEAVY, tilt=0.1)
     sound = solve_unilateral(rocking, scheme, 80)

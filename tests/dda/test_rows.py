@@ -179,29 +179,6 @@ def test_what_does_not_end_has_no_state_or_several(monkeypatch):
 # ---- two contacts along one base -------------------------------------------------------------------------------------
 
 
-MEAN = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 0.5, 0.5], [0, 0, -1, 1]])
-
-
-@pytest.mark.parametrize("p_s", [1e-3, 1.0, 1e9])
-def test_two_contacts_in_mean_and_difference_are_those_in_their_own_ways(p_s):
-    rng = np.random.default_rng(4)
-    laws = laws_of(2, 4, np.array([1e-3, 1e-3, 1 / p_s, 1 / p_s]), paired=True)
-    sticking = 0
-    for _ in range(20):
-        W = positive(rng, 4, 0.1)
-        paired = MEAN @ W @ MEAN.T
-        own = np.zeros((4, 4))
-        rows.unpair(paired, own)
-        assert np.allclose(own, W, rtol=1e-13, atol=1e-13)
-        q = np.concatenate([-1 - rng.random(2), rng.standard_normal(2)])
-        outcome, _, after = solved(laws, W, q, None, paired, (MEAN @ q)[2:])
-        if outcome == FOUND and np.all(after.state == INSIDE):
-            sticking += 1
-            size = 1e-11 * np.max(np.abs(W)) * np.max(after.force)
-            assert q + W @ after.force == pytest.approx(-laws.compliance * after.force, rel=1e-9, abs=size)
-    assert sticking > 5
-
-
 def test_a_long_rigid_motion_hides_no_difference():
     """A mean of 1e9 m over a flexibility of 1e12 m/N, a difference of a millimetre: both keep all digits."""
     c = 1e-6
@@ -213,42 +190,3 @@ def test_a_long_rigid_motion_hides_no_difference():
     _, _, after = solved(laws_of(2, 4, c, paired=True), W, q, None, paired, (mean, difference))
     assert (after.force[3] - after.force[2]) / 2 == pytest.approx(-difference / (1 + 2 * c), rel=1e-13)
     assert after.force[2] + after.force[3] == pytest.approx(-mean / (1e12 + c / 2), rel=1e-13)
-
-
-# ---- contacts that close ---------------------------------------------------------------------------------------------
-
-
-def closing(rng, contacts):
-    """Return a problem of open contacts that close and stick, or slip."""
-    m = 2 * contacts
-    c = np.repeat(rng.uniform(0.1, 1.0, 2), contacts)
-    before = rows.rows_of(np.concatenate([rng.uniform(0.1, 1.0, contacts), np.zeros(contacts)]), np.full(m, INSIDE))
-    before.state[:contacts] = LOWER
-    q = np.concatenate([rng.uniform(-4.0, -2.0, contacts), rng.uniform(-1.0, 1.0, contacts)])
-    return c, before, q, positive(rng, m, 0.3)
-
-
-@pytest.mark.parametrize("contacts", [1, 2, 3])
-@pytest.mark.parametrize("cohesion", [math.inf, 0.01])
-def test_a_contact_that_closes_slides_freely_up_to_its_crossing(contacts, cohesion, monkeypatch):
-    """Its way in contact is the share w1 / (w1 - w0) of that of the step: stretch, and slip beyond its bound."""
-    rng = np.random.default_rng(contacts)
-    done = 0
-    for _ in range(40):
-        c, before, q, W = closing(rng, contacts)
-        outcome, _, after = solved(laws_of(contacts, 2 * contacts, c, cohesion), W, q, before)
-        ways = np.arange(contacts, 2 * contacts)
-        closed = after.state[:contacts] == INSIDE
-        if outcome != FOUND or not np.all(closed):
-            continue
-        done += 1
-        w0, w1 = before.opening[:contacts], after.opening[:contacts]
-        share = w1 / (w1 - w0)
-        free = (q + W @ after.force)[ways]
-        assert np.all((share > 0) & (share < 1))
-        assert after.opening[ways] + after.slip[ways] == pytest.approx(share * free, rel=1e-9, abs=1e-12)
-        assert np.all(np.abs(after.force[ways]) <= cohesion)
-        assert np.array_equal(after.slip[ways] == 0, after.state[ways] == INSIDE)
-    assert done > 10
-    monkeypatch.setattr(rows, "CROSSING_STEPS", 1)  # one that is not found is no number
-    assert np.isnan(solved(laws_of(contacts, 2 * contacts, c), W, q, before)[2].force[0])

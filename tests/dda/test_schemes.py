@@ -15,7 +15,6 @@ from dda import (
     Contact,
     Load,
     Material,
-    Scheme,
     TwoBlockModel,
     diagnostics,
     modes,
@@ -29,27 +28,10 @@ from dda import (
 from dda.bodies.diagnostics import step_of_mode
 from dda.scheme import roots
 
-# name, parameters, xi of first axial mode and contact mode of the two-block model with p = E, dt = 2 ms, gg = 1
-TABLE = (
-    ("chung-hulbert", {"rho_inf": 0.8}, 0.000204377188, 0.00525081541),
-    ("chung-hulbert", {"rho_inf": 0.5}, 0.00481254497, 0.0629939002),
-    ("chung-hulbert", {"rho_inf": 0.0}, 0.0653581789, 0.34382019),
-    ("hht", {"rho_inf": 0.9 / 1.1}, 0.00268898716, 0.0355191965),
-    ("hht", {"rho_inf": 0.7 / 1.3}, 0.00477740987, 0.0625812319),
-    ("wbz", {"rho_inf": 0.5}, 0.015778184, 0.131989534),
-    ("composite", {"split": 0.5}, 0.00106935112, 0.033023397),
-    ("composite", {}, 0.00113358244, 0.0349251819),
-    ("composite", {"rho_inf": 0.5}, 0.000599972642, 0.0192233401),
-)
-
 
 def square(ratio=1.0, mu=0.0, **load):
     block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, mu, "plane stress"))
     return TwoBlockModel(block, Contact(ratio * 1e9, 0.4e9), Load(5e6, **load))
-
-
-def frequencies_of(model):
-    return sorted(mode.frequency for mode in modes(model, Scheme(0.25, 0.5, 1.0, 1e-3)))
 
 
 # ---- names -----------------------------------------------------------------------------------------------------------
@@ -98,39 +80,22 @@ def test_damping_of_newmark_alone_is_refused_beside_another_scheme():
 # ---- roots -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("name", "values", "first", "contact"), TABLE)
-def test_damping_ratios_of_the_two_block_model(name, values, first, contact):
-    scheme = scheme_of(name, values, 2e-3)
-    xi = [roots.damping_ratio(scheme, w * 2e-3) for w in frequencies_of(square())]
-    assert xi == pytest.approx([first, contact], rel=6e-9)
-
-
 @pytest.mark.parametrize("gg", [1.0, 0.93])
-@pytest.mark.parametrize("omega", [0.05, 0.7, 3.0, 40.0])
+@pytest.mark.parametrize("omega", [0.05, 0.7, 1.9, 40.0])
 @every_scheme
-def test_roots_are_those_of_a_step_written_as_in_the_papers(name, values, omega, gg):
+def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega, gg):
+    """The polynomial of the roots makes nothing of displacements in a row; the first step of leapfrog is its own."""
+    if name == "leapfrog" and omega > 2:
+        return
     scheme = scheme_of(name, values, 1.0, gg)
-    if name == "leapfrog":
-        expected = np.roots([1.0, omega**2 - 1 - gg, gg])
-    elif name == "composite":
-        rho = values.get("rho_inf", 0.0)
-        split = values.get("split") or 2 / (2 + math.sqrt(2 + 2 * rho))
-        q1 = (rho + 1) / (2 * split * (rho - 1) + 4)
-        z = 1j * omega
-        inner = (1 + split * z / 2) / (1 - split * z / 2)
-        R = (1 + ((split - 1) * q1 + 0.5) * z + q1 * z * inner) / (1 - (0.5 - split * q1) * z)
-        expected = np.roots([1.0, -(1 + gg) * R.real, gg * abs(R) ** 2])
-    else:
-        stage = scheme.stages[0]
-        am, af = stage.am, stage.af
-        gamma, beta = 0.5 - am + af, (1 - am + af) ** 2 / 4
-        free = np.polymul(np.polymul([1, -1], [1, -gg]), [1 - am, am])
-        moved = np.polyadd([gg * gamma, gg * (1 - gamma)], np.polymul([beta, 0.5 - beta], [1, -gg]))
-        expected = np.roots(np.polyadd(free, omega**2 * np.polymul([1 - af, af], moved)))
-    order = np.argsort(-np.abs(expected), kind="stable")
     found = roots.roots(scheme, omega)
-    assert np.sort(np.abs(found)) == pytest.approx(np.sort(np.abs(expected[order])), abs=1e-9, rel=1e-9)
-    assert np.sum(found) == pytest.approx(np.sum(expected), abs=1e-10, rel=1e-10)
+    one = np.eye(1)
+    x, _, _ = march(
+        System(one, omega**2 * one, lambda t: 0 * one[0]), name, 1.0, 12, one[0], one[0], gg, **truth_of(values)
+    )
+    polynomial = np.poly(found)
+    left = np.convolve(x[1:, 0], polynomial, "valid")
+    assert np.max(np.abs(left)) < 1e-12 * np.max(np.abs(x)) * np.sum(np.abs(polynomial))
     largest = np.sort(np.abs(np.linalg.eigvals(step_of_mode(scheme, omega))))[::-1][: len(found)]
     assert largest == pytest.approx(np.abs(found), abs=2e-6)
 

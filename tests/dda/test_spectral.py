@@ -7,9 +7,8 @@ import mpmath as mp
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles import real_roots
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes, solve
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes
 from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
@@ -20,54 +19,11 @@ def square(ratio=1.0, mu=0.0):
     return TwoBlockModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, mu)), Contact(ratio * 1e9), 5e6)
 
 
-def test_radii_at_infinity():
-    assert spectral.spectral_radius(np.inf, 0.5625, 1.0) == pytest.approx(1 / 3, rel=1e-7)  # double root: sqrt(eps)
-    assert spectral.spectral_radius(np.inf, *CONSTANT) == 1.0
-    assert spectral.spectral_radius(np.inf, *AVERAGE) == 1.0
-    roots = spectral.eigenvalues(np.inf, *AVERAGE, 0.9)
-    assert sorted(roots.real) == pytest.approx([-1.0, -0.9], rel=1e-12)
-    assert sorted(spectral.eigenvalues(np.inf, *CONSTANT, 0.9).real) == pytest.approx([-0.9, 0.0], abs=1e-15)
-
-
-def test_critical_omegas():
-    assert spectral.critical_omega(0.0, 0.5) == pytest.approx(2.0, rel=1e-15)
-    assert spectral.critical_omega(1 / 6, 0.5) == pytest.approx(2 * np.sqrt(3), rel=1e-14)
-    for alpha, delta in (CONSTANT, AVERAGE, (0.5625, 1.0), (0.3025, 0.6)):
-        assert spectral.critical_omega(alpha, delta) == np.inf
-    for alpha, delta in ((0.1, 0.7), (0.2, 0.9)):
-        assert spectral.critical_omega(alpha, delta) == pytest.approx(1 / np.sqrt(delta / 2 - alpha), rel=1e-14)
-
-
 @pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.0, 0.5, 0.9), (0.1, 0.8, 0.6), (0.1, 0.4, 0.9), (0.2, 0.9, 0.0)])
 def test_the_critical_omega_is_where_growth_begins(alpha, delta, gg):
     limit = spectral.critical_omega(alpha, delta, gg)
     assert spectral.spectral_radius(limit * (1 - 1e-6), alpha, delta, gg) < 1
     assert spectral.spectral_radius(limit * (1 + 1e-6), alpha, delta, gg) > 1
-
-
-def test_kinetic_damping_is_per_step():
-    w = modes(square(), Scheme(*AVERAGE, 0.98, 1.0))[0].frequency
-    xi = spectral.damping_ratio(w * np.array([2e-3, 1e-3, 1e-4]), *AVERAGE, 0.98)
-    assert xi == pytest.approx([0.0152, 0.0296, 0.293], rel=3e-3)
-    assert real_roots.overdamping_omega(*AVERAGE, 0.98) / w == pytest.approx(2.93e-5, rel=2e-3)
-    edge = real_roots.overdamping_omega(*AVERAGE, 0.98)
-    assert spectral.damping_ratio(edge * 0.999, *AVERAGE, 0.98) > 1
-    assert spectral.damping_ratio(edge * 1.001, *AVERAGE, 0.98) < 1
-    omega = 0.04
-    small = 0.02 / (2 * omega) + 0.1 * omega / 2  # (1 - gg)/(2 Omega) + (delta - 1/2) Omega/2
-    assert spectral.damping_ratio(omega, 0.3025, 0.6, 0.98) == pytest.approx(small, rel=0.05)
-
-
-@pytest.mark.parametrize(("alpha", "delta"), [CONSTANT, (0.3025, 0.6)])
-@pytest.mark.parametrize("gg", [1.0, 0.97])
-@pytest.mark.parametrize("omega", [1e-3, 0.3, 2.0])
-def test_damping_and_frequency_give_back_the_roots(alpha, delta, gg, omega):
-    xi = spectral.damping_ratio(omega, alpha, delta, gg)
-    w = omega / (1 + spectral.period_elongation(omega, alpha, delta, gg))
-    exponent = (-xi + np.array([1j, -1j]) * np.sqrt(complex(1 - xi**2))) * w
-    roots = np.sort_complex(np.exp(exponent))
-    # where overdamped, the two exponents are recovered by a subtraction
-    np.testing.assert_allclose(roots, np.sort_complex(spectral.eigenvalues(omega, alpha, delta, gg)), rtol=1e-9)
 
 
 def sixty_digits(omega, alpha, delta, gg):
@@ -97,12 +53,6 @@ def test_damping_keeps_its_digits_from_nothing_to_all_of_a_mode(alpha, delta):
             assert found == pytest.approx(exact, rel=1e-7, abs=1e-15, nan_ok=True), (omega, gg)
 
 
-def test_small_steps_keep_the_digits_of_the_damping():
-    omega = np.array([1e-9, 1e-6])
-    assert spectral.damping_ratio(omega, *CONSTANT) == pytest.approx(omega / 4, rel=1e-9)
-    assert spectral.period_elongation(omega, *AVERAGE) == pytest.approx(omega**2 / 12, abs=1e-15)
-
-
 BLOCKS = [(1.0, 0.0), (30.0, 0.3), (100.0, -0.4)]  # p / E, Poisson's ratio
 
 
@@ -122,14 +72,6 @@ def test_formulas_are_the_steps_of_the_modes(weights, gg, shape, step):
     np.testing.assert_allclose(own.prod(axis=1), formula.prod(axis=1), rtol=0, atol=1e-12 * size**2)
 
 
-@pytest.mark.parametrize(("ratio", "w"), [(1.0, 344.561), (10.0, 498.812), (100.0, 524.096)])
-def test_first_axial_frequency(ratio, w):
-    found = modes(square(ratio), Scheme(*CONSTANT, 1.0, 1e-3))
-    assert found[0].frequency == pytest.approx(w, abs=6e-4)
-    assert sum(mode.share for mode in found) == pytest.approx(1.0, rel=1e-14)
-    assert found[0].share > 0.9
-
-
 def test_rigid_contact_limit_keeps_its_digits():
     a, E, rho = 1.3, 7e9, 2222.0
     stiff = TwoBlockModel(Block.rectangle(a, a, Material(rho, E, 0.0)), Contact(1e15 * E), 1.0)
@@ -147,19 +89,3 @@ def test_diagnostics_name_a_growing_scheme():
     assert calm.spectral_radius <= 1
     assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
     assert calm.scaled_residual < 1e-15
-
-
-@pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (0.5, 1.0)])
-@pytest.mark.parametrize("start", ["consistent", "zero"])
-def test_damping_by_the_stiffness_is_a_scheme_of_larger_alpha_and_delta_from_the_consistent_start(
-    alpha: float, delta: float, start: str
-) -> None:
-    """`compare` calls C = a1 K the scheme alpha + delta a1/dt, delta + a1/dt: the same rows, but for the first step."""
-    step, a1 = 1.0e-3, 2.0e-4
-    viscous = Scheme(alpha, delta, 1.0, step, start, stiffness_damping=a1)
-    larger = Scheme(alpha + delta * a1 / step, delta + a1 / step, 1.0, step, start)
-    rows, same = (
-        solve(square(), scheme, 200, ("displacement",)).columns["displacement"] for scheme in (viscous, larger)
-    )
-    apart = np.linalg.norm(rows - same) / np.linalg.norm(rows)
-    assert (apart < 1e-12) == (start == "consistent")

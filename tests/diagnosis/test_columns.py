@@ -16,7 +16,7 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.columns import BONDED, ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import numbers, places
+from validation.diagnosis.numbers import numbers_of_column, places
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading
 from validation.errors import InputError
@@ -226,7 +226,7 @@ def test_numbers_of_contacts_are_those_that_are_stated() -> None:
     }
     assert places(SHEARED, "strength") == {"without a joint": "all contacts"}
     assert places(SHEARED, "gap") == {}
-    by_name = {number.name: number for number in numbers(DROPPED)}
+    by_name = {number.name: number for number in numbers_of_column(DROPPED)}
     assert "the modulus of the waves, by Young's modulus or Poisson's ratio," not in by_name  # of rigid blocks
     halved = DROPPED.with_values(by_name["the stiffness of all contacts"].changed(DROPPED, 0.5)).column
     assert halved is not None

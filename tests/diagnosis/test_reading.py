@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from faults import seams
-from oracles.shi_dda import Program, run, write_measured_point
+from oracles.plain_block import Plain, history, write_measured_point
 
 from validation.diagnosis.reading import MOST_STEPS, Foreign, parse_columns, parse_scale, read, steppings
 from validation.errors import InputError
@@ -30,12 +30,12 @@ def test_the_measured_point_of_ntdda() -> None:
 
 
 def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path: Path) -> None:
-    program = Program(dt=5e-4, steps=60, q=-5e6, p=2e9, opens=False)
-    history = run(program)
-    assert history.displacement.min() >= 0 or history.displacement.max() > 0
-    found = read(write_measured_point(history, tmp_path / "m.m", program.dt))
+    program = Plain(dt=5e-4, steps=60, q=-5e6, p=2e9, updated=True)
+    made = history(program)
+    assert made.displacement.min() >= 0 or made.displacement.max() > 0
+    found = read(write_measured_point(made, tmp_path / "m.m", program.dt))
     # seven digits of each size
-    np.testing.assert_allclose(found.displacement, history.displacement, rtol=1e-6)
+    np.testing.assert_allclose(found.displacement, made.displacement, rtol=1e-6)
 
 
 def test_an_interrupted_measured_point_file(tmp_path: Path) -> None:

@@ -38,11 +38,6 @@ def same_histories(one: Path, other: Path) -> bool:
     )
 
 
-def test_without_a_scheduler_there_is_no_executor():
-    with cluster.executor(None) as pool:
-        assert pool is None
-
-
 def test_an_absent_package_is_named(monkeypatch):
     monkeypatch.setitem(__import__("sys").modules, "distributed", None)
     with pytest.raises(InputError, match=r"^--scheduler: needs .*\[cluster\]"), cluster.executor("tcp://127.0.0.1:1"):
@@ -70,12 +65,3 @@ def test_a_dask_cluster_gives_the_same_rows_and_a_lost_worker_costs_none(tmp_pat
     assert lost
     assert rows(tmp_path / "serial") == rows(tmp_path / "dask")
     assert same_histories(tmp_path / "serial", tmp_path / "dask")
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore")
-def test_nobody_at_the_address_is_said(monkeypatch):
-    pytest.importorskip("distributed")
-    monkeypatch.setattr(cluster, "PATIENCE", "1s")
-    with pytest.raises(InputError, match=r"^--scheduler: .*running"), cluster.executor("tcp://127.0.0.1:1"):
-        pass

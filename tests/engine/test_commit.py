@@ -79,10 +79,3 @@ def test_what_git_s_own_variables_name_is_not_taken(tmp_path: Path, monkeypatch:
         with monkeypatch.context() as patch:
             patch.setenv("GIT_DIR", str(tmp_path / "hooked" / ".git"))
             assert said(inside) == expected
-
-
-def test_a_checkout_without_a_commit(tmp_path: Path) -> None:
-    inside = sources(tmp_path / "suite")
-    (inside / "pyproject.toml").write_text(PROJECT.format("dda-validation"))
-    git(inside, "init", "-q")
-    assert said(inside) == "unknown (no commit yet)"

@@ -41,9 +41,3 @@ def test_what_is_derived_ends_as_the_run_that_it_needs(ended: Outcome | None, st
     finished = Finished(rows, Results(tmp_path), {("scene", "name"): recipe})
     verdict = evaluate(Gate("scene", ("name",), "first", 0.0, 2.0, "why"), finished)
     assert verdict.status is status and "needs dda on scene" in verdict.why
-
-
-# ---- what a run complains of ----------------------------------------------------------------------------------------
-
-
-# ---- how far two runs agree -----------------------------------------------------------------------------------------

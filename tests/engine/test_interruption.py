@@ -81,23 +81,6 @@ def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_p
     assert len(fresh) == 1, "only what was missing runs"
 
 
-@pytest.mark.long
-def test_two_runs_at_once_do_not_disturb_each_other(long_scene, tmp_path):
-    scene, other = tmp_path / "scene.toml", tmp_path / "other.toml"
-    scene.write_text(long_scene.read_text().replace("steps = 8000", "steps = 1000"))
-    other.write_text(scene.read_text().replace("1.0, 0.99", "0.5, 0.49"))
-    results = tmp_path / "r"
-    with start(scene, results, 1) as first, start(other, results, 1) as second:
-        for process in (first, second):
-            _, said = process.communicate(timeout=120)
-            assert process.returncode == 0, said
-    kept = rows_of(results)
-    lines = [line for line in (results / "rows.jsonl").read_text().splitlines() if line]
-    assert all(Row.parse(line) is not None for line in lines)
-    assert len(kept) == 12 and all(Results(results).history(key) is not None for key in kept)
-    assert Results(results).studies() == ["other", "scene"]
-
-
 def write_again_and_again(directory: Path, study: str, start: synchronize.Barrier) -> None:
     """Write verdicts, of which those before must still be there."""
     start.wait(60)
@@ -157,10 +140,3 @@ def test_a_write_that_fails_in_the_middle_of_a_study_is_one_line(scene_file, tmp
     assert len(list((tmp_path / "r" / "histories").iterdir())) == 1
     assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
     assert len(rows_of(tmp_path / "r")) == 2
-
-
-def test_a_damaged_history_is_one_line(scene_file, tmp_path):
-    assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
-    next((tmp_path / "r" / "histories").glob("*.npz")).write_bytes(b"PK\x03\x04 broken")
-    done = typed("run", scene_file, "--results", tmp_path / "r")
-    assert done.returncode == 2 and "delete it and run again" in done.stderr

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import gc
 import sys
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -25,12 +23,6 @@ from validation.runs import provenance
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
-
-# ---- windows ------------------------------------------------------------------------------------------------------
-
-
-# ---- comparisons --------------------------------------------------------------------------------------------------
-
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
 
@@ -86,25 +78,6 @@ def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.Mo
     run = partial(get_solver("dda").solve, load_scene("figure-8").expand()[0])
     run()
     assert measure.lines_of(run) == measure.lines_of(run)
-
-
-def test_lines_that_a_collection_of_garbage_runs_are_not_counted() -> None:
-    """Hypothesis, for one, times each collection by a callback of some lines."""
-
-    def collected(phase: str, info: object) -> None:
-        pass
-
-    def cycles() -> None:
-        for _ in range(3000):
-            own: list[Any] = []
-            own.append(own)
-
-    alone = measure.lines_of(cycles)
-    gc.callbacks.append(collected)
-    try:
-        assert measure.lines_of(cycles) == alone and gc.isenabled()
-    finally:
-        gc.callbacks.remove(collected)
 
 
 def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Scene, tmp_path: Path) -> None:

@@ -74,17 +74,17 @@ def keys_of(scene: Scene, solver: str, file: Path, texts: tuple[str, str]) -> se
     return keys
 
 
-def test_the_content_of_a_record_enters_the_key(scene: Scene, tmp_path: Path) -> None:
+@pytest.mark.parametrize(
+    ("name", "field", "solver", "column"),
+    [("figures-3-4", "load.base_motion", "dda", "x"), ("waves-site", "input.record", "layers", "velocity")],
+)
+def test_the_content_of_a_record_enters_the_key(
+    name: str, field: str, solver: str, column: str, tmp_path: Path
+) -> None:
     record = tmp_path / "record.csv"
-    moved = scene.with_values({"load.base_motion": str(record)})
-    assert len(keys_of(moved, "dda", record, ("time,x\n0,0\n1,0.001\n", "time,x\n0,0\n1,0.002\n"))) == 2
-
-
-def test_the_content_of_a_column_s_record_enters_the_key(tmp_path: Path) -> None:
-    record = tmp_path / "record.csv"
-    site = load_scene("waves-site").with_values({"input.record": str(record)})
-    texts = "time,velocity\n0,0\n1,0.1\n", "time,velocity\n0,0\n1,0.2\n"
-    assert len(keys_of(site, "layers", record, texts)) == 2
+    moved = load_scene(name).with_values({field: str(record)})
+    texts = f"time,{column}\n0,0\n1,0.1\n", f"time,{column}\n0,0\n1,0.2\n"
+    assert len(keys_of(moved, solver, record, texts)) == 2
 
 
 def test_the_content_of_a_mesh_enters_the_key_of_who_reads_it(scene: Scene, tmp_path: Path) -> None:

@@ -73,20 +73,6 @@ def test_no_worker_waits_between_studies_and_no_case_runs_twice(
     assert Counter(json.loads(row)["key"] for row in rows).most_common()[0][1] == 1 and len(rows) == 7
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("count", [300])
-def test_a_killed_worker_costs_nothing_and_every_case_is_there_once(count: int, scene: Scene, tmp_path: Path) -> None:
-    def kill(done: int, total: int, label: str) -> None:
-        if done == total // 2:
-            os.kill(multiprocessing.active_children()[0].pid or 0, signal.SIGKILL)
-
-    group = study_cases(sweep(scene, "sweep", count))
-    (ended,) = run_cases([group], Results(tmp_path), jobs=2, progress=kill)
-    assert Counter(row.outcome for row in ended.rows.values()) == {Outcome.COMPLETED: count}
-    lines = [line for line in (tmp_path / "rows.jsonl").read_text().splitlines() if line]
-    assert len(lines) == len(Results(tmp_path).rows()) == len(list((tmp_path / "histories").iterdir())) == count
-
-
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="workers inherit the patched run by fork")
 def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(
     scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -7,15 +7,13 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.bars import OTHER, PAPER
+from oracles.bars import PAPER
 from oracles.bars import damped as damped_bar
 
 from fem_reference.exact import continuum
 from fem_reference.exact.bar import Bar, applicable
 from fem_reference.exact.bar_modes import shares, wave_numbers
 from fem_reference.problem.problem import Problem, Scheme
-from fem_reference.scheme.modal import applicable as scheme_applicable
-from fem_reference.scheme.modal import weighted_response
 
 
 @pytest.mark.parametrize("kappa", [1e-9, 1e-3, 0.7, 2.0, 40.0, 1e6, 1e15])
@@ -35,52 +33,6 @@ def test_wave_numbers_to_the_last_digits(kappa):
             assert shares("contact_pressure", wave_numbers(kappa, 6), kappa)[n] == pytest.approx(
                 float(share), rel=1e-14
             )
-
-
-def test_mode_roots():
-    scheme = Scheme(0.5, 1.0, 0.97, 4e-3)
-    for mode in OTHER.modes(scheme, 4):
-        h = (mode.frequency * scheme.step) ** 2
-        h /= 1 + h / 2
-        assert mode.eigenvalues.sum() == pytest.approx(1 - h / 2 + 0.97 * (1 - h), abs=1e-14)
-        assert mode.eigenvalues[:2].prod() == pytest.approx(0.97 * (1 - h / 2), abs=1e-14)
-
-
-def test_continuum_waits_for_the_wave():
-    early = PAPER.continuum(Scheme(0.5, 1.0, 1.0, PAPER.travel / 100), 99)
-    assert np.all(early.columns["contact_pressure"] == 0)
-    assert np.all(early.columns["displacement"][:49] == 0) and early.columns["displacement"][60] < 0
-
-
-@pytest.mark.parametrize("gap", [0.0, 1e-9, 1e-5, 3e-3])
-def test_nearly_equal_roots(gap):
-    # (1/2, 1) has equal roots at Omega = 4; the recursion with trace and determinant is stable there.
-    scheme = Scheme(0.5, 1.0, 1.0, 1.0)
-    omega = np.array([1.0, 4.0 + gap, 4.0 - gap])
-    weights = np.eye(3)
-    found = weighted_response(omega, weights, scheme, 30)
-    for w, row in zip(omega, found, strict=True):
-        h = w * w / (1 + w * w / 2)
-        x = [1 - h / 2, (1 - h / 2) ** 2 - h * (1 - h / 2)]
-        for _ in range(28):
-            x.append((2 - 1.5 * h) * x[-1] - (1 - h / 2) * x[-2])
-        assert np.abs(row - (1 - np.array(x))).max() <= 1e-13
-
-
-@pytest.mark.parametrize(
-    "scheme", [Scheme(0.0, 0.5, 1.0, 1e-3), Scheme(1 / 6, 0.5, 1.0, 1e-3), Scheme(0.5, 0.4, 1.0, 1e-3)]
-)
-def test_unstable_schemes_are_refused(scheme):
-    assert scheme_applicable(scheme) is not None
-    with pytest.raises(ValueError, match="stable for every frequency"):
-        PAPER.solve(scheme, 10)
-
-
-def test_continuum_without_rate_is_refused():
-    with pytest.raises(ValueError, match=r"^gg: "):
-        PAPER.continuum(Scheme(0.5, 1.0, 0.0, 1e-3), 10)
-    with pytest.raises(ValueError, match=r"^steps: "):
-        PAPER.continuum(Scheme(0.5, 1.0, 1.0, 1.0), 10)
 
 
 def test_where_the_bar_is_exact():
@@ -113,7 +65,7 @@ def test_a_mode_that_stops_at_once_has_no_power():
 DAMPED = product([2.0, 1e3, 1e9], [0.003, 1.0, 7.0, 60.0], [0.25, 0.250001, 0.2371])
 
 
-@pytest.mark.parametrize(("kappa", "a", "step"), thinned(DAMPED, 7))
+@pytest.mark.parametrize(("kappa", "a", "step"), thinned(DAMPED, 11))
 def test_damped_bar_against_its_transform(kappa, a, step):
     # On the fronts, right behind them and away from them; 2e-11 is the tail beyond the modes at a stiff spring.
     columns = ("displacement", "contact_pressure")
@@ -121,11 +73,6 @@ def test_damped_bar_against_its_transform(kappa, a, step):
     for column, row in zip(columns, found, strict=True):
         for i in (5, 11, 18):
             assert row[i] == pytest.approx(damped_bar(column, step * (i + 1), kappa, a), abs=2e-11)
-
-
-def test_late_damped_fronts_are_refused():
-    with pytest.raises(ValueError, match=r"^steps: "):
-        PAPER.continuum(Scheme(0.5, 1.0, 1 - 1e-6, PAPER.travel / 2), 20000)
 
 
 def test_waves_beyond_the_range_of_the_exponential():

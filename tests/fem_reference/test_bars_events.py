@@ -17,7 +17,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import half_sine, ricker, sine, triangle
+from fem_reference.events.column_drive import half_sine, triangle
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -129,7 +129,7 @@ NUMBERS = {
 }
 
 
-@pytest.mark.parametrize("name", thinned(NUMBERS, 3))
+@pytest.mark.parametrize("name", thinned(NUMBERS, 4))
 def test_the_bars_move_as_another_program_computed(name: str) -> None:
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
@@ -142,13 +142,6 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
-
-
-def test_a_wave_from_a_half_space_like_the_bar_doubles_at_its_end() -> None:
-    """A stiff joint of strength enough lets it pass; the joint's time of rise is 2 / k."""
-    problem = BarsProblem((UNIT,), (slips(1e5, 1e3),), base_impedance=1.0, base=sine(1.0, 0.1))
-    surface = solve(problem, 3.0).point(0, 1.0, [1.5, 2.75]).velocity
-    assert surface == pytest.approx([2 * math.sin(0.2 * math.pi * t) for t in (0.5, 1.75)], abs=1e-3)
 
 
 def test_cut_bars_that_stay_bonded_move_as_one() -> None:
@@ -178,31 +171,6 @@ def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None
     assert top.stress[0] == pytest.approx(0.0, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("make", "field"),
-    [
-        (lambda: bar(length=0.0), "length"),
-        (lambda: bar(modulus=math.inf), "modulus"),
-        (lambda: bar(velocity=math.nan), "velocity"),
-        (lambda: opens(-1.0), "stiffness"),
-        (lambda: opens(gap=-0.1), "gap"),
-        (lambda: BarJoint("frictional", gap=0.1), "gap"),
-        (lambda: slips(1.0, 0.0), "strength"),
-        (lambda: BarsProblem((), ()), "bars"),
-        (lambda: BarsProblem((UNIT,), ()), "joints"),
-        (lambda: replace(B2, settled=True), "settled"),
-        (lambda: solve(replace(B2, top=ricker(1.0, 2.0)), 1.0), "drive"),
-        (lambda: solve(B2, 0.0), "end"),
-        (lambda: solve(B2, 1.0, digits=10), "digits"),
-        (lambda: solve(B2, 1.0).at([2.0]), "times"),
-        (lambda: solve(B2, 1.0).point(0, 2.0, [0.5]), "height"),
-    ],
-)
-def test_what_is_out_of_range_is_named(make: object, field: str) -> None:
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        make()  # type: ignore[operator]
-
-
 def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(TooManySwitchesError):
         solve(B11, 0.04, limit=3)
@@ -211,11 +179,11 @@ def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.Monk
         with pytest.raises(LostDigitsError) as lost:
             solve(B5, 4.0)
         assert lost.value.time == pytest.approx(2.0896018911888, rel=1e-13)
-    reached: list[float] = []
-    work = Work(4.5e4, reached.append)
-    with pytest.raises(TooMuchWorkError) as error:
-        solve(B11, 0.04, work=work)
-    assert 0.001 < error.value.time == reached[-1] == work.reached < 0.04
     free = Work()
-    solve(B11, 0.04, work=free)
-    assert free.terms > least_terms(B11, 0.04) > 0
+    solve(B6, 8.0, work=free)
+    assert free.terms > least_terms(B6, 8.0) > 0
+    reached: list[float] = []
+    work = Work(free.terms / 2, reached.append)
+    with pytest.raises(TooMuchWorkError) as error:
+        solve(B6, 8.0, work=work)
+    assert 1.0 < error.value.time == reached[-1] == work.reached < 8.0

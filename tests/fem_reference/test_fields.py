@@ -95,13 +95,6 @@ def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, 
             assert np.abs(frame.stress[:, 2]).max() > 1e-4 * scale  # there is shear to be seen
 
 
-def base_of(frame: Frame) -> tuple[Array, Array, Array]:
-    """Return x, u and v along the base, from left to right."""
-    on = np.flatnonzero(frame.points[:, 1] == frame.points[:, 1].min())
-    on = on[np.argsort(frame.points[on, 0])]
-    return frame.points[on, 0], frame.displacement[on, 0], frame.displacement[on, 1]
-
-
 LATERAL: list[tuple[float, dict[str, float]]] = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
 
 
@@ -109,7 +102,7 @@ LATERAL: list[tuple[float, dict[str, float]]] = [(0.0, {}), (0.3, {}), (0.3, {"t
     ("poisson", "load", "degree"), thinned([(*case, degree) for case in LATERAL for degree in (1, 2)], 2)
 )
 def test_the_frames_are_the_history(tmp_path: Path, poisson: float, load: dict[str, float], degree: int) -> None:
-    """The middle node and the base of every frame give the columns of its step; the last is the .vtu's."""
+    """The middle node of every frame gives the columns of its step; the last is the .vtu's."""
     problem = make(elements=4, degree=degree, poisson=poisson, shear=1e9, **load)
     scheme, paths = fem_reference.Scheme(0.5, 1.0, 1.0, 2e-3), [tmp_path / "block.xdmf", tmp_path / "block.vtu"]
     for path in paths:
@@ -122,9 +115,6 @@ def test_the_frames_are_the_history(tmp_path: Path, poisson: float, load: dict[s
         seen = dict(zip(("horizontal_displacement", "displacement"), frame.displacement[middle], strict=True))
         for name, value in seen.items():
             assert value == pytest.approx(columns[name][k], rel=1e-9, abs=1e-12 * Q / 1e9), name
-        x, _, v = base_of(frame)
-        if degree == 1 or not poisson:  # of degree 2 the file shows the corners alone; without contraction they suffice
-            assert -2e9 / 4 * np.trapezoid(v, x) == pytest.approx(columns["contact_pressure"][k], abs=1e-9 * Q)
     (last,) = read(paths[1])
     np.testing.assert_allclose(last.displacement, frames[-1].displacement, rtol=0, atol=1e-15)
     np.testing.assert_allclose(last.stress, frames[-1].stress, rtol=0, atol=1e-12 * Q)

@@ -107,13 +107,3 @@ def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> 
         moved, states = np.diff(history.slipped[c]), history.states[c, :-1]
         assert np.all(np.sign(states) * moved * (np.abs(states) == RIGHT) >= -1e-14)
         assert np.abs(moved[(states == STICKS) & (history.states[c, 1:] == STICKS)]).max(initial=0.0) <= 1e-14
-
-
-def test_bad_input_is_refused_by_name() -> None:
-    for field, value in [("friction", 90.0), ("friction", -1.0), ("cohesion", -1.0), ("slope", 90.0)]:
-        with pytest.raises(ValueError, match=field):
-            replace(INCLINE, **{field: value})
-    with pytest.raises(ValueError, match="cohesion: must be 0 without friction"):
-        replace(PAPER, cohesion=1e3)
-    with pytest.raises(ValueError, match="shear_stiffness"):
-        replace(INCLINE, shear_stiffness=0.0)

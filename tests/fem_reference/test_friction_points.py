@@ -1,14 +1,12 @@
-"""The law of points that slide: every step of random small problems, against the law and against all sets of states."""
+"""The law of points that slide, in steps of random small problems against all sets of states, and in its edges."""
 
 from itertools import product
 
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.contact_points import PointStep
 
 from fem_reference.contact.law import crossed
-from fem_reference.contact.stepper import SINGLY
 
 
 def random_step(rng, n, tangent=None):
@@ -24,39 +22,6 @@ def random_step(rng, n, tangent=None):
     before = np.where(states != 0, -1.0, 1.0) * rng.random(n) * 1e-3
     free = rng.standard_normal((2, n)) * 1e-3
     return PointStep(C, compliance, k_t, free.ravel(), before, states, tangent, cohesion)
-
-
-def check_law(step, found):
-    """The forces are those of the law at the end of the step; returns how many points slide."""
-    N, T, states = found.trial.normal, found.trial.shear, found.states
-    w, s = np.split(step.free + step.C @ np.concatenate([N, T]), 2)
-    closed, slides = states != 0, np.abs(states) == 2
-    size = np.abs(step.C) @ np.concatenate([np.abs(N), np.abs(T)]) + 1e-3
-    gaps, slips = np.split(1e-8 * size, 2)
-    assert not N[~closed].any() and not T[~closed].any() and np.all(w[~closed] >= -gaps[~closed])
-    assert np.all(N >= 0) and np.all(np.abs(w + N * step.compliance)[closed] <= gaps[closed])
-    # where a straight path crosses zero gap, and where the reference was
-    closing = closed & ~step.closed
-    crossing = np.where(closing, s * step.gap / np.where(closing, step.gap - w, 1.0), 0.0)
-    limit = step.tangent * N + step.cohesion
-    assert np.all(np.abs(T) <= limit * (1 + 1e-9))
-    moved = s + T / step.shear_stiffness - crossing  # of the reference
-    stuck = closed & ~slides
-    assert np.all(np.abs(moved[stuck]) <= slips[stuck])
-    assert np.allclose(T[slides], -np.sign(states[slides]) * limit[slides], rtol=1e-9)
-    assert np.all(np.sign(states[slides]) * moved[slides] >= -slips[slides])
-    return np.count_nonzero(slides)
-
-
-@pytest.mark.parametrize("n", thinned([1, 2, 4, 7], 2))
-def test_points_obey_their_law(n):
-    rng, slid, met = np.random.default_rng(n), 0, 0
-    for _ in range(40):
-        step = random_step(rng, n)
-        found = step.contact()
-        if found.trial is not None:
-            slid, met = slid + check_law(step, found), met + 1
-    assert slid > 6 and met > 22
 
 
 def holding(step):
@@ -103,20 +68,6 @@ def test_a_point_without_forces_is_one_contact_however_its_state_is_called():
     found = step.contact(1)
     assert (found.failure, found.solves) == ("", 2)
     assert found.trial.normal == pytest.approx([500.0, 0.0])
-
-
-def test_many_points_set_one_state_after_the_other():
-    rng, singly = np.random.default_rng(5), 0
-    for _ in range(40):
-        step = random_step(rng, 6, 0.4)
-        found = step.contact(1)
-        assert found.solves <= 1 + SINGLY * 6
-        if found.trial is None:
-            assert found.failure == "none"
-        elif found.solves > 1:
-            check_law(step, found)
-            singly += 1
-    assert singly > 20
 
 
 def test_a_point_that_turns_is_held_first():

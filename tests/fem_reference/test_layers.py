@@ -36,20 +36,6 @@ def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
     assert found.estimate < 1e-6
 
 
-def test_a_discount_is_a_rate_of_mass_damping() -> None:
-    """A pressed top settles on its springs: the static solution, after a damped motion."""
-    ground = Ground((SOIL,), "pressure", ((0.0, 1e7),))
-    scheme = fem_reference.Scheme(0.25, 0.5, 0.9, 2e-3, "zero")
-
-    def pressed(time: np.ndarray) -> Excitation:
-        return Excitation(0 * time, 0 * time, 0 * time, 1e5 * np.minimum(time / 0.1, 1.0))
-
-    found = layers.solve_layers(ground, scheme, 1500, pressed, ("displacement", "contact_pressure"))
-    static = -1e5 * (SOIL.thickness / SOIL.modulus("pressure") + 1e-7)
-    assert found.columns["displacement"][-1] == pytest.approx(static, rel=1e-4)
-    assert found.columns["contact_pressure"][-1] == pytest.approx(1e5, rel=1e-4)
-
-
 def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
     """Return a random column with joints anywhere, some where layers meet, and heights, some of them at joints."""
     strata = tuple(
@@ -67,7 +53,7 @@ def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
     return Ground(strata, motion, joints, impedance), [float(height) for height in some]
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(12))
 def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
     rng = np.random.default_rng(seed)
     ground, heights = drawn(rng)
@@ -80,9 +66,3 @@ def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
         size = max(map(abs, displaced))
         assert max(abs(found[name][0] - x) for name, x in zip(names, displaced, strict=True)) < 1e-8 * size
         assert abs(found["contact_pressure"][0] - pressure) < 1e-8 * (stiffness * size + abs(pressure))
-
-
-def test_no_rate_without_velocity() -> None:
-    scheme = fem_reference.Scheme(0.25, 0.5, 0.0, 2e-3, "zero")
-    with pytest.raises(ValueError, match="gg = 0 has no rate"):
-        layers.solve_layers(Ground((SOIL,), "shear"), scheme, 10, drive, ("displacement",))

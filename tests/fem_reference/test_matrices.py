@@ -1,4 +1,4 @@
-"""The finite-element matrices against the affine block, on every kind of mesh."""
+"""The finite-element matrices are those of DDA's block for affine motions, on every kind of mesh."""
 
 from itertools import product
 from pathlib import Path
@@ -7,12 +7,11 @@ import meshio
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.elements import INCLINED, SQUARE, make
+from oracles.elements import INCLINED, make
 from skfem import MeshQuad, MeshTri
 
-from fem_reference.history.solver import static
+import dda
 from fem_reference.mesh.model import assemble, build
-from fem_reference.scheme.eigen import highest_frequency
 
 
 def affine(x, y):
@@ -21,28 +20,12 @@ def affine(x, y):
     return np.array([[one, zero, -y, x, zero, y / 2], [zero, one, x, zero, y, x / 2]])
 
 
-def block_matrices(problem):
-    """Mass, elastic stiffness and corner springs of the affine block, by exact quadrature."""
-    corners, c = problem.outline, problem.centroid
-    M = np.zeros((6, 6))
-    for a, b in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        (ax, ay), (bx, by) = a - c, b - c
-        area = (ax * by - ay * bx) / 2
-        for x, y in (((ax + bx) / 2, (ay + by) / 2), (ax / 2, ay / 2), (bx / 2, by / 2)):
-            T = affine(np.array(x), np.array(y))
-            M += problem.density * area / 3 * T.T @ T
-    mu, E = problem.poisson, problem.young
-    if problem.hypothesis == "plane strain":
-        E, mu = E / (1 - mu**2), mu / (1 - mu)
-    K = np.zeros((6, 6))
-    K[3:, 3:] = E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]]) * problem.area
-    springs = np.zeros((6, 6))
-    for corner in corners[:2]:
-        T = affine(*(corner - c))
-        normal, tangential = problem.normal @ T, problem.tangent @ T
-        springs += problem.stiffness * np.outer(normal, normal)
-        springs += problem.shear_stiffness * np.outer(tangential, tangential)
-    return M, K, springs
+def block_of(problem):
+    """The block of one strain on the same springs under the same pressure."""
+    material = dda.Material(problem.density, problem.young, problem.poisson, problem.hypothesis)
+    contact = dda.Contact(problem.stiffness, problem.shear_stiffness)
+    block = dda.Block(problem.vertices, material)
+    return dda.TwoBlockModel(block, contact, problem.pressure, problem.base, problem.top)
 
 
 def write_mesh(path, problem, mesh):
@@ -99,14 +82,12 @@ def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poiss
     for dofs in (assembled.basis.nodal_dofs, assembled.basis.facet_dofs, assembled.basis.interior_dofs):
         component[dofs[1::2]] = 1
     T = np.where(component[:, None] == 0, fields[0].T, fields[1].T)
-    for matrix, expected in zip((assembled.M, assembled.K, assembled.springs), block_matrices(problem), strict=True):
+    block = block_of(problem)
+    for matrix, expected in ((assembled.M, block.mass), (assembled.K + assembled.springs, block.stiffness)):
         # The sums run over some hundred entries that cancel: rounding times their number.
         assert np.abs(T.T @ (matrix @ T) - expected).max() <= 1e-13 * np.abs(expected).max()
     assert assembled.observers["rotation"] @ T == pytest.approx([0, 0, 1, 0, 0, 0], abs=1e-12)
-    side = problem.outline[3] - problem.outline[2]
-    middle = (problem.outline[3] + problem.outline[2]) / 2 - problem.centroid
-    load = -problem.pressure * np.hypot(*side) * affine(*middle)[1]
-    assert np.abs(T.T @ assembled.F - load).max() <= 1e-13 * np.abs(load).max()
+    assert np.abs(T.T @ assembled.F - block.force).max() <= 1e-13 * np.abs(block.force).max()
 
 
 @pytest.mark.parametrize("elements", [1, 3, 4])
@@ -124,41 +105,6 @@ def test_patches_are_integrated_exactly_wherever_they_end(elements):
     assert v @ (assembled.springs @ v) == pytest.approx(energy, rel=1e-13)
     pressure = -p / width / 2 * (width**3 + 2**3 - (2 - width) ** 3) / 3
     assert assembled.observers["contact_pressure"] @ v == pytest.approx(pressure, rel=1e-13)
-
-
-def test_widest_patch_is_the_distributed_foundation():
-    patch = assemble(make(foundation="patch", patch_width=1.0, elements=3)).springs
-    spread = assemble(make(elements=3)).springs
-    assert abs(patch - spread).max() <= 1e-15 * abs(spread).max()
-
-
-@pytest.mark.parametrize(("elements", "degree"), [(1, 1), (5, 1), (8, 2)])
-@pytest.mark.parametrize("full", [False, True])
-def test_static_value_without_contraction_is_exact_on_every_mesh(elements, degree, full):
-    values = static(make(elements=elements, degree=degree), full)
-    # Conditioning of the mesh times rounding.
-    assert values["displacement"] == pytest.approx(-0.01, rel=1e-11)
-    assert values["contact_pressure"] == pytest.approx(5e6, rel=1e-11)
-    tall = make(((0, 0), (3, 0), (3, 5), (0, 5)), p=4e8, elements=elements, degree=degree)
-    # q W / 2p + (h / 2) (q / E)
-    assert static(tall, full)["displacement"] == pytest.approx(-(5e6 * 3 / 8e8 + 2.5 * 5e-3), rel=1e-11)
-
-
-def corner_block(tmp_path, vertices, top, holes):
-    """A block of unit squares of a 3 x 2 grid less some, as a mesh file."""
-    grid = MeshQuad.init_tensor(np.arange(4.0), np.arange(3.0))
-    middle = grid.p[:, grid.t].mean(axis=1)
-    gone = [int(np.argmin(np.hypot(*(middle - np.array([[x], [y]]))))) for x, y in holes]
-    mesh = grid.remove_elements(np.array(gone)).refined(1)
-    return make(vertices, 0, top, 0.2, mesh=write_mesh(tmp_path / "corner.msh", make(vertices, 0, top), mesh))
-
-
-def test_nonconvex_block_from_a_mesh_file(tmp_path):
-    shape = ((0, 0), (3, 0), (3, 1), (1, 1), (1, 2), (0, 2))
-    problem = corner_block(tmp_path, shape, 4, [(1.5, 1.5), (2.5, 1.5)])
-    # Statics: the base of length 3 carries the load of a top of length 1.
-    assert static(problem)["contact_pressure"] == pytest.approx(5e6 / 3, rel=1e-11)
-    assert assemble(problem).observers["displacement"].sum() == pytest.approx(1.0, rel=1e-12)
 
 
 def test_centroid_outside_the_block_is_refused(tmp_path):
@@ -202,38 +148,3 @@ def test_mesh_file_that_is_not_whole_is_refused_in_one_sentence(text, tmp_path, 
     with pytest.raises(ValueError, match=r"mesh: must be a readable mesh of triangles or quadrilaterals, .*grid\.msh"):
         build(make(mesh=str(file)))
     assert capfd.readouterr() == ("", "")
-
-
-def test_polygon_without_mesh_file_names_the_cure():
-    with pytest.raises(ValueError, match=r"\[fem\] mesh = "):
-        build(make(((0, 0), (2, 0), (3, 1), (2, 2), (0, 2)), top=3))
-
-
-def test_highest_frequency_of_linear_elements():
-    # Free line of linear elements with consistent mass: w^2 = 12 E / (rho h^2) to the ends' effect.
-    problem = make(elements=20, degree=1, p=1e-3)
-    assert highest_frequency(problem) == pytest.approx(np.sqrt(12e9 / 2700) / 0.1, rel=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("change", "field"),
-    [
-        ({"poisson": 0.5, "hypothesis": "plane strain"}, "poisson"),
-        ({"poisson": -1.0}, "poisson"),
-        ({"p": 0.0}, "stiffness"),
-        ({"p": float("nan")}, "stiffness"),
-        ({"shear": -1.0}, "shear_stiffness"),
-        ({"hypothesis": "stress"}, "hypothesis"),
-        ({"foundation": "patch"}, "patch_width"),
-        ({"foundation": "patch", "patch_width": 1.1}, "patch_width"),
-        ({"patch_width": 0.5}, "patch_width"),
-        ({"degree": 3}, "degree"),
-        ({"elements": 0}, "elements"),
-        ({"top": 0}, "top"),
-        ({"base": 4}, "base"),
-        ({"vertices": SQUARE[::-1]}, "vertices"),
-    ],
-)
-def test_bad_values_name_their_field(change, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        make(**change)

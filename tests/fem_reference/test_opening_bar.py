@@ -1,15 +1,14 @@
-"""The bar on a spring that carries no tension under the Newmark scheme: locked bar, elements, exact motion."""
+"""The bar on a spring that carries no tension under the Newmark scheme: its closed forms and the exact motion."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from oracles.elements import make
 
-from fem_reference import Motion, Scheme
+from fem_reference import Scheme
 from fem_reference.events.bar_events import solve as exact
-from fem_reference.exact.opening_bar import OpeningBar, applicable, closed_forms
+from fem_reference.exact.opening_bar import OpeningBar, closed_forms
 from fem_reference.problem.bar import BarProblem
 
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4)
@@ -46,34 +45,3 @@ def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
         errors.append(np.linalg.norm(away) / np.linalg.norm(truth))
     found = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert found == pytest.approx(order, abs=0.1)
-
-
-def test_a_bar_at_rest_stays_closed_and_the_least_touch_closes_it():
-    problem = replace(make(), pressure=0.0)
-    still = OpeningBar.of(problem).solve(CONSTANT, 5)
-    assert np.all(still.closed == 1) and not still.gap.any() and not still.displacement.any()
-    gap = 10 * CONSTANT.step  # a free bar of one metre a second is there in the tenth step
-    touched = OpeningBar.of(problem, gap * (1 - 1e-9), -1.0).solve(CONSTANT, 10)
-    assert touched.closed.tolist() == [0.0] * 9 + [1.0] and touched.contact_pressure[-1] > 0
-
-
-def test_what_is_no_bar_is_refused_by_name():
-    square = make()
-    for change, words in (
-        ({"poisson": 0.1}, "Poisson's ratio is 0.1"),
-        ({"traction": 1.0}, "a centred pressure and its weight only"),
-        ({"motion": Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3))}, "a centred pressure and its weight only"),
-        ({"foundation": "corner"}, "the foundation is 'corner'"),
-        ({"vertices": ((0, 0), (2, 0), (2, 2), (0.1, 2))}, "not an upright rectangle"),
-    ):
-        assert words in applicable(replace(square, **change))
-        with pytest.raises(ValueError, match=words):
-            OpeningBar.of(replace(square, **change))
-    with pytest.raises(ValueError, match=r"^gap: "):
-        OpeningBar.of(square, gap=-1.0)
-    with pytest.raises(ValueError, match=r"^velocity: "):
-        OpeningBar.of(square, velocity=math.nan)
-    with pytest.raises(ValueError, match=r"^steps: "):
-        OpeningBar.of(square).solve(CONSTANT, 0)
-    with pytest.raises(ValueError, match="explicit"):
-        OpeningBar.of(square).solve(replace(CONSTANT, alpha=0.0), 1)

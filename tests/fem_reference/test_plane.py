@@ -1,5 +1,6 @@
-"""The plane elastic body: order of a cantilever's tip, a free body's six numbers, cells that meet in a T, refusals."""
+"""The plane elastic body: order of a cantilever's tip, a free body's six numbers, cells that meet in a T."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +26,7 @@ STRESSED = PlaneBody(TEE, 2700.0, YOUNG, POISSON, stress=(3e6, -1e6, 2e6), eleme
 SCHEME = Scheme(0.25, 0.5, 1.0, 1e-3)
 
 
+@functools.cache
 def tip(**changes):
     model = PlaneModel([replace(CANTILEVER, **changes)])
     return float(model.observer(*RIGHT)[1] @ model.rest)
@@ -40,13 +42,6 @@ def test_a_cantilevers_tip_converges(degree, counts, least, most, last):
     errors = [abs(tip(elements=n, degree=degree) / truth - 1) for n in counts]
     assert least < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < most
     assert errors[-1] < last
-
-
-def test_a_cantilever_bends_and_shears_as_a_beam():
-    """P L^3 / 3 E I and 6 P L / 5 G A, but for the clamp."""
-    load, length, inertia = 1e5, 4.0, 1 / 12
-    beam = -load * (length**3 / (3 * YOUNG * inertia) + 1.2 * length * 2 * (1 + POISSON) / YOUNG)
-    assert tip() == pytest.approx(beam, rel=5e-3)
 
 
 @pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
@@ -80,36 +75,3 @@ def test_modes_of_a_cantilever_share_its_deflection():
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
     assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia
-
-
-def test_a_step_of_a_cantilever_swings_about_its_rest():
-    model = PlaneModel([replace(CANTILEVER, elements=2)])
-    rows = model.observer(*RIGHT)
-    period = 2 * np.pi / model.modes(SCHEME, 1)[0].frequency
-    steps = 400
-    tips = model.history(Scheme(0.25, 0.5, 1.0, period / steps, "consistent"), steps, rows).columns["1"]
-    rest = rows[1] @ model.rest
-    assert np.mean(tips) == pytest.approx(rest, rel=0.02) and np.min(tips) == pytest.approx(2 * rest, rel=0.05)
-
-
-INSIDE = ((0.0, 0.5), (4.0, 0.5))
-
-
-@pytest.mark.parametrize(
-    ("ask", "field"),
-    [
-        (lambda: replace(CANTILEVER, poisson=0.5), "poisson"),
-        (lambda: replace(CANTILEVER, density=0.0), "density"),
-        (lambda: replace(CANTILEVER, hypothesis="bending"), "hypothesis"),
-        (lambda: replace(CANTILEVER, elements=0), "elements"),
-        (lambda: replace(CANTILEVER, degree=3), "degree"),
-        (lambda: PlaneModel([replace(CANTILEVER, clamps=(INSIDE,))]), "edge"),
-        (lambda: PlaneModel([replace(CANTILEVER, tractions=((INSIDE, (1.0, 0.0)),))]), "edge"),
-        (lambda: PlaneModel([CANTILEVER]).observer(*INSIDE), "edge"),
-        (lambda: PlaneModel([replace(CANTILEVER, clamps=())]).rest, "load"),
-        (lambda: PlaneModel([CANTILEVER]).stress_error(), "stress"),
-    ],
-)
-def test_what_cannot_be_is_refused_by_field(ask, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        ask()

@@ -43,8 +43,9 @@ def apart(found, truth, size=0.0):
 SHAKEN = Motion((0.0, 0.05, 0.1, 0.15), (0.0, 1e-3, -1e-3, 0.0), (0.0, 0.0, 5e-4, 0.0))
 
 
-@pytest.mark.parametrize(("shear", "angle", "width"), [(0.0, None, 0.25), (4e8, None, 0.5), (4e8, 20.0, 1.0)])
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize(
+    ("shear", "angle", "width", "degree"), [(0.0, None, 0.25, 2), (4e8, None, 0.5, 1), (4e8, 20.0, 1.0, 2)]
+)
 def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     """Dropped with a sideways traction: the same springs, points, friction and steps from two ways to a mesh."""
     side, stiffness, drag, pressure = 2.0, 1e9, 4e5 if shear else 0.0, 2e5
@@ -81,8 +82,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
         assert apart(values, columns[name], work) < 1e-11
 
 
-@pytest.mark.parametrize("modal", [False, True])
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize(("degree", "modal"), [(1, False), (2, True)])
 def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     """Poisson's ratio 0 and springs all along the faces: the same motion on every vertical line, tilts none."""
     width, height, gap, stiffness = 2.0, 1.0, (2e-3, 1e-3), (1e9, 5e8)
@@ -93,7 +93,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     model = PlaneModel(bodies, contacts)
     top = 2 * height + gap[1]
     scheme = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-    still = np.zeros(1001)
+    still = np.zeros(501)
     faces = [ColumnContact(y, 2 * k / width, g) for y, k, g in zip((0.0, height), stiffness, gap, strict=True)]
     strata = (Stratum(height, DENSITY, YOUNG, 0.0),) * 2
     column = ContactColumn(Ground(strata, "pressure"), "unilateral", tuple(faces), (-1.0, -1.0), GRAVITY)
@@ -102,23 +102,21 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     if modal:
         in_modes(monkeypatch)
     rows = np.vstack([model.observer((0.0, top), (width, top), 1)[1], model.means(1)[[0, 2]]])
-    found = model.history(scheme, 1000, rows)
+    found = model.history(scheme, 500, rows)
     assert apart(found.columns["0"], truth["displacement"]) < 1e-12
     for pair, name in (((0, 1), "force_1"), ((2, 3), "force_2")):
         assert apart(found.normal[:, pair].sum(axis=1) / width, truth[name]) < 1e-12
     assert np.abs(np.array([found.columns["1"], found.columns["2"]])).max() < 1e-12 * np.abs(found.columns["0"]).max()
 
 
-@pytest.mark.parametrize("modal", [False, True])
-def test_bodies_that_collide_keep_momentum_and_energy(modal, monkeypatch):
+def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     """Free bodies, an oblique impact with friction: no rigid motion has forces of its own."""
     lower = rectangle(0.0, 0.0, 2.0, 1.0, velocity=(0.3, 0.5), spin=0.02, elements=3)
     polygon = ((0.5, 1.01), (2.5, 1.01), (2.2, 1.9), (0.7, 2.2))
     upper = PlaneBody((polygon,), DENSITY, 2 * YOUNG, 0.3, velocity=(-1.0, -1.0), elements=2)
     law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
     model = PlaneModel([lower, upper], patches(1, 0, 0.5, 2.0, 1.01, 0.4, **law))
-    if modal:
-        in_modes(monkeypatch)
+    in_modes(monkeypatch)
     found = model.history(Scheme(0.25, 0.5, 1.0, 2e-4), 1500, model.means(0))
     assert found.outcome == "completed" and found.normal.max() > 1e5 and np.abs(found.slip[-1]).min() > 1e-3
     assert np.all(found.closed[-1] == 0)
@@ -129,34 +127,11 @@ def test_bodies_that_collide_keep_momentum_and_energy(modal, monkeypatch):
     assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
 
 
-@pytest.mark.parametrize("stiffness", [1e8, 1e9])
-def test_stiff_bodies_in_an_overhang_press_as_rigid_ones(stiffness):
-    """Below k blocks the ends of a seat c bear k W (1 - e/c) and k W e/c: the weight is e = 0.05 l/2 from the edge."""
-    length, height = 2.0, 0.5
-    weight = DENSITY * length * height * GRAVITY
-    bodies = []
-    contacts = []
-    forces = []
-    left = 0.0
-    for number, above in enumerate((3, 2, 1)):
-        out = 0.95 * length / (2 * above)
-        low = number * height
-        stiff = {"young": 1e6 * YOUNG, "poisson": 0.0, "gravity": (0.0, -GRAVITY), "elements": 1, "degree": 1}
-        bodies.append(rectangle(left + out, low, left + out + length, low + height, **stiff))
-        below = None if number == 0 else number - 1
-        for x in (left + length, left + out):
-            contacts.append(PatchContact(number, below, (x, low), (x, low), UP, stiffness, stiffness))
-        inner = 0.05 * length / 2 / (length - out)
-        forces += [above * weight * (1 - inner), above * weight * inner]
-        left += out
-    assert PlaneModel(bodies, contacts).settled.normal == pytest.approx(forces, rel=1e-6)
-
-
 @pytest.mark.parametrize("degree", [1, 2])
 def test_two_bodies_pressed_on_patches_have_a_limit(degree):
     """At the ends of a patch the pressure jumps, at corners it is singular: order 1.5 to 2 whatever the degree."""
     places = []
-    for elements in (4, 8, 16, 32):
+    for elements in (4, 8, 16):
         top = ((0.5, 2.0), (1.5, 2.0))
         lower = rectangle(0.0, 0.0, 2.0, 1.0, elements=elements, degree=degree)
         upper = rectangle(0.5, 1.0, 1.5, 2.0, elements=elements, degree=degree, tractions=((top, (2e4, -1e6)),))
@@ -168,7 +143,8 @@ def test_two_bodies_pressed_on_patches_have_a_limit(degree):
         assert resultants == pytest.approx([1e6, 1e6], rel=1e-9)
     changes = np.diff(places)
     assert np.all(changes < 0)
-    assert 1.2 < np.log2(changes[1] / changes[2]) < 2.1 and abs(changes[2] / places[-1]) < 0.01
+    assert 1.2 < np.log2(changes[0] / changes[1]) < 2.1
+    assert abs(changes[1] / places[-1]) < 0.03  # the rest is less than this change, of order above one
 
 
 def kirsch(x):
@@ -248,43 +224,6 @@ def test_a_disc_that_is_pressed_splits_as_hondros_says():
     assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[1]).max() < 3e-3
 
 
-FLOOR = PatchContact(0, None, (0.0, 0.0), (0.25, 0.0), UP, 1e9)
-HOOK = ((0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (2.9, 3.0), (2.9, 0.1), (0.0, 0.1))
-STILL = rectangle(0.0, 0.0, 1.0, 1.0)
-
-
-@pytest.mark.parametrize(
-    ("ask", "field"),
-    [
-        (lambda: replace(FLOOR, normal=(0.0, 2.0)), "normal"),
-        (lambda: replace(FLOOR, second=0), "second"),
-        (lambda: replace(FLOOR, stiffness=0.0), "stiffness"),
-        (lambda: replace(FLOOR, cohesion=1.0), "cohesion"),
-        (lambda: replace(FLOOR, bonded=True, gap=0.1), "gap"),
-        (lambda: PlaneModel([replace(STILL, polygons=(HOOK,), rectangle=False)]), "polygons"),
-        (lambda: PlaneModel([STILL], [replace(FLOOR, first=1)]), "contact"),
-        (lambda: PlaneModel([STILL], [replace(FLOOR, end=(2.0, 0.0))]), "edge"),
-        (lambda: PlaneModel([replace(STILL, gravity=(1.0, 0.0))], [FLOOR]).rest, "load"),
-        (lambda: replace(STILL, mesh=MeshTri()), "mesh"),
-        (lambda: replace(STILL, spin=1.0, clamps=(((0.0, 0.0), (1.0, 0.0)),)), "velocity"),
-        (lambda: PlaneModel([replace(STILL, rollers=((((0.0, 0.0), (1.0, 0.0)), "z"),))]), "rollers"),
-    ],
-)
-def test_what_cannot_be_is_refused_by_field(ask, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        ask()
-
-
-def test_a_free_body_turns_about_its_centre_of_mass():
-    """A trapezoid, its middle beside its centroid: u, v and rotation are those of velocity and spin, strains none."""
-    polygon = ((3.0, 1.0), (6.0, 1.0), (4.0, 3.0), (3.0, 3.0))
-    body = PlaneBody((polygon,), DENSITY, YOUNG, 0.3, velocity=(0.2, -0.4), spin=0.01, elements=1)
-    model = PlaneModel([body])
-    found = model.history(replace(CONSTANT, step=1e-2), 10, model.means(0))
-    for number, rate in enumerate((0.2, -0.4, 0.01, 0.0, 0.0, 0.0)):
-        assert found.columns[str(number)] == pytest.approx(rate * found.time, abs=1e-12)
-
-
 def test_bodies_that_begin_at_rest_stay_there():
     """Over gaps: the springs are as long at rest as the weight says, and nothing moves."""
     weight = {"gravity": (0.0, -GRAVITY), "elements": 2}
@@ -301,13 +240,3 @@ def test_bodies_that_begin_at_rest_stay_there():
     at_rest = rows @ model.rest
     for number, values in found.columns.items():
         assert np.abs(values - at_rest[int(number)]).max() < 1e-12
-
-
-def test_springs_that_begin_as_short_as_the_weight_asks_stay_so():
-    depth = DENSITY * 2.0 * GRAVITY / (2 * 1e8)
-    body = rectangle(0.0, 0.0, 2.0, 1.0, young=1e6 * YOUNG, gravity=(0.0, -GRAVITY), elements=1)
-    model = PlaneModel([body], patches(0, None, 0.0, 2.0, 0.0, 0.5, stiffness=1e8, gap=-depth))
-    # with delta = 1/2 the force at t = 0 counts
-    found = model.history(Scheme(0.25, 0.5, 1.0, 1e-3, "consistent"), 50, model.means(0)[1:2])
-    assert np.abs(found.columns["0"]).max() < 1e-3 * depth
-    assert found.normal == pytest.approx(np.full((50, 2), 1e8 * depth), rel=1e-3)

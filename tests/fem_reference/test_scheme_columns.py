@@ -1,4 +1,4 @@
-"""Columns under schemes of stages: steps against the frequency response, the block on points and finer steps."""
+"""Columns under schemes of stages: steps settle in the frequency response."""
 
 import math
 
@@ -7,8 +7,6 @@ import pytest
 from conftest import thinned
 
 from fem_reference import named_scheme
-from fem_reference.column.contact_model import ColumnContact, ContactColumn
-from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response
@@ -63,21 +61,3 @@ def test_steps_settle_in_the_frequency_response(name, options, base):
             # Above a half-space the beginning may have shifted the whole column for good.
             change = np.diff(history.columns[column][late])
             assert np.abs(change - np.diff(expected)).max() < 1e-8 * np.abs(expected).max()
-
-
-def test_what_has_no_velocity_at_the_ends_of_steps_has_no_dashpot():
-    scheme = named_scheme("leapfrog", step=1e-4)
-    ground = Ground(STRATA, "shear", (), 5e5)
-    drive = rest(scheme, 3)
-    with pytest.raises(ValueError, match=r"^scheme: .*'leapfrog'"):
-        solve_line(ground, [1, 1], 1, scheme, drive)
-    column = ContactColumn(ground, "frictional", (ColumnContact(4.0, 1e8),), (0.0, 0.0))
-    with pytest.raises(ValueError, match=r"^scheme: .*'leapfrog'"):
-        solve_contacts(column, [1, 1], 1, scheme, drive)
-
-
-def test_a_rigid_contact_needs_an_implicit_scheme():
-    scheme = named_scheme("leapfrog", step=1e-4)
-    column = ContactColumn(Ground(STRATA, "pressure"), "unilateral", (ColumnContact(0.0, math.inf),), (0.0, 0.0))
-    with pytest.raises(ValueError, match=r"^scheme: "):
-        solve_contacts(column, [1, 1], 1, scheme, rest(scheme, 3))

@@ -1,7 +1,6 @@
 """Schemes of stages on a locked base: roots, hidden damping, orders and responses against closed forms."""
 
 import math
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -9,15 +8,12 @@ import pytest
 from conftest import thinned
 from oracles.elements import error, make, stepped
 
-import fem_reference
-from fem_reference import SCHEMES, Bar, Motion, Scheme, named_scheme, solve
+from fem_reference import Bar, named_scheme, solve
 from fem_reference.exact.vibration import response as bar_response
 from fem_reference.history.response import response
-from fem_reference.mesh.model import build
 from fem_reference.scheme import modal
 from fem_reference.scheme.diagnostics import diagnostics
 from fem_reference.scheme.eigen import eigenvalues
-from fem_reference.scheme.newmark import State, Stepper
 
 HHT = {0.1: 0.9 / 1.1, 0.3: 0.7 / 1.3}  # rho_inf of alpha = -0.1 and -0.3
 IMPLICIT = [
@@ -109,12 +105,6 @@ def test_every_path_gives_the_stepped_history(name, options):
         assert whole.factorisations == len(set(scheme.stage_matrices)) + (not explicit)
 
 
-def test_stages_share_a_matrix_where_they_can():
-    assert named_scheme("composite", step=1.0).stage_matrices == (0, 0)
-    assert named_scheme("composite", step=1.0, rho_inf=0.6).stage_matrices == (0, 0)
-    assert named_scheme("composite", step=1.0, split=0.5).stage_matrices == (0, 1)
-
-
 @pytest.mark.parametrize(("case", "ramp"), thinned(product(IMPLICIT, [0.0, 0.0123]), 5))
 def test_the_bar_is_the_limit_of_the_mesh(case, ramp):
     name, options = case
@@ -125,58 +115,6 @@ def test_the_bar_is_the_limit_of_the_mesh(case, ramp):
     assert error(fine.columns.values(), list(bar.columns.values())) < 0.1 * error(
         coarse.columns.values(), list(bar.columns.values())
     )
-
-
-def test_an_explicit_scheme_is_refused_by_the_bar():
-    scheme = named_scheme("leapfrog", step=1e-3)
-    assert "explicit" in str(modal.applicable(scheme))
-    with pytest.raises(ValueError, match=r"^scheme: "):
-        Bar.of(make()).solve(scheme, 10)
-
-
-def test_a_moving_base_is_sampled_at_the_ends_of_the_stages():
-    """The composite scheme meets a sine of the base with its second order."""
-    w = 200.0
-    t = np.linspace(0, 0.05, 20001)
-    motion = Motion(tuple(t), tuple(0 * t), tuple(1e-3 * np.sin(w * t) ** 2))
-    problem = make(elements=1, degree=1, motion=motion, poisson=0.0)
-    fine = solve(problem, Scheme(0.25, 0.5, 1.0, 0.04 / 5120, "consistent"), 5120).columns["displacement"]
-    errors = []
-    for steps in (80, 160):
-        coarse = solve(problem, named_scheme("composite", step=0.04 / steps, split=0.5), steps)
-        picked = fine[5120 // steps - 1 :: 5120 // steps]
-        errors.append(np.linalg.norm(coarse.columns["displacement"] - picked) / np.sqrt(steps))
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.2)
-
-
-def steady(problem, scheme, frequency):
-    """Amplitudes of the motion with the load's own frequency, by the map of one step."""
-    model = build(problem)
-    size = len(model.F)
-    stepper = Stepper(model.M, model.K, model.F, scheme)
-
-    def step(x, loads):
-        state = State(x[:size], x[size : 2 * size] / scheme.step, x[2 * size :] / scheme.step**2)
-        end = stepper.advance(state, loads)
-        return np.concatenate([end.D, scheme.step * end.V, scheme.step**2 * end.A])
-
-    phases = np.exp(2j * np.pi * frequency * scheme.step * np.array([0.0, *(stage.end for stage in scheme.stages)]))
-    free = np.array([step(unit, 0 * phases.real[:, None] * model.F) for unit in np.eye(3 * size)]).T
-    none = np.zeros(3 * size)
-    forced = step(none, phases.real[:, None] * model.F) + 1j * step(none, phases.imag[:, None] * model.F)
-    motion = np.linalg.solve(phases[-1] * np.eye(3 * size) - free, forced)
-    return problem.load_size * (model.observers["displacement"] @ motion[:size])
-
-
-@pytest.mark.parametrize(("case", "gg"), thinned(product(EVERY, [1.0, 0.95]), 7))
-def test_the_frequency_response_is_the_periodic_motion_of_the_steps(case, gg):
-    name, options = case
-    scheme = named_scheme(name, step=1e-4 if name == "leapfrog" else 1e-3, gg=gg, **options)
-    problem = make(elements=2, poisson=0.3)
-    frequencies = np.array([0.5, 20.0, 77.0, 310.0])
-    amplitudes = response(problem, scheme, frequencies)["displacement"]
-    expected = [steady(problem, scheme, frequency) for frequency in frequencies]
-    np.testing.assert_allclose(amplitudes, expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("name", "options"), thinned(IMPLICIT, 4))
@@ -204,44 +142,3 @@ def test_diagnostics_agree_with_themselves():
     found = diagnostics(make(elements=3, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
     assert found.spectral_radius == pytest.approx(found.predicted_radius, abs=1e-9)
     assert found.spectral_radius < 1
-
-
-@pytest.mark.parametrize(
-    ("field", "arguments"),
-    [
-        ("name", {"name": "bathe"}),
-        ("name", {"name": "newmark"}),
-        ("rho_inf", {"name": "chung-hulbert"}),
-        ("rho_inf", {"name": "wbz", "rho_inf": 1.01}),
-        ("rho_inf", {"name": "hht", "rho_inf": 0.49}),
-        ("rho_inf", {"name": "composite", "rho_inf": math.nan}),
-        ("rho_inf", {"name": "leapfrog", "rho_inf": 1.0}),
-        ("split", {"name": "composite", "split": 1.0}),
-        ("split", {"name": "chung-hulbert", "rho_inf": 0.5, "split": 0.5}),
-        ("start", {"name": "leapfrog", "start": "zero"}),
-        ("gg", {"name": "composite", "gg": 1.1}),
-        ("step", {"name": "composite", "step": 0.0}),
-    ],
-)
-def test_bad_values_are_named(field, arguments):
-    with pytest.raises(ValueError, match=rf"^{field}: .*got "):
-        named_scheme(**{"step": 1e-3, **arguments})
-
-
-def test_what_goes_with_newmark_only():
-    scheme = named_scheme("chung-hulbert", step=1e-3, rho_inf=0.5)
-    with pytest.raises(ValueError, match=r"^mass_damping: "):
-        replace(scheme, mass_damping=1.0)
-    with pytest.raises(ValueError, match=r"^scheme: "):
-        fem_reference.solve_adaptive(make(), scheme, 3)
-    assert SCHEMES == ("newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite")
-
-
-# Seeded faults in the numbers of a table, and what one of them changes.
-
-
-def test_the_discount_acts_once_a_step():
-    """Composite, W = .5, gg = .98: 0.020850; once in every stage it were 0.041252."""
-    scheme = named_scheme("composite", step=1.0, gg=0.98)
-    assert damping_ratio(modal.roots(0.5, scheme)[0]) == pytest.approx(0.020850, rel=1e-4)
-    assert damping_ratio(eigenvalues(0.5, scheme)[0]) == pytest.approx(0.020850, rel=1e-4)

@@ -11,7 +11,7 @@ from itertools import product
 import numpy as np
 import pytest
 from conftest import thinned
-from mpmath import mp, mpf
+from mpmath import mpf
 from oracles import bar_by_series, bar_by_transform
 
 from fem_reference.exact import bar as bar_module
@@ -32,7 +32,7 @@ def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
 CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [1e-6, 0.0, 1.0, 300.0])
 
 
-@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 17))
+@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 23))
 def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19, 59]
@@ -70,10 +70,3 @@ def test_a_critically_damped_slow_mode_in_steps() -> None:
     expected = bar_by_series.at_steps(bar, scheme, COLUMNS, steps)
     for name, values in bar.solve(scheme, steps[-1]).columns.items():
         assert over_maximum(values[np.array(steps) - 1], expected[name]) <= bar_module.TARGET
-
-
-def test_the_transform_itself() -> None:
-    """The first wave undamped is 2 (1 - exp(-kappa t))."""
-    first = bar_by_transform.history("contact_pressure", 2.5, 1e-3, 0.0)
-    with mp.workdps(bar_by_transform.DIGITS):
-        assert abs(first + 2 * mp.expm1(-mpf(1e-3) * 3 / 2)) < mpf(10) ** -25

@@ -1,77 +1,15 @@
-"""Elements on a base that carries no tension: exact bar, locked base, brute force, symmetry, counts."""
+"""Elements on a base that carries no tension: digits on stiff springs and in long flights, coarse meshes."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from oracles.elements import make
-from oracles.random_contact import at_every_point
 
-from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
-from fem_reference.events.bar_events import solve as exact
-from fem_reference.problem.bar import BarProblem
+from fem_reference import Scheme, Unilateral, solve_unilateral
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
 CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-GLUED = Unilateral(shear="glued")
-
-
-def bar_of(problem, contact=None):
-    """The exact bar of a square problem."""
-    contact = Unilateral() if contact is None else contact
-    width, height = problem.rectangle
-    loads = {"pressure": problem.pressure, "gravity": problem.gravity, "gap": contact.gap, "velocity": contact.velocity}
-    return BarProblem(height, width, problem.density, problem.young, 2 * problem.stiffness, **loads)
-
-
-def distances(problem, scheme, steps, contact=None):
-    """Relative L2 distances of displacement and contact pressure from the exact bar, and the run."""
-    run = solve_unilateral(problem, scheme, steps, contact, columns=("displacement", "contact_pressure", "largest_gap"))
-    truth = exact(bar_of(problem, contact), 1.001 * run.time[-1]).at(run.time)
-    pairs = [(run.columns[name], getattr(truth, name)) for name in ("displacement", "contact_pressure")]
-    return [float(np.linalg.norm(a - b) / np.linalg.norm(b)) for a, b in pairs], run
-
-
-@pytest.mark.parametrize(
-    ("change", "contact"),
-    [
-        pytest.param({"pressure": 0.0}, Unilateral(velocity=-0.7), marks=pytest.mark.long),
-        ({"pressure": 0.0, "gravity": 9.81}, Unilateral(gap=1e-3, velocity=-0.2)),
-        ({"pressure": 2e6, "gravity": 30.0}, Unilateral(gap=5e-4)),
-    ],
-)
-def test_gap_velocity_and_weight_are_those_of_the_exact_bar(change, contact):
-    problem = replace(make(((0, 0), (1.5, 0), (1.5, 2), (0, 2)), elements=128, degree=1, p=3e9), **change)
-    error, run = distances(problem, replace(AVERAGE, step=2.5e-5), 800, contact)
-    assert np.all(run.columns["contact_pressure"][:5] == 0) == (contact.gap > 0)
-    # twice what order one leaves of the coarser runs of the test above at this mesh
-    assert error[0] < 0.02 and error[1] < 0.1
-
-
-def test_the_block_is_factorised_once_and_solved_once_a_step():
-    problem = make(elements=4, eccentricity=0.3)
-    run = solve_unilateral(problem, replace(CONSTANT, start="zero"), 200)
-    assert np.any(run.columns["open_share"] > 0)
-    assert (run.factorisations, run.points, run.solves) == (1, 9, 9 + 200)
-    again = solve_unilateral(problem, CONSTANT, 5, GLUED)
-    assert (again.factorisations, again.solves) == (2, 2 * 9 + 1 + 5)
-
-
-def test_columns_are_those_of_the_points():
-    problem = make(elements=4, eccentricity=0.3, poisson=0.2)
-    run = at_every_point(problem, CONSTANT, 250, Unilateral())
-    share = np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 24
-    assert run.gap.shape == run.normal.shape == (250, 9)
-    expected = {
-        "contact_pressure": run.normal.sum(axis=1) / 2,
-        "open_share": (run.gap > 0) @ share,
-        "largest_gap": np.maximum(run.gap.max(axis=1), 0),
-        "largest_penetration": np.maximum(-run.gap.min(axis=1), 0),
-        "spring_energy": (run.normal**2) @ (1 / (2e9 * share)) / 2,
-    }
-    for name, column in expected.items():
-        assert np.allclose(run.columns[name], column, rtol=1e-12, atol=0), name
-    assert 0 < np.median(run.columns["open_share"]) < 1
 
 
 def test_a_nearly_rigid_base_keeps_its_digits():
@@ -89,25 +27,6 @@ def test_a_mesh_too_coarse_for_a_stiff_base_is_named():
     for p, words in ((1e10, "too coarse for the base spring: h kappa is 2.5, at most 1 shows its ramp"), (3.9e9, None)):
         notes = solve_unilateral(make(elements=8, p=p), replace(CONSTANT, step=0.1), 1).notes
         assert notes[:-1] == (("one column of elements",) if words is None else ("one column of elements", words))
-
-
-def test_bad_requests_are_refused_by_name():
-    for field, value in [("gap", -1e-3), ("velocity", np.inf), ("shear", "rough"), ("limit", 0), ("cut", 1.0)]:
-        with pytest.raises(ValueError, match=f"^{field}: "):
-            Unilateral(**{field: value})
-    with pytest.raises(ValueError, match=r"^shortest: "):
-        Unilateral(shortest=0.0)
-    with pytest.raises(ValueError, match=r"^rule: "):
-        Unilateral(rule="explicit")
-    with pytest.raises(ValueError, match=r"^alpha, delta: must be"):
-        solve_unilateral(make(elements=2), CONSTANT, 1, Unilateral(rule="implicit"))
-    with pytest.raises(ValueError, match=r"^steps: "):
-        solve_unilateral(make(elements=2), CONSTANT, 0)
-    with pytest.raises(ValueError, match=r"^friction: goes with shear"):
-        Unilateral(friction=Friction(30.0))
-    for angle, cohesion, field in ((-1.0, 0.0, "friction"), (90.0, 0.0, "friction"), (30.0, -1.0, "cohesion")):
-        with pytest.raises(ValueError, match=f"^{field}: "):
-            Friction(angle, cohesion)
 
 
 def test_rounding_does_not_turn_a_block_in_a_long_flight():

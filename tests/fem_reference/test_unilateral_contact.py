@@ -7,9 +7,11 @@ import pytest
 from oracles.contact_points import PointStep, frictionless
 from oracles.elements import make
 
-from fem_reference import Scheme, Unilateral, solve_unilateral
+from fem_reference import Friction, Motion, Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import points, stepper
+from fem_reference.contact.driver import Cut, cut_step
 from fem_reference.contact.iteration import NONE, OVERFLOW
+from fem_reference.contact.law import INSIDE
 from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history import unilateral
 
@@ -66,26 +68,6 @@ def test_a_singular_matrix_is_a_set_of_states_that_nothing_asks_for():
     assert step.contact().trial is None or np.isfinite(step.contact().trial.normal).all()
 
 
-def random_glued(rng, n):
-    C = random_base(rng, 2 * n)[0]
-    closed = rng.random(n) < 0.5
-    stiffness = 1 / np.diag(C)[n:] * 10.0 ** rng.uniform(-2, 2, n)
-    compliance = np.diag(C)[:n] * 10.0 ** rng.uniform(-3, 1, n)
-    before = np.where(closed, -1.0, 1.0) * rng.random(n) * 1e-3
-    free = rng.standard_normal((2, n)) * 1e-3
-    return PointStep(C, compliance, stiffness, free.ravel(), before, closed.astype(np.int8))
-
-
-def test_glued_bases_without_a_unique_set_of_states_say_so():
-    rng = np.random.default_rng(11)
-    none, several = "none", "several"
-    assert {"", none} <= {random_glued(rng, 2).contact(6).failure for _ in range(40)}
-    # an iteration that stops at once leaves the choice to the trial of all states
-    assert {"", none, several} <= {random_glued(rng, 2).contact(1).failure for _ in range(60)}
-    many = [random_glued(rng, 9).contact(2) for _ in range(10)]
-    assert (none, 2) in {(found.failure, found.solves) for found in many}
-
-
 @pytest.mark.parametrize(("shear", "rule"), [("frictionless", "newmark"), ("glued", "newmark"), ("glued", "implicit")])
 def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
     problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8)
@@ -99,16 +81,6 @@ def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
         # rounding of the energies lost is that of the energies
         size = max(np.abs(values).max(), np.abs(few.columns["strain_energy"]).max() if "loss" in name else 0.0)
         assert np.abs(many.columns[name] - values).max() <= 1e-10 * size, name
-
-
-def test_points_of_the_base_share_it_with_positive_weights():
-    for degree, weights in ((1, [0.5, 1, 1, 1, 0.5]), (2, np.array([1, 4, 2, 4, 2, 4, 2, 4, 1]) / 6)):
-        for cells in ("quadrilaterals", "triangles"):
-            model = points.build(make(elements=4, degree=degree, poisson=0.2, shear=3e8, cells=cells))
-            assert model.share == pytest.approx(np.array(weights) / 4, rel=1e-14)
-            assert model.stiffness == pytest.approx(2e9 * model.share, rel=1e-14)
-            assert model.shear_stiffness == pytest.approx(6e8 * model.share, rel=1e-14)
-            assert model.normal @ model.upwards == pytest.approx(np.ones(len(weights)), rel=1e-14)
 
 
 class Refusing(ContactStepper):
@@ -157,3 +129,33 @@ def test_a_step_from_a_velocity_without_bound_solves_no_contact():
     with np.errstate(all="ignore"):
         marched = one.march(start._replace(V=start.V + np.inf), one.record(1))
     assert (marched.steps, marched.solves, marched.outcome) == (0, 0, OVERFLOW)
+
+
+SHAKE = Motion((0.0, 0.004, 0.011, 0.02, 0.03), (0.0, 1e-3, -2e-3, 1e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0, 0.0))
+
+
+def test_a_cut_step_starts_from_the_state_as_it_was_and_the_base_from_its_place():
+    weight = {"gravity": 98.1, "slope": 25.0, "motion": SHAKE}
+    problem = replace(make(elements=2, degree=1, poisson=0.2, shear=4e8), pressure=0.0, **weight)
+    model = points.build(problem)
+    scheme = replace(SCHEME, start="consistent")
+    one, fresh = (kind(model.system("glued", Friction(10.0, 1e3)), scheme) for kind in (Refusing, ContactStepper))
+    one.longest = 0.3
+    rubbing = Unilateral(shear="glued", friction=Friction(10.0, 1e3))
+    first = state = again = one.march(unilateral.block_at_start(one, model, rubbing), one.record(1), 0.3).state
+
+    saved = [np.copy(part) for part in first]
+    for _ in range(4):
+        one.lengths.clear()
+        row = one.record(1)
+        step = cut_step(one, one.march(state, row), Cut(rubbing.cut, rubbing.shortest), row)
+        assert one.lengths == pytest.approx([0.3, 0.3, 0.3, 0.1])
+        for piece in one.lengths:
+            again = fresh.march(again, fresh.record(1), piece).state
+        state = step.state
+    assert all(np.array_equal(a, b) for a, b in zip(saved, first, strict=True))
+    assert np.any(state.states[len(model.share) :] != INSIDE) and state.position == pytest.approx(4.3, rel=1e-12)
+    for name, value in state._asdict().items():
+        assert np.array_equal(value, getattr(again, name)), name
+    # the base is where its record says, whatever the steps were cut into
+    assert state.parts[1] == pytest.approx(np.interp(4.3e-3, SHAKE.time, SHAKE.x), rel=1e-12)

@@ -9,7 +9,6 @@ from oracles.elements import make
 from fem_reference import Motion, Scheme, Unilateral, solve_unilateral
 
 AVERAGE = Scheme(0.25, 0.5, 1.0, 1e-4, "consistent")
-CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
 GLUED = Unilateral(shear="glued")
 ENERGIES = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 
@@ -25,13 +24,3 @@ def test_the_work_of_a_base_that_moves_is_counted(rule):
     run = solve_unilateral(problem, replace(AVERAGE, start="zero"), 60, contact)
     energies = np.array([run.columns[name] for name in (*ENERGIES, *LOSSES)])
     assert np.abs(energies.sum(axis=0) - 2700.0 * 4 * 0.5**2 / 2).max() <= 1e-10 * np.abs(energies).max()
-
-
-def test_columns_cost_only_where_they_are_asked_for():
-    problem = make(elements=3, poisson=0.2)
-    everything = solve_unilateral(problem, CONSTANT, 50).columns
-    few = solve_unilateral(problem, CONSTANT, 50, columns=("cuts", "switching_loss", "displacement")).columns
-    assert set(few) == {"cuts", "displacement", *LOSSES}
-    assert all(np.array_equal(values, everything[name]) for name, values in few.items())
-    with pytest.raises(ValueError, match=r"^columns: .*'depth'"):
-        solve_unilateral(problem, CONSTANT, 1, columns=("depth",))

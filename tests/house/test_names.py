@@ -5,10 +5,6 @@ from __future__ import annotations
 import ast
 import re
 from pathlib import Path
-from types import SimpleNamespace
-
-import pytest
-from faults.seams import Seam
 
 from validation.solvers.registry import BUILT_IN
 
@@ -79,21 +75,3 @@ def test_tests_patch_private_functions_by_seams_only() -> None:
     for path in (ROOT / "tests").rglob("*.py"):
         assert not private_targets(path.read_text(encoding="utf-8")), path
     assert private_targets('monkeypatch.setattr("a.b._c", 1); patch.setattr(module, module._d.__name__, 2)')
-
-
-def test_a_seam_is_held_under_one_name(monkeypatch: pytest.MonkeyPatch) -> None:
-    def sound() -> int:
-        return 1
-
-    owner = SimpleNamespace(renamed=sound)
-    seam = Seam(owner, sound)
-    assert seam.name == "renamed"
-    seam.wrap(monkeypatch, lambda sound: lambda: 2 * sound())
-    assert owner.renamed() == 2
-    seam.wrap(monkeypatch, lambda sound: lambda: 2 * sound())
-    assert owner.renamed() == 4  # a second fault wraps the first
-    monkeypatch.undo()
-    assert owner.renamed() == 1
-    for wrong in (SimpleNamespace(), SimpleNamespace(a=sound, b=sound)):
-        with pytest.raises(ValueError, match="a seam has exactly one"):
-            Seam(wrong, sound)

@@ -1,4 +1,4 @@
-"""The scripts of `.ci`: rounds on other machines, mutants, the archives of a release."""
+"""The scripts of `.ci`: rounds on other machines, the archives of a release."""
 
 import subprocess
 import sys
@@ -9,14 +9,6 @@ from types import ModuleType
 
 import pytest
 from conftest import script
-
-CODE = """
-def more(x: int | None) -> int | None:
-    y: int | None = x
-    return y + 1
-"""
-ASSERTION = "from dda.code import more\n\n\ndef test_more() -> None:\n    assert more(3) == 4\n"
-
 
 # ---- portable -------------------------------------------------------------------------------------------------------
 
@@ -60,58 +52,10 @@ def test_a_red_round_is_named_logged_and_a_status(
     assert "ERROR why" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
 
 
-# ---- mutants --------------------------------------------------------------------------------------------------------
-
-
-@pytest.fixture
-def mutants(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> ModuleType:
-    """Load the script for a repository of one function."""
-    pytest.importorskip("cosmic_ray", reason="mutants are NOT RUN: needs cosmic-ray: pip install -e '.[mutants]'")
-    module = script("mutants", monkeypatch)
-    for name in ("dda", "fem_reference", "validation", "tests/dda"):
-        (tmp_path / name).mkdir(parents=True)
-    (tmp_path / "dda/code.py").write_text(CODE)
-    monkeypatch.setattr(module, "ROOT", tmp_path)
-    return module
-
-
 def commit(repository: Path) -> None:
     git = ["git", "-c", "user.name=x", "-c", "user.email=x@example.org"]
     for words in (["init", "--quiet"], ["add", "--all"], ["commit", "--quiet", "--message", "x"]):
         subprocess.run([*git, *words], cwd=repository, check=True)
-
-
-def test_annotations_are_not_changed_and_a_sample_is_its_seed_s(mutants: ModuleType) -> None:
-    places = mutants.mutants_of(Path("dda/code.py"))
-    assert {line for line, _ in places} == {4}
-    assert any("NumberReplacer" in mutant.operator_name for listed in places.values() for mutant in listed)
-    drawn = [[mutant for _, mutant in mutants.sample(mutants.all_rooms(), 5, seed)] for seed in (3, 3, 4)]
-    assert drawn[0] == drawn[1] != drawn[2]
-    assert len({(mutant.operator_name, mutant.occurrence) for mutant in drawn[0]}) == 5
-
-
-@pytest.mark.parametrize(
-    ("assertion", "status"),
-    [(ASSERTION, 0), pytest.param("def test_none() -> None:\n    pass\n", 1, marks=pytest.mark.long)],
-)
-def test_a_survivor_is_shown_and_a_status(
-    mutants: ModuleType,
-    assertion: str,
-    status: int,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    (tmp_path / "tests/dda/test_code.py").write_text(assertion)
-    commit(tmp_path)
-    monkeypatch.setattr(sys, "argv", ["mutants", "--rooms", "dda", "--count", "1", "--seed", "2"])
-    with pytest.raises(SystemExit) as stopped:
-        mutants.main()
-    printed = capsys.readouterr().out
-    assert stopped.value.code == status
-    assert f"1 mutants, {status} alive" in printed
-    assert ("+    return y" in printed) is bool(status)
-    assert (tmp_path / "dda/code.py").read_text() == CODE
 
 
 # ---- archives of a release ------------------------------------------------------------------------------------------
@@ -157,8 +101,11 @@ def test_archives_that_lack_something_are_told(dist: ModuleType, tmp_path: Path)
     with zipfile.ZipFile(tmp_path / "x.whl", "w") as wheel:
         for folder in ("dda", "fem_reference", "dda_validation", "tests", "x-1.dist-info"):
             wheel.writestr(f"{folder}/file", "x")
+        for page in set(dist.ROOT.glob("docs/*.md")) - {dist.ROOT / "docs/judge.md"}:
+            wheel.writestr(f"x-1.data/data/share/doc/dda-validation/{page.name}", "x")
     assert dist.missing_files(tmp_path / "x.tar.gz", tmp_path / "x.whl") == [
         f"x.tar.gz lacks {dist.REQUIRED[0]}",
+        "x.whl lacks judge.md",
         "x.whl holds tests",
         "x.whl lacks validation",
     ]

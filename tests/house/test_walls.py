@@ -259,6 +259,15 @@ def test_rooms_say_what_they_are_for() -> None:
             assert ast.get_docstring(ast.parse(text(room / "__init__.py"))), room
 
 
+FILLED = {"engine/run.py", "diagnosis/columns.py", "diagnosis/stepping.py", "problems/cause.py", "problems/models.py"}
+
+
+def test_records_are_frozen_but_for_what_a_search_or_a_run_fills() -> None:
+    modules = {path.relative_to(ROOT / "validation").as_posix(): path for path in (ROOT / "validation").rglob("*.py")}
+    decorated = re.compile(r"^@dataclass(?!\(.*frozen=True)", re.MULTILINE)
+    assert {name for name, path in modules.items() if decorated.search(path.read_text(encoding="utf-8"))} == FILLED
+
+
 def test_no_print_no_exit_no_assert_in_library_code() -> None:
     for package in ("dda", "fem_reference", "validation"):
         for path in (ROOT / package).rglob("*.py"):

@@ -157,11 +157,6 @@ def test_commands_and_options_of_a_page_exist(page: str) -> None:
                 assert {word for word in words if word.startswith("--")} <= known, line
 
 
-def test_the_page_on_ci_names_an_option_of_the_plug_in() -> None:
-    for path in ("docs/ci.md", "validation/entry/plugin.py"):
-        assert "--dda-solver" in (ROOT / path).read_text(encoding="utf-8")
-
-
 def test_readme_names_every_command() -> None:
     shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
     shown = re.findall(r"^dda-validate ([a-z-]+)", shell[1], re.M)

@@ -57,6 +57,14 @@ def test_pencil_of_nothing_is_nothing() -> None:
     assert pencil.poles(np.ones(3), 1.0) == []
 
 
+def test_a_swing_needs_twice_as_many_samples_as_powers() -> None:
+    n = np.arange(40)
+    signal = 2.0 + np.cos(0.3 * n)
+    found = pencil.swing(signal[:16], 0.5)
+    assert found.pole is not None and found.pole.frequency == pytest.approx(0.6) and found.static == pytest.approx(2.0)
+    assert pencil.swing(signal[:15], 0.5) == pencil.swing(np.zeros(40), 0.5) == pencil.Swing(None, None)
+
+
 def test_damping_of_an_operator_by_kind_of_roots() -> None:
     xi, w = 0.2, 0.5
     root = np.exp((-xi + 1j * math.sqrt(1 - xi * xi)) * w)

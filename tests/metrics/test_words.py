@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from validation.metrics.catalogue import ALL, in_words, words_of
+from validation.metrics.catalogue import ALL, in_words, is_count, words_of
 from validation.metrics.values import UNDEFINED
 
 
@@ -19,3 +19,8 @@ def test_an_undefined_value_says_why_and_others_stay_what_they_are() -> None:
     assert in_words("displacement.static", UNDEFINED) == UNDEFINED  # of which nothing more is known
     assert in_words("wave.left", UNDEFINED) == UNDEFINED
     assert in_words("pressure.settling_step", 7.0) == 7.0 and in_words("pressure.settling_step", None) is None
+
+
+def test_what_counts_steps_or_switches_has_a_zero_that_is_none() -> None:
+    names = ("switches.count", "pressure.settling_step", "displacement.l2", "wave.left")
+    assert [is_count(name) for name in names] == [True, True, False, False]

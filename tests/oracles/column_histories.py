@@ -1,15 +1,12 @@
 """Histories of random columns whose contacts open or slip: what `compare` says of them.
 
-One thing is changed, or two, or what is in no catalogue, or noise is added.
-``PYTHONPATH=.:tests python tests/oracles/column_histories.py 0 120`` counts the verdicts of these seeds. A verdict is
-right, names causes that give the same rows and the made one among them, is silent, or is wrong.
+One thing is changed, or two, or what is in no catalogue, or noise is added. A verdict is right, names causes that give
+the same rows and the made one among them, is silent, or is wrong.
 """
 
 from __future__ import annotations
 
 import math
-import sys
-from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
@@ -296,26 +293,3 @@ def trial(seed: int, judge: Callable[[Scene, Foreign], Answer] = compare) -> Tri
             seen = [one for one in made if one not in visible]
             worth = verdict(answer, seen if answer.causes else [])
     return Trial(seed, kind, what, worth, answer, made)
-
-
-def main(first: int, last: int) -> None:
-    """Print the table of verdicts of some seeds."""
-    table: dict[str, Counter[str]] = {}
-    for seed in range(first, last):
-        one = trial(seed)
-        if one is None:
-            continue
-        table.setdefault(one.what, Counter())[one.verdict] += 1
-        if one.verdict in (WRONG, SILENT):
-            made = [(m.id, m.value) for m in one.made]
-            print(one.seed, one.kind, one.verdict, made, one.answer.causes, one.answer.values, one.answer.sentence)
-    columns = (RIGHT, ALIKE, SILENT, WRONG)
-    print("| what was done | histories |", " | ".join(columns), "|")
-    for what, counts in sorted(table.items()):
-        print(f"| {what} | {counts.total()} |", " | ".join(str(counts[name] or "") for name in columns), "|")
-    total: Counter[str] = sum(table.values(), Counter())
-    print(f"| **all** | {total.total()} |", " | ".join(str(total[name] or "") for name in columns), "|")
-
-
-if __name__ == "__main__":
-    main(int(sys.argv[1]), int(sys.argv[2]))

@@ -39,62 +39,76 @@ def value_of(drive: drives.Drive) -> Callable[[float, int], float]:
     return value
 
 
+class Assembly:
+    """Matrices of the faces of a column's blocks, those that move alike being one unknown."""
+
+    def __init__(self, problem: ColumnProblem) -> None:
+        n = len(problem.blocks)
+        M = np.zeros((2 * n, 2 * n))
+        K = np.zeros((2 * n, 2 * n))
+        weight = np.zeros(2 * n)
+        columns: list[list[int]] = []  # faces that move alike
+        for i, block in enumerate(problem.blocks):
+            m = block.density * block.height
+            faces = [2 * i, 2 * i + 1]
+            M[np.ix_(faces, faces)] += m / 6 * np.array([[2, 1], [1, 2]])
+            weight[faces] -= m * problem.gravity / 2
+            if math.isfinite(block.modulus):
+                K[np.ix_(faces, faces)] += block.modulus / block.height * np.array([[1, -1], [-1, 1]])
+            if problem.joints[i] is None and i:
+                columns[-1].append(2 * i)
+            else:
+                columns.append([2 * i])
+            if math.isfinite(block.modulus):
+                columns.append([2 * i + 1])
+            else:
+                columns[-1].append(2 * i + 1)
+        P = np.zeros((2 * n, len(columns)))
+        for j, faces in enumerate(columns):
+            P[faces, j] = 1.0
+        self.P = P
+        self.M = P.T @ M @ P
+        self.K = P.T @ K @ P
+        self.weight = P.T @ weight
+        self.C = np.zeros_like(self.M)
+        self.C[0, 0] = problem.impedance if problem.base == "transmitting" else 0.0
+        self.joints = [j for j, joint in enumerate(problem.joints) if joint is not None]
+        B = np.zeros((len(self.joints), 2 * n))
+        for row, j in zip(B, self.joints, strict=True):
+            row[2 * j] = 1.0
+            if j:
+                row[2 * j - 1] = -1.0
+        self.B = B @ P
+        self.on_base = np.array([j == 0 for j in self.joints])
+        known = [joint for joint in problem.joints if joint is not None]
+        self.stiffness = np.array([joint.stiffness for joint in known])
+        self.gap = np.array([joint.gap for joint in known])
+        self.strength = np.array([np.inf if joint.strength is None else joint.strength for joint in known])
+        self.bottom = P[0]
+        self.top = P[2 * n - 1]
+        self.velocity = np.array([problem.blocks[faces[0] // 2].velocity for faces in columns])
+
+
 def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
     """Integrate a column whose lowest block stands on a spring, a half-space or nothing, from t = 0."""
     n = len(problem.blocks)
-    M = np.zeros((2 * n, 2 * n))
-    K = np.zeros((2 * n, 2 * n))
-    weight = np.zeros(2 * n)
-    columns: list[list[int]] = []  # faces that move alike
-    for i, block in enumerate(problem.blocks):
-        m = block.density * block.height
-        faces = [2 * i, 2 * i + 1]
-        M[np.ix_(faces, faces)] += m / 6 * np.array([[2, 1], [1, 2]])
-        weight[faces] -= m * problem.gravity / 2
-        if math.isfinite(block.modulus):
-            K[np.ix_(faces, faces)] += block.modulus / block.height * np.array([[1, -1], [-1, 1]])
-        if problem.joints[i] is None and i:
-            columns[-1].append(2 * i)
-        else:
-            columns.append([2 * i])
-        if math.isfinite(block.modulus):
-            columns.append([2 * i + 1])
-        else:
-            columns[-1].append(2 * i + 1)
-    P = np.zeros((2 * n, len(columns)))
-    for j, faces in enumerate(columns):
-        P[faces, j] = 1.0
-    M, K, weight = P.T @ M @ P, P.T @ K @ P, P.T @ weight
-    C = np.zeros_like(M)
-    C[0, 0] = problem.impedance if problem.base == "transmitting" else 0.0
+    form = Assembly(problem)
+    M, K, C, B, P = form.M, form.K, form.C, form.B, form.P
+    k, gap, s, joints, weight = form.stiffness, form.gap, form.strength, form.joints, form.weight
     inverse = np.linalg.inv(M)
-    joints = [j for j, joint in enumerate(problem.joints) if joint is not None]
-    B = np.zeros((len(joints), 2 * n))
-    for row, j in zip(B, joints, strict=True):
-        row[2 * j] = 1.0
-        if j:
-            row[2 * j - 1] = -1.0
-    on_base = np.array([j == 0 for j in joints])
-    B = B @ P
-    k = np.array([problem.joints[j].stiffness for j in joints])
-    gap = np.array([problem.joints[j].gap for j in joints])
-    s = np.array([np.inf if problem.joints[j].strength is None else problem.joints[j].strength for j in joints])
     finite = np.where(np.isfinite(s), s, 0.0)
     base, pressure = value_of(problem.base_motion), value_of(problem.pressure)
-    top = P[2 * n - 1]
-    bottom = P[0]
-    size = len(columns)
+    size = len(M)
     unilateral = problem.law == "unilateral"
 
     def stretch(t: float, x: np.ndarray, order: int = 0) -> np.ndarray:
-        part = B @ x[order * size : (order + 1) * size] - on_base * base(t, order)
+        part = B @ x[order * size : (order + 1) * size] - form.on_base * base(t, order)
         return part + gap if order == 0 else part
 
     u = np.zeros(size)
     if problem.at_rest:
-        u = np.linalg.solve(K + B.T @ (k[:, None] * B), weight + B.T @ (k * (on_base * base(0.0, 0) - gap)))
-    v = np.array([problem.blocks[faces[0] // 2].velocity for faces in columns])
-    x = np.concatenate([u, v])
+        u = np.linalg.solve(K + B.T @ (k[:, None] * B), weight + B.T @ (k * (form.on_base * base(0.0, 0) - gap)))
+    x = np.concatenate([u, form.velocity])
     states = np.where(stretch(0.0, x) <= 0, 1, 0) if unilateral else np.ones(len(joints), dtype=int)
     references = np.zeros(len(joints))
     switches: list[tuple[str, float]] = []
@@ -107,9 +121,9 @@ def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
         return np.where(states == 1, sticking, -np.sign(states) * np.where(states == 0, 0.0, finite))
 
     def rates(t: float, x: np.ndarray) -> np.ndarray:
-        f = weight + B.T @ forces(t, x) - K @ x[:size] - C @ x[size:] - top * pressure(t, 0)
+        f = weight + B.T @ forces(t, x) - K @ x[:size] - C @ x[size:] - form.top * pressure(t, 0)
         if problem.base == "transmitting":
-            f = f + bottom * 2 * problem.impedance * base(t, 1)
+            f = f + form.bottom * 2 * problem.impedance * base(t, 1)
         return np.concatenate([x[size:], inverse @ f])
 
     def watch(c: int, sign: int) -> Callable[[float, np.ndarray], float]:

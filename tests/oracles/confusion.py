@@ -1,7 +1,7 @@
 """Fifty histories of known origin, what `compare` makes of them, and the counts of the documentation.
 
-The histories come from the program in `shi_dda`, which shares nothing with what judges them: seven digits each, some
-with noise, some on a base that yields. ``PYTHONPATH=.:tests python
+The histories come from the program in `plain_block`, which shares nothing with what judges them: seven digits each,
+some with noise, some on a base that yields. ``PYTHONPATH=.:tests python
 tests/oracles/confusion.py`` writes the counts to docs/compare.md.
 """
 
@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 from oracles.pages import page_with, summary
+from oracles.plain_block import History, Plain, history
 from oracles.program_scenes import scene_of
-from oracles.shi_dda import History, Program, run
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
@@ -26,8 +26,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 BEGIN, END = "<!-- confusion: made by tests/oracles/confusion.py -->\n", "<!-- end -->\n"
 SAME = "same"
 WORDS = {"right": "were named right", "silent": "not explained", "wrong": "named wrong"}
-RIGID = {"base_young": 1e16, "fixed": 1e15}  # a base that moves by 1e-6 of the displacement
-PLAIN = Program(dt=0.002, steps=30, opens=False, updated=False, **RIGID)
+PLAIN = Plain(dt=0.002, steps=30)
 AVERAGE = {"alpha": 0.25, "delta": 0.5}
 
 
@@ -36,19 +35,19 @@ class Known:
     """A history, the scene that it is judged against, and what was done to it."""
 
     cause: str  # an id, or "same"
-    program: Program  # that ran
-    scene: Program  # what the scene says
+    program: Plain  # that ran
+    scene: Plain  # what the scene says
     change: Callable[[Foreign], Foreign] = lambda foreign: foreign
     noise: float = 0.0  # standard deviation over the largest displacement
 
     def judged(self, seed: int) -> tuple[Answer, History]:
         """Return the answer and the history it was given."""
-        history = run(self.program)
+        made = history(self.program)
         rng = np.random.default_rng(seed)
-        size = float(np.max(np.abs(history.displacement)))
-        noisy = history.displacement + self.noise * size * rng.standard_normal(len(history.time))
-        given = self.change(Foreign(history.time, np.array([float(f"{u:.6e}") for u in noisy])))
-        return compare(scene_of(self.scene), given), history
+        size = float(np.max(np.abs(made.displacement)))
+        noisy = made.displacement + self.noise * size * rng.standard_normal(len(made.time))
+        given = self.change(Foreign(made.time, np.array([float(f"{u:.6e}") for u in noisy])))
+        return compare(scene_of(self.scene), given), made
 
 
 def scaled(factor: float) -> Callable[[Foreign], Foreign]:
@@ -79,7 +78,7 @@ def known() -> Iterator[Known]:
     for program, share in ((PLAIN, 0.01), (dt4, 0.01), (stiff, 0.015), (damped, 0.008)):
         soft = share * (0.5 + 0.5 * program.p / program.E) * 2  # over the springs' own share of the static value
         yield Known("base-compliance", replace(program, p=program.p / (1 + soft)), program)
-    yield Known("base-compliance", replace(PLAIN, base_young=1e12, fixed=5e9), PLAIN, noise=1e-4)
+    yield Known("base-compliance", replace(PLAIN, base=(5.0, 1.05e11)), PLAIN, noise=1e-4)
     for dt, p in ((1e-3, 1e9), (5e-4, 1e9), (5e-4, 1e10), (3e-4, 5e8), (2e-4, 2e9)):
         program = replace(PLAIN, dt=dt, p=p)
         yield Known("contact-opened", replace(program, opens=True), program)
@@ -97,7 +96,7 @@ def known() -> Iterator[Known]:
         (dt1, 0.9, "velocity"),
     ):
         program = replace(base, gg=gg)
-        yield Known("gg-in-one-formula", replace(program, discounted=formula), program)
+        yield Known("gg-in-one-formula", replace(program, formulas=formula), program)
     for program, factor in ((PLAIN, 0.5), (PLAIN, 2.0), (dt1, 10.0), (stiff, 0.1), (average, 0.25)):
         yield Known("springs-factor", replace(program, p=program.p * factor), program)
     for program in (PLAIN, dt4, stiff, replace(PLAIN, q=2e7)):

@@ -11,10 +11,21 @@ from typing import Any
 
 import numpy as np
 from oracles.frictional import rubbing_model, shaken
-from oracles.rolling import random_rolling
 from oracles.unilateral_checks import DT, random_model
 
-from dda import BaseMotion, Block, Scheme, UnilateralOptions, named_scheme, opening_subdivided, solve_unilateral
+from dda import (
+    BaseMotion,
+    Block,
+    Load,
+    Material,
+    Scheme,
+    Unilateral,
+    UnilateralOptions,
+    named_scheme,
+    opening_subdivided,
+    solve_unilateral,
+)
+from dda.bodies.turning_block import RollingModel
 from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
@@ -180,6 +191,31 @@ class TurningBlock:
         motion = BaseMotion([0.0, 100.0], [[0.0, 0.0], [40.0, 30.0]])
         velocity = (model.velocity[0] + 0.4, model.velocity[1] + 0.3)
         return replace(model, velocity=velocity, load=replace(model.load, motion=motion))
+
+
+def convex(rng):
+    """Return a random convex outline of three to seven corners."""
+    while True:
+        angles = np.sort(rng.uniform(0, 2 * np.pi, rng.integers(3, 8)))
+        sides = np.diff([*angles, angles[0] + 2 * np.pi])
+        if np.max(sides) < 2.9 and np.min(sides) > 0.25:
+            return np.column_stack([np.cos(angles), 0.8 * np.sin(angles)]) * (1 + rng.random())
+
+
+def random_rolling(seed):
+    """Return a block thrown with a spin at a slope, frictionless, glued or rubbing, and a time step of 0.3 to 30 ms."""
+    rng = np.random.default_rng(seed)
+    material = Material(2700.0, 10 ** rng.uniform(8, 10), rng.uniform(0, 0.4))
+    outline = convex(rng)
+    if seed % 2:
+        a, h = rng.uniform(1, 2), rng.uniform(1, 3)
+        outline = [[0, 0], [a, 0], [a, h], [0, h]]
+    p, kind = 10 ** rng.uniform(7.5, 10), seed % 3
+    rubbing = {"friction": rng.uniform(0, 1.2), "cohesion": 1e3 * rng.random()} if kind == 2 else {}
+    law = Unilateral(p, p / 2.5 if kind else 0.0, rng.random(), **rubbing)
+    load = Load(rng.choice([0, 2e3]), 0.0, rng.choice([0, 5e3]), gravity=9.81, slope=rng.uniform(-40, 40))
+    thrown = {"tilt": rng.uniform(-1, 1), "velocity": (rng.normal(), -rng.random()), "spin": 4 * rng.normal()}
+    return RollingModel(Block(outline, material), law, load, **thrown), 10 ** rng.uniform(-3.5, -1.5)
 
 
 # ---- cases -----------------------------------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from oracles.unilateral_checks import random_model
 
-from dda import BaseMotion, Block, Material, Unilateral, UnilateralModel, solve_unilateral
+from dda import BaseMotion, Block, Material, Unilateral, UnilateralModel
 
 YOUNG = 1e9
 
@@ -56,33 +56,6 @@ def rubbing_model(seed):
         return replace(model, contact=law)
     sideways = model.block.material.young * rng.uniform(-1e-3, 1e-3)
     return replace(model, contact=law, traction=sideways, slope=rng.uniform(-40, 40))
-
-
-def free_fall(scheme, steps, acceleration):
-    """Return the scheme's own displacement under a constant acceleration."""
-    D = V = 0.0
-    A = acceleration if scheme.start == "consistent" else 0.0
-    dt, found = scheme.step, []
-    for _ in range(steps):
-        V *= scheme.gg
-        D += dt * V + dt * dt * ((0.5 - scheme.alpha) * A + scheme.alpha * acceleration)
-        V += dt * ((1 - scheme.delta) * A + scheme.delta * acceleration)
-        A = acceleration
-        found.append(D)
-    return np.array(found)
-
-
-def sliding(model, scheme, steps):
-    """Return u + tan(phi) v of a block as long as it slips towards +x, what it must be, and how large its parts are."""
-    both = "horizontal_displacement", "displacement"
-    result = solve_unilateral(model, scheme, steps, both)
-    assert result.outcome == "completed"
-    slips = np.append(np.all((result.states == 2) | (result.states == 0), axis=0), False)
-    n = int(slips.argmin())
-    u, v = (result.columns[name][:n] for name in both)
-    right, up = model.load.falling
-    tangent = model.contact.friction
-    return u + tangent * v, free_fall(scheme, n, model.gravity * (right + tangent * up)), np.abs(u) + np.abs(v)
 
 
 def shaken(rng, size=1e-3):

@@ -1,15 +1,18 @@
 """A plain DDA code of one block, as someone writes it from the paper in an afternoon, with the slips that one makes.
 
 Six unknowns about the centroid, corner springs in a loop over the two corners, textbook recursion (increments of the
-displacement, stress and spring stretch summed up), dense solves. It shares no line with the suite's own models or
-with the program in `shi_dda`.
+displacement, stress and spring stretch summed up), dense solves; the geometry may move with the block, and a base of
+its own mass and springs may yield. It shares no line with the suite's own models.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+
+HEADER = "\n% Timestep, currenttime, deltat, xpos, ypos, dcum, vx, vy, v\n\nmeaspoint1=[\n"
 
 
 @dataclass(frozen=True)
@@ -30,6 +33,8 @@ class Plain:
     gg: float = 1.0
     consistent: bool = False
     g: float = 0.0
+    updated: bool = False  # all matrices are those of the moved corners
+    base: tuple[float, float] | None = None  # a base that yields: its mass over the block's, its springs [N/m]
 
     formulas: str = "both"  # in which gg stands
     point: float = 0.0  # height of the reported point over h/2
@@ -60,31 +65,65 @@ class Plain:
     friction: float = 0.0  # N, a constant force against the motion
 
 
+@dataclass(frozen=True)
+class History:
+    """What a run gives at each step."""
+
+    time: np.ndarray
+    displacement: np.ndarray
+    pressure: np.ndarray
+    open: np.ndarray  # both corners open at the end of the step
+
+    @property
+    def opened(self) -> tuple[int, int] | None:
+        """The first and the last step with open corners."""
+        steps = np.flatnonzero(self.open) + 1
+        return (int(steps[0]), int(steps[-1])) if len(steps) else None
+
+
 def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
     """Return displacement and contact pressure of every step."""
-    a, h = P.side, P.side if P.height is None else P.height
+    found = history(P)
+    return found.displacement, found.pressure
+
+
+def matrices(P: Plain, a: float, h: float) -> tuple[np.ndarray, ...]:
+    """Return mass, stiffness, load and weight of a rectangle, the motion of its lower corners, and its area."""
+    n = 6 if P.base is None else 7
     S, s1, s2 = a * h, h * a**3 / 12, a * h**3 / 12
-    M = np.zeros((6, 6))
+    M = np.zeros((n, n))
     M[0, 0] = M[1, 1] = S
     M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
     M[2, 5] = M[5, 2] = (s1 - s2) / 2
     M *= P.rho
     E, mu = (P.E / (1 - P.mu**2), P.mu / (1 - P.mu)) if P.strain else (P.E, P.mu)
-    C = E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]])
+    elastic = np.zeros((n, n))
+    elastic[3:6, 3:6] = S * E / (1 - mu**2) * np.array([[1, mu, 0], [mu, 1, 0], [0, 0, (1 - mu) / 2]])
+    if P.base is not None:
+        M[6, 6] = P.base[0] * P.rho * P.side**2
+        elastic[6, 6] = P.base[1]
 
     def T(x, y):
-        return np.array([[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]])
+        rows = np.zeros((2, n))
+        rows[:, :6] = [[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]]
+        return rows
 
-    corners = [T(-a / 2, -h / 2), T(a / 2, -h / 2)]
-    load = a * T(0, h / 2).T @ [0, -P.q]
+    load = P.side * T(0, h / 2).T @ [0, -P.q]
     load[4] *= P.row_sign
-    weight = np.zeros(6)
+    weight = np.zeros(n)
     weight[1] = -P.rho * S * P.g
-    elastic = np.zeros((6, 6))
-    elastic[3:, 3:] = S * C
+    corners = np.array([T(-a / 2, -h / 2), T(a / 2, -h / 2)])
+    corners[:, 1, 6:] = -1.0
+    return M, elastic, load, weight, corners, S
+
+
+def history(P: Plain) -> History:
+    """Return the history of a run."""
+    a, h = P.side, P.side if P.height is None else P.height
+    M, elastic, load, weight, corners, S = matrices(P, a, h)
     rng = np.random.default_rng(P.seed)
 
-    stress, V, A, total = np.zeros(3), np.zeros(6), np.zeros(6), np.zeros(6)
+    stress, (V, A, total) = np.zeros(3), np.zeros((3, len(M)))
     stretch = [np.zeros(2), np.zeros(2)]
     on = [True, True]
     if P.consistent:
@@ -101,7 +140,8 @@ def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
         for _ in range(8):
             K, F = elastic.copy(), share * load + weight
             if P.keeps_stress:
-                F[3:] -= S * stress
+                F[3:6] -= S * stress
+            F[6:] -= elastic[6:, 6:] @ total[6:]
             for corner, gone, closed in zip(corners, stretch, on, strict=True):
                 if not closed:
                     continue
@@ -139,13 +179,16 @@ def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
         V = two * V + P.dt * ((1 - P.delta) * A + P.delta * A1)
         A = A1
         total = total + d
-        stress = (stress + C @ d[3:]) * (1 - P.creep * P.dt)
+        stress = (stress + elastic[3:6, 3:6] @ d[3:6] / S) * (1 - P.creep * P.dt)
         stretch = [np.array([end[0] if closed else 0.0, end[1]]) for end, closed in zip(ends, on, strict=True)]
         force = sum(
             -P.p * (1 + P.hardening * abs(s[1])) * s[1] for s, closed in zip(stretch, on, strict=True) if closed
         )
-        found.append((total[1] + P.point * h / 2 * total[4], force / a))
-    displacement, pressure = np.array(found).T
+        found.append((total[1] + P.point * h / 2 * total[4], force / P.side, not any(on)))
+        if P.updated:
+            a, h = a * (1 + d[3]), h * (1 + d[4])
+            M, elastic, load, weight, corners, S = matrices(P, a, h)
+    displacement, pressure, opened = np.array(found).T
     if P.averaged:
         pressure = (pressure + np.append(0.0, pressure[:-1])) / 2
     if P.late:
@@ -153,4 +196,16 @@ def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
     for values in (displacement, pressure):
         for n in range(1, len(values)) if P.filtered else ():
             values[n] = P.filtered * values[n - 1] + (1 - P.filtered) * values[n]
-    return P.displacement_times * displacement, P.pressure_times * pressure
+    time = P.dt * np.arange(1, P.steps + 1)
+    return History(time, P.displacement_times * displacement, P.pressure_times * pressure, opened > 0)
+
+
+def write_measured_point(history: History, path: Path, dt: float) -> Path:
+    """Write the file that ntdda writes: seven digits, an unsigned displacement, step velocities."""
+    steps = np.diff(history.displacement, prepend=0.0)
+    lines = [
+        f"{n + 1:10d} {t:20e} {dt:20e} {5.0:20e} {3 + d:20e} {abs(d):20e} {0.0:20e} {s / dt:20e} {abs(s / dt):20e}\n"
+        for n, (t, d, s) in enumerate(zip(history.time, history.displacement, steps, strict=True))
+    ]
+    path.write_text(HEADER + "".join(lines) + "];\n")
+    return path

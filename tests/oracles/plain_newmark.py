@@ -1,6 +1,7 @@
 """Newmark's scheme as it is printed, on any matrices, and the bar of linear elements on a spring as such matrices."""
 
 import numpy as np
+from oracles.staged import System, march
 
 SIDE, YOUNG, DENSITY, SPRING = 2.0, 1e9, 2700.0, 1e9  # m, Pa, kg/m3, N/m: of the paper's block
 
@@ -18,18 +19,12 @@ def upright(n, p=SPRING):
 
 def stepped(M, K, forces, scheme, C=None):
     """Return D of every step (steps, n) from rest, in absolute accelerations, under forces (steps + 1, n)."""
-    alpha, delta, gg, dt = scheme.alpha, scheme.delta, scheme.gg, scheme.step
-    C = np.zeros_like(M) if C is None else C
-    D, V, A = np.zeros((3, len(M)))
-    if scheme.start == "consistent":
-        A = np.linalg.solve(M, forces[0])
-    rows = []
-    for force in forces[1:]:
-        D, V = D + gg * dt * V + dt * dt * (0.5 - alpha) * A, gg * V + dt * (1 - delta) * A
-        A = np.linalg.solve(M + delta * dt * C + alpha * dt * dt * K, force - C @ V - K @ D)
-        D, V = D + alpha * dt * dt * A, V + delta * dt * A
-        rows.append(D)
-    return np.array(rows)
+    system = System(M, K, lambda t: forces[round(t / scheme.step)], C)
+    rest = np.zeros(len(M))
+    weights = scheme.alpha, scheme.delta
+    zero = scheme.start == "zero"
+    steps = len(forces) - 1
+    return march(system, "newmark", scheme.step, steps, rest, rest, scheme.gg, zero=zero, weights=weights)[0][1:]
 
 
 def glued(blocks, springs):

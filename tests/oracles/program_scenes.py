@@ -1,13 +1,12 @@
-"""Scenes that say what the plain programs run."""
+"""Scenes that say what the plain program runs."""
 
 from oracles.plain_block import Plain
-from oracles.shi_dda import Program
 
 from validation import load_scene
 from validation.scenes.scene import Scene
 
 
-def scene_of(p: Plain | Program) -> Scene:
+def scene_of(p: Plain) -> Scene:
     """Return the scene of a run."""
     return load_scene("figures-3-4").with_values(
         {

@@ -145,14 +145,6 @@ def turned_plane(scene):
     return history(scene)
 
 
-def inertia_of_the_width(scene):
-    return history(scene, inertia_height=lambda w, h: w)
-
-
-def delta_missing_and_central(scene):
-    return history(scene, delta=1.0, eccentricity=0.0)
-
-
 def without_poisson_and_central(scene):
     return history(scene, poisson=0.0, eccentricity=0.0)
 

@@ -1,12 +1,14 @@
-"""Steps of the schemes by name as the papers write them, on dense matrices, with contact by trying all states.
+"""Steps of Newmark's scheme and of those by name as the papers write them, on dense matrices.
 
-Nothing is rearranged: displacements count from the start of the step, accelerations are unknowns, and springs of closed
-contacts stand in the stiffness.
+Contact is found by trying all states. Nothing is rearranged: displacements count from the start of the step, and
+accelerations and contact forces are unknowns.
 """
 
 from itertools import product
 
 import numpy as np
+
+LOWER, INSIDE, UPPER = range(3)
 
 
 def generalised_alpha(name, rho):
@@ -19,78 +21,112 @@ def generalised_alpha(name, rho):
 
 
 class System:
-    """M x'' + C x' + K x = F(t) + B' N, with N = p (-B x - y n) > 0 of each row of B; y(t) moves the base."""
+    """M x'' + C x' + K x = F(t) + B' N: the force of each row of B is N = -(B x + gap(t) - r)/c within its bounds.
 
-    def __init__(self, M, K, F, C=None, B=None, p=0.0, gap=None):
+    A row that opens has the bounds 0 and infinity, and r = 0. One with a strength has this and its negative, and its
+    reference r moves where it slips: N = -(B x + gap - r)/c at the end of every step.
+    """
+
+    def __init__(self, M, K, F, C=None, B=None, p=1.0, gap=0.0, strength=None):
         self.M, self.K, self.F = M, K, F
         self.C = np.zeros_like(M) if C is None else C
         self.B = np.zeros((0, len(M))) if B is None else B
-        self.p = np.broadcast_to(np.asarray(p, float), len(self.B))
-        self.gap = np.zeros(len(self.B)) if gap is None else gap
+        rows = len(self.B)
+        self.compliance = np.broadcast_to(1 / np.asarray(p, float), rows)
+        self.gap = gap if callable(gap) else lambda t: np.broadcast_to(gap, rows)
+        self.slips = strength is not None
+        self.upper = np.broadcast_to(strength if self.slips else np.inf, rows)
+        self.lower = -self.upper if self.slips else np.zeros(rows)
+        self.reference = np.zeros(rows)
 
-    def forces(self, x):
-        """Return N."""
-        return np.maximum(0.0, -self.p * (self.B @ x + self.gap))
+    def opening(self, t, x):
+        """Return the opening or the way of each row."""
+        return self.B @ x + self.gap(t)
 
-    def solve(self, build):
-        """Return the solution of the only contact state that agrees; `build` makes matrix and right-hand side."""
+    def forces(self, t, x):
+        """Return N at the start of the motion, or where it follows from the displacements."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            N = (self.reference - self.opening(t, x)) / self.compliance
+        return np.clip(np.where(self.compliance > 0, N, 0.0), self.lower, self.upper)
+
+    def implicit(self, t, known_x, known_v, beta, gamma, am=0.0, af=0.0, old=0.0):
+        """Return a1, x1 and N of x1 = known_x + beta a1, v1 = known_v + gamma a1; `old` are the terms of the start."""
+        left = (1 - am) * self.M + (1 - af) * (gamma * self.C + beta * self.K)
+        right = (1 - af) * (self.F(t) - self.C @ known_v - self.K @ known_x) + old
+        kinds = (LOWER, INSIDE, UPPER) if self.slips else (LOWER, INSIDE)
         fitting = []
-        for states in product((0.0, 1.0), repeat=len(self.B)):
-            k = self.p * states
-            a, x = build(self.B.T @ (k[:, None] * self.B), -self.B.T @ (k * self.gap))
-            if np.all((self.B @ x + self.gap < 0) == (np.array(states) > 0)):
-                fitting.append((a, x))
-        assert len(fitting) == 1
+        for states in product(kinds, repeat=len(self.B)):
+            inside = np.array(states, dtype=int) == INSIDE
+            held = np.where(np.array(states) == UPPER, self.upper, self.lower)
+            if not np.all(np.isfinite(held[~inside])):
+                continue
+            a, x, N = self._solved(t, known_x, beta, left, right, inside, held, 1 - af)
+            beyond = self.opening(t, x) - self.reference + self.compliance * N
+            ways = np.array([1.0, 0.0, -1.0])[list(states)] if len(self.B) else np.zeros(0)
+            within = np.all((N[inside] >= self.lower[inside]) & (N[inside] <= self.upper[inside]))
+            if within and np.all(beyond[~inside] * ways[~inside] >= 0):
+                fitting.append((a, x, N))
+        assert fitting and all(np.allclose(one[2], fitting[0][2], rtol=1e-9, atol=1e-6) for one in fitting)
         return fitting[0]
 
+    def _solved(self, t, known_x, beta, left, right, inside, held, share):
+        """Solve for accelerations and the forces of rows that are within their bounds."""
+        n = len(left)
+        B = self.B[inside]
+        own = np.where(inside, 0.0, held)
+        matrix = np.block([[left, -share * B.T], [B, np.diag(self.compliance[inside] / beta)]])
+        short = (self.reference - self.gap(t))[inside] - B @ known_x
+        solution = np.linalg.solve(matrix, np.concatenate([right + share * self.B.T @ own, short / beta]))
+        own[inside] = solution[n:]
+        return solution[:n], known_x + beta * solution[:n], own
 
-def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False):
-    """Return displacements, velocities at their time and contact forces, from t = 0 on."""
+    def end_stage(self, t, x, N):
+        """Move the references of rows that slip."""
+        if self.slips:
+            self.reference = self.opening(t, x) + self.compliance * N
+
+
+def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False, weights=None):
+    """Return displacements, velocities at their time and contact forces, from t = 0 on.
+
+    Newmark's scheme takes its `weights` alpha and delta.
+    """
     s = system
     M, C, K = s.M, s.C, s.K
-    a = np.zeros_like(x) if zero else np.linalg.solve(M, s.F(0.0) + s.B.T @ s.forces(x) - C @ v - K @ x)
-    rows = [(x, v, s.forces(x))]
+    s.reference = np.zeros(len(s.B))
+    N = s.forces(0.0, x)
+    a = np.zeros_like(x) if zero else np.linalg.solve(M, s.F(0.0) + s.B.T @ N - C @ v - K @ x)
+    rows = [(x, v, N)]
     half = v - dt / 2 * a
-
-    def implicit(known_x, known_v, beta, gamma, F, am=0.0, af=0.0, old=0.0):
-        """Return a1 and x1 of x1 = known_x + beta a1, v1 = known_v + gamma a1; `old` are the terms of the start."""
-
-        def build(springs, push):
-            stiff = K + springs
-            left = (1 - am) * M + (1 - af) * (gamma * C + beta * stiff)
-            right = (1 - af) * (F + push - C @ known_v - stiff @ known_x) + old
-            a1 = np.linalg.solve(left, right)
-            return a1, known_x + beta * a1
-
-        return s.solve(build)
-
     for n in range(steps):
         t = n * dt
         u = gg * v
         if name == "leapfrog":
             half = (half if n == 0 else gg * half) + dt * a
             x = x + dt * half
-            a = np.linalg.solve(M, s.F(t + dt) + s.B.T @ s.forces(x) - K @ x)
-            rows.append((x, half + dt / 2 * a, s.forces(x)))
-            continue
-        if name == "composite":
+            N = s.forces(t + dt, x)
+            a = np.linalg.solve(M, s.F(t + dt) + s.B.T @ N - K @ x)
+            v = half + dt / 2 * a
+        elif name == "composite":
             g = split or (0.5 if rho == 1 else (2 - np.sqrt(2 + 2 * rho)) / (1 - rho))
             q1 = (rho + 1) / (2 * g * (rho - 1) + 4)
             q0, q2 = (g - 1) * q1 + 0.5, 0.5 - g * q1
             h = g * dt
-            ag, _ = implicit(x + h * u + h * h / 4 * a, u + h / 2 * a, h * h / 4, h / 2, s.F(t + h))
+            ag, xg, N = s.implicit(t + h, x + h * u + h * h / 4 * a, u + h / 2 * a, h * h / 4, h / 2)
+            s.end_stage(t + h, xg, N)
             vg = u + h / 2 * (a + ag)
             known_v = u + dt * (q0 * a + q1 * ag)
             known_x = x + dt * (q0 * u + q1 * vg + q2 * known_v)
-            a, x = implicit(known_x, known_v, (q2 * dt) ** 2, q2 * dt, s.F(t + dt))
+            a, x, N = s.implicit(t + dt, known_x, known_v, (q2 * dt) ** 2, q2 * dt)
             v = known_v + q2 * dt * a
         else:
-            am, af = generalised_alpha(name, rho)
-            beta, gamma = (1 - am + af) ** 2 / 4, 0.5 - am + af
-            old = af * (s.F(t) + s.B.T @ s.forces(x) - C @ v - K @ x) - am * M @ a
+            am, af = (0.0, 0.0) if weights else generalised_alpha(name, rho)
+            beta, gamma = weights or ((1 - am + af) ** 2 / 4, 0.5 - am + af)
+            old = af * (s.F(t) + s.B.T @ N - C @ v - K @ x) - am * M @ a
             known_v = u + dt * (1 - gamma) * a
             known_x = x + dt * u + dt * dt * (0.5 - beta) * a
-            a, x = implicit(known_x, known_v, beta * dt * dt, gamma * dt, s.F(t + dt), am, af, old)
+            a, x, N = s.implicit(t + dt, known_x, known_v, beta * dt * dt, gamma * dt, am, af, old)
             v = known_v + gamma * dt * a
-        rows.append((x, v, s.forces(x)))
+        s.end_stage(t + dt, x, N)
+        rows.append((x, v, N))
     return tuple(np.array(part) for part in zip(*rows, strict=True))

@@ -51,19 +51,6 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     assert sets[1].data.step_of("locked") is None
 
 
-def test_problems_that_the_stated_pack_did_not_have_are_one_defect(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    now = packs.packs()[PACK]
-    earlier = {name: digest for name, digest in now.items() if name not in ("column", "rocking")}
-    monkeypatch.setattr(packs, "packs", lambda: {"1.9": earlier, PACK: now})
-    monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
-    answered(tmp_path, pack="1.9", names=("locked", "column", "rocking"))
-    (tmp_path / "creep.csv").write_text(blank_table(problem("creep")))
-    (line,) = defects_of(tmp_path)
-    assert f"{FILE}:3:10: pack: must be {PACK}, from which on the pack holds column.csv and 1 more" in line
-
-
 def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path: Path) -> None:
     answered(tmp_path, names=("locked",))
     rows = [line.rsplit(",", 1)[0] for line in (tmp_path / "locked.csv").read_text().splitlines()]
@@ -101,30 +88,15 @@ def by_lines(change: Callable[[list[str]], list[str]]) -> Callable[[str], str]:
 
 
 MISTAKES: dict[str, tuple[str, Callable[[str], str], str]] = {
-    "decimal commas": (
-        "locked.csv",
-        by_lines(lambda lines: [lines[0], *(line.replace(".", ",") for line in lines[1:])]),
-        "must have 3 cells, got 6; a decimal comma?; and in 49 more places",
-    ),
     "not a number": (
         "locked.csv",
         by_lines(lambda lines: [*lines[:3], "0.006,nan,0", *lines[4:]]),
         "locked.csv:4:7: displacement_m: must be a finite number, got nan",
     ),
-    "a number as text": (
-        FILE,
-        lambda text: text.replace("0.002", '"0.002"'),
-        f"{FILE}:9:12: step_s: must be a positive number [s], an object of such numbers by problem, or null",
-    ),
     "a comma after the last entry": (
         FILE,
         lambda text: text.replace('"CC0-1.0"', '"CC0-1.0",'),
         f"{FILE}:14:1: must be JSON: ",
-    ),
-    "an unknown problem": (
-        FILE,
-        lambda text: text.replace('"CC0-1.0"', '"CC0-1.0",\n "not_reported": {"lokced": []}'),
-        f"{FILE}:14:19: not_reported: lokced: must be among ",
     ),
     "a table that is missing": (
         FILE,
@@ -145,12 +117,6 @@ def test_a_mistake_is_named_with_line_and_character(mistake: str, tmp_path: Path
     assert all("\n" not in line for line in lines)
 
 
-@pytest.mark.parametrize(("field", "value"), [("pack", 3.0), ("step_s", []), ("link", 7), ("program", "")])
-def test_a_field_with_one_mistake_has_one_line(field: str, value: object, tmp_path: Path) -> None:
-    (line,) = defects_of(answered(tmp_path, names=("locked",), **{field: value}))
-    assert f": {field}: must " in line
-
-
 def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     place = answered(tmp_path / "coarse", settings_name="coarse")
     other = answered(tmp_path / "fine", settings_name="fine", who=...)
@@ -165,13 +131,6 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     for start in (*starts, f"forgotten/{FILE}: is required"):
         assert sum(line.startswith(start) for line in lines) == 1, (start, lines)
     assert len(lines) == len(starts) + 1  # `again` is the same as `coarse` only where that can be read
-    for path in (place, other, tmp_path / "forgotten"):
-        for file in path.iterdir():
-            file.unlink()
-        path.rmdir()
-    answered(tmp_path / "coarse", settings_name="coarse", names=("locked",))
-    (line,) = defects_of(tmp_path)
-    assert line.startswith(f"coarse/{FILE}: must have another settings_name")
 
 
 def test_a_layout_is_where_its_metadata_say(tmp_path: Path) -> None:
@@ -236,24 +195,16 @@ def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
     ("change", "said"),
     [
         (lambda r: [[*r[0][:2], "speed"], *r[1:]], "1:23: header: must be among time_s, displacement_m,"),
-        (lambda r: [["time_s", "displacement_mn", *r[0][2:]], *r[1:]], "did you mean displacement_m?"),
-        (lambda r: [row[:2] for row in r], "1:22: header: contact_pressure_Pa is required, got time_s, displ"),
-        (lambda r: [row[1:] for row in r], "1:35: header: time_s is required, got displacement_m, contact_pressure_Pa"),
         (lambda r: [[*row, row[1]] for row in r], "1:43: header: displacement_m must appear once"),
         (lambda r: r[1:], "1:1: header: must be the header time_s,displacement_m,contact_pressure_Pa, got numbers"),
         (lambda r: [r[0], *([repr(float(row[0]) + 1e-3), *row[1:]] for row in r[1:])], "all are 0.001 s late"),
         (lambda r: [r[0], ["0.002", "", "0"], *r[2:]], "2:7: displacement_m: must be a number, got nothing"),
-        (lambda r: [r[0], ["0.002", "np.float64(0.5)", "0"], *r[2:]], "numpy's repr; float(x) of it is a number"),
         (lambda r: [r[0], ["0.002", "1_0", "0"], *r[2:]], "2:7: displacement_m: must be a number, got '1_0'"),
         (lambda r: [r[0], ["0.002", "1e400", "0"], *r[2:]], "2:7: displacement_m: must be a finite number, got 1e400"),
-        (lambda r: [r[0], ["0.002", "1e308", "0"], *r[2:]], "must be at most 1e+100 in size, got 1e308"),
         (lambda r: [*r, *r[1:]], "52:1: time: must have 50 rows, 0.002 s apart, got 52 or more"),
         (lambda r: [r[0], *r[:0:-1]], "2:1: time: must be 0.002, got 0.1"),
         (lambda r: r[:-1], "got 49; t = 0.1 s is the first that is missing"),
-        (lambda r: [r[0], *r[2:], r[-1]], "2:1: time: must be 0.002, got 0.004"),
-        (scaled(0, 1e3), "2:1: time: must be 0.002, got 2; milliseconds?"),
         (lambda r: [*r[:3], r[3][:2], *r[4:]], "4:28: must have 3 cells, got 2"),
-        (lambda r: r[:1], "time: must have 50 rows"),
         (lambda r: [], "must be a table of numbers under a header, got an empty file"),
         (scaled(1, 1e3), "1:8: displacement_m: wrong units: it is 1000 times what is expected in SI, mm?"),
         (scaled(2, 1e-6), "1:23: contact_pressure_Pa: wrong units: it is 1e-06 times what is expected in SI, MPa?"),
@@ -316,10 +267,8 @@ def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ({"pack": "99.0"}, f"pack: must be one of 4.0, {PACK}, this pack and earlier ones"),
+        ({"pack": "99.0"}, f"pack: must be one of 4.0, 5.0, {PACK}, this pack and earlier ones"),
         ({"pack": ...}, "pack: is required, got nothing"),
-        ({"format": "other"}, "format: must be 'dda-validation answers 1', got 'other'"),
-        ({"version": 3}, "version: must be a valid string, got 3"),
         ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings: must be filled in, got"),
         ({"wo": "x"}, "wo: unknown key, got 'x'"),
         ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked: must be among displacement_m, contact_pr"),
@@ -379,12 +328,3 @@ def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
     # Forces are not asked: what is measured on them alone is not among the numbers.
     assert [one.name for one in judged.judged["pile"].judgement.criteria] == ["drift of the top", "sinking of the top"]
     assert judged.judged["standing-friction-19-deg"].judgement.deciding.name == "distance slid"
-
-
-def test_heights_in_millimetres_are_named(tmp_path: Path) -> None:
-    boxes_answered(answered(tmp_path, names=()), "pile", {"box_3.y": 1e3})
-    (line,) = defects_of(tmp_path)
-    assert (
-        "pile.csv:1:" in line
-        and "box_3.y_m: wrong units: it begins with 1000 times what is expected in SI, mm?" in line
-    )

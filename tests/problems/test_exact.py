@@ -68,13 +68,6 @@ def test_a_column_lets_a_pulse_pass() -> None:
     assert found[0] == pytest.approx(wanted.columns["displacement_1"], abs=1e-9)
 
 
-def test_a_block_that_rocks_comes_down_after_its_quarter_period() -> None:
-    block = {"width": 2.0, "height": 4.0, "tilt": math.atan(0.5) / 2}
-    landed = exact.rocking_quarter_period(**block)
-    before, after = exact.rocking_tilt(np.array([landed - 1e-4, landed + 1e-4]), **block)
-    assert before > 0 > after
-
-
 @pytest.mark.parametrize("time", [[-1.0], [0.0], [0.2, 0.1], [math.nan]])
 def test_instants_that_do_not_rise_from_zero_are_refused(time: list[float]) -> None:
     with pytest.raises(ValueError, match="time: must be finite instants that rise"):

@@ -6,11 +6,9 @@ import itertools
 import json
 from dataclasses import replace
 
-import numpy as np
 import pytest
 
 from validation.problems import packs
-from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.packs import digest, stale
 from validation.problems.problem import names, problem
@@ -56,9 +54,3 @@ def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monk
     assert stale("1.9", "opening") is None
     assert "its data, instants or columns are others" in str(stale("1.9", "locked"))
     assert f"pack {PACK} has no such problem any more" in str(stale("1.9", "gone"))
-
-
-@pytest.mark.parametrize("name", ["locked", "rocking", "column", "stack"])
-def test_the_instants_of_a_problem_are_those_of_its_exact_motion(name: str) -> None:
-    one = problem(name)
-    np.testing.assert_allclose(one.instants, standard(one).exact.time, rtol=1e-12)

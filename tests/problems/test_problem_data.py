@@ -16,7 +16,8 @@ from validation.scenes.scene import Scene, load_scene, parse_scene
 
 SI = r"_(m|kg|kg_m2|N|kg_per_m3|Pa|m_per_s2?|deg|rad|rad_per_s|N_per_m|Pa_per_m|Hz|s)$"
 WORDS = {"poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "contacts", "settled", "at", "shape"}
-WORDS |= {"geometry", "restitution", "blocks", "contact", "fixed", "name"}
+WORDS |= {"geometry", "restitution", "blocks", "contact", "fixed", "name", "pairs", "touches"}
+WORDS |= {"block", "corner", "on", "edge"}  # of a stated contact
 
 
 def plain(value: Any) -> Any:

@@ -7,7 +7,7 @@ import re
 import pytest
 from oracles.pages import ROOT
 
-from validation.diagnosis.numbers import accurate
+from validation.diagnosis.hooks import DiagnosisHooks
 from validation.gates.gate import Status
 from validation.problems.bands import standard
 from validation.problems.judge import judge
@@ -34,7 +34,7 @@ def test_at_fine_steps_dda_passes(name: str) -> None:
     scene = one.scene
     every = FINER_TURNING if features.ROTATION in features.of(scene) else FINER
     steps = {"time.step": scene.time.step / every, "time.steps": scene.time.steps * every}
-    history = get_solver("dda").solve(scene.with_values(accurate(scene) | steps)).history
+    history = get_solver("dda").solve(scene.with_values(DiagnosisHooks.of(scene).accurate(scene) | steps)).history
     rows = slice(every - 1, None, every)
     sampled = History(history.time[rows], {column: x[rows] for column, x in history.columns.items()})
     assert judge(one, sampled).status is Status.PASS

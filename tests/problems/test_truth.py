@@ -11,7 +11,7 @@ import pytest
 from validation.errors import InputError
 from validation.models.plane import problems as boxes
 from validation.problems.bands import standard
-from validation.problems.problem import ASKS, PREFIX, problem, problem_of
+from validation.problems.problem import ASKS, problem, problem_of
 from validation.problems.truth import exact, truth_of
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
@@ -102,11 +102,6 @@ def test_a_frictionless_corner_slides() -> None:
         problem_of(scene)
 
 
-def test_a_sweep_has_none() -> None:
-    with pytest.raises(InputError, match="sweep"):
-        truth_of(load_scene("figures-3-4"))
-
-
 def test_a_scene_without_an_exact_motion_says_why() -> None:
     with pytest.raises(InputError, match=r"no exact motion is known: block-events: .*kinetic damping"):
         truth_of(load_scene("field-opening").with_values({"time.gg": 0.99}))
@@ -136,9 +131,3 @@ def test_the_rotation_is_that_of_the_suites_block(sign: int) -> None:
     assert found is not None
     rotation = found.columns["rotation"][: len(motion.time)]
     np.testing.assert_allclose(rotation, motion.columns["rotation"], atol=1e-3)
-
-
-def test_locked_springs_pull() -> None:
-    scene = load_scene(f"{PREFIX}locked")
-    motion = exact(scene, truth_of(scene))
-    assert float(np.min(motion.contact_pressure)) < -1e6

@@ -1,13 +1,18 @@
-"""ntdda's histories as a solver: the rows of its files, for the scenes whose problems they are and no others."""
+"""ntdda as a solver: the rows of its files, for the scenes whose problems they are; of polygons the program itself."""
 
+import math
+import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from peers import ntdda
+from peers import ntdda, ntdda_live
 from peers.ntdda import Histories
 
-from validation.scenes.scene import load_scene
+from validation.models.plane.blocks import centroid
+from validation.models.plane.tables import PlaneSection
+from validation.scenes.scene import Scene, load_scene, parse_scene
 
 EXAMPLES = Path(__file__).resolve().parents[2] / "docs" / "examples" / "ntdda"
 
@@ -64,3 +69,97 @@ def test_away_from_the_repository_it_says_where_the_histories_are(monkeypatch) -
     monkeypatch.setattr(ntdda, "PLACE", Path("nowhere"))
     with pytest.raises(NotImplementedError, match="docs/examples/ntdda of the repository"):
         Histories().solve(load_scene("field-opening"))
+
+
+# ---- the program itself, of rigid polygons at rest -------------------------------------------------------------------
+
+NTDDA = """#!{python}
+import pathlib, re, sys
+points = re.findall(r"<Point> (\\S+) (\\S+) </Point>", open(sys.argv[1]).read().partition("Measured")[2])
+steps, step = (re.search(f'{{word}}="([^"]*)"', open(sys.argv[2]).read())[1] for word in ("timesteps", "maxtimestep"))
+place = pathlib.Path(sys.argv[1]).parent / "output"
+place.mkdir()
+lines = []
+for number, (x, y) in enumerate(points, 1):
+    rows = [f"{{n}} {{n * float(step)}} 0 {{float(x) + 0.1 * n}} {{y}} 0 0 0 0" for n in range(1, int(steps) + 1)]
+    lines += [f"measpoint{{number}}=[", *rows, "];"]
+(place / "x_meas.m").write_text("\\n".join(lines))
+sys.exit({status})
+"""
+
+
+def slope(dip: float, friction: float) -> Scene:
+    """Return a box of 2 m by 1 m on a plane that dips to the right."""
+    a = math.radians(dip)
+
+    def at(x: float, y: float) -> list[float]:
+        return [x * math.cos(a) + y * math.sin(a), y * math.cos(a) - x * math.sin(a)]
+
+    outlines = {"ground": [(-3, -2), (12, -2), (12, 0), (-3, 0)], "box": [(0, 0), (2, 0), (2, 1), (0, 1)]}
+    blocks = [
+        {"name": name, "fixed": name == "ground", "vertices": [at(*corner) for corner in corners]}
+        for name, corners in outlines.items()
+    ]
+    contact = {"stiffness": math.inf, "friction": friction}
+    plane = {"young": math.inf, "density": 2700.0, "gravity": [0.0, -9.81], "contact": contact, "block": blocks}
+    columns = ["box.x", "box.y", "box.angle"]
+    return parse_scene(
+        {"plane": plane, "time": {"step": 0.05, "steps": 10}, "run": {"columns": columns}}, f"slope-{dip}-{friction}"
+    )
+
+
+def on_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, status: int = 0) -> None:
+    program = tmp_path / "ntdda"
+    program.write_text(NTDDA.format(python=sys.executable, status=status))
+    program.chmod(0o755)
+    monkeypatch.setenv("PATH", str(tmp_path))
+
+
+def test_the_poses_are_those_of_two_measured_points(tmp_path, monkeypatch) -> None:
+    on_path(tmp_path, monkeypatch)
+    scene = slope(30.0, 20.0)
+    columns = Histories().solve(scene)
+    x, y = centroid(scene.table(PlaneSection).assembly.blocks[1].vertices)
+    np.testing.assert_allclose(columns["box.x"], x + 0.1 * 25 * np.arange(1, 11), rtol=1e-9)
+    np.testing.assert_allclose(columns["box.y"], y, rtol=1e-9)
+    np.testing.assert_allclose(columns["box.angle"], 0.0, atol=1e-12)
+
+
+def test_a_program_that_fails_is_told(tmp_path, monkeypatch) -> None:
+    on_path(tmp_path, monkeypatch, status=3)
+    with pytest.raises(RuntimeError, match="ended with 3, 1 tables"):
+        Histories().solve(slope(30.0, 20.0))
+
+
+def test_without_the_program_its_command_is_named(monkeypatch) -> None:
+    monkeypatch.setenv("PATH", "")
+    with pytest.raises(NotImplementedError, match="ntdda GEOMETRY ANALYSIS"):
+        Histories().solve(slope(30.0, 20.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "what"),
+    [("stopping", "velocities"), ("pushing", "gravity"), ("truss", "touch"), ("spinning", "friction alone")],
+)
+def test_what_the_program_cannot_express_is_refused(name: str, what: str) -> None:
+    with pytest.raises(NotImplementedError, match=what):
+        Histories().solve(load_scene(f"rigid-{name}"))
+
+
+def test_edges_on_one_line_are_one_line() -> None:
+    points = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.0), (3.0, 0.0), (5.0, 0.0), (6.0, 0.0), (0.0, 0.0), (0.0, 1.0)]
+    edges = [(np.array(a), np.array(b)) for a, b in zip(points[::2], points[1::2], strict=True)]
+    lengths = sorted(float(np.hypot(*(end - start))) for start, end in ntdda_live.on_lines(edges))
+    assert lengths == pytest.approx([1.0, 1.0, 3.0])
+
+
+@pytest.mark.skipif(shutil.which("ntdda") is None, reason="NOT RUN: no command ntdda on PATH")
+@pytest.mark.parametrize(("dip", "friction"), [(30.0, 20.0), (30.0, 40.0), (50.0, 20.0)])
+def test_a_box_on_a_slope_slides_or_stands(dip: float, friction: float) -> None:
+    scene = slope(dip, friction)
+    columns = Histories().solve(scene)
+    x, y = centroid(scene.table(PlaneSection).assembly.blocks[1].vertices)
+    a = math.radians(dip)
+    way = 9.81 * 0.5**2 / 2 * max(0.0, math.sin(a) - math.cos(a) * math.tan(math.radians(friction)))
+    moved = math.hypot(columns["box.x"][-1] - x, columns["box.y"][-1] - y)
+    assert moved == pytest.approx(way, rel=0.01, abs=2e-4)

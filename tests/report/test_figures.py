@@ -8,9 +8,11 @@ import numpy as np
 import pytest
 from conftest import thinned
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from oracles.made_cases import made_history
 
 from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
+from validation.report.figures.space_time import SpaceTime
 from validation.runs.history import History
 
 SOLVERS = ("dda", "dda-textbook", "fem", "bar", "continuum", "somebody's own")
@@ -47,6 +49,14 @@ def test_thin_keeps_ends_and_every_spike():
     assert np.array_equal(ty, y[tx.astype(int)])
 
 
+@pytest.mark.parametrize(
+    ("places", "nudged"),
+    [([0.5, 0.5], [0.45, 0.55]), ([1.0, 0.95, 1.0], [0.9, 0.8, 1.0]), ([0.0] * 3, [0.0, 0.1, 0.2]), ([0.3], [0.3])],
+)
+def test_names_are_nudged_apart_as_little_as_they_may_within_their_limits(places, nudged):
+    assert curves.nudge(places, 0.1, 0.0, 1.0) == pytest.approx(nudged)
+
+
 def test_each_solver_has_one_style_and_no_two_share_it():
     styles = [curves.style_of(name) for name in SOLVERS]
     assert len({(s.color, s.dash) for s in styles}) == len(SOLVERS)
@@ -64,6 +74,41 @@ def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
         assert len(boxes) in (len(SOLVERS), len(SOLVERS) - 1)  # all, and all but the reference
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
         assert all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 for b in boxes)
+
+
+def test_lines_on_one_another_are_one_line_with_all_names():
+    base = np.linspace(0, 1, 50)
+
+    def one(**values):
+        return curves.HistoryPanel("", {name: made_history(0.1, v) for name, v in values.items()}, {}, "bar")
+
+    some = one(dda=base + 0.1, textbook=base + 0.1 + 1e-6, bar=base, fem=base + 1e-3, far=base + 3e-3)
+    assert motion.twins([some], ["displacement"]) == {
+        "dda": {"textbook": pytest.approx(1e-6 / 1.1)}, "bar": {"fem": pytest.approx(1e-3)}, "far": {},
+    }  # fmt: skip
+    repeated = one(**{"dda": base, "dda-textbook": base + 1e-9})
+    assert motion.twins([repeated], ["displacement"]) == {"dda": {}}  # on dda, which it repeats
+    assert motion.twins([some, one(dda=base, textbook=base + 1)], ["displacement"])["dda"] == {}  # in one case only
+
+
+def test_more_swings_than_can_be_drawn_have_their_start_below():
+    time = np.arange(1, 20_001)
+    panels = {
+        w: curves.HistoryPanel("", {"dda": made_history(0.1, 1 - np.cos(w * time))}, {}, None) for w in (0.5, 0.25)
+    }
+    noisy = made_history(0.1, 1 - np.cos(0.005 * time) + 0.09 * np.cos(time))
+    assert motion.start_of([curves.HistoryPanel("", {"dda": noisy}, {}, None)], "displacement") is None
+    span = motion.start_of([panels[0.5]], "displacement")
+    assert span == pytest.approx(12 * 2 * np.pi / 0.5 * 0.1, rel=0.01)  # 24 crossings, 12 periods
+    assert motion.start_of([*panels.values()], "displacement") == pytest.approx(2 * span, rel=0.01)
+
+
+@pytest.mark.parametrize(("lift", "times"), [(0.0, 1.0), (50.0, 1.0), (1e-3, 500.0)])
+def test_gaps_are_magnified_to_a_part_of_the_lowest_block(lift, times):
+    time, faces = np.linspace(0.0, 0.1, 11), np.array([0.0, 1.0, 3.0])
+    assert SpaceTime("", time, faces, np.array([0 * time, lift * time / 0.1]), np.zeros((2, 11))).magnification == times
+    with pytest.raises(ValueError, match="must be of shape"):
+        SpaceTime("", time, faces, np.zeros((3, 11)), np.zeros((2, 11)))
 
 
 def test_the_same_data_give_the_same_bytes(tmp_path):

@@ -9,21 +9,18 @@ from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
-from oracles.made_cases import kept_study, lines_of, made_history, made_row, names_at, rules_of
+from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.engine.finished import Finished
 from validation.report.blocks import Blocks, FigureBlock, Paragraph
 from validation.report.chapters.registry import chapter_of
-from validation.report.figures.curves import style_of
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.folders import get_study
 
 BASE = load_scene("figures-3-4")
-RULE = "#6b6b6b"
 Case = tuple[Scene, Mapping[str, Any], Mapping[str, History]]  # metrics and histories by solver
 
 
@@ -44,10 +41,6 @@ def page(place: Path, *cases: Case, claims: Mapping[str, Mapping[str, Any]] | No
     data = dict(get_study("paper").data()) | kept.pop("data", {})
     manifest = kept_study(results, triples, study="paper", data=data, derived=[*rows, *kept.pop("derived", ())], **kept)
     return chapter_of("paper")(results, manifest, place)
-
-
-def color(name: str) -> str:
-    return to_hex(style_of(name).color)
 
 
 # ---- the register ---------------------------------------------------------------------------------------------------
@@ -83,72 +76,24 @@ def test_the_register_keeps_the_words_of_every_claim() -> None:
 
 # ---- figures 3 to 9 -------------------------------------------------------------------------------------------------
 
-METRICS = {
-    "displacement.static": -0.01,
-    "pressure.static": 5e6,
-    "displacement.settling_step": 12.0,
-    "pressure.settling_step": 17.0,
-}
 
-
-@pytest.mark.parametrize(
-    ("scene", "number", "value", "level", "settled", "unit"),
-    [
-        ("figures-3-4", 3, -12.0, -10.0, 12.0, "[mm]"),
-        ("figures-3-4", 4, 6.5, 5.0, 17.0, "[MPa]"),
-        ("figure-8", 8, 20.0, 0.0, None, "[%]"),
-    ],
-)
-def test_the_papers_figures_are_in_their_units(
-    scene: str,
-    number: int,
-    value: float,
-    level: float,
-    settled: float | None,
-    unit: str,
-    drawn: dict[str, Figure],
-    tmp_path: Path,
+def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(
+    kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
 ) -> None:
-    history = made_history(0.002, np.full(300, -0.012), np.full(300, 6.5e6))
-    blocks = page(tmp_path, (named(scene, **{"time.step": 0.002}), {"dda": METRICS}, {"dda": history}))
-    captions = {block.caption.split(".")[0]: block.caption for block in blocks if isinstance(block, FigureBlock)}
-    assert ("Dashed: step from which DDA stays" in captions[f"Figure {number}"]) == (settled is not None)
-    (axes,) = drawn[f"figure-{number}.svg"].axes
-    (line,) = [y for own, _, y in lines_of(axes) if own == color("dda")]
-    assert len(line) == (200 if number == 8 else 100)  # steps that the figure shows
-    assert np.allclose(line, value) and axes.get_ylabel().endswith(unit)
-    assert rules_of(axes, RULE) == ([pytest.approx(level)], [] if settled is None else [settled])
-
-
-def test_a_figure_over_steps_begins_at_step_one_and_names_the_values_at_its_last(
-    drawn: dict[str, Figure], tmp_path: Path
-) -> None:
-    steps = np.arange(1, 201)  # at step 100: 2 and -2 mm
-    moved = {"dda": steps / 5e4, "bar": 2e-3 - steps / 2.5e4}
-    histories = {name: made_history(1e-3, values, values) for name, values in moved.items()}
-    metrics = {"dda": {"displacement.static": 5e-4, "displacement.settling_step": 30.0}, "bar": {}}
-    page(tmp_path, (named("figures-3-4", **{"time.step": 1e-3}), metrics, histories))
-    (axes,) = drawn["figure-3.svg"].axes
-    assert names_at(axes) == {"dda": (pytest.approx(2.0), color("dda")), "bar": (pytest.approx(-2.0), color("bar"))}
-    for name, history in histories.items():
-        (line,) = [(x, y) for own, x, y in lines_of(axes) if own == color(name) and x.size > 2]
-        assert np.allclose(line[0], steps[:100]) and np.allclose(line[1], 1e3 * history.displacement[:100])
-    assert rules_of(axes, RULE) == ([pytest.approx(0.5)], [30.0])
-    assert "30 steps" in [text.get_text() for text in axes.texts]
-
-
-def test_the_continuum_is_left_out_where_its_period_has_too_few_steps(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """The continuum is left out of Figures 3 and 4, where its period has too few steps."""
+    metrics = {"displacement.static": -0.01, "pressure.static": 5e6, "displacement.settling_step": 12.0}
+    steps = np.arange(1, 301)
     cases = []
-    derived = []
-    for name, word in (("figures-5-6", "curve"), ("figures-3-4", "none")):
-        history = made_history(0.002, np.full(40, -0.012), np.full(40, 6.5e6))
-        case = named(name, **{"time.step": 0.002})
-        cases.append((case, {"dda": METRICS, "continuum": {}}, {"dda": history, "continuum": history}))
-        derived.append({"scene": name, "name": "period", "metrics": {"continuum": word}})
+    for name in ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9"):
+        histories = {solver: made_history(0.002, -steps / size, 1e4 * steps + size) for solver, size in
+                     (("dda", 2e4), ("bar", 3e4), ("continuum", 5e4))}  # fmt: skip
+        own = metrics if name == "figures-3-4" else metrics | {"pressure.settling_step": 17.0}
+        cases.append((named(name, **{"time.step": 0.002}), {"dda": own, "bar": {}, "continuum": {}}, histories))
+    words = {"figures-3-4": "none", "figures-5-6": "curve"}
+    derived = [{"scene": name, "name": "period", "metrics": {"continuum": word}} for name, word in words.items()]
     blocks = page(tmp_path, *cases, derived=derived)
-    captions = [block.caption for block in blocks if isinstance(block, FigureBlock)]
-    assert [text.split(".")[0] for text in captions if "continuum is left out" in text] == ["Figure 3", "Figure 4"]
-    assert [set(names_at(drawn[f"figure-{n}.svg"].axes[0])) for n in (3, 5)] == [{"dda"}, {"dda", "continuum"}]
+    kept("paper", [block for block in blocks if isinstance(block, FigureBlock)])
+    kept_figures("figures-paper", drawn)
 
 
 def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_path: Path) -> None:

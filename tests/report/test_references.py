@@ -8,13 +8,12 @@ from pathlib import Path
 import pytest
 from pypdf import PdfReader
 
-from validation.report import front
 from validation.report.blocks import Block, Paragraph, References
 from validation.report.names import quoted
 from validation.report.references import PAPER, references
 from validation.report.render.html import page
 from validation.report.render.pdf import typeset
-from validation.suite.folders import sources_of, study_names
+from validation.suite.folders import sources_of, study_folders, study_names
 
 PLACES = {"book": "publisher", "phdthesis": "school", "mastersthesis": "school", "inproceedings": "booktitle"}
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
@@ -22,7 +21,7 @@ CITATION = re.compile(r"@([a-z]+\d{4})\b")
 
 def test_what_is_cited_is_a_source() -> None:
     texts = [PAPER, *map(sources_of, study_names())]
-    texts += [path.read_text("utf-8") for path in Path(front.__file__).parent.glob("*.toml")]
+    texts += [(folder.path / "front.toml").read_text("utf-8") for folder in [study_folders()["core"]]]
     cited = set(CITATION.findall(" ".join(texts)))
     assert {"feng2017", "shi1985", "newmark1959", "doolin2004", "hatzor2004", "armero1998", "kane1999"} <= cited
     assert {"housner1963", "miller1978"} <= cited <= set(references())
@@ -32,6 +31,7 @@ def test_every_source_says_who_wrote_what_when_and_where() -> None:
     sources = references()
     for key, source in sources.items():
         assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
+        assert source["read"].startswith(("full text", "abstract", "nothing"))
         assert source["title"] and source[PLACES.get(source["kind"], "journal")]
     paper = sources["feng2017"]
     for words in (paper["title"], paper["journal"], paper["year"], f"article {paper['pages']}", "9 pages", "18 July"):

@@ -2,81 +2,24 @@
 
 from __future__ import annotations
 
-import numpy as np
 import pytest
 from oracles.made_cases import kept_study, made_row
+from oracles.made_results import made_rows
 
 from validation.errors import InputError
-from validation.gates.gate import Gate, Status, Verdict, judge
-from validation.report.appendix.pages import appendix
-from validation.report.blocks import (
-    Callout,
-    FigureBlock,
-    Heading,
-    PageBreak,
-    Table,
-    TableColumn,
-)
+from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, Table, TableColumn
 from validation.report.book import build, write_figures
-from validation.report.chapters import data as chapters_data
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
-from validation.report.front import pages as front
-from validation.report.front.groups import groups_of_studies
-from validation.runs.history import History
+from validation.report.chapters.data import groups_of_studies
+from validation.report.front import front_pages
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene, parse_scene
 
-CORE = ("figures-3-4", "figure-8")
 MANY = load_scene("figures-3-4").with_values({"block.young": 2e9})
 PRESSED = ((2e9, 5e6), (5e9, 2.5e6))
-METRICS = {
-    "displacement.static": -0.01,
-    "pressure.static": 5e6,
-    "pressure.minimum": -0.338e6,
-    "displacement.settling_step": 44.0,
-    "pressure.settling_step": "undefined",
-    "mode1.damping": 0.3,
-    "mode1.measured_damping": "not reported",
-}
-
-
-def write_study(results, study, scenes, verdicts=(), title="The paper's scenes"):
-    """Fill a results directory as the engine does, with made data; dda-textbook is absent from figure-8."""
-    cases = []
-    for case in [case for scene in scenes for case in scene.expand()]:
-        time = case.time.step * np.arange(1, case.time.steps + 1)
-        for solver in case.run.solvers:
-            frequency = 344.561 if solver.startswith("dda") else 327.682
-            shape = 1 - np.exp(-30 * time) * np.cos(frequency * time)
-            history = History(time, {"displacement": -0.01 * shape, "contact_pressure": 5e6 * shape})
-            row = made_row(solver, METRICS | {"mode1.frequency": frequency}, case.name)
-            if solver == "dda-textbook" and case.name.startswith("figure-8"):
-                notes = ("alpha must be above 0",)
-                row, history = made_row(solver, {}, case.name, outcome=Outcome.NOT_APPLICABLE, notes=notes), None
-            cases.append((case, row, history))
-    kept_study(results, cases, study=study, title=title, purpose="Does the code say what the model says?")
-    results.write_verdicts(study, [verdict.record(study) for verdict in verdicts])
-    return results
-
-
-def verdict(scene, metric, value, **kwargs):
-    reason = "the model form at this step, known from both sides"
-    return judge(Gate(scene, ("dda", "bar"), metric, 0.03, 0.04, reason, **kwargs), value)
-
-
-PASSES = verdict("figures-3-4[time.step=0.002]", "displacement.l2", 0.0363, until=0.2)
-FAILS = verdict("figures-3-4[time.step=0.01]", "pressure.l2", 0.0567)
-OTHER = Gate("figure-8", ("dda", "fenicsx"), "displacement.l2", 0, 1e-6, "another code", "other code", 1e-9)
-WAITS = Verdict(OTHER, None, Status.NOT_RUN, "fenicsx: dolfinx is not installed")
-
-
-@pytest.fixture(scope="module")
-def results(tmp_path_factory):
-    directory = Results(tmp_path_factory.mktemp("results"))
-    return write_study(directory, "core", [load_scene(name) for name in CORE], (PASSES, FAILS, WAITS))
 
 
 @pytest.fixture
@@ -87,18 +30,10 @@ def small(tmp_path):
         "title": "#panic[no] *bold* $x$ @me",
         "sweep": {},
     }
-    data["run"] = {"solvers": ["dda", "theirs", "bar"]}
-    return write_study(Results(tmp_path / "results"), "mine", [parse_scene(data, "mine")], title="My study")
-
-
-def group_of(results, name):
-    return next(g for g in chapters_data.case_groups(results, results.manifest("core")) if g.name == name)
-
-
-def test_gates_that_passed_are_listed_where_they_are_asked_for(results):
-    for asked in (False, True):
-        parts = appendix(results, {}, results.verdicts(), [], asked)
-        assert (Heading("Gates", 2) in parts) is asked
+    scene = parse_scene(data | {"run": {"solvers": ["dda", "theirs", "bar"]}}, "mine")
+    results = Results(tmp_path / "results")
+    kept_study(results, made_rows(scene), study="mine", title="My study")
+    return results
 
 
 def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, drawn):
@@ -114,33 +49,16 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, draw
     assert out.read_bytes() == b"old"
 
 
-def front_of(results, studies, directory):
-    return front.front_pages(groups_of_studies(results, studies), results.verdicts(), studies, directory)
+def test_what_did_not_pass_has_a_page_of_its_own_before_the_decisions(made_results):
+    class Page:
+        def blocks(self, name):
+            return [Heading(name)]
 
-
-def test_the_first_pages_count_verdicts_and_name_what_did_not_pass_with_value_band_and_reason(
-    results, tmp_path, drawn, monkeypatch, kept
-):
-    monkeypatch.setattr(front, "decisions", lambda *_: [Heading("Decision 1", 2)])
-    blocks = front_of(results, ["core"], tmp_path)
-    assert Callout("3 gates: 1 passed, 1 failed, 1 not run.", "fail") in blocks
-    assert Callout("One gate fails.", "fail") in blocks
-    table = next(b for b in blocks if isinstance(b, Table) and b.columns[0].title == "Verdict")
-    kept("not-passed", [table])
-    kinds = [type(b) for b in blocks]
-    assert (
-        kinds.index(PageBreak)
-        < blocks.index(table)
-        < next(i for i, b in enumerate(blocks) if isinstance(b, Heading) and b.text.startswith("Decision 1"))
-    )  # on a page of its own, before the decisions
-
-
-def test_scene_page_names_every_outcome_other_than_completed(results):
-    (callout,) = chapters.outcomes(group_of(results, "figure-8"))
-    assert callout.text == (
-        "dda-textbook at α = 0.25, δ = 0.5; α = 0.5, δ = 1: not applicable. "
-        f"{Outcome.NOT_APPLICABLE.sentence} alpha must be above 0"
-    )
+    blocks = front_pages(Page(), {}, made_results.verdicts())
+    kinds = [block.text if isinstance(block, Heading) else type(block) for block in blocks]
+    failures = ["Gates that did not pass", Callout, Table]
+    decisions = [part for name in ("step", "springs", "discount") for part in (PageBreak, name)]
+    assert kinds == [Paragraph, "first", Callout, PageBreak, *failures, *decisions, PageBreak]
 
 
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
@@ -169,7 +87,7 @@ def test_a_scene_of_which_nothing_completed_has_words_and_no_empty_pictures(tmp_
     rows = [made_row(name, {}, scene.name, outcome=end, notes=("step 7", "too long")) for name, end in ends]
     manifest = kept_study(directory, [(scene, row, None) for row in rows], study="mine")
     page = chapters.scene_chapter(directory, manifest, tmp_path)
-    first = front_of(directory, ["mine"], tmp_path)
+    first = front_pages(None, groups_of_studies(directory, [manifest], drawn=False), directory.verdicts())
     assert not [b for b in (*page, *first) if isinstance(b, FigureBlock)]
     kept("nothing-completed", page)
     imprint, *others = first

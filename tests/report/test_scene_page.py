@@ -6,13 +6,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import made_case, made_group, made_history
 
-from validation.report.chapters.scene import PERIODS, lead_figure
-from validation.report.figures.drawing import FACE, scene_figure
-from validation.scenes.scene import load_scene, scene_names
+from validation.problems.quantities import Quantity
+from validation.report.chapters.gates import value_cell
+from validation.report.chapters.judged import numbers_table
+from validation.report.chapters.scene import PERIODS, history_block, lead_figure
+from validation.report.chapters.summary import mode_damping
+from validation.scenes.scene import load_scene
 
 FREQUENCY = 345.0  # rad/s
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.001, "time.steps": 200})
@@ -48,27 +50,32 @@ def test_a_motion_that_is_driven_is_shown_whole(drawn: dict[str, Figure], tmp_pa
     assert drawn["scene-lead.svg"].axes[0].get_xlim()[1] == pytest.approx(0.2)
 
 
-@pytest.mark.parametrize(
-    ("name", "bodies"),
-    [("figures-3-4", 1), ("rocking-swing", 1), ("columns-joints", 1), ("rigid-pile", 11), ("patch-four-quads", 4)],
-)
-def test_each_kind_of_scene_is_drawn_with_all_its_bodies(name: str, bodies: int) -> None:
-    (axes,) = scene_figure(load_scene(name).expand()[0]).axes
-    filled = [patch for patch in axes.patches if to_hex(patch.get_facecolor()) == FACE]
-    assert len(filled) == bodies and not axes.axison
-
-
-def test_scenes_are_drawn_inside_their_axes() -> None:
-    for name in scene_names()[::3]:  # of every family some
-        (axes,) = scene_figure(load_scene(name).expand()[0]).axes
-        corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
-        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-        assert left <= corners[:, 0].min() and corners[:, 0].max() <= right, name
-        assert low <= corners[:, 1].min() and corners[:, 1].max() <= high, name
-
-
 def test_what_is_rounding_decides_nothing(drawn: dict[str, Figure], tmp_path: Path) -> None:
     """Which of two cases is shown would depend on the processor."""
     cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
     (block,) = lead_figure(made_group(*cases), tmp_path)
     assert block.caption.startswith("dt = 0.002 s, of 2 cases the first.")
+
+
+def test_damping_is_told_by_scheme_discount_and_tables() -> None:
+    scene = BASE.with_values({"time.step": 0.002, "time.gg": 0.98})
+    parts = mode_damping(made_case(scene, {"dda": {}}), 344.561)
+    assert parts["scheme"] == pytest.approx(0.1602, abs=5e-4)  # of (1/2, 1) at w dt = 0.689
+    assert parts["total"] == pytest.approx(parts["scheme"] + parts["discount"])  # type: ignore[operator]
+    assert parts["discount"] == pytest.approx(-0.5 * 1e-2 / 0.689 * -2, rel=0.3) and parts["tables"] is None
+    viscous = BASE.with_values({"time.step": 0.002, "damping.mass": 20.0})
+    damped = mode_damping(made_case(viscous, {"dda": {"mode1.damping": 0.19}}), 344.561)
+    assert damped["tables"] == pytest.approx(0.19 - 0.1602, abs=5e-4)
+
+
+def test_a_count_that_is_none_is_no_small_number() -> None:
+    assert value_cell(0.0, "displacement.fine_settling_step") == "0" and value_cell(0.0, "displacement.l2") == "<10⁻¹²"
+    numbers = (Quantity("openings", "1", 0.0, 5.0), Quantity("damping ratio", "1", 0.0, 0.1))
+    assert [row[1] for row in numbers_table(numbers).rows] == ["0", "<10⁻¹²"]
+
+
+def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn: dict[str, Figure], tmp_path: Path) -> None:
+    """Ten steps of 1e-4 s end before the first of 0.02 s."""
+    scenes = [BASE.with_values({"time.step": step}, label=True) for step in (0.02, 1e-4)]
+    cases = [made_case(scene, {"dda": {}}, {"dda": made_history(scene.time.step, np.ones(10))}) for scene in scenes]
+    assert history_block(made_group(*cases), ["displacement"], tmp_path).caption.startswith("1 of 2 cases.")

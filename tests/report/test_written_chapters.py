@@ -6,20 +6,25 @@ import fnmatch
 import re
 import string
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_history, made_row
 
-from validation.report.blocks import FigureBlock
+from validation.engine.run import run_study
+from validation.report.blocks import FigureBlock, Heading, Paragraph
 from validation.report.chapters.described import Description
 from validation.report.chapters.queries import StudyTable
+from validation.report.chapters.registry import chapter_of
 from validation.report.chapters.written import WrittenChapter
 from validation.results import Results
 from validation.runs.case_name import scene_of
 from validation.scenes.scene import load_scene
+from validation.studies.waves.rows import curves
 from validation.suite.folders import StudyFolder, get_study, study_folders
 
 FOLDERS = {name: folder for name, folder in study_folders().items() if (folder.path / "chapter.toml").exists()}
@@ -110,6 +115,40 @@ def test_a_column_picks_one_of_some_lines(table: StudyTable, column: Any, value:
     assert table.picked(table.lines({}), column) == value
 
 
+MAPS = """
+[maps.steps]
+file = "{study}.svg"
+caption = "Maps."
+of = ["figures-*"]
+rows = { of = "contact.stiffness", form = "decade" }
+columns = { of = "time.step", factor = 1e3, form = "g", descending = true }
+scale = ["Greys", 1.0, 5.0]
+missing = "none"
+[[maps.steps.maps]]
+title = "v"
+of = "dda displacement.static"
+decimals = 2
+shade = { from = 0.0, to = -0.04 }
+[[maps.steps.maps]]
+title = "r"
+of = "closed: ratio"
+digits = 1
+shade = { from = 0.25, to = 4.0, logarithmic = true }
+[[maps.steps.maps]]
+title = "s"
+of = "closed: ratio"
+form = "digits"
+shade = { from = 2.0, to = 8.0, logarithmic = true, either_side = true }
+[maps.nothing]
+file = "nothing.svg"
+caption = ""
+of = ["figures-*"]
+rows = { of = "contact.stiffness" }
+columns = { of = "time.step" }
+scale = ["Greys", 1.0, 5.0]
+maps = [{ title = "v", of = "closed: absent", shade = { from = 0.0, to = 1.0 } }]
+"""
+
 PAGE = """
 parts = [
     { opening = "" },
@@ -119,6 +158,8 @@ parts = [
     { heading = "Shown", figure = "chart", table = "cases", after = "said" },
     { heading = "Never", table = "nothing" },
     { text = "said", when = ["nowhere"] },
+    { maps = "steps" },
+    { maps = "nothing" },
 ]
 [text]
 said = "At {coarse} ms: {cases}."
@@ -196,75 +237,13 @@ name = "at {each}"
 """
 
 
-def test_parts_become_blocks_in_their_order(kept: Any, table: StudyTable, tmp_path: Path) -> None:
-    (tmp_path / "chapter.toml").write_text(PAGE)
-    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
-    kept("written", chapter.blocks())
-    assert (tmp_path / "chart.svg").exists()
-
-
-def test_lines_hold_what_their_queries_name(table: StudyTable, tmp_path: Path) -> None:
-    (tmp_path / "chapter.toml").write_text(PAGE)
-    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
-    lines = {line.name: line for panel in "ab" for one in chapter.page.described("panel", panel)["lines"]
-             for line in chapter._lines(one)}  # fmt: skip
-    points = {name: (list(line.x), list(line.y)) for name, line in lines.items()}
-    assert points["v"] == ([0.002, 0.01], [-2.0, -1.0])
-    assert points["all"] == ([0.01, 0.002], [0.5, 7.0]) and points["absent"] == ([0.002], [7.0])
-    assert points["level"] == ([0.0, 1.0], [0.5, 0.5])
-    assert points["0.01 s"] == ([0.01, 0.02], [1.0, -1.0]) and lines["0.01 s"].color == "#111111"
-    assert points["mean"][1] == [0.0, 4.5, 9.0]
-    assert lines["a"].dash == (1.0, 2.0) and np.isnan(lines["a"].y[1])
-    assert points["at 0.01"] == ([0.01], [-0.01]) and lines["at 0.01"].color == "#222222"
-    assert lines["at 0.002"].color == ""
-
-
-MAPS = """
-parts = [{ maps = "steps" }, { maps = "nothing" }]
-[maps.steps]
-file = "{study}.svg"
-caption = "Maps."
-of = ["figures-*"]
-rows = { of = "contact.stiffness", form = "decade" }
-columns = { of = "time.step", factor = 1e3, form = "g", descending = true }
-scale = ["Greys", 1.0, 5.0]
-missing = "none"
-[[maps.steps.maps]]
-title = "v"
-of = "dda displacement.static"
-decimals = 2
-shade = { from = 0.0, to = -0.04 }
-[[maps.steps.maps]]
-title = "r"
-of = "closed: ratio"
-digits = 1
-shade = { from = 0.25, to = 4.0, logarithmic = true }
-[[maps.steps.maps]]
-title = "s"
-of = "closed: ratio"
-form = "digits"
-shade = { from = 2.0, to = 8.0, logarithmic = true, either_side = true }
-[maps.nothing]
-file = "nothing.svg"
-caption = ""
-of = ["figures-*"]
-rows = { of = "contact.stiffness" }
-columns = { of = "time.step" }
-scale = ["Greys", 1.0, 5.0]
-maps = [{ title = "v", of = "closed: absent", shade = { from = 0.0, to = 1.0 } }]
-"""
-
-
-def test_maps_shade_and_write_the_number_of_each_cell(table: StudyTable, tmp_path: Path) -> None:
-    (tmp_path / "chapter.toml").write_text(MAPS)
-    chapter = WrittenChapter(Description(tmp_path / "chapter.toml"), table, tmp_path)
-    (figure,) = chapter.blocks()
-    assert isinstance(figure, FigureBlock) and figure.file == "made.svg"
-    described = chapter.page.described("maps", "steps")
-    maps = [chapter._map(one, table.lines({}), described, [1e9], [0.01, 0.002]) for one in described["maps"]]
-    assert [one.texts for one in maps] == [[["−0.01", "−0.02"]], [["0.5", "none"]], [["0", "none"]]]
-    assert [one.values.tolist()[0][0] for one in maps] == pytest.approx([0.25, 0.25, 1.0])
-    assert np.isnan(maps[1].values[0, 1])
+def test_parts_become_blocks_in_their_order_and_lines_hold_what_their_queries_name(
+    kept: Any, kept_figures: Any, drawn: dict[str, Figure], table: StudyTable, tmp_path: Path
+) -> None:
+    (tmp_path / "chapter.toml").write_text(PAGE + MAPS)
+    page = Description(tmp_path / "chapter.toml")
+    kept("written", WrittenChapter(page, table, tmp_path).blocks())
+    kept_figures("figures-written", drawn)
 
 
 # ---- the chapters of the suite --------------------------------------------------------------------------------------
@@ -318,3 +297,24 @@ def test_a_chapter_asks_for_what_its_study_has(name: str) -> None:
     for text in texts if "parts" in page._data else ():
         for _, word, _, _ in string.Formatter().parse(text):
             assert not word or word == "gates" or page.has("number", word) or page.has("list", word), word
+
+
+def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path: Path) -> None:
+    """Of a study without its data, and of one of which no case has finished."""
+    results = Results(tmp_path / "results")
+    bare: dict[str, Any] = {"gates": tuple, "derived": tuple}
+    response = get_study("response")
+    run_study(replace(response, scenes=response.scenes[:1], solvers=("dda",), data=dict, **bare), results)
+    run_study(replace(get_study("rocking"), scenes=[], **bare), results)
+    blocks = chapter_of("response")(results, results.whole("response"), tmp_path)
+    assert [type(block) for block in blocks] == [Heading, Paragraph, Paragraph]  # what it asks, and its sources
+    blocks = chapter_of("rocking")(results, results.manifest("rocking"), tmp_path)
+    assert not [block for block in blocks if isinstance(block, FigureBlock)]
+
+
+def test_closed_forms_of_the_page_of_waves_hold_the_rule_of_ten() -> None:
+    drawn = {(c["scheme"], c["courant"]): c for c in curves()["curves"]}
+    line = drawn["(1/2, 1)", 0.5]
+    left = np.interp(np.log(10), np.log(line["blocks"]), line["left"])  # type: ignore[arg-type]
+    assert left == pytest.approx(0.008969, rel=0.03)
+    assert set(drawn["(1/4, 1/2)", 1.0]["left"]) == {1.0}  # type: ignore[call-overload]

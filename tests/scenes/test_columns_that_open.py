@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from validation.errors import InputError
 from validation.scenes.drive import motion_at
 from validation.scenes.scene import Scene, parse_scene
 
@@ -24,31 +23,6 @@ def scene_with(column: dict[str, Any], **tables: Any) -> Scene:
     return parse_scene(
         data | {"time": {"step": 1e-3, "steps": 10}, "run": {"solvers": ["dda"]}} | tables, "column.toml"
     )
-
-
-REFUSED = [
-    ({"law": "bonded"}, "layer.young must be finite"),
-    ({"motion": "shear"}, "law = 'unilateral' goes with motion = 'pressure' only"),
-    ({"glue": 1e9}, "glue goes with law = 'bonded' only"),
-    ({"strength": 1.0}, 'strength goes with law = "frictional" only'),
-    ({"stiffness": None}, "stiffness or a joint is required"),
-    ({"stiffness": None, "gap": 0.1, "joint": [{"height": 1.0, "stiffness": 1.0}]}, "gap goes with stiffness only"),
-    ({"base": "free", "joint": [{"height": 0.0, "stiffness": 1.0}]}, "joint.height must be above 0"),
-    ({"joint": [{"height": 1.0, "stiffness": 1.0, "strength": 1.0}]}, "joint.strength goes with column.law"),
-    ({"layer": [LAYERS[0]]}, "input: is required"),
-    ({"gravity": 1.0, "settled": True, "base": "free"}, "settled goes with base = 'rigid' or 'springs' only"),
-    ({"settled": True}, "settled goes with gravity only"),
-    (SHEAR | {"friction": 10.0, "strength": 1.0}, "strength and friction exclude each other"),
-    (SHEAR | {"friction": 10.0, "gravity": 0.0}, "friction goes with gravity only"),
-    (SHEAR | {"friction": 10.0, "gap": 0.1}, 'gap goes with law = "unilateral" only'),
-]
-
-
-@pytest.mark.parametrize(("column", "rule"), REFUSED, ids=[rule for _, rule in REFUSED])
-def test_what_does_not_go_together_is_refused(column: dict[str, Any], rule: str) -> None:
-    with pytest.raises(InputError) as error:
-        scene_with(column)
-    assert rule in str(error.value).replace("column: ", "")
 
 
 @pytest.mark.parametrize(

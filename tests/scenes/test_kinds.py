@@ -104,7 +104,6 @@ else:
     raise AssertionError("dda takes it")
 command("show", "swing.toml")
 command("run", "swing.toml", "--results", "results", "--jobs", "1")
-command("report", "swing", "--results", "results", "--site", "site")
 """
 )
 
@@ -136,8 +135,6 @@ left = [load_scene(name) for name in scene_names()]
 assert {{scene.kind.name for scene in left}} == {{*kinds()}}
 for name in {scenes}:
     command("show", name)
-command("run", "figures-3-4", "--set", "time.step=0.01", "--results", "results", "--jobs", "1")
-command("report", "figures-3-4", "--results", "results", "--site", "site")
 command("list", "studies")
 """
 )

@@ -40,31 +40,6 @@ def scene(changes=None):
     return parse_scene(tables, "plane")
 
 
-@pytest.mark.parametrize(
-    ("changes", "field"),
-    [
-        ({"plane.block": [SQUARE]}, "plane"),
-        ({"plane.subdivide": None}, "plane"),
-        ({"plane.subdivide": [200, 101]}, "plane"),
-        ({"plane.load": None}, "plane"),
-        ({"plane.observe": None}, "plane.observe"),
-        ({"plane.observe.direction": [1.0, 1.0]}, "plane.observe"),
-        ({"plane.observe.point": [2.0, 1.0]}, "plane.observe"),
-        ({"plane.observe.edge": None}, "plane.observe"),
-        ({"plane.poisson": 0.5}, "plane.poisson"),
-        ({"plane.glue": 0.0}, "plane.glue"),
-        ({"plane.pattern": "hexagons"}, "plane.pattern"),
-        ({"fem.foundation": "corner"}, "fem"),
-        ({"block": {"side": 2.0, "density": 1.0, "young": 1.0}}, "block"),
-    ],
-)
-def test_what_does_not_go_together_is_refused_by_field(changes, field):
-    scene()
-    with pytest.raises(InputError) as caught:
-        scene(changes)
-    assert caught.value.field == field
-
-
 @pytest.mark.parametrize("solver", ["dda", "fem"])
 @pytest.mark.parametrize("place", ["plane.clamp", "plane.load"])
 def test_a_place_beside_the_outline_is_refused(solver, place):

@@ -1,6 +1,8 @@
 """Scenes: what is accepted, what is refused, and in which words."""
 
 import copy
+import functools
+import operator
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -68,13 +70,31 @@ def test_a_missing_key_is_named() -> None:
         parse_scene(data, "x.toml")
 
 
-def test_layers_and_joints_of_a_column_are_swept_as_a_whole() -> None:
-    column = load_scene("field-column").definition()
-    layers = [column["column"]["layer"], [column["column"]["layer"][0] | {"blocks": 6}]]
-    cases = parse_scene(column | {"sweep": {"column.layer": layers}}, "x").expand()
-    assert [case.column.layer[0].blocks for case in cases if case.column is not None] == [12, 6]
+@pytest.mark.parametrize(
+    ("name", "field", "place", "values"),
+    [
+        ("field-column", "column.layer.0.blocks", ("column", "layer", 0, "blocks"), [6, 12]),
+        ("rigid-impact", "plane.contact.friction", ("plane", "contact", "friction"), [10.0, 20.0]),
+        ("rigid-impact", "plane.block.1.spin", ("plane", "block", 1, "spin"), [1.0, 2.0]),
+        ("rigid-impact", "plane.block.box.spin", ("plane", "block", 1, "spin"), [1.0, 2.0]),
+    ],
+)
+def test_keys_of_tables_in_tables_are_swept_by_short_names(
+    name: str, field: str, place: tuple[str | int, ...], values: list[float]
+) -> None:
+    data = load_scene(name).definition()
+    cases = parse_scene(data | {"sweep": {field: values}}, "x").expand()
+    assert [case.name for case in cases] == [f"{name}[{field}={value:g}]" for value in values]
+    assert [functools.reduce(operator.getitem, place, case.definition()) for case in cases] == values
+
+
+@pytest.mark.parametrize(
+    "field", ["plane.block.spin", "plane.block.lid.spin", "plane.block.9.spin", "gate.0.metric", "run.columns"]
+)
+def test_what_is_no_key_of_a_table_is_not_swept(field: str) -> None:
+    data = load_scene("rigid-impact").definition()
     with pytest.raises(InputError, match="sweep: must name a key of a table"):
-        parse_scene(column | {"sweep": {"column.layer.blocks": [6, 12]}}, "x")
+        parse_scene(data | {"sweep": {field: [1.0]}}, "x")
 
 
 def test_a_swept_value_is_checked_like_any_other() -> None:

@@ -60,13 +60,6 @@ def test_keys_of_a_column_are_looked_for_in_the_tables_of_a_column() -> None:
     assert "column.layer.poisson for column.layer.0.nu" in str(refused.value)
 
 
-def test_very_many_are_counted() -> None:
-    data = SCENE | {f"unknown_{number}": number for number in range(40)}
-    with pytest.raises(InputError) as refused:
-        parse_scene(data, "x.toml")
-    assert str(refused.value.field).endswith(" and 10 more")
-
-
 @pytest.mark.parametrize(("field", "meant"), MEANT["plane"].items())
 def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field: str, meant: str) -> None:
     block: dict[str, Any] = {"name": "A", "rectangle": [1.0, 1.0], "velocity": [1.0, 0.0]}

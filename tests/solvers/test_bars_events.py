@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
 import pytest
 from conftest import thinned
 
-from validation.errors import InputError
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.columns.bars import BarsOfColumn
 from validation.solvers.registry import get_solver, solve
 
@@ -20,7 +18,6 @@ LAYERS = [
     {"thickness": 1.5, "density": 2000.0, "young": 5e8, "blocks": 1, "velocity": -0.5},
 ]
 OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
-SLIPS = {"motion": "shear", "law": "frictional", "stiffness": 5e8, "strength": 4e4, "layer": LAYERS}
 WELDED = {"motion": "pressure", "law": "unilateral", "layer": LAYERS, "gravity": 9.81}  # but for its joints
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 PULSE = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
@@ -55,30 +52,6 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
     return max(errors)
 
 
-ON_BASES = [(column, base) for base in ("rigid", "transmitting", "free", "springs") for column in (SLIPS, OPENS)]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("column", "base"), thinned(ON_BASES, 8))
-def test_the_elements_tend_to_the_bars_on_every_base(column: dict[str, Any], base: str) -> None:
-    below = {"transmitting": {"base_density": 2600.0, "base_speed": 900.0}, "springs": {"base_stiffness": 2e9}}
-    column = column | {"base": base} | below.get(base, {})
-    opening = "gap" if column["law"] == "unilateral" else "slip"
-    columns = ["displacement", "contact_pressure"]
-    columns += [f"{part}_{n}" for part in ("displacement", "velocity", "stress") for n in (2, 5)]
-    at_contacts = (1, 3) if base in ("rigid", "springs") else (3, 4)
-    columns += [f"{part}_{n}" for part in ("force", opening) for n in at_contacts]
-    exact = history(scene_of(column, columns, input=PULSE), "bars-events")
-    errors = []
-    for elements in (4, 12):
-        time = {"step": 1e-4 / elements, "steps": 200 * elements}
-        fine = scene_of(column, columns, elements, input=PULSE, time=time)
-        errors.append((distance(fine, elements, exact), distance(fine, elements, exact, *SMOOTH)))
-    # velocities that start with a jump have fronts, about which the error falls as a root of the elements' size
-    assert errors[1][0] < 0.12 and errors[1][0] < 0.8 * errors[0][0]
-    assert errors[1][1] < 0.01 and errors[1][1] < 0.4 * errors[0][1]
-
-
 @pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))
 def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
@@ -92,37 +65,6 @@ def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     fine = scene_of(column, columns, 16, input=drive, time=time)
     assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
     assert distance(fine, 16, exact) < 0.12
-
-
-@pytest.mark.parametrize(
-    ("change", "reason"),
-    [
-        ({"input": {"shape": "ricker", "velocity": 0.1, "frequency": 50.0}}, "Ricker"),
-        ({"time": {"gg": 0.99}}, "gg is below 1"),
-        ({"column": {"layer": [LAYERS[0], LAYERS[1] | {"young": math.inf}]}}, "rigid blocks"),
-    ],
-)
-def test_what_has_no_exact_waves_is_refused_by_name(change: dict[str, Any], reason: str) -> None:
-    tables = {"input": PULSE} | change
-    scene = scene_of(OPENS | tables.pop("column", {}), ["displacement"], **tables)
-    with pytest.raises(InputError, match=reason):
-        solve(scene, "bars-events")
-
-
-@pytest.mark.long
-def test_switches_carry_the_height_of_their_contact() -> None:
-    scene = load_scene("columns-cradle").expand()[0]
-    exact = get_solver("bars-events").prepare(scene)
-    run = exact.run()
-    switches = exact.switches()
-    assert [(one.corner, one.opens) for one in switches[:3]] == [("2 m", False), ("3 m", False), ("1 m", True)]
-    assert switches[2].time == pytest.approx(2.2732050806379, rel=1e-13)
-    assert any("40 and in 80 digits" in note for note in run.notes)
-    elements = get_solver("fem").prepare(scene)
-    elements.run()
-    assert [(one.corner, one.opens) for one in elements.switches()[:2]] != []
-    opened = [one.time for one in elements.switches() if one.corner == "3 m" and one.opens]
-    assert opened[-1] == pytest.approx(4.375314148121, abs=0.05)
 
 
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
@@ -19,7 +18,6 @@ LAYERS = [
     {"thickness": 1.5, "density": 2000.0, "young": math.inf, "blocks": 1, "velocity": -0.5},
 ]
 OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
-SLIPS = {"motion": "shear", "law": "frictional", "stiffness": 5e8, "strength": 2e4, "layer": LAYERS}
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 
 
@@ -37,31 +35,6 @@ def history(scene: Scene, solver: str = "column-events") -> dict[str, np.ndarray
 
 def names(*parts: str, numbers: range = range(1, 6)) -> list[str]:
     return [f"{part}_{number}" for part in parts for number in numbers]
-
-
-@pytest.mark.parametrize("column", thinned([OPENS, SLIPS], 2))
-@pytest.mark.parametrize("base", thinned(["rigid", "transmitting", "free"], 3))
-def test_dda_tends_to_it_with_order_two(column: dict[str, Any], base: str) -> None:
-    half_space = {"base_density": 2600.0, "base_speed": 900.0} if base == "transmitting" else {}
-    column = column | {"base": base} | half_space
-    columns = ["displacement", "contact_pressure", *names("displacement", "velocity", "stress")]
-    columns += [f"force_{number}" for number in ((1, 3, 4) if base == "rigid" else (3, 4))]
-    drive = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
-    exact = history(scene_of(column, columns, input=drive))
-    errors = []
-    for dt in (1e-5, 2.5e-6):
-        scene = scene_of(column, columns, round(0.02 / dt), input=drive, time={"step": dt})
-        stepped = history(scene, "dda")
-        stride = round(5e-5 / dt)
-        error = []
-        for name, values in exact.items():
-            scale = np.abs(values).max()
-            if scale:
-                error.append(np.abs(stepped[name][stride - 1 :: stride] - values).max() / scale)
-        errors.append(np.array(error))
-    # of forces and velocities order one at least, since switches lie between steps
-    assert errors[1].max() < 2e-3
-    assert (errors[1] < 0.3 * errors[0] + 1e-9).all()
 
 
 @pytest.mark.parametrize(
@@ -149,23 +122,3 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         assert "column-events:full" in run.notes[0]
     assert shares == sorted(shares) and 0 < shares[-1] < 1
     assert solve(scene, "column-events", full=True).outcome is Outcome.COMPLETED
-
-
-@pytest.mark.long
-def test_the_record_of_its_contacts_keeps_momentum_and_energy() -> None:
-    scene = scene_of(OPENS, ["contact_pressure"], steps=600)
-    prepared = get_solver("column-events").prepare(scene)
-    prepared.run()
-    record = prepared.contact_record()
-    assert [switch.corner for switch in prepared.switches()][:3] == ["0 m", "1 m", "2 m"]
-    energy = sum(record.energies.values())
-    np.testing.assert_allclose(energy, record.start_energy, rtol=1e-11)
-    steps = np.linspace(0, scene.time.step * 600, 60001)[1:]
-    force = prepared.motion.at(steps).base_force
-    impulse = np.cumsum(force) * (steps[1] - steps[0])
-    ends = np.interp(record.time, steps, impulse)
-    np.testing.assert_allclose(record.impulse, ends, atol=1e-4 * np.abs(ends).max())
-    assert 0 < record.penetration.max() < record.gap.max()
-    assert (record.open_share == 1).any()
-    assert record.velocity is not None
-    assert record.slip is not None and not record.slip.any()

@@ -11,7 +11,6 @@ from conftest import thinned
 
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.errors import InputError
 from validation.scenes.scene import Scene, load_scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.registry import get_solver
@@ -46,23 +45,6 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
     scene = dropped().with_values({"time.steps": 5})
     execute(Case(scene, "dda", measures=("history",), only=only), "key", "study")
     assert asked[0] is kept
-
-
-@pytest.mark.long
-def test_the_record_of_contacts_balances_and_counts() -> None:
-    prepared = get_solver("dda").prepare(dropped())
-    prepared.run()
-    record = prepared.contact_record()
-    assert record.solves is not None and record.cuts is not None and record.velocity is not None
-    assert (record.solves.min(), record.solves.max(), record.cuts.max()) == (1, 2, 0)
-    assert (record.start_velocity, record.start_energy) == pytest.approx((-1.0, 6250.0))
-    momentum = 12500 * (record.velocity[-1] + 1.0) + 12500 * 9.81 * record.time[-1]
-    assert record.impulse[-1] == pytest.approx(momentum, rel=1e-9)
-    total = sum(record.energies.values())
-    assert np.abs(total - record.start_energy).max() < 1e-11 * record.input_energy
-    assert record.open_share[0] == 1.0 and record.open_share.min() == 0.0 and record.open_share[-1] == 1.0
-    assert record.force.max() / 1e9 <= record.penetration.max() < 2 * record.force.max() / 1e9  # that of any contact
-    assert record.gap[-1] > 0.005 and record.slip is not None and not record.slip.any()
 
 
 def test_a_settled_column_stays_where_its_weight_has_put_it() -> None:
@@ -115,20 +97,6 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int,
     switches = prepared.switches()
     assert {switch.opens for switch in switches} == {None}
     assert {switch.slips for switch in switches} == {True, False}
-
-
-@pytest.mark.parametrize(
-    ("column", "columns", "value"),
-    [
-        ({"heights": [0.5]}, ["gap_1"], "gap_1"),
-        ({"heights": [0.5]}, ["displacement_2"], "displacement_2"),
-    ],
-)
-def test_a_height_without_a_contact_has_no_gap(column: dict[str, Any], columns: list[str], value: str) -> None:
-    with pytest.raises(InputError) as refused:
-        get_solver("dda").prepare(scene_of(column, columns))
-    assert refused.value.field == "run.columns"
-    assert value in str(refused.value)
 
 
 def test_an_explicit_step_of_welded_faces_is_refused() -> None:

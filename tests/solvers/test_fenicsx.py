@@ -192,8 +192,6 @@ def test_what_it_does_not_do_is_said(scene: Scene) -> None:
     assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
     within = solve(scene.with_values({"load.eccentricity": 0.31}), "fenicsx")
     assert within.outcome is Outcome.NOT_APPLICABLE and "the pressed part of the top ends inside" in within.notes[0]
-    with pytest.raises(InputError, match=r"time.step: must not exceed"):
-        solve(scene.with_values({"time.alpha": 0.0, "time.delta": 0.5}), "fenicsx")
     with pytest.raises(InputError, match=r"run\.columns"):
         solve(scene.with_values({"run.columns": ["rotation"]}), "fenicsx")
 
@@ -219,7 +217,8 @@ def test_the_reason_is_found_under_the_launcher_s_words() -> None:
 
 def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
-    assert worker_directories().keys() == {"TMPDIR"}
+    for _ in range(2):  # made, and there already
+        assert worker_directories().keys() == {"TMPDIR"}
     monkeypatch.delenv("XDG_CACHE_HOME")
     for home in ("/proc/none", "/dev/null/home"):  # where not even root can make a directory
         monkeypatch.setenv("HOME", home)
@@ -357,26 +356,11 @@ def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> 
 def test_polygons_on_files_of_gmsh(name: str, tmp_path: Path) -> None:
     scene = load_scene(name)
     assert scene.fem.mesh is not None and Path(scene.fem.mesh).read_text().startswith("$MeshFormat\n4.1")
-    for file in ("block.vtu", "block.xdmf"):
-        run = get_solver("fem").solve(scene, fields=tmp_path / file)
+    get_solver("fem").solve(scene, fields=tmp_path / "block.vtu")
     mesh, source = meshio.read(tmp_path / "block.vtu"), meshio.read(scene.fem.mesh)
     kind = "quad" if name == "quadrilateral" else "triangle"
     assert len(mesh.points) == len(source.points) and len(mesh.cells_dict[kind]) == len(source.cells_dict[kind])
     assert {tuple(p) for p in mesh.points.round(12)} == {tuple(p) for p in source.points.round(12)}
     stress = mesh.cell_data["stress"][0]
-    with meshio.xdmf.TimeSeriesReader(str(tmp_path / "block.xdmf")) as reader:
-        points, cells = reader.read_points_cells()
-        frames = [reader.read_data(k) for k in range(reader.num_steps)]
-    assert np.array_equal(points, mesh.points) and np.array_equal(cells[0].data, mesh.cells_dict[kind])
-    assert [time for time, *_ in frames] == pytest.approx(list(run.time))
-    last_points, last_cells = frames[-1][1:]
-    assert np.allclose(last_points["displacement"], mesh.point_data["displacement"], rtol=1e-12)
-    assert np.allclose(last_cells["stress"][0], stress, rtol=1e-9, atol=1e-3)
     # nearly at rest: the mean vertical stress over the cells is what the top carries
     assert -1.2 * scene.load.pressure < stress[:, 1].mean() < -0.6 * scene.load.pressure
-
-
-def test_the_model_form_of_a_polygon_is_some_percent() -> None:
-    for name, low, high in (("quadrilateral", -0.04, -0.02), ("pentagon", -0.03, -0.005)):
-        block, fine = (get_solver(solver).static(load_scene(name))["displacement"] for solver in ("dda", "fem"))
-        assert low < block / fine - 1 < high, name

@@ -9,8 +9,6 @@ from conftest import thinned
 from faults import seams
 
 from validation import solve
-from validation.errors import InputError
-from validation.metrics.catalogue import pair
 from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -20,7 +18,6 @@ from validation.solvers.registry import get_solver
 from validation.studies.two_codes.formulas import SAME
 
 pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
-FEW = ("displacement", "contact_pressure", "horizontal_displacement")
 GLUED = {"load.eccentricity": 0.25, "block.poisson": 0.25, "contact.shear_stiffness": 4e8}
 RUBBING = {"contact.friction": 25.0, "contact.cohesion": 1e5}
 INCLINE = {"load.pressure": 0.0, "load.gravity": 98.1, "load.slope": 25.0, "contact.shear_stiffness": 4e8}
@@ -112,17 +109,6 @@ def test_the_two_codes_agree_on_files_of_gmsh(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-@pytest.mark.parametrize("motion", [None, SHAKEN["load.base_motion"]])
-def test_the_two_codes_agree_on_a_locked_incline(scene: Scene, motion: str | None) -> None:
-    values = INCLINE | {"contact": {"stiffness": 1e9, "shear_stiffness": 4e8}, "block.poisson": 0.25}
-    case = scene.with_values(values | {"load.base_motion": motion, "run.columns": FEW})
-    histories = [solve(case, name).history for name in ("fem", "fenicsx")]
-    for name, expected in histories[0].columns.items():
-        assert np.abs(histories[1].columns[name] - expected).max() <= SAME * np.abs(expected).max(), name
-
-
-@pytest.mark.long
-@pytest.mark.fenicsx
 @pytest.mark.parametrize("name", ["glued", "corner", "cut", "rubbing", "shaken"])
 def test_ranks_share_one_contact(scene: Scene, name: str) -> None:
     assert 0 < distance(scene.with_values(SCENES[name]), "fenicsx:2") <= SAME
@@ -132,12 +118,6 @@ def test_ranks_share_one_contact(scene: Scene, name: str) -> None:
 def test_a_step_without_a_contact_ends_the_history_by_name(scene: Scene) -> None:
     hopeless = scene.with_values(SCENES["glued"] | {"contact.solve_limit": 1})
     assert [solve(hopeless, name, full=True).outcome for name in ("fem", "fenicsx")] == [Outcome.NO_CONTACT_STATE] * 2
-
-
-def test_what_fenicsx_does_not_open_is_refused(scene: Scene) -> None:
-    patches = scene.with_values({"fem": {"elements": 8, "foundation": "patch", "patch_width": 0.5}})
-    with pytest.raises(InputError, match="none on patches"):
-        solve(patches, "fenicsx")
 
 
 WORKER_MODULES = ("opening.py", "small.py", "model.py")
@@ -189,14 +169,3 @@ def test_a_slip_of_the_worker_is_seen(
         assert distance(case) > 100 * SAME
     finally:
         worker.close_all()
-
-
-@pytest.mark.long
-@pytest.mark.fenicsx
-def test_a_bar_is_met_by_the_second_code_too(scene: Scene) -> None:
-    case = scene.with_values({"fem.elements": 16, "run.columns": FEW[:2]})
-    found, bar = solve(case, "fenicsx").history, solve(case, "bar").history
-    assert found is not None and bar is not None
-    values = [pair(name, found, bar) for name in ("displacement.l2", "pressure.l2")]
-    # quadratic elements, h = 2/16: the fourth order leaves 1e-5 to 1e-6 of the front
-    assert all(isinstance(value, float) and 0 < value < 1e-4 for value in values)

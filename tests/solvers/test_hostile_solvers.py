@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import time
 import tomllib
 from collections.abc import Iterator
 from pathlib import Path
@@ -114,15 +113,6 @@ def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
     assert told(row, outcome, said), (row.outcome, row.notes)
     worker.close_all()
     assert left(mark) == []
-
-
-@pytest.mark.long
-@pytest.mark.usefixtures("at_once")
-@pytest.mark.parametrize("target", ["deadly:forks_and_stays", "deadly:forks"])
-def test_a_fork_of_a_solver_answers_no_later_scene(scene: Scene, target: str) -> None:
-    for _ in range(4):
-        assert row_of(scene, target).metrics["displacement.final"] == -1e-3
-        time.sleep(0.2)
 
 
 def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:

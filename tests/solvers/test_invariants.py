@@ -14,11 +14,17 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.matrices_of_scenes import matrices, rule_of
+from oracles.plain_newmark import stepped
+from oracles.stepped_vibration import Rule, amplitudes
 
+from validation import response
+from validation.metrics.contact import imbalance
 from validation.runs.history import Array
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import NotReported
+from validation.solvers.opened import resultant_load
 from validation.solvers.registry import BUILT_IN, get_solver
 
 TIME = {"step": 2e-3, "steps": 12}
@@ -28,9 +34,11 @@ SCENES: dict[str, dict[str, Any]] = tomllib.loads(
 )
 NOT_LINEAR = (
     *("opening in a ramp", "adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning"),
+    *("dashpots", "impact"),
     *("column that opens", "column that slips", "bars that open", "bars that slip"),
 )
 OF_CONTACTS = NOT_LINEAR[-4:]  # columns
+OF_DDA = ("opening in a ramp", "lagged", "turning", "dashpots", "impact")  # of the stepping solvers alone
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
 # what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time, of a
@@ -76,7 +84,8 @@ def in_units(table: str, data: Any, units: tuple[float, float, float]) -> Any:
 def made(name: str, directory: Path, units: tuple[float, float, float] = (1.0, 1.0, 1.0), load: float = 1.0) -> Scene:
     """Return a scene of the table, its numbers in other units and its loads multiplied."""
     tables = {key: value for key, value in SCENES[name].items() if isinstance(value, dict)}
-    data = {key: in_units(key, value, units) for key, value in (tables | {"time": TIME}).items()}
+    tables["time"] = TIME | tables.get("time", {})
+    data = {key: in_units(key, value, units) for key, value in tables.items()}
     drive = data["input"] if "input" in data else data["load"]
     for key in ("pressure", "traction", "gravity", "velocity"):
         if key in drive:
@@ -154,12 +163,22 @@ def assert_same(values: Mapping[str, Array], expected: Mapping[str, Array], roun
 TAKES = {  # what each solver takes; the other scenes it refuses by name
     "dda": tuple(SCENES),
     "dda-textbook": ("locked",),
-    "fem": tuple(name for name in SCENES if name not in ("opening in a ramp", "lagged", "turning")),
-    "fenicsx": ("locked", "lateral", "sub-blocks", "shaken", "opening", "opening sub-blocks", "landing", "sliding"),
+    "fem": tuple(name for name in SCENES if name not in OF_DDA),
+    "fenicsx": (
+        "locked",
+        "explicit",
+        "lateral",
+        "sub-blocks",
+        "shaken",
+        "opening",
+        "opening sub-blocks",
+        "landing",
+        "sliding",
+    ),
     "bar": ("locked", "ramped", "damped", "opening", "opening sub-blocks", "landing"),
     "continuum": ("locked", "damped"),
     "layers": ("column",),
-    "block-events": ("locked", "shaken", "opening", "landing", "sliding"),
+    "block-events": ("locked", "shaken", "opening", "landing", "sliding", "dashpots", "impact"),
     "bar-events": ("opening", "landing"),
     "column-events": OF_CONTACTS,
     "bars-events": OF_CONTACTS[-2:],
@@ -245,3 +264,158 @@ def test_left_is_the_mirror_image_of_right(solver: str, name: str, records: Path
     other = solved(solver, mirrored(scene, records))
     columns = solved(solver, scene)
     assert_same(other, {column: values if column in USUAL else -values for column, values in columns.items()}, 1e-9)
+
+
+OPENED = [param for param in EVERY.args[1] if param.values[1] in NOT_LINEAR and param.values[1] != "adaptive"]
+
+
+def carried(scene: Scene) -> tuple[float, float]:
+    """Return the mass [kg] and the resultant of pressure and weight [N] that a contact record balances."""
+    if scene.column is None:
+        return scene.block.mass, resultant_load(scene)
+    mass = sum(layer.thickness * layer.density for layer in scene.column.layer)
+    return mass, mass * scene.column.gravity
+
+
+@pytest.mark.parametrize(("solver", "name"), OPENED)
+def test_what_a_contact_does_keeps_momentum_and_energy(solver: str, name: str, records: Path) -> None:
+    """Momentum: m (V - V0) and the loads' impulse are the contact's; energy: stored and lost are those of the start."""
+    scene = asked(solver, made(name, records))
+    prepared = get_solver(solver).prepare(scene)
+    prepared.keeps_contact_record = True
+    prepared.run()
+    try:
+        record = prepared.contact_record()
+    except NotReported:
+        assert solver in ("bars-events", "fenicsx")
+        return
+    mass, load = carried(scene)
+    if name != "opening in a ramp":
+        gained = mass * (record.velocity - record.start_velocity) + load * record.time
+        assert gained == pytest.approx(record.impulse, abs=1e-9 * record.impulse.max())
+    if "slip" not in name:  # whose force is that of friction
+        assert record.force.min() >= 0
+    assert record.penetration.min() >= 0 <= record.gap.min()
+    if name not in ("dashpots", "impact"):  # let go before springs have come back; act on velocities alone
+        assert not record.penetration[record.open_share == 1].any()
+    if name == "landing" and record.rebounds is not None:
+        speed = np.hypot(1.0, np.sqrt(2 * 9.81 * 0.005))  # of the fall through the gap; steps know it to g dt
+        assert record.rebounds[0].closing == pytest.approx(speed, abs=9.81 * scene.time.step)
+    assert record.open_share.min() >= 0 and record.open_share.max() <= 1
+    if record.energies:
+        assert imbalance(record) < 1e-11
+        lost = {"dashpots": "dashpot", "impact": "impact"}.get(name)
+        assert lost is None or record.energies[lost][-1] > 0
+
+
+# A dashpot that begins with a jump of its force and an impact at the end of a step leave errors of no one order.
+TRUTHS = [("block-events", name) for name in TAKES["block-events"] if name not in ("dashpots", "impact")]
+TRUTHS += [("column-events", name) for name in OF_CONTACTS]
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+
+
+@pytest.mark.parametrize(("truth", "name"), TRUTHS)
+@pytest.mark.parametrize(("scheme", "ratio"), [({}, 2.0), (AVERAGE, 4.0)], ids=["constant", "average"])
+def test_steps_tend_to_the_exact_motion_by_their_order(
+    truth: str, name: str, scheme: dict[str, Any], ratio: float, records: Path
+) -> None:
+    """Half the step leaves a half of the error of order one, a quarter of order two: in size, in sign, in every column.
+
+    A switch lies between two steps, which leaves a tenth of the errors beside their order.
+    """
+    scene = asked(truth, made(name, records).with_values(scheme))
+    exact = solved(truth, scene)
+    errors = []
+    for parts in (32, 64):
+        finer = scene.with_values({"time.step": scene.time.step / parts, "time.steps": scene.time.steps * parts})
+        columns = solved("dda", finer)
+        errors.append({column: columns[column][parts - 1 :: parts] - values for column, values in exact.items()})
+    for column, coarse in errors[0].items():
+        fine = errors[1][column]
+        if np.abs(fine).max() > 1e-12 * np.abs(exact[column]).max():
+            assert (coarse @ fine) / (fine @ fine) == pytest.approx(ratio, rel=0.11), column
+
+
+RESTING = [param for param in LINEAR if param.values[0] in ("dda", "fem", "fenicsx", "bar")]
+RESTING = [param for param in RESTING if param.values[1] not in ("column", "explicit")]
+
+
+@pytest.mark.parametrize(("solver", "name"), RESTING)
+def test_a_damped_run_comes_to_rest_where_static_says(solver: str, name: str, records: Path) -> None:
+    """55 steps after the load's course has ended, of which each leaves 0.41 of the slowest motion."""
+    damped = {"time.alpha": 0.5625, "time.gg": 0.3, "time.step": 1e-2, "time.steps": 60}
+    scene = asked(solver, made(name, records).with_values(damped))
+    columns = solved(solver, scene)
+    at_rest = static(solver, scene)
+    for column, values in columns.items():
+        assert values[-1] == pytest.approx(at_rest[column], abs=1e-9 * np.abs(values).max()), column
+
+
+LINEAR_STEPS = ("locked", "explicit", "lateral", "sub-blocks", "damped", "adaptive")
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("name", LINEAR_STEPS)
+@pytest.mark.parametrize("scheme", [{}, AVERAGE], ids=["constant", "average"])
+def test_a_history_is_that_of_the_printed_scheme(name: str, solver: str, scheme: dict[str, Any], records: Path) -> None:
+    """Newmark's steps on full matrices, with C = a0 M + a1 K, with gg as it is stated or as kinetic damping sets it."""
+    scheme = scheme | ({} if name == "adaptive" else {"time.gg": 0.97})
+    if name == "explicit":
+        scheme = {}
+    scene = made(name, records).with_values(scheme | {"run.columns": USUAL, "time.steps": 60})
+    is_adaptive = scene.damping.kinetic == "adaptive"
+    plain = scene.with_values({"damping.kinetic": "constant", "damping.floor": 0.0}) if is_adaptive else scene
+    M, K, F, rows = matrices(get_solver(solver).prepare(plain))
+    rule = rule_of(scene)
+    expected = rows @ stepped(M, K, np.tile(F, (61, 1)), rule, rule.a0 * M + rule.a1 * K).T
+    if is_adaptive:
+        expected = adaptively(M, K, F, rows, rule, scene.damping.floor, 60)
+    history = solved(solver, scene)
+    for column, values in zip(USUAL, expected, strict=True):
+        assert np.abs(history[column] - values).max() <= 1e-8 * np.abs(values).max(), column
+
+
+def adaptively(M: Array, K: Array, F: Array, rows: Array, rule: Rule, floor: float, steps: int) -> Array:
+    """Return the rows of every step; gg is the root of two kinetic energies that fall, or the floor."""
+    dt = rule.step
+    D, V = np.zeros((2, len(F)))
+    A = np.linalg.solve(M, F) if rule.start == "consistent" else np.zeros(len(F))
+    kinetic = [0.0, 0.0]
+    found = []
+    for _ in range(steps):
+        gg = max(floor, np.sqrt(kinetic[-1] / kinetic[-2])) if kinetic[-1] < kinetic[-2] else 1.0
+        V = gg * V
+        D = D + dt * V + dt**2 * (0.5 - rule.alpha) * A
+        V = V + dt * (1 - rule.delta) * A
+        A = np.linalg.solve(M + rule.alpha * dt**2 * K, F - K @ D)
+        D = D + rule.alpha * dt**2 * A
+        V = V + rule.delta * dt * A
+        kinetic.append(V @ M @ V / 2)
+        found.append(rows @ D)
+    assert kinetic[-1] < max(kinetic)
+    return np.array(found).T
+
+
+@pytest.mark.parametrize("solver", ["dda", "fem"])
+@pytest.mark.parametrize("name", [name for name in LINEAR_STEPS if name != "adaptive"])
+def test_a_response_is_where_stepped_vibrations_end(name: str, solver: str, records: Path) -> None:
+    """Steps of full matrices in their modes, under the load as cos(wt), until what begins has gone by gg."""
+    scene = made(name, records).with_values({"time.gg": 0.97, "run.columns": USUAL})
+    M, K, F, rows = matrices(get_solver(solver).prepare(scene))
+    at_rest = static(solver, scene)
+    for omega in (0.3, 1.1):
+        w = omega / scene.time.step
+        amplitude = amplitudes(rule_of(scene), M, K, F, rows, w)
+        assert amplitude is not None
+        found = response(scene, w / 2 / np.pi, solver)
+        for column, expected in zip(USUAL, amplitude, strict=True):
+            closed = complex(found.columns[column][0])
+            assert abs(closed - expected) <= 1e-9 * abs(expected) + 1e-11 * abs(at_rest[column]), column
+
+
+def test_a_damped_bar_answers_as_its_fine_mesh(records: Path) -> None:
+    scene = made("damped", records).with_values({"time.gg": 0.97, "fem.elements": 48})
+    for frequency in (13.0, 60.0):
+        bar, mesh = (response(scene, frequency, solver).columns for solver in ("bar", "fem"))
+        for column in USUAL:
+            assert bar[column] == pytest.approx(mesh[column], rel=1e-6), column

@@ -6,7 +6,6 @@ Each expectation is statics, a symmetry or the superposition of a linear model.
 from __future__ import annotations
 
 import itertools
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -50,45 +49,6 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
     assert static["horizontal_displacement"] == pytest.approx(tau * A / (2 * P) - A / 2 * rotation, rel=2e-6)
 
 
-@pytest.mark.parametrize("e", [1.0, -1.0, 1.6, -1.6])
-def test_an_eccentricity_that_leaves_nothing_is_refused(e: float) -> None:
-    words = r"eccentricity: must be below half the top edge,? 1, got"
-    with pytest.raises(ValueError, match=words):
-        dda.TwoBlockModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Contact(P), Q, eccentricity=e)
-    with pytest.raises(ValueError, match=words):
-        replace(make(elements=1), eccentricity=e)
-
-
-@pytest.mark.parametrize(
-    ("time", "moved"),
-    [
-        ([0.0, 0.0], [[0, 0], [1, 1]]),
-        ([0.0, -1.0], [[0, 0], [1, 1]]),
-        ([0.0, 1.0], [[0, 0], [math.nan, 1]]),
-        ([0.0, 1.0], [[0, 0], [1, math.inf]]),
-        ([0.0, math.nan], [[0, 0], [1, 1]]),
-        ([0.0, 1.0], [[0, 0]]),
-        ([0.0], [[0, 0], [1, 1]]),
-        ([], np.zeros((0, 2))),
-    ],
-    ids=["twice", "back", "nan", "inf", "no time", "short", "long", "empty"],
-)
-def test_records_that_are_none_are_refused_by_both_codes(time: list[float], moved: list[list[float]]) -> None:
-    with pytest.raises(ValueError, match=r"^(time|displacement): "):
-        dda.BaseMotion(time, moved)
-    x, y = (tuple(part) for part in np.array(moved, float).T)
-    with pytest.raises(ValueError, match=r"^motion: "):
-        fem_reference.Motion(tuple(time), x, y)
-
-
-def test_a_record_gives_x_and_y_for_every_instant() -> None:
-    with pytest.raises(ValueError, match=r"^displacement: "):
-        dda.BaseMotion([0.0, 1.0], [[0.0, 0.0, 0.0], [1.0, 1.0, 1.0]])
-    for x, y in (((0.0,), (0.0, 1.0)), ((0.0, 1.0), (0.0,))):
-        with pytest.raises(ValueError, match=r"^motion: "):
-            fem_reference.Motion((0.0, 1.0), x, y)
-
-
 @pytest.mark.parametrize("elements", thinned([1, 2, 3], 5))
 @pytest.mark.parametrize("cells", ["quadrilaterals", "triangles"])
 @pytest.mark.parametrize("degree", [1, 2])
@@ -100,37 +60,6 @@ def test_the_rotation_of_the_middle_is_the_mean_over_the_elements_that_meet_ther
     x, y = assembled.basis.doflocs
     D = np.where(elasticity.components(assembled.basis) == 0, -3e-3 * y, 5e-3 * x)
     assert assembled.observers["rotation"] @ D == pytest.approx(4e-3, rel=1e-12)
-
-
-@pytest.mark.parametrize(("right", "rectangle"), [(0.1 + 0.2, True), (0.3 + 1e-9, False)])
-def test_a_corner_that_is_off_by_rounding_leaves_a_rectangle(right: float, rectangle: bool) -> None:
-    assert right != 0.3
-    found = make(((0.0, 0.0), (0.3, 0.0), (right, 1.0), (0.0, 1.0))).rectangle
-    assert found == (0.3, 1.0) if rectangle else found is None
-
-
-def test_a_load_on_a_block_that_is_not_there_is_refused() -> None:
-    block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
-    load = dda.SurfaceLoad(1, (0.0, A), (A, A), (0.0, -Q))
-    with pytest.raises(ValueError, match="must name blocks from 0 to 0, got 1"):
-        dda.BlockSystem([block], [], (1.0, 1.0), A, [load])
-
-
-@pytest.mark.parametrize("glue", [0.0, -1.0, math.inf, math.nan])
-def test_glue_that_is_no_stiffness_is_refused(glue: float) -> None:
-    model = dda.TwoBlockModel(dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0)), dda.Contact(P), Q)
-    with pytest.raises(ValueError, match="glue: must be finite and positive"):
-        dda.subdivided(model, 1, 2, glue)
-
-
-@pytest.mark.parametrize(("off", "inside"), [(1e-10, True), (1e-6, False)])
-def test_an_observed_point_on_the_boundary_may_be_off_by_rounding(off: float, inside: bool) -> None:
-    block = dda.Block(SQUARE, dda.Material(2700.0, 1e9, 0.0))
-    if inside:
-        assert dda.BlockSystem([block], [], (A + off, 1.0), A).observed[0] > A
-    else:
-        with pytest.raises(ValueError, match="observed: must lie in a block"):
-            dda.BlockSystem([block], [], (A + off, 1.0), A)
 
 
 @pytest.mark.parametrize(("off", "met"), [(0.0, True), (3e-10, True), (1e-6, False)])

@@ -16,7 +16,6 @@ from scipy.linalg import eigh
 import dda
 import fem_reference
 from fem_reference.mesh.model import build
-from fem_reference.scheme.diagnostics import diagnostics
 from validation.runs.history import Array
 
 A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
@@ -75,13 +74,6 @@ def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
         assert dda.modes(model(1e9, way), SCHEME)[0].frequency == pytest.approx(block, abs=0.05)
 
 
-def test_without_any_load_sub_blocks_have_modes_with_shares() -> None:
-    block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
-    system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(P), 0.0), 1, 1, 1e9)
-    modes = dda.modes(system, SCHEME)
-    agree(modes, carried(*upright(1, P)))  # those of a weight, which is M R as well
-
-
 @pytest.mark.parametrize("count", thinned([1, 2, 3], 3))
 def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int) -> None:
     """Of the whole block the rocking modes lie lower; asked for few, the search goes on."""
@@ -115,12 +107,3 @@ def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense:
     equations = build(case, full)
     exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
     assert fem_reference.highest_frequency(case, full) == pytest.approx(exact, rel=1e-9)
-
-
-@pytest.mark.long
-def test_diagnostics_of_a_large_mesh_know_its_highest_frequency() -> None:
-    case = make(poisson=0.3, elements=14, degree=1)
-    found = diagnostics(case, SAME, full=True)
-    assert np.isnan(found.condition_number)
-    assert found.largest_omega == pytest.approx(1e-3 * fem_reference.highest_frequency(case, full=True), rel=1e-9)
-    assert found.predicted_radius == pytest.approx(found.spectral_radius, rel=1e-9)

@@ -1,12 +1,10 @@
-"""Contact that opens through the adapters of elements and bar: who takes it, columns, switches, refusals."""
+"""Contact that opens through the adapters of elements and bar: columns, switches, records."""
 
 import numpy as np
 import pytest
 
 from validation import solve
-from validation.errors import InputError
 from validation.metrics.catalogue import pair
-from validation.runs.contact import LOST, STORED
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 
@@ -35,39 +33,5 @@ def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -
         own, mesh = (getattr(record, name) for record in records)
         assert np.abs(own - mesh).max() <= 1e-4 * np.abs(own).max() > 0, name
     assert records[0].rebounds is not None and records[0].energies == {}
-    assert set(records[1].energies) == {*STORED, *LOST}
-    # what the records say of the momentum: m (V - V0) is the impulse less the loads'
-    pushed = (5e6 * 2.0 + 10800 * 9.81) * history.time
-    gained = 10800 * (records[0].velocity + 0.2)
-    assert gained == pytest.approx(records[0].impulse - pushed, rel=1e-9, abs=1e-9 * pushed[-1])
     both = history.columns["normal_force_m"] + history.columns["normal_force_n"]
     assert both == pytest.approx(2.0 * history.contact_pressure, rel=1e-15)
-
-
-@pytest.mark.long
-def test_elements_take_implicit_contact(scene: Scene) -> None:
-    average = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "contact.stiffness": 1e11}
-    energies = []
-    for rule in ("implicit", "newmark"):
-        prepared = get_solver("fem").prepare(scene.with_values(average | {"contact.rule": rule, "fem.elements": 16}))
-        record = (prepared.run(), prepared.contact_record())[1]
-        energies.append(np.sum([record.energies[name] for name in STORED], axis=0))
-        # the impulse is that of the momentum under either rule
-        push = 5e6 * 2.0 + 10800 * 9.81
-        gained = 10800 * (record.velocity + 0.2) + push * record.time
-        assert gained == pytest.approx(record.impulse, rel=1e-9, abs=1e-9 * record.impulse[-1])
-    size = np.abs(energies[0]).max()
-    assert np.diff(energies[0]).max() <= 1e-12 * size and np.diff(energies[1]).max() > 1e-3 * size
-
-
-def test_the_bar_refuses_what_is_no_bar(scene: Scene) -> None:
-    for values, words in (
-        ({"block.poisson": 0.2}, "Poisson's ratio is 0.2"),
-        ({"fem.foundation": "corner"}, "the foundation is 'corner'"),
-        ({"time.alpha": 0.0, "time.delta": 0.5}, "unstable for the high frequencies"),
-        ({"contact": {"law": "locked", "stiffness": 1e9}, "block.velocity": 0.0}, "a centred pressure only"),
-    ):
-        with pytest.raises(InputError, match=words):
-            solve(scene.with_values(values), "bar")
-    with pytest.raises(InputError, match=r"run\.columns"):
-        solve(scene.with_values({"run.columns": ["rotation"]}), "bar")

@@ -1,33 +1,14 @@
-"""A load that rises in a ramp: the closed form of each mode, exact flights, energies, and who refuses it."""
+"""A load that rises in a ramp: who refuses it, and what `compare` makes of it."""
 
 import math
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import refused, typed
 
 import dda
-from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene
-from validation.solvers.registry import BUILT_IN, get_solver
 
 RAMP = 0.0137  # s, between two steps
-
-
-def locked(**values: Any) -> Scene:
-    """Return figure 3 at 2 ms with a ramp, and keys `table__key` in place of its own."""
-    scene = load_scene("figures-3-4").expand()[1]
-    return scene.with_values({"load.ramp": RAMP} | {key.replace("__", "."): value for key, value in values.items()})
-
-
-@pytest.mark.parametrize("name", BUILT_IN)
-def test_who_does_not_take_a_ramp_refuses_it_by_name(name: str) -> None:
-    solver = get_solver(name)
-    assert ("ramped load" in solver.handles) == (name in ("dda", "fem", "bar"))
-    if "ramped load" not in solver.handles:
-        with pytest.raises(InputError, match=r"does not handle .*ramped load"):
-            solver.prepare(locked())
 
 
 def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:

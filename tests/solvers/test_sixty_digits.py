@@ -4,7 +4,7 @@ import pytest
 from conftest import thinned
 from flint import arb
 from mpmath import mp, mpf
-from oracles import mp_reference
+from oracles import block_in_digits
 
 from validation.solvers.registry import get_solver
 from validation.solvers.sixty_digits import block as precise_block
@@ -31,7 +31,7 @@ def test_the_block_by_trace_and_determinant_is_the_block_by_steps(scene, outline
         values |= {"block.vertices": PENTAGON, "block.top": 3, "contact.shear_stiffness": 3e8}
     case = scene.with_values(values)
     block = get_solver("dda").prepare(case)
-    reference = mp_reference.history(block.model, block.scheme, case.time.steps)
+    reference = block_in_digits.locked_history(block.model, block.scheme, case.time.steps)
     found = precise_block.history(case, COLUMNS)
     for name, exact in zip(COLUMNS, reference, strict=True):
         with mp.workdps(80):

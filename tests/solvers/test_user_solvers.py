@@ -2,8 +2,6 @@
 
 import os
 import subprocess
-import sys
-import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 import pytest
@@ -19,7 +17,6 @@ from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE, UserSolver
 from validation.suite.folders import scene_study
 
-GATES = "--pyargs validation -m validation -q -rs -p no:cacheprovider -k figures-3-4"
 HERE = Path(__file__).parent / "user_solvers"
 
 
@@ -27,31 +24,6 @@ HERE = Path(__file__).parent / "user_solvers"
 def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     monkeypatch.syspath_prepend(str(HERE))
     return load_scene(scene_file)
-
-
-ANSWERS = [  # of a process that stays
-    ("solve", Outcome.COMPLETED, ""),
-    ("table", Outcome.COMPLETED, ""),
-    ("Reporting", Outcome.COMPLETED, ""),
-    ("slack", Outcome.COMPLETED, ""),
-    ("raises", Outcome.RAISED, "ZeroDivisionError: division by zero"),
-    ("exits", Outcome.RAISED, "SystemExit: 3"),
-    ("nothing", Outcome.RAISED, "must return a History, a Run, a mapping of columns"),
-    ("not_a_number", Outcome.NOT_A_NUMBER, "displacement at step 4"),
-    ("short", Outcome.WRONG_SHAPE, "displacement has shape (49,), not (50,)"),
-    ("with_step_zero", Outcome.WRONG_SHAPE, "step 0, the state at rest, is not reported"),
-    ("late", Outcome.WRONG_SHAPE, "time begins [0.004 0.006], not [0.002 0.004] s"),
-    ("pressure_only", Outcome.WRONG_SHAPE, "no column displacement, got contact_pressure"),
-]
-
-
-@pytest.mark.long
-def test_what_a_solver_does_is_named(scene: Scene) -> None:
-    """By one process, since each of them leaves it as it was."""
-    for attribute, outcome, words in ANSWERS:
-        run = completed(get_solver("named:Named"), scene.with_values({"title": f"my_solver:{attribute}"}))
-        assert run.outcome is outcome, (attribute, run.notes)
-        assert words in "; ".join(run.notes), attribute
 
 
 def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene: Scene, tmp_path: Path) -> None:
@@ -122,32 +94,3 @@ def test_an_entry_point_is_a_name_everywhere(scene_file: Path, tmp_path: Path, m
     assert "mine" in [line.split()[0] for line in cli("list", "solvers").stdout.splitlines() if line.strip()]
     done = cli("solve", scene_file, "--solver", "mine", "--csv", tmp_path / "mine.csv")
     assert done.returncode == 0 and (tmp_path / "mine.csv").exists()
-
-
-def through_the_gates(attribute: str, *options: str) -> str:
-    """Run the gates of Figures 3 and 4 on a user's solver, as the user does, and return what pytest says."""
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", *GATES.split(), "--dda-solver", f"my_solver:{attribute}", *options],
-        capture_output=True,
-        text=True,
-        timeout=100,
-        cwd=HERE,
-    )
-    return done.stdout + done.stderr
-
-
-@pytest.mark.long
-def test_a_sound_solver_passes_every_gate_that_applies(tmp_path: Path) -> None:
-    shown = through_the_gates("solve", f"--junitxml={tmp_path / 'junit.xml'}")
-    assert " passed" in shown and "failed" not in shown
-    names = [case.get("name") for case in ElementTree.parse(tmp_path / "junit.xml").iter("testcase")]
-    assert "test_gate[figures-3-4[time.step=0.01]:dda:pressure.settling_step]" in names, "JUnit has the gates' ids"
-
-
-@pytest.mark.long
-def test_a_broken_solver_fails_by_name() -> None:
-    shown = through_the_gates("slack", "-x")
-    assert "failed" in shown and "is outside [" in shown
-    shown = through_the_gates("hangs", "--dda-timeout", "3")  # within which it is loaded, on a busy machine too
-    assert "passed," not in shown and "timeout: no history within 4 s, the time limit for 200 steps" in shown
-    assert "gates: not tried, since 2 scenes reached their time limit" in shown

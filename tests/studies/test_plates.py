@@ -15,7 +15,7 @@ from faults.fault import Fault, times
 from faults.kill_matrix import cases_of, check_kill_matrix
 
 from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement, hole_stress
-from validation.studies.plates.elements import displacements
+from validation.studies.plates.elements import displacements, stress
 from validation.studies.plates.formulas import INNER, OUTER, POINTS, POISSON, TENSION, WEIGHTS, YOUNG
 from validation.studies.plates.shapes import outline, ring
 from validation.suite.folders import get_study
@@ -48,8 +48,13 @@ def test_linear_elements_widen_a_hole_as_another_program_has_it():
         traction = np.stack([s_xx * nx + s_xy * ny, s_xy * nx + s_yy * ny])
         first, second = (length * traction @ (WEIGHTS * (1 + sign * POINTS) / 4) for sign in (-1, 1))
         loads.append((start, end, first, second))
-    right, left = displacements(triangles, loads, YOUNG, POISSON, [(1.0, 0.0), (-1.0, 0.0)])
+    top = [triangle for triangle in triangles if (0.0, INNER) in triangle]
+    places = [(1.0, 0.0), (-1.0, 0.0), *(corner for triangle in top for corner in triangle)]
+    right, left, *corners = displacements(triangles, loads, YOUNG, POISSON, places)
     assert (right[0] - left[0]) / 2 == pytest.approx(0.0028535209, abs=1e-10)
+    moved = np.reshape(corners, (-1, 3, 2))
+    stresses = [stress(*pair, YOUNG, POISSON)[0] for pair in zip(top, moved, strict=True)]
+    assert stresses == pytest.approx([2.82797e6, 2.82797e6], abs=5)
 
 
 def stiffer(by: float) -> Callable[..., Callable[..., Any]]:
@@ -62,12 +67,19 @@ def glued_by(factor: float) -> Callable[..., Callable[..., Any]]:
     return lambda sound: lambda blocks, normal, shear: sound(blocks, factor * normal, shear)
 
 
+def pulled(factor: float) -> Callable[..., Callable[..., Any]]:
+    """Multiply all tractions."""
+    return lambda sound: lambda start, end, value: sound(start, end, (factor * value[0], factor * value[1]))
+
+
 DDA, FEM = ("dda",), ("fem",)
 FAULTS = [
     Fault("modulus a millionth high", DDA, seams.PLANE_MATERIAL, stiffer(1 + 1e-6)),
     Fault("modulus a hundredth high", DDA, seams.PLANE_MATERIAL, stiffer(1.01)),
     Fault("glue across a thousandth high", DDA, seams.GLUED_EDGES, glued_by(1.001)),
     Fault("modulus a fifth high", DDA, seams.PLANE_MATERIAL, stiffer(1.2)),
+    Fault("tractions a thousandth high", DDA, seams.TRACTION, pulled(1.001)),
+    Fault("tractions a fifth high", DDA, seams.TRACTION, pulled(1.2)),
     Fault("modulus three hundredths high", FEM, seams.FEM_PLANE_STIFFNESS, times(1.03)),
 ]
 

@@ -4,9 +4,10 @@ import math
 
 import pytest
 
+from validation.models.plane.canon import wedges_of
 from validation.scenes.scene import load_scene
 from validation.studies.pushing.exact import Pushing, at, events
-from validation.studies.pushing.formulas import factor_of_safety, problem_of, wedge_motion
+from validation.studies.pushing.formulas import problem_of
 
 DEGREES = {angle: math.tan(math.radians(angle)) for angle in (10, 15, 25, 30, 40)}
 BOTH = Pushing((5400, 2700), (DEGREES[15], DEGREES[25]), math.radians(30), 2e7, 0.0, (0.2, 0.0))
@@ -75,7 +76,7 @@ def test_the_scenes_state_these_problems(name, problem):
     ],
 )
 def test_wedges_move_as_another_program_has_them(name, printed):
-    motion = wedge_motion(load_scene(name).expand()[0])
+    motion = wedges_of(load_scene(name).expand()[0]).motion()
     assert tuple(motion.values()) == pytest.approx(printed, rel=1e-9)
 
 
@@ -95,4 +96,4 @@ def test_factors_of_safety_are_those_of_another_program(below, between, printed)
         "plane.pair": [[{"blocks": ["passive", "active"], "friction": between}]],
     }
     (case,) = load_scene("wedge-limit").model_copy(update={"sweep": changes}).expand()
-    assert factor_of_safety(case) == pytest.approx(printed, rel=1e-12)
+    assert wedges_of(case).factor_of_safety == pytest.approx(printed, rel=1e-12)

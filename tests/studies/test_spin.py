@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
+from validation.models.plane.canon import slide_of, spinning_of
 from validation.scenes.scene import load_scene
-from validation.studies.spin.exact import Slide, Spinning
-from validation.studies.spin.formulas import slide_of, spinning_of
+from validation.theory.spinning import Slide, Spinning
 
 SQUARE = Spinning(2.0, 2.0, 2700.0, 1e8, 0.25, 20.0)
 RECTANGLE = Spinning(2.0, 1.0, 2700.0, 1e8, 0.25, 20.0)

@@ -15,9 +15,10 @@ from faults.kill_matrix import cases_of, check_kill_matrix
 from faults.seams import Seam
 
 import dda
+from validation.models.plane import limits
+from validation.models.plane.canon import half_truss
 from validation.scenes.scene import load_scene
-from validation.studies.standing import limits
-from validation.studies.standing.formulas import half_truss, turned_columns
+from validation.studies.standing.formulas import turned_columns
 from validation.suite.bands import cases
 from validation.suite.folders import get_study
 
@@ -41,10 +42,24 @@ def test_limits_are_those_of_another_program():
     assert math.degrees(limits.stepped_dip([2, 4, 4, 4, 4], 1.0, 1.0, 0.8)) == pytest.approx(14.6417, abs=5e-5)
     assert limits.keyed_dip(2.36188746487, 5, 1.0) == pytest.approx(DIP, rel=1e-11)
     assert limits.least_thickness(1.0, 7) == pytest.approx(0.095703, abs=5e-7)
+    for voussoirs, thickness in ((7, 0.09624503108097), (8, 0.10086149113203), (24, 0.10717853400325)):
+        by_chords = [limits.least_thickness(1.0, voussoirs, chords) for chords in (4, 8)]
+        assert (4 * by_chords[1] - by_chords[0]) / 3 == pytest.approx(thickness, abs=2e-7)  # of arcs: second order
     assert limits.leaning_friction(math.radians(50), 7.5) == pytest.approx(0.352883148922, rel=1e-11)
     assert limits.harmonic(8, 1.0) == pytest.approx(761 / 560)
     forces = 24525 * np.array(limits.seat_forces(3, 2.0, 0.95))
     assert forces == pytest.approx(np.array(OVERHANG_FORCES), abs=5e-4)
+
+
+def test_the_columns_of_the_book_need_the_friction_that_is_printed():
+    dip = math.radians(30)
+    for falls, friction in ((6.2, 0.7850566613), (6.0, 0.7855442214)):  # printed: 0.7855, with heights of 34, 28, ...
+        heights = tuple(4.0 * min(n, 10) - falls * max(0, n - 10) for n in range(1, 17))
+        recursion, program = limits.stepped_friction(heights, 10.0, 1.0, dip)
+        assert recursion == pytest.approx(friction, abs=1e-9)
+        assert 0.6 < program < recursion
+    heights = [4.0 * min(n, 10) - 6.2 * max(0, n - 10) for n in range(1, 17)]
+    assert 25 * limits.recursion(heights, 10.0, 1.0, dip, 0.65) == pytest.approx(4115.586, abs=5e-4)  # kN at the toe
 
 
 def test_a_program_of_forces_lets_a_key_stone_stand_that_falls_on_springs():

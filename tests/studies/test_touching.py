@@ -16,9 +16,9 @@ from faults.seams import Seam
 import dda
 from validation.scenes.scene import load_scene
 from validation.studies.touching import formulas
-from validation.studies.touching.corner import on_springs, rigid_impulse
 from validation.suite.bands import cases
 from validation.suite.folders import get_study
+from validation.theory.corner_impact import on_springs, rigid_impulse
 
 FIRST = {  # roots at 30 digits and conservative advancement: instant, block, corner, edge, share of the edge
     "square": (0.29324274279782854, 0, 0, 2, 0.298445579700372),

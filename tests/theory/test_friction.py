@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 import pytest
+from oracles.stepped_vibration import Rule, operators
 
 from validation import load_scene, solve
 from validation.scenes.scene import Scene
@@ -24,18 +25,10 @@ def scene(**changes: object) -> Scene:
     return load_scene("figures-3-4").with_values(SLOPE | base | {k.replace("__", "."): v for k, v in changes.items()})
 
 
-def test_the_numbers_of_an_independent_computation() -> None:
-    assert friction.run_out(scene(), 1.0) == pytest.approx(1.219885, abs=5e-7)
-    assert friction.penalty_offset(scene()) == pytest.approx(1.864e-5, abs=5e-9)
-    assert friction.creep_scale(scene()) == pytest.approx(22.8e-3, abs=5e-5)
-
-
 @pytest.mark.parametrize(
     ("gg", "step", "way", "average"),
     [
         (0.98, 0.01, 0.689234, False),
-        (0.98, 0.001, 0.114810, False),
-        (0.99, 0.01, 0.888645, True),
         (0.99, 0.001, 0.218502, True),
     ],
 )
@@ -51,18 +44,17 @@ def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, ave
 
 @pytest.mark.parametrize("gg", [1.0, 0.97])
 @pytest.mark.parametrize(
-    ("name", "start"),
+    ("start", "numbers"),
     [
-        ("chung-hulbert", "consistent"),
-        ("chung-hulbert", "zero"),
-        ("wbz", "consistent"),
-        ("composite", "zero"),
-        ("leapfrog", "consistent"),
+        ("consistent", {"time__scheme": "chung-hulbert", "time__rho_inf": 0.6}),
+        ("zero", {"time__scheme": "composite", "time__rho_inf": 0.6}),
+        ("consistent", {"time__scheme": "leapfrog"}),
+        ("zero", {"time__alpha": 0.3, "time__delta": 0.6}),
+        ("consistent", {"time__alpha": 0.6, "time__delta": 1.1}),
     ],
 )
-def test_free_motion_is_that_of_dda_under_every_scheme(name: str, start: str, gg: float) -> None:
-    numbers = {} if name == "leapfrog" else {"time__rho_inf": 0.6}
-    case = scene(time__scheme=name, time__start=start, time__gg=gg, time__step=2e-4, time__steps=60, **numbers)
+def test_free_motion_is_that_of_dda_under_every_scheme(start: str, numbers: dict[str, object], gg: float) -> None:
+    case = scene(time__start=start, time__gg=gg, time__step=2e-4, time__steps=60, **numbers)
     run = solve(case.with_values({"run.columns": ["displacement", "horizontal_displacement"]}), "dda").history
     slide = run.columns["horizontal_displacement"] + friction.coefficient(case) * run.displacement
     moved, speed = friction.free_motion(case, friction.sliding_acceleration(case))
@@ -70,27 +62,6 @@ def test_free_motion_is_that_of_dda_under_every_scheme(name: str, start: str, gg
     rates = np.gradient(moved, case.time.step)[1:-1]  # of a parabola, once the start has passed
     late = 0.01 if start == "zero" else 1e-9
     assert speed[1:-1] == pytest.approx(rates, rel=2 * (1 - gg) + late)
-
-
-@pytest.mark.parametrize(
-    "changes",
-    [
-        {"time__alpha": 0.3, "time__delta": 0.7, "time__gg": 0.93, "time__start": "zero"},
-        {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.98, "time__start": "consistent"},
-        {"time__alpha": 0.25, "time__delta": 0.5, "time__start": "zero", "contact__cohesion": 3e3},
-        {"time__alpha": 0.6, "time__delta": 1.1, "time__gg": 0.0, "time__start": "zero"},
-    ],
-)
-def test_free_motion_is_the_recursion(changes: dict[str, object]) -> None:
-    case = scene(**changes)
-    t, a = case.time, friction.sliding_acceleration(case)
-    moved, speed = friction.free_motion(case, a)
-    D, V, A = 0.0, 0.0, a if t.start == "consistent" else 0.0
-    for n in range(t.steps):
-        D = D + t.discount * t.step * V + t.step**2 * ((0.5 - t.alpha) * A + t.alpha * a)
-        V, A = t.discount * V + t.step * ((1 - t.delta) * A + t.delta * a), a
-        assert moved[n] == pytest.approx(D, rel=1e-12)
-        assert speed[n] == pytest.approx(V, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -143,9 +114,8 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: f
     """The decay is that of the amplification matrix of (D, V, A), and the creep ends after it."""
     case = scene(time__alpha=alpha, time__delta=delta, time__gg=gg, time__step=1e-4, contact__friction=40.0)
     dt, w2 = case.time.step, friction.across(case) / friction.settlement(case)
-    now = np.array([[1.0, 0.0, -alpha * dt**2], [0.0, 1.0, -delta * dt], [w2, 0.0, 1.0]])
-    before = np.array([[1.0, gg * dt, (0.5 - alpha) * dt**2], [0.0, gg, (1 - delta) * dt], [0.0, 0.0, 0.0]])
-    radius = np.max(np.abs(np.linalg.eigvals(np.linalg.solve(now, before))))
+    step, _ = operators(Rule(alpha, delta, gg, dt), np.array([w2]))
+    radius = np.max(np.abs(np.linalg.eigvals(step)))
     assert friction.ringing_decay(case) == pytest.approx(-math.log(radius) / dt, rel=0.02, abs=1e-9)
     if stops:
         held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))

@@ -57,9 +57,3 @@ def test_numbers_of_the_independent_computation() -> None:
         assert spectra.damping_ratio(
             light.with_values({"time.step": dt}), spectra.dda_frequency(light)
         ) == pytest.approx(xi, rel=5e-3)
-
-
-def test_plane_strain_is_plane_stress_of_other_moduli() -> None:
-    """E / (1 - mu^2) and mu / (1 - mu): at mu = 1/4 16/15 E and 1/3."""
-    strain = BASE.with_values({"block.hypothesis": "plane strain", "block.poisson": 0.25})
-    assert statics.moduli(strain) == pytest.approx((strain.block.young * 16 / 15, 1 / 3))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import ClassVar
 
 from validation.advice.alarm import Alarm
 from validation.advice.columns import ColumnLimits
@@ -54,13 +55,14 @@ class AdviceHooks(Hooks):
     """What steps must follow, and what is known of contacts and waves before anything is run."""
 
     module = "advice"
+    has_budget: ClassVar[bool] = False  # whether the damping of its modes is known by closed forms
 
     def motions(self, scene: Scene, frequency: float | None = None) -> Iterator[Motion]:
         """Yield what the motion of a scene is made of, the first mode with its frequency, if that is known [rad/s]."""
         yield from ()
 
-    def alarms(self, scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
-        """Yield alarms of contacts from the judged method's run; without one, of what may happen."""
+    def alarms(self, scene: Scene, rows: Mapping[str, Row] | None = None) -> Iterator[Alarm]:
+        """Yield alarms of a scene's contacts from its finished rows by solver; before a run, of what may happen."""
         yield from ()
 
     def contact_limits(self, scene: Scene) -> ColumnLimits | None:

@@ -42,7 +42,7 @@ def start_rise(scene: Scene) -> float | None:
 
     Known it is of a whole block that stands on its springs at rest under loads that come on at once.
     """
-    if "block" not in scene.tables() or IMPULSES & {*features.of(scene)}:
+    if IMPULSES & {*features.of(scene)}:
         return None
     if scene.contact.gap or scene.block.velocity or scene.load.ramp:
         return None
@@ -58,4 +58,4 @@ def rise_of(stepping: Stepping, modes: tuple[Mode, ...]) -> float | None:
     if math.isfinite(stepping.critical_omega):
         return None
     omegas_dt = [mode.frequency * stepping.step for mode in modes]
-    return overshoot.greatest_rise(stepping.stages, omegas_dt, [mode.share for mode in modes], True)
+    return overshoot.greatest_rise(stepping.stages, omegas_dt, [mode.share for mode in modes])

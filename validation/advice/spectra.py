@@ -1,9 +1,8 @@
 """The damping that a scene really has: total, algorithmic and kinetic, mode by mode.
 
-The scheme's closed forms (trace and determinant of one step, `dda.scheme.spectral`; of schemes other than Newmark's the
-roots of `validation.theory.stepping`) are evaluated at the frequencies of the DDA block. The total damping ratio xi is
-that of the scheme with its discount gg; the algorithmic part is that of the same scheme at gg = 1; the kinetic part is
-the rest.
+The roots of one step of the scheme (`validation.theory.stepping`) are evaluated at the frequencies of the DDA block.
+The total damping ratio xi is that of the scheme with its discount gg; the algorithmic part is that of the same scheme
+at gg = 1; the kinetic part is the rest.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from dda.scheme import roots as scheme_roots
-from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
 from validation.advice.plain import PlainAnswer
@@ -30,6 +28,7 @@ from validation.solvers.contract import NotReported, Role, Solver
 from validation.solvers.registry import by_role, get_solver
 from validation.theory.stepping import Stepping
 
+ROUNDING = 1e-14  # of critical damping: what the roots of a step leave of none
 FLIPPING = -0.9  # a root whose real part is below turns the mode over every step, with next to no damping
 FIRST = "first axial"
 CONTACT = "contact"
@@ -71,18 +70,17 @@ class Damping(PlainAnswer):
 
 
 def number(value: float) -> float | None:
-    """Return a finite number, or None."""
-    return float(value) if math.isfinite(value) else None
+    """Return a finite number, zero where it is rounding, or None."""
+    if not math.isfinite(value):
+        return None
+    return float(value) if abs(value) > ROUNDING else 0.0
 
 
 def damping_ratio(scene: Scene, frequency: float) -> float:
     """Return xi of the scene's scheme at a frequency [rad/s]; NaN where a root is not positive."""
     if scene.damping.present:
         return scheme_roots.damping_ratio(_viscous_scheme(scene), frequency * scene.time.step)
-    t = scene.time
-    if t.scheme != "newmark":
-        return Stepping.of(scene).damping_ratio(frequency * t.step)
-    return float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
+    return Stepping.of(scene).damping_ratio(frequency * scene.time.step)
 
 
 def _viscous_scheme(scene: Scene) -> Scheme:
@@ -104,22 +102,13 @@ def mode_names(modes: Sequence[Mode]) -> list[str]:
 
 def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     """Return the damping of a mode of the given frequency [rad/s] under the scheme of a scene."""
-    t = scene.time
-    omega = frequency * t.step
-    gg = t.discount
-    if t.scheme != "newmark":
-        stepping = Stepping.of(scene)
-        numerical = stepping.damping_ratio(omega)
-        algorithmic = replace(stepping, gg=1.0).damping_ratio(omega)
-        roots = stepping.roots(omega)[:2]
-        radius = stepping.spectral_radius(omega)
-        elongation = stepping.period_error(omega)
-    else:
-        numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
-        algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
-        roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
-        radius = float(spectral.spectral_radius(omega, t.alpha, t.delta, gg))
-        elongation = float(spectral.period_elongation(omega, t.alpha, t.delta, gg))
+    stepping = Stepping.of(scene)
+    omega = frequency * stepping.step
+    numerical = stepping.damping_ratio(omega)
+    algorithmic = replace(stepping, gg=1.0).damping_ratio(omega)
+    roots = stepping.roots(omega)[:2]
+    radius = stepping.spectral_radius(omega)
+    elongation = stepping.period_error(omega)
     total = numerical
     if scene.damping.present:
         total = damping_ratio(scene, frequency)
@@ -136,7 +125,7 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
         number(numerical - algorithmic),
         number(elongation),
         float(np.min(roots.real)),
-        number(total - numerical) if t.scheme == "newmark" else 0.0,
+        number(total - numerical),
     )
 
 
@@ -197,11 +186,7 @@ def stable_step(scene: Scene) -> float:
     InputError
         DDA refuses the scene, or its model does not fit into memory.
     """
-    t = scene.time
-    if t.scheme == "newmark":
-        critical = spectral.critical_omega(t.alpha, t.delta, t.discount)
-    else:
-        critical = Stepping.of(scene).critical_omega
+    critical = Stepping.of(scene).critical_omega
     return critical if math.isinf(critical) else critical / highest_frequency(scene)
 
 

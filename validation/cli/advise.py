@@ -5,8 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 import shlex
-from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, Annotated, Any
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -17,9 +17,7 @@ from validation.runs.numbers import number_text, share_text
 if TYPE_CHECKING:
     from validation.advice.advice import Solution
     from validation.advice.spectra import Damping
-    from validation.scenes.scene import Scene
 
-Answer = tuple[dict[str, Any], Iterable[str]]  # plain data, and the lines that say it
 ERROR = 0.05  # of displacement and contact force, that is allowed where nothing else is said
 TargetOption = Annotated[float, typer.Option("--damping", help="Target damping ratio, 0.05 for 5 %.", min=0.0)]
 
@@ -54,24 +52,25 @@ def everything(
 
     Example: [bold]dda-validate advise figures-3-4 --set time.step=0.002 --goal wave --frequency 20 --error 0.1[/bold]
 
-    Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight
+    Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight; of
+    blocks that move in the plane springs and step of their contacts: advise rigid-impact
     """
-    from validation.advice.goals import check
+    from validation.advice.goals import GOALS, check
+    from validation.advice.pages import PageHooks, Question
 
     check(goal, error, frequency)
-    words = _words(scene, assignments)
     case = one_case(scene, assignments)
-    with _progress("advise", between_calls=True) as progress:
-        if "block" in case.tables():
-            from validation.advice.goals import GOALS
-            from validation.advice.overview import lines, overview
-
-            answer = overview(case, GOALS if goal is None else (goal,), error, frequency, progress, keep_springs)
-            options = _stated(error, frequency, keep_springs)
-            text: Iterable[str] = lines(case, words, answer, options)
-            data = answer.as_dict()
-        else:
-            data, text = _of_blocks(case, words, error, frequency)
+    with _progress("advise") as progress:
+        question = Question(
+            source=_words(scene, assignments),
+            error=error,
+            stated=_stated(error, frequency, keep_springs),
+            goals=GOALS if goal is None else (goal,),
+            frequency=frequency,
+            keep_springs=keep_springs,
+            progress=progress,
+        )
+        data, text = PageHooks.of(case).page(case, question)
     echo_answer(data, map(broken, text), as_json)
 
 
@@ -88,27 +87,6 @@ def _stated(error: float, frequency: float | None, keep_springs: bool) -> str:
     if keep_springs:
         options.append("--keep-springs")
     return " ".join(["", *options])
-
-
-def _of_blocks(case: Scene, source: str, error: float, frequency: float | None) -> Answer:
-    """Say into how many blocks to cut a column or a beam; of contacts that open or slip, what solving them takes."""
-    from dataclasses import asdict
-
-    from validation.advice.columns import advised, rest
-    from validation.advice.cuts import CutHooks
-    from validation.advice.hooks import AdviceHooks
-    from validation.advice.overview import Overview, recommended
-
-    hooks = AdviceHooks.of(case)
-    bounds = hooks.contact_limits(case)
-    if bounds is not None:
-        resting = rest(case)
-        alarms = (f"ALARM {alarm.kind}: {alarm.sentence}" for alarm in hooks.alarms(case))
-        data = asdict(bounds) | {"rest": None if resting is None else asdict(resting)}
-        return data, (*advised(case, bounds, resting), *alarms)
-    sentence, offer = CutHooks.of(case).recommended(case, error, frequency)
-    answer = Overview(case.name, error, (), None, (offer,), {})
-    return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(source, answer))
 
 
 @parts.command()
@@ -145,7 +123,7 @@ def step(
     from validation.advice.advice import advise as solve_for_damping
 
     case = one_case(scene, assignments)
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = solve_for_damping(case, target, solve_for)
     lines = [broken(advice.sentence)]
     for solution in advice.solutions:
@@ -175,7 +153,7 @@ def schemes(
     """
     from validation.advice.across import advise_across
 
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = advise_across(one_case(scene, assignments), target, at, no_gain)
     offers = advice.offers
     heads = [f"xi at {float(hertz):.4g} Hz" for hertz in (offers[0].hidden if offers else ())]
@@ -212,7 +190,7 @@ def wave(
     """
     from validation.advice.wave_advice import advise_wave
 
-    with _progress("advise", between_calls=True):
+    with _progress("advise"):
         advice = advise_wave(one_case(scene, assignments), fmax, loss, wavelengths, phase_error)
     rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", advice.present), ("advised", advice.advised)):

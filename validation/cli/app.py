@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -198,12 +197,10 @@ def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
 
 
 @contextmanager
-def _progress(
-    title: str, visible: bool = True, *, between_calls: bool = False
-) -> Iterator[Callable[[int, int, str], None]]:
-    """Yield a callback that shows a progress bar, where it is to be shown, once the work has taken two seconds.
+def _progress(title: str, visible: bool = True) -> Iterator[Callable[[int, int, str], None]]:
+    """Yield a callback that says how far the work is, in a bar that is shown once it has taken two seconds.
 
-    With `between_calls` the bar does not wait for the next call: one piece of the work may take minutes.
+    The bar does not wait for a call: one piece of the work may take minutes.
     """
     import threading
 
@@ -211,7 +208,6 @@ def _progress(
     from rich.progress import MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
     from rich.table import Column
 
-    start = time.monotonic()
     console = Console(stderr=True)
     bar = Progress(
         TextColumn("{task.description}"),
@@ -226,13 +222,11 @@ def _progress(
     task = bar.add_task(title, total=1, label="")
 
     def show(completed: int, total: int, label: str) -> None:
-        if visible and time.monotonic() - start > PROGRESS_DELAY and not bar.live.is_started:
-            bar.start()
         bar.update(task, completed=completed, total=total, label=label)
 
     timer = threading.Timer(PROGRESS_DELAY, bar.start)
     timer.daemon = True
-    if visible and between_calls:
+    if visible:
         timer.start()
     try:
         yield show

@@ -55,16 +55,16 @@ def compare(
     Example: [bold]dda-validate compare figures-3-4 theirs.csv --set time.step=0.002 --columns time=t,displacement=uy
     --scale displacement=-1e-3[/bold]
     """
+    from validation.diagnosis.hooks import DiagnosisHooks
     from validation.diagnosis.judgement import compare as judge
     from validation.diagnosis.reading import parse_columns, parse_scale, read
     from validation.runs.files import check_ending
-    from validation.scenes.features import refuse_bonded_column
 
     check_ending(figure, "--figure")
     case = one_case(scene, assignments)
-    refuse_bonded_column(case, "compare")  # before its file is taken for a wrong one
+    DiagnosisHooks.of(case).check(case)  # before its file is taken for a wrong one
     foreign = read(history, parse_columns(columns), parse_scale(scale))
-    with _progress("compare", between_calls=True):
+    with _progress("compare"):
         answer = judge(case, foreign, tolerance)
     if report is not None:
         from validation.report.chapters.compare import write_page

@@ -54,7 +54,7 @@ def contact(
     if bounds is not None and penetration is not None:
         features.refuse_column(case, "advise contact with --penetration")
     scenes = contact_page.scenes(case) if bounds is None else contact_page.column_scenes(case)
-    with _progress("contact", between_calls=True) as progress:
+    with _progress("contact") as progress:
         rows, absent = _rows(scenes, progress)
         if bounds is None:
             probe = _probe(scenes[contact_page.exact()], progress, len(scenes))

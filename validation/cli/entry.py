@@ -8,6 +8,7 @@ import sys
 import warnings
 from collections.abc import Callable
 from functools import cache
+from pathlib import Path
 
 import typer
 
@@ -22,6 +23,7 @@ from validation.cli import (
     run,
     show,
     verdicts,
+    verify,
     waves,
     work,
 )
@@ -43,14 +45,23 @@ COMMANDS = (
     compare,
     judge,
     verdicts,
+    verify,
     waves,
     work,
 )  # importing them declares their commands
 GROUPS = {  # of the help, each with its commands, in their order
     "Scenes and runs": ("new", "list", "show", "run", "solve"),
-    "Results": ("report", "rows", "claims", "diff"),
+    "Results": ("report", "rows", "claims", "verify", "diff"),
     "Your own code or program": ("judge", "compare", "export-pack"),
     "Time step, springs and damping": ("advise",),
+}
+PAGES = {  # of the documentation, each with the commands that it is about
+    "tutorial.md": ("new", "list", "show", "run", "solve"),
+    "gallery.md": ("report", "rows"),
+    "claims.md": ("claims",),
+    "ci.md": ("diff",),
+    "judge.md": ("judge", "compare", "export-pack"),
+    "choose.md": ("advise",),
 }
 ORDER = list(itertools.chain.from_iterable(GROUPS.values()))
 OUT_OF_RANGE = (
@@ -59,15 +70,26 @@ OUT_OF_RANGE = (
 USAGE_ERROR: type[Exception] = typer.BadParameter.__mro__[1]  # typer exports no name for the base of its usage errors
 
 
+def page_of(name: str) -> Path:
+    """Return the page of a command: of the checkout, or where the wheel has put it below its environment."""
+    page = next((page for page, names in PAGES.items() if name in names), "index.md")
+    packages = Path(__file__).resolve().parents[2]
+    installed = [folder / "share/doc/dda-validation" for folder in packages.parents]
+    folders = (packages / "docs", packages / "share/doc/dda-validation", *installed)
+    return next((folder for folder in folders if (folder / page).is_file()), folders[0]) / page
+
+
 for command in (*app.registered_commands, *parts.registered_commands):
-    command.name = command.name or getattr(command.callback, "__name__", "")
+    command.name = command.name or str(getattr(command.callback, "__name__", ""))
     panels = [group for group, names in GROUPS.items() if command.name in names]
     command.rich_help_panel = panels[0] if panels else None  # the parts of a command stand in one
     # typer keeps the line breaks of a docstring, which are not those of a terminal
     paragraphs = (inspect.getdoc(command.callback) or "").split("\n\n")
     command.help = "\n\n".join(" ".join(paragraph.split()) for paragraph in paragraphs)
+    command.epilog = f"Page: {page_of(command.name if panels and command.name else 'advise')}"
 app.registered_commands.sort(key=lambda command: ORDER.index(command.name or ""))
 (group,) = app.registered_groups
+group.epilog = f"Page: {page_of('advise')}"
 group.rich_help_panel = next(name for name, names in GROUPS.items() if group.name in names)
 
 
@@ -101,8 +123,7 @@ def _exit_status(command: Callable[[], object]) -> int:
         return _print_error(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
         message: str = error.format_message()  # type: ignore[attr-defined]
-        if not message:  # no command: typer has printed none of its help
-            echo(_help())
+        if not message:  # no command: typer has printed its help
             return BAD_INPUT
         return _print_error(f"error: {printable(message)} (see dda-validate --help)")
     except (KeyboardInterrupt, typer.Abort) as stop:
@@ -129,12 +150,6 @@ def _exit_status(command: Callable[[], object]) -> int:
     except OSError as error:
         silence()
         return _print_error(f"error: {error.filename or 'standard output'}: {error.strerror or error}")
-
-
-def _help() -> str:
-    """Return the help page of all commands."""
-    group = typer.main.get_command(app)
-    return group.get_help(group.make_context("dda-validate", ["--help"], resilient_parsing=True))
 
 
 def _is_numerical(error: Exception) -> bool:

@@ -116,7 +116,7 @@ def judge(
         extras.require("--out", *(extras.PDF if out.suffix == ".pdf" else extras.SITE))
     if assignments and not asked:
         raise InputError("goes with a problem or a scene", field="--set", value=assignments[0])
-    with all_defects(), _progress("judge", between_calls=True) as progress:
+    with all_defects(), _progress("judge") as progress:
         problems = [_asked(name, assignments) for name in asked or ()]
         sets: list[AnswerSet] = []
         for one in _sources([source, *(beside or ())]):
@@ -299,30 +299,42 @@ def all_defects() -> Iterator[None]:
 # ---- gates ----------------------------------------------------------------------------------------------------------
 
 
-def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> None:
-    """Run the gates of studies with a solver in the place of dda, and print what they tell."""
-    import tempfile
+def check_loads(source: str) -> None:
+    """Refuse a solver that cannot be loaded, before anything is run with it.
 
-    from validation.gates.gate import Status
-    from validation.runs.results import Results
+    Raises
+    ------
+    InputError
+        There is no such solver, or its module raises.
+    """
     from validation.solvers.registry import get_solver
     from validation.solvers.user import UserSolver
-    from validation.suite.own_solver.block import block, wrapped
-    from validation.suite.own_solver.gates import applying
-    from validation.suite.own_solver.session import Session, plain
 
     solver = get_solver(source)
     if isinstance(solver, UserSolver):
         solver.check_module()
         if reason := solver.load_error():
             raise InputError(f"cannot be loaded: {reason}", field="SOLVER", value=repr(source))
+
+
+def _judge_by_gates(source: str, studies: Sequence[str], verbose: bool, as_json: bool) -> None:
+    """Run the gates of studies with a solver in the place of dda, and print what they tell."""
+    import tempfile
+
+    from validation.gates.gate import Status
+    from validation.runs.results import Results
+    from validation.suite.own_solver.block import block, wrapped
+    from validation.suite.own_solver.gates import applying
+    from validation.suite.own_solver.session import Session, plain
+
+    check_loads(source)
     known = list(dict.fromkeys(study for study, _ in applying().values()))
     for name in studies:
         if name not in (*known, "all"):
             raise InputError(f"must be all or one of {', '.join(known)}", field="--study", value=repr(name))
     gates = [name for name, (study, _) in applying().items() if study in studies or "all" in studies]
     reports = []
-    with tempfile.TemporaryDirectory() as place, _progress("judge", between_calls=True) as progress:
+    with tempfile.TemporaryDirectory() as place, _progress("judge") as progress:
         session = Session(source, Results(Path(place)))
         for number, name in enumerate(gates):
             progress(number, len(gates), name)

@@ -31,7 +31,11 @@ def report(
         Path | None, typer.Option(help="Write the figures instead, as SVG and PNG, into a directory.", metavar="DIR")
     ] = None,
     appendix: Annotated[
-        bool, typer.Option("--appendix", help="In the PDF, list the gates that passed, by the reason of their band.")
+        bool,
+        typer.Option(
+            "--appendix",
+            help="In the PDF, print what is verified, and list the gates that passed by the reason of their band.",
+        ),
     ] = False,
     docs: Annotated[
         str,
@@ -68,7 +72,7 @@ def report(
     store = Results(results)
     names = studies or None
     if out is not None:
-        with _progress("report", between_calls=True):
+        with _progress("report"):
             build(store, out, names, appendix)
         echo(f"wrote {out}")
     if site is not None:

@@ -345,7 +345,7 @@ def solve(
     if fields is not None:
         extras.require("--fields", *extras.MESH)
     is_full = full or solver.endswith(FULL)
-    with _progress(f"solve {solver}", between_calls=True) as show:
+    with _progress(f"solve {solver}") as show:
         show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
         watch = partial(_watch, show)
         ended = _run_case(adapter, case, is_full, fields, watch)

@@ -45,6 +45,6 @@ def export_pack(
     from validation.runs.files import atomic_directory
 
     check_place(directory)
-    with atomic_directory(directory) as place, _progress("export-pack", between_calls=True) as progress:
+    with atomic_directory(directory) as place, _progress("export-pack") as progress:
         problems = write_pack(place, progress)
     echo(f"wrote {directory}: {problems} problems for any program")

@@ -12,10 +12,10 @@ import numpy as np
 from validation.diagnosis import causes, evidence, families, schemes, sentences, slopes
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
-from validation.diagnosis.columns import compare_column
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
+from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.other_solvers import RivalVerdict, judged, not_installed
 from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
 from validation.diagnosis.readings import (
@@ -115,10 +115,10 @@ class Case:
     @property
     def rivals(self) -> tuple[str, ...]:
         """Names of the other solvers of the scene."""
-        return _rivals_of(self.scene)
+        return rivals_of(self.scene)
 
 
-def _rivals_of(scene: Scene) -> tuple[str, ...]:
+def rivals_of(scene: Scene) -> tuple[str, ...]:
     """Return the names of the solvers that a history of a scene is held against beside DDA."""
     return RIVALS if scene.block.poisson == 0 and rectangle_of(scene) is not None else ("fem",)
 
@@ -137,11 +137,11 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
         The scene has a sweep or a feature that is not known here, or the history is zero throughout or does not fit.
     """
     _refuse_what_is_not_known(scene)
-    if scene.column is None:
-        foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, _rivals_of(scene))))
+    hooks = DiagnosisHooks.of(scene)
+    foreign = replace(foreign, notes=(*foreign.notes, *not_installed(scene, hooks.rivals(scene))))
     if has_swapped_columns(scene, foreign):
         return _of_swapped(scene, foreign, (DISPLACEMENT, PRESSURE), tolerance)
-    answer = _judged(scene, foreign, tolerance)
+    answer = hooks.judged(scene, foreign, tolerance)
     if answer.remedy.startswith("--columns"):  # of swapped columns, with friction: it is whole
         return answer
     return replace(answer, remedy=f"{remedy_of(foreign, answer.slips)} {answer.remedy}".strip())
@@ -150,7 +150,7 @@ def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
 def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance: float) -> Answer:
     """Return the answer to a history with two columns in their places, and what to type for them to be there."""
     foreign = exchanged(foreign, *pair)
-    answer = _judged(scene, foreign, tolerance)
+    answer = DiagnosisHooks.of(scene).judged(scene, foreign, tolerance)
     first, second = (name.replace("_", " ") for name in pair)
     columns = ",".join(f"{name}={place}" for name, place in foreign.names.items())
     remedy = " ".join([f"--columns {columns}", remedy_of(foreign, answer.slips), answer.remedy]).strip()
@@ -161,30 +161,31 @@ def _of_swapped(scene: Scene, foreign: Foreign, pair: tuple[str, str], tolerance
 
 def _refuse_what_is_not_known(scene: Scene) -> None:
     """Refuse a scene that compare does not step, before anything of it is run."""
-    features.refuse_bonded_column(scene, "compare")
+    DiagnosisHooks.of(scene).check(scene)
     features.refuse_damping(scene, "compare")
+    features.refuse_sweep(scene)
+
+
+def check_block(scene: Scene) -> None:
+    """Refuse a block that compare does not step, or the solvers beside it, by its scheme."""
     if scene.time.scheme != "newmark":
         _refuse_other_schemes(scene)
-    if scene.column is None:
-        is_frictional = features.FRICTION in features.of(scene)
-        is_rectangle = rectangle_of(scene) is not None
-        if is_frictional or not is_rectangle:
-            features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
-        if not (is_frictional or is_rectangle or features.linear(scene)):
-            raise InputError(
-                "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
-                source=scene.name,
-                value=", ".join(_beyond(scene)),
-            )
-        if is_frictional:
-            slopes.refuse_other_scenes(scene)
-    features.refuse_sweep(scene)
+    is_frictional = features.FRICTION in features.of(scene)
+    is_rectangle = rectangle_of(scene) is not None
+    if is_frictional or not is_rectangle:
+        features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
+    if not (is_frictional or is_rectangle or features.linear(scene)):
+        raise InputError(
+            "compare takes linear scenes, and centred loads on blocks that rest on unilateral contact",
+            source=scene.name,
+            value=", ".join(_beyond(scene)),
+        )
+    if is_frictional:
+        slopes.refuse_other_scenes(scene)
 
 
 def _refuse_other_schemes(scene: Scene) -> None:
     """Refuse a scene that is stepped here, or by the solvers beside it, by Newmark's scheme only."""
-    if scene.column is not None:
-        return
     what = ""
     if features.FRICTION in features.of(scene):
         what = "blocks with friction"
@@ -201,9 +202,8 @@ def _refuse_other_schemes(scene: Scene) -> None:
         )
 
 
-def _judged(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
-    if scene.column is not None:
-        return compare_column(scene, foreign, tolerance)
+def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
+    """Judge a history of a block that `compare` steps."""
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
         reading = slopes.read(scene, foreign)

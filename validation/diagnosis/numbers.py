@@ -90,8 +90,6 @@ def contacts(key: str, place: str = EVERYWHERE) -> Callable[[Scene, float], Valu
 def places(scene: Scene, key: str) -> dict[str, str]:
     """Return where a datum of a column's contacts is stated, with the words for it: everywhere, then one by one."""
     column = scene.column
-    if column is None:
-        return {}
     of_base = column.base_stiffness if key == "stiffness" else None
     alone = {WITHOUT_JOINT: "the contacts without a joint"} if _is_number(getattr(column, key)) else {}
     heights = [joint.height for joint in column.joint if _is_number(getattr(joint, key))]
@@ -110,10 +108,8 @@ def sized(scene: Scene, wider: float, higher: float) -> Values:
     return {"block.width": width * wider, "block.height": height * higher}
 
 
-def accurate(scene: Scene) -> Values:
-    """Return a scheme that does not damp and, of a column, more blocks; the step is left to who asks."""
-    if scene.column is None:
-        return dict(AVERAGE)
+def with_more_blocks(scene: Scene) -> Values:
+    """Return a scheme that does not damp and more blocks of a column; the step is left to who asks."""
     layers_of_scene = scene.definition()["column"]["layer"]
     return AVERAGE | {"column.layer": [one | {"blocks": MORE_BLOCKS * one.get("blocks", 1)} for one in layers_of_scene]}
 
@@ -127,17 +123,19 @@ class Number:
     changed: Callable[[Scene, float], dict[str, Any]]  # scene and factor to keys and values
 
 
-def numbers(scene: Scene) -> Iterator[Number]:
-    """Yield the numbers of a scene that may be wrong by a factor, none that is zero or absent."""
-    if scene.column is not None:
-        if any(math.isfinite(layer.young) for layer in scene.column.layer):
-            yield Number("young-factor", OF_WAVES, layers("young"))
-        yield Number("density-factor", "the density", layers("density"))
-        yield from _of_contacts(scene)
-        yield from _plain(scene, "input")
-        if scene.column.impedance is not None:
-            yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
-        return
+def numbers_of_column(scene: Scene) -> Iterator[Number]:
+    """Yield the numbers of a column that may be wrong by a factor, none that is zero or absent."""
+    if any(math.isfinite(layer.young) for layer in scene.column.layer):
+        yield Number("young-factor", OF_WAVES, layers("young"))
+    yield Number("density-factor", "the density", layers("density"))
+    yield from _of_contacts(scene)
+    yield from _plain(scene, "input")
+    if scene.column.impedance is not None:
+        yield Number("base-factor", "the impedance below the base, density times speed of the waves,", _impedance)
+
+
+def numbers_of_block(scene: Scene) -> Iterator[Number]:
+    """Yield the numbers of a block that may be wrong by a factor, none that is zero or absent."""
     yield from _plain(scene, "block", *(["turning"] if features.ROTATION in features.of(scene) else []))
     yield Number("width-factor", "the width", lambda s, f: sized(s, f, 1.0))
     yield Number("height-factor", "the height", lambda s, f: sized(s, 1.0, f))
@@ -153,7 +151,7 @@ def numbers(scene: Scene) -> Iterator[Number]:
 
 def numbers_of_layers(scene: Scene) -> Iterator[Number]:
     """Yield the densities of a column's layers, where they differ, each by itself."""
-    stated = scene.column.layer[:MOST_JOINTS] if scene.column is not None else []
+    stated = scene.column.layer[:MOST_JOINTS]
     for place, _ in enumerate(stated) if len({layer.density for layer in stated}) > 1 else ():
         yield Number("density-factor", f"the density of layer {place + 1}", layers("density", place))
 
@@ -165,7 +163,7 @@ MOST_JOINTS = 8  # or layers, whose numbers are tried one by one: with more, har
 def _of_contacts(scene: Scene) -> Iterator[Number]:
     """Yield the numbers of contacts that open or slip, and what moves them: starting velocities and weight."""
     column = scene.column
-    if column is None or column.law == "bonded":
+    if column.law == "bonded":
         return
     if any(layer.velocity for layer in column.layer):
         yield Number("velocity-factor", "the starting velocity", layers("velocity"))
@@ -217,7 +215,7 @@ GLUED = 89.0  # deg: no block slips on such friction
 
 def laws(scene: Scene) -> Iterator[Law]:
     """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
-    if scene.column is not None or features.ROTATION in features.of(scene):
+    if features.ROTATION in features.of(scene):
         return
     for row in TABLE["forgotten"]:
         if _stated(scene, row["key"]):

@@ -16,7 +16,8 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
-from validation.diagnosis.numbers import Values, numbers, numbers_of_layers
+from validation.diagnosis.hooks import DiagnosisHooks
+from validation.diagnosis.numbers import Values
 from validation.diagnosis.sentences import scheme_words
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
@@ -95,7 +96,8 @@ def of_numbers(scene: Scene, factors: Sequence[float], units: bool = True) -> It
     units
         Whether they begin from other units as well.
     """
-    for number in (*numbers(scene), *numbers_of_layers(scene)):
+    hooks = DiagnosisHooks.of(scene)
+    for number in (*hooks.numbers(scene), *hooks.numbers_of_layers(scene)):
         starts = (*factors, *(UNITS if units and number.id in IN_UNITS else ()))
 
         def words(factor: float, name: str = number.name) -> str:

@@ -11,7 +11,10 @@ from validation.runs.numbers import ROUNDING, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 
+NIL = 1e-6  # of the upper edge: a lower one at which two programs differ at all
 LARGEST = sys.float_info.max
+KINDS = ("exact", "bound", "other code", "own last value")  # of a reference; a bound says which side a value lies on
+NOISE = 1e-9  # relative: what thousands of steps make of rounding, which differs from processor to processor
 
 
 class Status(enum.StrEnum):
@@ -46,7 +49,7 @@ class Gate:
     reason
         Why these edges; where they come from a formula, the formula.
     reference_kind
-        "exact", "other code" or "own last value".
+        One of `KINDS`.
     reference_uncertainty
         Uncertainty of the reference in the metric's own unit; a narrower band is refused.
     until
@@ -74,6 +77,9 @@ class Gate:
                 f"{self.id}: band must not be tighter than the reference's uncertainty "
                 f"{self.reference_uncertainty:g}, got width {self.high - self.low:g}"
             )
+        if self.reference_kind not in KINDS:
+            rule = f"reference_kind must be one of {', '.join(KINDS)}"
+            raise ValueError(f"{self.id}: {rule}, got {self.reference_kind!r}")
         if not self.reason:
             raise ValueError(f"{self.id}: reason must be given, got nothing")
 
@@ -82,6 +88,28 @@ class Gate:
         """Case and solver (or name of a derived row) of each side of the pair."""
         names = [(self.scene, self.pair[0])]
         return [*names, (self.against or self.scene, self.pair[1])] if len(self.pair) == 2 else names
+
+    @property
+    def target(self) -> float:
+        """What the band is about: zero where that is inside or all but inside, as of errors, else its middle."""
+        of_error = self.high >= 0 and self.low <= NIL * self.high
+        return 0.0 if of_error else (self.low + self.high) / 2
+
+    @property
+    def tolerance(self) -> float:
+        """How far from the target a value may be, relative to it where it is not zero."""
+        widest = max(self.high - self.target, self.target - self.low)
+        return widest / (abs(self.target) or 1.0)
+
+    def margin(self, value: float) -> float | None:
+        """Return the share of the way from the target to the edge that a value leaves, negative outside the band.
+
+        None where that says nothing: the edge is the target or nowhere, or the tolerance is rounding.
+        """
+        way = (self.high if value >= self.target else self.low) - self.target
+        if self.tolerance < NOISE or way == 0 or math.isinf(way):
+            return None
+        return 1 - (value - self.target) / way
 
     @property
     def id(self) -> str:
@@ -104,6 +132,7 @@ class Verdict:
         """Return the verdict as plain data, rounded well above the last bits and without seconds."""
         g = self.gate
         value = settled(self.value) if isinstance(self.value, float) else self.value
+        margin = g.margin(self.value) if isinstance(self.value, float) else None
         return {
             "id": g.id,
             "study": study,
@@ -111,6 +140,7 @@ class Verdict:
             "pair": list(g.pair),
             "metric": g.metric,
             "value": value,
+            "margin": None if margin is None else round(margin, 3),
             "band": [_edge(g.low), _edge(g.high)],
             "verdict": str(self.status),
             "reason": g.reason,

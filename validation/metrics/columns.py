@@ -6,7 +6,7 @@ import numpy as np
 
 from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, largest
-from validation.runs.history import PRESSURE, STRESS_ERROR, Array
+from validation.runs.history import PRESSURE, Array
 from validation.runs.row import Value
 
 SETTLED = 0.01  # of the static value
@@ -20,9 +20,9 @@ def static(m: Measurable, column: str) -> Value:
     return m.static[column]
 
 
-def stress_error(m: Measurable) -> Value:
-    """Largest error of a stress component at rest, over the largest component of the stress that the loads are of."""
-    return m.static.get(STRESS_ERROR, NOT_REPORTED)
+def stress(m: Measurable, name: str) -> Value:
+    """Stress at rest, or its error."""
+    return m.static.get(name, NOT_REPORTED)
 
 
 def final(m: Measurable, column: str) -> Value:

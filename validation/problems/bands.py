@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from validation.diagnosis.numbers import Values, numbers
+from validation.diagnosis.hooks import DiagnosisHooks
+from validation.diagnosis.numbers import Values
 from validation.metrics.values import largest
 from validation.models.column.tables import ColumnSection
 from validation.problems.problem import Problem, ProblemHooks
@@ -97,7 +98,7 @@ def changes(scene: Scene) -> dict[str, Values]:
     own = ProblemHooks.of(scene).changes(scene)
     if own is not None:
         return own
-    changed = {number.id: number.changed(scene, 1 + UNKNOWN) for number in numbers(scene)}
+    changed = {number.id: number.changed(scene, 1 + UNKNOWN) for number in DiagnosisHooks.of(scene).numbers(scene)}
     block = scene.stated_block
     if block is not None and block.vertices is not None:
         changed.pop("width-factor", None)

@@ -19,8 +19,9 @@ from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.columns import laws as laws_of_contacts
 from validation.diagnosis.families import ONE_SCHEME
 from validation.diagnosis.fits.bar import norm
+from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import Values, laws
+from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import (
     NEAR_UNIT,
     UNITS,
@@ -318,7 +319,7 @@ class Search:
     def _laws(self, base: Base) -> Iterable[Cause]:
         """Yield other laws of the contact under which a base gives the answer back."""
         scene = self.runs.scene
-        for law in laws(scene):
+        for law in DiagnosisHooks.of(scene).laws(scene):
             remainder = self._left(self.runs.sampled(base, law.values))
             if remainder <= BAR:
                 yield _with(law.id, law.words, {}, remainder, base, scene)

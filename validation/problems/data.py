@@ -8,7 +8,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field
 
 from validation.runs.text import printable
 
-PACK: Final = "5.0"
+PACK: Final = "5.1"
 """Version of the pack, see `validation.problems.packs` for what changes it."""
 ANSWERS: Final = "dda-validation answers 1"  # the number is the version of the layout of a folder of answers
 Text = Annotated[str, Field(min_length=1, max_length=2000, pattern=r"\S"), AfterValidator(printable)]
@@ -56,7 +56,7 @@ class ProblemData(Data):
     """A problem of the pack; its exact motion stands beside it."""
 
     format: Literal["dda-validation problem"] = "dda-validation problem"
-    pack: Literal["5.0"] = PACK
+    pack: Literal["5.1"] = PACK
     problem: str
     digest: str = Field(description="Of the data and the instants; another one is another question.")
     title: str

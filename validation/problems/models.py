@@ -13,7 +13,7 @@ import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
-from validation.diagnosis.numbers import accurate
+from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.sentences import scheme_words
 from validation.errors import InputError
 from validation.problems.bands import Standard, definition_of, scene_of
@@ -134,7 +134,7 @@ class Runs:
             # more blocks would be more contacts, and elastic bars need so many that the exact solution costs less
             yield Base("", {}, PARTS, solver=truth_of(self.scene).name)
             return
-        values = accurate(self.scene)
+        values = DiagnosisHooks.of(self.scene).accurate(self.scene)
         yield Base("", {})
         for every in FINER:
             if every <= LONG or features.linear(self.scene):

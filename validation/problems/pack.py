@@ -33,6 +33,7 @@ Progress = Callable[[int, int, str], None]
 PAGE = Path(__file__).with_suffix(".md")  # of the pack, to be filled in
 MEASURE = "norm(answer - exact) / norm(exact), over the instants up to until_s"
 TIME = "time_s"
+NUMBERS = ("problem", "name", "unit", "exact", "low", "high")  # of the table of numbers that are judged
 DIALECT = "https://json-schema.org/draft/2020-12/schema"  # of pydantic's schemas
 MOST_NAMED = 7  # columns of a problem that the page names
 ANSWERS_TEMPLATE: Mapping[str, Any] = {
@@ -119,6 +120,7 @@ def write_pack(place: Path, progress: Progress = lambda number, total, label: No
         The directory cannot be made or written.
     """
     rows = []
+    numbers: list[Sequence[str]] = [NUMBERS]
     for number, name in enumerate(names()):
         progress(number, len(names()), name)
         posed = problem(name)
@@ -126,10 +128,13 @@ def write_pack(place: Path, progress: Progress = lambda number, total, label: No
         _write(place / f"{name}.json", _json(data.model_dump(mode="json")))
         if data.exact is not None:
             _write(place / data.exact, table_of(posed, standard(posed).exact))
+        for judged in data.numbers:
+            numbers.append((name, *(str(getattr(judged, column)) for column in NUMBERS[1:])))
         _write(place / "answers" / f"{name}.csv", blank_table(posed))
         columns = ", ".join(f"`{column.name}`" for column in data.answer[:MOST_NAMED])
         more = " and more" if len(data.answer) > MOST_NAMED else ""
         rows.append(f"| `{name}` | {posed.asks} | {columns}{more} |")
+    _write(place / "exact" / "numbers.csv", csv_text(numbers))
     _write(place / "answers" / "submission.json", _json({"format": ANSWERS, "pack": PACK, **ANSWERS_TEMPLATE}))
     for data_of in (ProblemData, AnswersData):
         stem = data_of.__name__.removesuffix("Data").lower()
@@ -144,11 +149,14 @@ def write_pack(place: Path, progress: Progress = lambda number, total, label: No
 def table_of(posed: Problem, motion: History, columns: Sequence[str] | None = None) -> str:
     """Return a motion as CSV under the pack's names, with all digits; columns are all of the problem by default."""
     names_of_columns = posed.columns if columns is None else columns
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow([TIME, *map(posed.named, names_of_columns)])
     values: list[Array] = [motion.columns[name] for name in names_of_columns]
-    writer.writerows(np.column_stack([motion.time, *values]).tolist())
+    return csv_text([[TIME, *map(posed.named, names_of_columns)], *np.column_stack([motion.time, *values]).tolist()])
+
+
+def csv_text(rows: Sequence[Sequence[object]]) -> str:
+    """Return rows as CSV."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(rows)
     return text.getvalue()
 
 

@@ -82,8 +82,8 @@ def table(
 
     Example
     -------
-    >>> [column.kind for column in table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns]
-    ['text', 'decimal', 'text']
+    >>> table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns[1].kind
+    'decimal'
     """
     titles: list[tuple[str, str] | TableColumn] = []  # of a column and of its group
     for head in heads:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from validation.errors import InputError
 from validation.report.blocks import Blocks, Callout, Heading, figures_of
-from validation.report.chapters.data import case_groups
+from validation.report.chapters.data import case_groups, groups_of_studies
 from validation.report.chapters.registry import chapter_of
 from validation.report.chapters.scene import slide_figure
 from validation.report.figures.response import save_as
@@ -84,8 +84,7 @@ def build(results: Results, out: Path, chosen: Sequence[str] | None = None, gate
 
 def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: bool = False) -> Blocks:
     from validation.report.appendix.pages import appendix
-    from validation.report.front.groups import groups_of_studies
-    from validation.report.front.pages import front_pages
+    from validation.report.front import front_chapter, front_pages
 
     unread = unread_studies(results, studies)
     chapters: Blocks = []
@@ -96,10 +95,10 @@ def _all_blocks(results: Results, studies: Sequence[str], figures: Path, gates: 
             chapters += chapter_blocks(results, study, figures)
     readable = [study for study in studies if study not in unread]
     with _damage_named(results, "the first and the last pages"):
-        groups = groups_of_studies(results, readable)
+        groups = groups_of_studies(results, map(results.manifest, readable), drawn=False)
         verdicts = [verdict for verdict in results.verdicts() if verdict["study"] in readable]
         provenances = [results.manifest(study).get("provenance", {}) for study in readable]
-        front = front_pages(groups, verdicts, readable, figures, provenances)
+        front = front_pages(front_chapter(results, readable, figures), groups, verdicts, provenances)
         return [*front, *chapters, *appendix(results, groups, verdicts, readable, gates)]
 
 

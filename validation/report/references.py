@@ -7,7 +7,7 @@ numbers of its last page, the site as links to its page of references.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
@@ -41,6 +41,18 @@ def _key() -> re.Pattern[str]:
 def marked(text: str) -> str:
     """Return a text in which the keys that cite a source are told from those that stand in a user's own words."""
     return _key().sub(CITED, text)
+
+
+def named(text: str, form: Callable[[str, str], str] = lambda name, key: name) -> str:
+    """Return a text in which authors and year stand for keys, each in the form that is made of them and the key."""
+    entries = references()
+
+    def name(match: re.Match[str]) -> str:
+        authors = [author.split(",")[0] for author in entries[match[1]]["author"].split(" and ")]
+        who = " and ".join(authors) if len(authors) <= 2 else f"{authors[0]} and others"
+        return form(f"{who} {entries[match[1]]['year']}", match[1])
+
+    return re.sub(rf"{_key().pattern}(\w+)", name, text)
 
 
 def identity(provenances: Iterable[Mapping[str, Any]]) -> str:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import string
 import tomllib
-from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -33,7 +32,3 @@ class Texts:
         """Return a text with its values, ``{0}`` and ``{name}``."""
         text: str = self._data["text"][name]
         return FILLED.vformat(text, places, values) if places or values else text
-
-    def listed(self, name: str, rows: Iterable[Sequence[Any]]) -> str:
-        """Return a text once for each row of values, which it names by their places."""
-        return ", ".join(self.text(name, *row) for row in rows)

@@ -193,18 +193,6 @@ def write_csv(history: History, path: Path) -> None:
     write_atomically(path, lambda stream: stream.write(text.getvalue().encode()))
 
 
-def read_csv(path: Path) -> History:
-    """Read a history that `write_csv` wrote.
-
-    Raises
-    ------
-    InputError
-        The file cannot be read or is not such a table.
-    """
-    names, table = read_table(path)
-    return History(table[:, 0], dict(zip(names[1:], table.T[1:], strict=True)))
-
-
 def read_table(path: Path) -> tuple[list[str], Array]:
     """Read a table of numbers under a header that begins with time: names and values, a row a time.
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 STRESS_ERROR = "stress_error"  # of a static solution of blocks in the plane
+STRESSES = ("stress_xx", "stress_yy", "stress_xy")  # of the same, where they are observed
 DISPLACEMENT = "displacement"
 PRESSURE = "contact_pressure"
 

@@ -123,6 +123,7 @@ class VerdictRecord(BaselineVerdict):
     metric: str
     reason: str
     why: str
+    margin: NotRequired[float | None]  # share of the way from the target to the edge; see `Gate.margin`
     reference_kind: str
     reference_uncertainty: float
     alarms: list[str]

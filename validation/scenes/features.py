@@ -186,25 +186,12 @@ def refuse_ramp(scene: Scene, what: str) -> None:
 
 
 def refuse_column(scene: Scene, what: str) -> None:
-    """Refuse a scene with a column where only a block has an answer.
+    """Refuse a scene with the feature of a kind where only a block, which has none, has an answer.
 
     Raises
     ------
     InputError
-        The scene has a column.
+        The scene is of a column, or of blocks in the plane.
     """
-    if "block" not in scene.tables():
+    if scene.kind.feature:
         raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
-
-
-def refuse_bonded_column(scene: Scene, what: str) -> None:
-    """Refuse columns whose springs are bonded, where a block or a moving column has an answer.
-
-    Raises
-    ------
-    InputError
-        The scene has such a column.
-    """
-    if refused := scene.kind.motion_unread(scene):
-        rule = f"{what} takes scenes of a block, or of a column whose contacts open or slip, only"
-        raise InputError(rule, source=scene.name, value=refused)

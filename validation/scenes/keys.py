@@ -50,6 +50,13 @@ def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
                 yield field.alias or name, field, key
 
 
+def key_of_any_entry(field: str, tables: Mapping[str, type[Section]]) -> str:
+    """Return a dotted key without the number or the name of an entry: ``plane.block.at`` of ``plane.block.1.at``."""
+    entry, _, key = field.rpartition(".")
+    place = entry.rpartition(".")[0]
+    return f"{place}.{key}" if place and place in tables and entry not in tables else field
+
+
 def stated(table: Section) -> Iterator[tuple[str, Any, Key]]:
     """Yield name, value and description of the keys whose values are not the defaults."""
     for name, field, key in keys_of(type(table)):

@@ -63,6 +63,8 @@ class Kind:
     words: str = ""  # after "a scene of"
     feature: str = ""  # that its scenes have, by which solvers say that they take them; none of a block
     linear: bool = True  # whether their motion is, unless another feature says no
+    locks_contact: bool = False  # whether a contact pressure may be that of a contact that is locked, and pull
+    point: str = "top"  # whose displacement a history of it holds
     rank: float = 9.0  # place among the kinds; a scene without a table of any kind is of the first
     tables: ClassVar[Mapping[str, type[Section]]] = {}  # by name, that of the kind first
     columns: OwnColumns = NO_OWN  # numbered columns of histories that only this kind has, without their numbers
@@ -88,10 +90,6 @@ class Kind:
     def has_column(self, scene: Any, column: str) -> bool:
         """Whether a history of a scene may hold a column, beside those that solvers have of every scene."""
         return False
-
-    def motion_unread(self, scene: Any) -> str | None:
-        """Return None, or in words what of a scene keeps the motion of another program from being explained."""
-        return None
 
     def check(self, scene: Any) -> None:
         """Check tables against each other.

@@ -21,7 +21,7 @@ from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
 from validation.runs.regular import regular
-from validation.scenes.keys import Section, check_needs
+from validation.scenes.keys import Section, check_needs, key_of_any_entry
 from validation.scenes.kinds import kinds
 from validation.scenes.places import scene_files
 from validation.scenes.tabled import SceneTables
@@ -49,7 +49,9 @@ class Scene(SceneTables):
         for field, values in lists.items():
             if not (isinstance(values, list) and values):
                 raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
-            if field not in _sweepable():
+            table, _, _ = field.partition(".")
+            _, key = _table_of(self.definition(), field)
+            if table in ("run", "gate", field) or "." in key:
                 raise ValueError(f'sweep: must name a key of a table, such as "time.step", got {field!r}')
         mode = self.sweep.get("mode", "product")
         lengths = [len(values) for values in lists.values()]
@@ -155,7 +157,8 @@ class Scene(SceneTables):
 def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
     """Return the table that a dotted key stands in, made where it is absent, and what of the key is left there.
 
-    ``plane.block.1.at`` stands in the second entry of a list of tables. What is inside of no table is left whole.
+    ``plane.block.1.at`` stands in the second entry of a list of tables, ``plane.block.top.at`` in that of this name.
+    What is inside of no table is left whole.
     """
     table = data
     key = field
@@ -163,9 +166,9 @@ def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
         section, _, remainder = key.partition(".")
         inside = table.setdefault(section, {})
         if isinstance(inside, list):
-            number, _, remainder = remainder.partition(".")
-            is_entry = remainder and number.isdecimal() and int(number) < len(inside)
-            inside = inside[int(number)] if is_entry else None
+            entry, _, remainder = remainder.partition(".")
+            names = [str(number) for number in range(len(inside))] + [other.get("name") for other in inside]
+            inside = inside[names.index(entry) % len(inside)] if remainder and entry in names else None
         if not isinstance(inside, dict):
             break
         table = inside
@@ -212,16 +215,6 @@ def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str
 def _all_tables() -> dict[str, type[Section]]:
     """Return the tables that a scene may have, and the scene itself under the empty name."""
     return {"": Scene} | tables_of_scenes()
-
-
-def _sweepable() -> set[str]:
-    """Return the dotted keys of the tables that a sweep may vary."""
-    tables = {place: table for place, table in tables_of_scenes().items() if place != "run" and "." not in place}
-    return {
-        f"{place}.{field.alias or name}"
-        for place, table in tables.items()
-        for name, field in table.model_fields.items()
-    }
 
 
 OUR_WORDS = {"a valid tuple": "a list", "a valid number": "a number"}  # in the place of pydantic's
@@ -353,9 +346,20 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
     for _, _, table, key in named_files(data):
         table[key] = beside(table[key])
     sweep = data.get("sweep")
-    for field in FILES:
-        if isinstance(sweep, dict) and isinstance(sweep.get(field), list):
-            sweep[field] = [beside(value) for value in sweep[field]]
+    if not isinstance(sweep, dict):
+        return
+    for field, values in sweep.items():
+        if key_of_any_entry(field, _all_tables()) in _files() and isinstance(values, list):
+            sweep[field] = [beside(value) for value in values]
+
+
+@functools.cache
+def _files() -> dict[str, str]:
+    """Return the keys that name files, those of kinds too, and what these are."""
+    files = dict(FILES)
+    for kind in kinds().values():
+        files |= kind.files
+    return files
 
 
 def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
@@ -363,8 +367,7 @@ def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]
 
     A table of a list, as ``[[plane.block]]``, has a place for each of its entries.
     """
-    of_kinds = [kind.files for kind in kinds().values()]
-    for field, role in itertools.chain(FILES.items(), *(files.items() for files in of_kinds)):
+    for field, role in _files().items():
         *parts, key = field.split(".")
         holders: list[tuple[str, Any]] = [("", tables)]
         for part in parts:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
-from validation.scenes.keys import Section, keys_of
+from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
 OTHER_NAMES: dict[str, list[str]] = tomllib.loads(
@@ -90,7 +90,7 @@ def _unknown_keys(
         elif inside == "sweep" and isinstance(value, dict):
             keys = {"mode", "name", *tables, *_names("", tables)}  # what is no key of a table is refused elsewhere
             keys |= {f"{table}.{key}" for table in tables for key in _names(table, tables)}
-            unknown = (field for field in value if field not in keys)
+            unknown = (field for field in value if key_of_any_entry(field, tables) not in keys)
             yield from (("sweep", "sweep.", field, value[field]) for field in unknown)
         elif inside in tables and isinstance(value, dict):
             yield from _unknown_keys(value, inside, f"{stated_at}{name}.", tables)
@@ -107,7 +107,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
     that is spelt alike, and one elsewhere.
     """
     if place == "sweep":
-        place, _, name = name.rpartition(".")
+        place, _, name = key_of_any_entry(name, tables).rpartition(".")
         if place not in tables:
             return None
     prefix = f"{place}." if place else ""

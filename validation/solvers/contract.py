@@ -164,7 +164,7 @@ class Solver:
     1. `name`: how the command line and the tables call it.
     2. `handles`: the features of a scene that it takes (`validation.scenes.features`); a scene with another one is
        refused by name, so that no solver runs it as if the feature were absent; `apart`: which of them it does not
-       take together.
+       take together; `only`: one without which it takes no scene.
     3. `sections`: the tables that it reads beside those of the scene's kind, `unread`: keys that it does not; a change
        elsewhere does not make it run again.
     4. `sources`: modules or packages whose files enter the key of its results.
@@ -181,6 +181,7 @@ class Solver:
     name: str = ""
     handles: frozenset[str] = features.FIRST
     apart: features.Apart = ()
+    only: str = ""
     sections: tuple[str, ...] = ("time", "run")
     unread: tuple[str, ...] = ()
     sources: tuple[str, ...] = ()
@@ -210,7 +211,11 @@ class Solver:
 
     def refusal(self, scene: Scene) -> str | None:
         """Return None, or why the scene is refused: a feature that the solver does not handle, or `applicable`."""
-        return self.refused_features(scene) or self.applicable(scene)
+        if refused := self.refused_features(scene):
+            return refused
+        if self.only and self.only not in features.of(scene):
+            return f"it takes {self.only}s only"
+        return self.applicable(scene)
 
     def refused_features(self, scene: Scene) -> str | None:
         """Return None, or which features of a scene the solver does not handle, at all or together, in words."""

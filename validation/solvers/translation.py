@@ -36,7 +36,7 @@ def to_run(scene: Scene, result: Any, columns: Mapping[str, Array] | None = None
     seconds = {"setup": built + result.setup_seconds, "stepping": result.stepping_seconds}
     outcome = getattr(result, "outcome", None)
     notes = result.notes
-    if outcome is None and "contact" in scene.tables():
+    if outcome is None and scene.kind.locks_contact:
         notes = (*notes, *tension_note(history))
     return Run(Outcome(outcome or "completed"), history, work, seconds, notes, getattr(result, "estimate", None))
 

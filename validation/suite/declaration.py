@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from itertools import chain
 
 from validation.advice.alarms import alarms
 from validation.advice.budget import budgets
@@ -22,11 +21,10 @@ def annotated(scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return the alarms of finished cases, and the damping budgets of the scenes that the judged method ran."""
     judged = {scene: row for (scene, solver), row in finished.rows.items() if role(solver) is Role.JUDGED}
     run_scenes = [scene for scene in scenes if scene.name in judged]
-    of_contacts = (AdviceHooks.of(scene).alarms(scene, judged[scene.name]) for scene in run_scenes)
-    blocks = (scene for scene in run_scenes if "block" in scene.tables())
+    known = (scene for scene in run_scenes if AdviceHooks.of(scene).has_budget)
     return {
-        "alarms": [alarm.record() for alarm in (*alarms(scenes, finished), *chain.from_iterable(of_contacts))],
-        "budgets": list(budgets(filter(features.linear, blocks))),
+        "alarms": [alarm.record() for alarm in alarms(scenes, finished)],
+        "budgets": list(budgets(filter(features.linear, known))),
     }
 
 

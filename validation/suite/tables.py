@@ -3,7 +3,7 @@
 ``[study]`` holds
 
     name, title, purpose    on the command line, heading and first sentence of the chapter
-    phenomenon              what is verified
+    phenomenon              what is verified; or several, each with (patterns of) the scenes that show it
     order                   place in the report
     sources                 what the methods rest on, with keys of the bibliography
     scenes                  built-in scenes, or the function that returns scenes; those of the folder if absent

@@ -23,7 +23,6 @@ from validation.theory.stepping import Stepping
 
 GRID = 33  # values of w at which a root is looked for at once
 OCTAVE = 2.0  # of them; two modes of a column within a thirty-second of one are taken for none
-REFINEMENTS = 6  # of the interval around a root: to 32^-6 = 1e-9 of it
 ROUNDING = 1e-9  # by which a column of one mass may have its root below the bound
 FAR_FACE = 6.0  # of the Courant number 1 / sqrt(6 alpha): consistent mass of a block of one strain
 
@@ -74,6 +73,8 @@ def first_frequency(column: ColumnSection) -> float | None:
     mass on top of all that gives way, from where the root is looked for upwards. None where the base is free or
     transmitting, or nothing gives way.
     """
+    from scipy.optimize import brentq
+
     if column.base in ("free", "transmitting"):
         return None
     mass = sum(layer.density * layer.thickness for layer in column.layer)
@@ -85,11 +86,9 @@ def first_frequency(column: ColumnSection) -> float | None:
     high = OCTAVE * low
     while np.all(_top_stress(column, np.geomspace(low, high, GRID)) > 0):
         low, high = high, OCTAVE * high
-    for _ in range(REFINEMENTS):
-        grid = np.linspace(low * (1 - ROUNDING), high, GRID)
-        first = int(np.argmax(_top_stress(column, grid) <= 0))
-        low, high = float(grid[max(first - 1, 0)]), float(grid[first])
-    return (low + high) / 2
+    grid = np.geomspace(low * (1 - ROUNDING), high, GRID)
+    first = int(np.argmax(_top_stress(column, grid) <= 0))
+    return float(brentq(lambda w: float(_top_stress(column, np.array(w))), grid[max(first - 1, 0)], grid[first]))
 
 
 def _springs(column: ColumnSection) -> list[tuple[float, float]]:

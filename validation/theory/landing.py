@@ -145,7 +145,7 @@ def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | Non
     strain = math.hypot(position[1], velocity[1] / math.sqrt(12))
     distance = strain / 2 - position[0] if velocity[0] > 0 else strain / 2 + position[0]
     # beyond this time the strain can no longer reach the springs, or has done so
-    longest = float(max(distance, 0.0) / abs(velocity[0])) + 1.0
+    longest = max(distance, 0.0) / abs(velocity[0])
     flight = _Motion.of(np.diag(STRAIN), position, velocity)
     fall, _ = _end(flight, longest, opens=False)
     return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
@@ -156,7 +156,7 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     sample = 2 * math.pi / float(motion.frequencies.max()) / SAMPLES
     depth = 0.0
     start = 0
-    while start * sample <= 1.01 * longest:  # in parts: a stiff contact ends in the first of very many
+    while start * sample <= longest:  # in parts: a stiff contact ends in the first of very many
         times = np.asarray(np.arange(start, start + 4 * SAMPLES + 1) * sample, dtype=np.float64)
         gaps = motion.gap(times)
         depth = max(depth, _deepest(motion, times, gaps))

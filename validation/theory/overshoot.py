@@ -15,30 +15,26 @@ static response.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 
+from validation.runs.history import Array
 from validation.theory.stages import Stages
 
 STEPS = 10  # in which the greatest energy is looked for; it is that of the first one
 
 
-def energies(stages: Stages, omega_dt: Any, is_consistent: bool) -> list[Any]:
-    """Return E / G of a mode at the ends of the first steps under a load that comes on at once.
+def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[float]) -> float:
+    """Return the greatest energy of some modes together above that of a consistent start, over what the load gives [-].
 
     Parameters
     ----------
-    stages
-        The scheme.
-    omega_dt
-        W = w dt, of one mode or, as an array, of several.
-    is_consistent
-        Whether A0 = w^2 x_s; otherwise A0 = 0.
+    omegas_dt, shares
+        W = w dt of each mode, and its share of the static response.
     """
-    square = omega_dt**2  # x_s and dt are 1
-    start = (0.0, 0.0, square if is_consistent else 0.0)
-    over_given = []
+    square = np.array(omegas_dt) ** 2  # x_s and dt are 1
+    start: tuple[Array, Array, Array] = (0 * square, 0 * square, square)
+    greatest = 0.0
     for _ in range(STEPS):
         position, velocity, acceleration = start
         before = start
@@ -49,17 +45,6 @@ def energies(stages: Stages, omega_dt: Any, is_consistent: bool) -> list[Any]:
             a_end = force / (1 - stage.am + (1 - stage.af) * square * stage.beta)
             before = (x_free + stage.beta * a_end, v_free + stage.gamma * a_end, a_end)
         start = before
-        over_given.append((start[1] ** 2 + square * start[0] ** 2 - 2 * square * start[0]) / square)
-    return over_given
-
-
-def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[float], is_consistent: bool) -> float:
-    """Return the greatest energy of some modes together above that of the start, over what the load gives [-].
-
-    Parameters
-    ----------
-    omegas_dt, shares
-        W = w dt of each mode, and its share of the static response.
-    """
-    parts = np.array(energies(stages, np.array(omegas_dt), is_consistent))
-    return max(0.0, float(np.max(parts @ np.array(shares))))
+        over_given = (start[1] ** 2 + square * start[0] ** 2 - 2 * square * start[0]) / square
+        greatest = max(greatest, float(over_given @ np.array(shares)))
+    return greatest

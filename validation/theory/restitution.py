@@ -1,14 +1,13 @@
 r"""The restitution of a rigid mass on a spring and a dashpot, exact in time, and the damping ratio of a restitution.
 
-A mass m lands on k and c without load, zeta = c / (2 sqrt(k m)). With s = sqrt(|1 - zeta^2|) contact that pulls until
-the gap is zero again, and contact that lets go where the force is zero (clipped, N >= 0), leave
+A mass m lands on k and c without load, zeta = c / (2 sqrt(k m)). Contact that lets go where its force is zero leaves,
+with s = sqrt(|1 - zeta^2|),
 
-    unclipped   e = exp(-pi zeta / s), 0 from zeta = 1 on
-    clipped     e = exp(-(zeta/s) atan2(2 zeta s, 2 zeta^2 - 1)),              zeta < 1
-                e = exp(-2),                                                  zeta = 1
-                e = exp(-(zeta/s) ln((zeta + s)/(zeta - s))),                  zeta > 1
+    e = exp(-(zeta/s) atan2(2 zeta s, 2 zeta^2 - 1)),              zeta < 1
+    e = exp(-2),                                                  zeta = 1
+    e = exp(-(zeta/s) ln((zeta + s)/(zeta - s))),                  zeta > 1
 
-Clipped contact lets go at any zeta; e falls from 1 towards 0 as 1/(4 zeta^2), so that every e above 0 has its zeta.
+e falls from 1 towards 0 as 1/(4 zeta^2), so that every e above 0 has its zeta.
 """
 
 from __future__ import annotations
@@ -16,9 +15,10 @@ from __future__ import annotations
 import math
 
 LARGEST_LOGARITHM = 700.0  # whose exponential is finite; -ln e of the least number is 745
+DIGITS = 4 * 2.0**-52  # of the damping ratio, as many as the search has
 
 
-def restitution(zeta: float, clipped: bool = True) -> float:
+def restitution(zeta: float) -> float:
     """Return e of a damping ratio.
 
     Raises
@@ -28,17 +28,11 @@ def restitution(zeta: float, clipped: bool = True) -> float:
     """
     if not zeta >= 0:
         raise ValueError(f"damping_ratio: must not be negative, got {zeta!r}")
-    if math.isinf(zeta):
-        return 0.0
-    if clipped:
-        return math.exp(-zeta * contact_time(zeta))
-    if zeta >= 1:
-        return 0.0
-    return math.exp(-math.pi * zeta / math.sqrt((1 - zeta) * (1 + zeta)))
+    return 0.0 if math.isinf(zeta) else math.exp(-zeta * contact_time(zeta))
 
 
 def contact_time(zeta: float) -> float:
-    """Return w_c times the duration of clipped contact: (2/s) atan(s/zeta), or (2/s) artanh(s/zeta) beyond zeta = 1."""
+    """Return w_c times the duration of the contact: (2/s) atan(s/zeta), or (2/s) artanh(s/zeta) beyond zeta = 1."""
     s = math.sqrt(abs(1 - zeta)) * math.sqrt(1 + zeta)
     if s == 0:
         return 2.0
@@ -47,7 +41,7 @@ def contact_time(zeta: float) -> float:
     return 2 * math.asinh(s) / s  # artanh(s/zeta) without the difference zeta - s
 
 
-def damping_ratio(e: float, clipped: bool = True) -> float:
+def damping_ratio(e: float) -> float:
     """Return zeta of a restitution; 0 at e = 1.
 
     Raises
@@ -62,18 +56,12 @@ def damping_ratio(e: float, clipped: bool = True) -> float:
         )
     if e == 1:
         return 0.0
+    from scipy.optimize import brentq
+
     loss = -math.log(e)
-    if not clipped:
-        return loss / math.hypot(math.pi, loss)
     # -ln e rises with zeta; it is at most pi zeta, and at least ln(1 + zeta)
-    low = loss / math.pi
-    high = max(1.0, math.expm1(min(loss, LARGEST_LOGARITHM)))
-    for _ in range(200):
-        middle = math.sqrt(low * high) if high > 2 * low else (low + high) / 2
-        if not low < middle < high:
-            break
-        if middle * contact_time(middle) < loss:
-            low = middle
-        else:
-            high = middle
-    return (low + high) / 2
+    low = math.log(loss / math.pi)
+    high = math.log(max(1.0, math.expm1(min(loss, LARGEST_LOGARITHM))))
+    return math.exp(
+        brentq(lambda x: math.exp(x) * contact_time(math.exp(x)) - loss, low, high, xtol=DIGITS, rtol=DIGITS)
+    )

@@ -1,12 +1,14 @@
-"""Box2D v3 as a solver of rigid boxes: soft contact in sub-steps, in the plane, in single precision."""
+"""Box2D v3 as a solver of rigid polygons: soft contact in sub-steps, in the plane, in single precision."""
 
 from __future__ import annotations
 
 import math
 
-from peers.boxes import Pose, base_velocity, boxes_of, record, substeps
+from peers.bodies import bodies_of, friction_between
+from peers.boxes import Pose, base_velocity, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
+from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -16,11 +18,11 @@ SUB_STEPS = 4
 STEP = 1 / 960  # s
 DAMPING_RATIO = 10.0  # as it comes
 PUSH_SPEED = 3.0  # m/s, as it comes
-DEPTH = 1.0  # m of the ground below its surface
+CORNERS = 8  # at most, of a polygon of Box2D
 
 
 class World:
-    """Boxes and ground as bodies of Box2D.
+    """Blocks as bodies of Box2D.
 
     Raises
     ------
@@ -29,15 +31,20 @@ class World:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        pile = boxes_of(scene)
-        if pile.stiffness is not None:
+        blocks = bodies_of(scene)
+        plane = scene.table(PlaneSection)
+        if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
             raise NotImplementedError(
                 "contact of given stiffness: Box2D's hertz correct overlap, its contacts stop a box dead"
             )
+        if plane.pair:
+            raise NotImplementedError("friction by pair: Box2D makes that of a pair of its two surfaces' own")
+        if any(len(part) > CORNERS for block in blocks for part in block.parts):
+            raise NotImplementedError(f"a polygon of more than {CORNERS} corners")
         self.scene = scene
         self.box2d = imported("pyb2d3", "Box2D", RECIPE)
-        self.world = self.box2d.World(gravity=pile.pull)
-        self.moves = bool(pile.base_amplitude)
+        self.world = self.box2d.World(gravity=plane.gravity)
+        self.moves = any(block.motion for block in plane.block)
         self.default = default
         if not default:
             self.world.restitution_threshold = 0.0
@@ -45,35 +52,38 @@ class World:
             # The stiffest that Box2D takes: a quarter of the rate of its sub-steps, to which it lowers what is above.
             hertz = SUB_STEPS * substeps(scene, STEP) / scene.time.step / 4
             self.world.set_contact_tuning(hertz, DAMPING_RATIO, PUSH_SPEED)
-        material = self.box2d.surface_material(friction=pile.friction_coefficient, restitution=pile.rebound)
-        left, right = boxes_of(scene).ends
-        corners = [(left, -DEPTH), (right, -DEPTH), (right, 0.0), (left, 0.0)]
-        self.ground = self.world.create_kinematic_body() if self.moves else self.world.create_static_body()
-        self.ground.create_polygon_shape(self.box2d.shape_def(material=material), self.box2d.polygon(corners))
+        restitution = (plane.contact.restitution if plane.contact else None) or 0.0
+        material = self.box2d.surface_material(friction=friction_between(scene, 0, 1), restitution=restitution)
         self.boxes = []
         self.turns = []
-        for box, (x, y, angle) in zip(pile.boxes, pile.starts, strict=True):
-            body = self.world.create_dynamic_body(
-                position=(x, y),
-                rotation=self.box2d.make_rot(angle),
-                linear_velocity=box.velocity,
-                angular_velocity=box.spin,
-            )
-            shape = self.box2d.box(box.width / 2, box.height / 2)
-            body.create_polygon_shape(self.box2d.shape_def(density=box.density, material=material), shape)
-            self.boxes.append(body)
-            self.turns.append(angle)
+        for block in blocks:
+            place = {"position": block.place, "rotation": self.box2d.make_rot(block.angle)}
+            if block.held:
+                create = self.world.create_kinematic_body if self.moves else self.world.create_static_body
+                body = self.ground = create(**place)
+                self.middle = block.place[0]  # of the ground at t = 0 [m]
+            else:
+                moves = {"linear_velocity": block.velocity, "angular_velocity": block.spin}
+                body = self.world.create_dynamic_body(**place, **moves)
+                self.boxes.append(body)
+                self.turns.append(block.angle)
+            for part in block.parts:
+                shape = self.box2d.shape_def(density=block.density, material=material)
+                body.create_polygon_shape(shape, self.box2d.polygon(part))
 
     def advance(self, start: float, step: float) -> None:
         """Make one step of Box2D, and follow the angles, which it folds at pi."""
         if self.moves:
-            self.ground.linear_velocity = base_velocity(self.scene, start, step, self.ground.position.x), 0.0
+            self.ground.linear_velocity = (
+                base_velocity(self.scene, start, step, self.ground.position.x - self.middle),
+                0.0,
+            )
         self.world.step(step, SUB_STEPS)
         for number, body in enumerate(self.boxes):
             self.turns[number] += math.remainder(body.angle - self.turns[number], math.tau)
 
     def poses(self) -> list[Pose]:
-        """Return position and angle of each box."""
+        """Return position and angle of each block."""
         return [(body.position.x, body.position.y, turn) for body, turn in zip(self.boxes, self.turns, strict=True)]
 
 
@@ -83,7 +93,7 @@ class Box2D(ExternalProgram):
     program = "Box2D v3 (pyb2d3)"
     package = "pyb2d3"
     recipe = RECIPE
-    model = "boxes in the plane; soft contact, relaxed in every sub-step; single precision"
+    model = "polygons in the plane, convex ones or triangles; soft contact, relaxed in every sub-step; single precision"
     default = False
     settings = (
         f"step 1/960 s in {SUB_STEPS} sub-steps; contact of a quarter of their rate, "

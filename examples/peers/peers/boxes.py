@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from peers.bodies import moving_names
 from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.models.plane.boxes import boxes_of as read_boxes
 from validation.models.plane.history import POSE
@@ -33,6 +34,33 @@ def boxes_of(scene: Scene) -> BoxesOnGround:
         return read_boxes(scene)
     except ValueError as error:
         raise NotImplementedError(str(error)) from None
+
+
+def on_endless_ground(scene: Scene) -> BoxesOnGround:
+    """Return the boxes of a scene for a program whose ground is a plane without end.
+
+    Raises
+    ------
+    NotImplementedError
+        The scene is of something else, or a box stands, or would be carried by its velocity, beyond an end.
+    """
+    pile = boxes_of(scene)
+    for box in pile.boxes:
+        reach = max(box.width, box.height) / 2
+        carried = 0.0 if box.spin else box.velocity[0] * scene.time.duration  # one that spins turns about its corner
+        places = (box.x, box.x + carried)
+        if min(places) - reach < pile.ends[0] or max(places) + reach > pile.ends[1]:
+            raise NotImplementedError("a ground that ends below a box: this program's is a plane without end")
+    return pile
+
+
+def is_pile(scene: Scene) -> bool:
+    """Whether a scene is of boxes on a ground, below each of which there is a force."""
+    try:
+        read_boxes(scene)
+    except ValueError:
+        return False
+    return True
 
 
 def substeps(scene: Scene, own_step: float) -> int:
@@ -88,7 +116,7 @@ def record(
     Parameters
     ----------
     scene
-        A scene of boxes on a ground.
+        A scene of rigid blocks in the plane.
     own_step
         The step that the program is used with [s]; see `substeps`.
     advance
@@ -96,7 +124,7 @@ def record(
     poses
         Position and angle of each box, in the order of the scene.
     forces
-        Normal force below each box [N]; absent where the program tells none.
+        Normal force below each box [N]; absent where the program tells none, not asked of other scenes.
 
     Returns
     -------
@@ -105,7 +133,9 @@ def record(
     """
     per_row = substeps(scene, own_step)
     step = scene.time.step / per_row
-    count = len(boxes_of(scene).boxes)
+    count = len(moving_names(scene))
+    if forces is not None and not is_pile(scene):
+        forces = None
     rows = np.full((scene.time.steps, count, 3 if forces is None else 4), np.nan)
     for row in range(scene.time.steps):
         for part in range(per_row):
@@ -124,16 +154,15 @@ def named(scene: Scene, rows: Array, program_steps: int) -> dict[str, Array]:
     Parameters
     ----------
     scene
-        A scene of boxes on a ground.
+        A scene of rigid blocks in the plane.
     rows
-        x, y, angle and perhaps force of each box, shape (steps, boxes, 3 or 4).
+        x, y, angle and perhaps force of each block, shape (steps, boxes, 3 or 4).
     program_steps
         How many steps the program made, for the curves of error over cost.
     """
-    pile = boxes_of(scene)
     columns = {PROGRAM_STEPS: np.array(float(program_steps))}
-    for number, (box, force) in enumerate(zip(pile.boxes, pile.force_columns, strict=True)):
-        columns |= {f"{box.name}.{part}": rows[:, number, place] for place, part in enumerate(POSE)}
-        if rows.shape[2] > len(POSE):
-            columns[force] = rows[:, number, len(POSE)]
+    for number, name in enumerate(moving_names(scene)):
+        columns |= {f"{name}.{part}": rows[:, number, place] for place, part in enumerate(POSE)}
+    if rows.shape[2] > len(POSE):
+        columns |= {force: rows[:, number, len(POSE)] for number, force in enumerate(boxes_of(scene).force_columns)}
     return columns

@@ -8,7 +8,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from peers.boxes import Pose, boxes_of, record, spring_step, substeps
+from peers.boxes import Pose, boxes_of, on_endless_ground, record, spring_step, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.models.plane.boxes import Box, BoxesOnGround
@@ -47,7 +47,7 @@ class World:
 
     def __init__(self, scene: Scene, own_step: float, *, chosen: bool) -> None:
         self.drake = program()
-        self.boxes = boxes_of(scene)
+        self.boxes = on_endless_ground(scene)
         self.chosen = chosen
         config = self.drake.MultibodyPlantConfig()
         config.time_step = scene.time.step / substeps(scene, own_step)

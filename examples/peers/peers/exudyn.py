@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, boxes_of, corners_of, named, substeps
+from peers.boxes import Pose, corners_of, named, on_endless_ground, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.models.plane.boxes import Box, BoxesOnGround
@@ -57,7 +57,7 @@ class Exudyn(ExternalProgram):
         NotImplementedError
             The scene is of something else, or Exudyn is not installed.
         """
-        pile = boxes_of(scene)
+        pile = on_endless_ground(scene)
         imported("exudyn.itemInterface", "Exudyn", RECIPE)
         exudyn = imported("exudyn", "Exudyn", RECIPE)
         exudyn.config.printToConsole = False

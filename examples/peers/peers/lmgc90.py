@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, boxes_of, record, substeps
+from peers.boxes import Pose, on_endless_ground, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.models.plane.boxes import Box, BoxesOnGround
@@ -57,7 +57,7 @@ class LMGC90(ExternalProgram):
         NotImplementedError
             The scene is not what this part of LMGC90 can express, or compas_lmgc90 is not installed.
         """
-        pile = boxes_of(scene)
+        pile = on_endless_ground(scene)
         refuse(pile)
         alert = self.alert(pile)
         program = imported("compas_lmgc90._lmgc90", "LMGC90", RECIPE)

@@ -20,7 +20,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, record, spring_step, substeps
+from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, on_endless_ground, record, spring_step, substeps
 from peers.mujoco_model import Columns, March, model_text, refuse
 from peers.spatial import check_plane
 from validation.scenes.scene import Scene
@@ -48,7 +48,7 @@ class World:
     """Boxes and ground as bodies of MuJoCo: free in space as they come, else on joints that keep them in the plane."""
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        pile = boxes_of(scene)
+        pile = on_endless_ground(scene)
         self.scene = scene
         self.default = default
         self.moves = bool(pile.base_amplitude)

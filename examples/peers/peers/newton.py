@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, boxes_of, record, substeps
+from peers.boxes import Pose, boxes_of, on_endless_ground, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
@@ -74,7 +74,7 @@ class World:
         import warp
 
         self.warp = warp
-        self.boxes = boxes_of(scene)
+        self.boxes = on_endless_ground(scene)
         builder = self.newton.ModelBuilder(up_axis=self.newton.Axis.Y, gravity=(*self.boxes.pull, 0.0))
         # Friction and restitution of a pair are the mean of the two; masses are given with the bodies.
         config = self.newton.ModelBuilder.ShapeConfig(

@@ -1,10 +1,11 @@
-"""ntdda as a solver: two histories that the program wrote, for the scenes whose problems they are."""
+"""ntdda as a solver: two histories that it wrote, for the scenes they are of; of polygons the program itself."""
 
 from __future__ import annotations
 
 from pathlib import Path
 from typing import Any, ClassVar
 
+from peers import ntdda_live
 from validation.diagnosis.reading import read
 from validation.runs.history import Array
 from validation.scenes import features
@@ -31,7 +32,7 @@ GIVEN_ONCE = {
 
 
 class Histories:
-    """The two histories of ntdda that the repository has."""
+    """The two histories of ntdda that the repository has; blocks in the plane by the program, where it is on PATH."""
 
     handles = frozenset(
         feature.name for feature in features.FEATURES
@@ -39,19 +40,21 @@ class Histories:
     about: ClassVar = {
         "program": "ntdda (Berkeley line of DDA, in C)",
         "version": "not stated in its files",
-        "recipe": "nothing to install: its histories are in docs/examples/ntdda",
+        "recipe": "its histories are in docs/examples/ntdda; of blocks in the plane a command ntdda on PATH",
         "model": "two blocks, the lower one held by 21 stiff points; geometry anew at every step; own weight added",
         "settings": "those of the runs: 2 ms, constant acceleration with alpha = 1/2, delta = 1",
     }
 
     def solve(self, scene: Scene) -> dict[str, Array]:
-        """Return the first rows of the history whose problem the scene poses, a column to its values at the steps.
+        """Return the first rows of the history whose problem the scene poses, or what the program answers.
 
         Raises
         ------
         NotImplementedError
-            There is none, or the histories are not here.
+            There is none, or the histories are not here; the program is not, or cannot express the scene.
         """
+        if scene.kind.name == "plane":
+            return ntdda_live.solve(scene)
         if scene.kind.name != "block":
             raise NotImplementedError(f"a history is data: those here are of a block, not of {scene.kind_in_words}")
         file, beside, otherwise = ON_SLOPE if scene.load.gravity else PRESSED

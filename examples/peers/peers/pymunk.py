@@ -1,13 +1,15 @@
-"""pymunk as a solver of rigid boxes: Chipmunk's sequential impulses at the velocities, in the plane."""
+"""pymunk as a solver of rigid polygons: Chipmunk's sequential impulses at the velocities, in the plane."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
-from peers.boxes import Pose, base_velocity, boxes_of, corners_of, record
+from peers.bodies import PolygonBody, bodies_of, friction_between
+from peers.boxes import Pose, base_velocity, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
+from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
@@ -17,11 +19,10 @@ STEP = 1 / 1920  # s
 ITERATIONS = 100
 SLOP = 1e-5  # m
 CORRECTION_RATE = 60.0  # 1/s: overlap beyond the slop decays as exp(-rate t)
-DEPTH = 1.0  # m of the ground below its surface
 
 
 class World:
-    """Boxes and ground as bodies of pymunk.
+    """Blocks as bodies of pymunk.
 
     Raises
     ------
@@ -30,51 +31,67 @@ class World:
     """
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        pile = boxes_of(scene)
-        if pile.stiffness is not None:
+        blocks = bodies_of(scene)
+        plane = scene.table(PlaneSection)
+        if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
             raise NotImplementedError("contact of given stiffness: pymunk's contacts are impulses")
         self.scene = scene
         self.pymunk = imported("pymunk", "pymunk", RECIPE)
         self.space = self.pymunk.Space()
-        self.space.gravity = pile.pull
+        self.space.gravity = plane.gravity
         if not default:
             self.space.iterations = ITERATIONS
             self.space.collision_slop = SLOP
             self.space.collision_bias = math.exp(-CORRECTION_RATE)
-        self.ground = self.space.static_body
-        if pile.base_amplitude:
-            self.ground = self.pymunk.Body(body_type=self.pymunk.Body.KINEMATIC)
-            self.space.add(self.ground)
-        left, right = boxes_of(scene).ends
-        corners = [(left, -DEPTH), (right, -DEPTH), (right, 0.0), (left, 0.0)]
-        self._add_shape(self.ground, corners)
+        self.restitution = plane.contact.restitution or 0.0
+        self.moves = any(block.motion for block in plane.block)
         self.boxes = []
-        for box, (x, y, angle) in zip(pile.boxes, pile.starts, strict=True):
-            body = self.pymunk.Body(box.mass, box.inertia)
-            body.position = x, y
-            body.angle = angle
-            body.velocity = box.velocity
-            body.angular_velocity = box.spin
-            self.space.add(body)
-            self._add_shape(body, corners_of(box))
-            self.boxes.append(body)
+        for number, block in enumerate(blocks):
+            body = self._add(block, number)
+            if block.held:
+                self.ground = body
+                self.middle = block.place[0]  # of the ground at t = 0 [m]
+            else:
+                self.boxes.append(body)
+        for first in range(len(blocks)):
+            for second in range(first):
+                self._rub(second, first)
 
-    def _add_shape(self, body: Any, corners: list[tuple[float, float]]) -> None:
-        pile = boxes_of(self.scene)
-        shape = self.pymunk.Poly(body, corners)
-        # A pair has the product of the two shapes' coefficients.
-        shape.friction = math.sqrt(pile.friction_coefficient)
-        shape.elasticity = math.sqrt(pile.rebound)
-        self.space.add(shape)
+    def _add(self, block: PolygonBody, number: int) -> Any:
+        kinds = self.pymunk.Body
+        if block.held:
+            body = kinds(body_type=kinds.KINEMATIC if self.moves else kinds.STATIC)
+        else:
+            body = kinds(block.mass, block.inertia)
+            body.velocity = block.velocity
+            body.angular_velocity = block.spin
+        body.position = block.place
+        body.angle = block.angle
+        self.space.add(body)
+        for part in block.parts:
+            shape = self.pymunk.Poly(body, part)
+            shape.elasticity = math.sqrt(self.restitution)  # a pair has the product of both
+            shape.collision_type = number + 1
+            self.space.add(shape)
+        return body
+
+    def _rub(self, first: int, second: int) -> None:
+        """Give two blocks the friction between them: a shape's own would be multiplied by the other one's."""
+        friction = friction_between(self.scene, first, second)
+
+        def before(arbiter: Any, _space: Any, _data: Any) -> None:
+            arbiter.friction = friction
+
+        self.space.on_collision(first + 1, second + 1, pre_solve=before)
 
     def advance(self, start: float, step: float) -> None:
         """Make one step of pymunk."""
-        if self.ground is not self.space.static_body:
-            self.ground.velocity = base_velocity(self.scene, start, step, self.ground.position.x), 0.0
+        if self.moves:
+            self.ground.velocity = base_velocity(self.scene, start, step, self.ground.position.x - self.middle), 0.0
         self.space.step(step)
 
     def poses(self) -> list[Pose]:
-        """Return position and angle of each box."""
+        """Return position and angle of each block."""
         return [(*body.position, body.angle) for body in self.boxes]
 
     def forces(self) -> list[float]:
@@ -101,7 +118,7 @@ class Pymunk(ExternalProgram):
     program = "pymunk (Chipmunk)"
     package = "pymunk"
     recipe = RECIPE
-    model = "boxes in the plane; contact by impulses, sequentially, warm-started"
+    model = "polygons in the plane, convex ones or triangles; contact by impulses, sequentially, warm-started"
     default = False
     settings = f"step 1/1920 s, {ITERATIONS} iterations, slop 10 micrometres, overlap corrected at 60 1/s"
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from peers.boxes import boxes_of, named, substeps
+from peers.boxes import named, on_endless_ground, substeps
 from peers.siconos import corner_on_ground, times
 from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.runs.history import Array
@@ -27,7 +27,7 @@ OF_VIBRATION = 0.02  # rad of a box on its springs in a step
 
 def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
     """Return the columns of a scene of rigid boxes; `ask` runs the program's side."""
-    pile = boxes_of(scene)
+    pile = on_endless_ground(scene)
     if pile.stiffness is not None:
         return springs(scene, pile, fine, ask)
     parts = substeps(scene, CHOSEN_STEP if fine else DEFAULT_STEP)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 
+from validation.advice.alarm import Alarm
+from validation.advice.block_alarms import block_alarms
 from validation.advice.coarse import closed
 from validation.advice.hooks import AdviceHooks, Layer, Motion
 from validation.advice.spectra import dda_modes
 from validation.errors import InputError
+from validation.runs.row import Row
 from validation.scenes.scene import Scene
 from validation.theory import statics
 
@@ -19,6 +22,12 @@ MOST_SUB_BLOCKS = 64  # whose modes are found here; those of more come from the 
 
 class HOOKS(AdviceHooks):
     """The first mode of a block that neither slides nor turns."""
+
+    has_budget = True
+
+    def alarms(self, scene: Scene, rows: Mapping[str, Row] | None = None) -> Iterator[Alarm]:
+        """Yield the alarms of tension, of a contact that rings, opens or slips, and of the start."""
+        return block_alarms(scene, rows or {})
 
     def motions(self, scene: Scene, frequency: float | None = None) -> Iterator[Motion]:
         """Yield the first mode, unless the block moves as a whole or is driven slowly."""

@@ -14,6 +14,8 @@ class Block(Kind):
 
     name = "block"
     words = "a block"
+    locks_contact = True
+    point = "centroid"
     rank = 0.0
     tables: ClassVar = {"block": BlockSection, "contact": ContactSection, "load": LoadSection}
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
-from validation.advice.alarm import Alarm
+from validation.advice.alarm import Alarm, first_row
 from validation.advice.columns import ColumnLimits, column_alarms, limits
 from validation.advice.hooks import AdviceHooks, Layer, Motion
 from validation.models.column.tables import ColumnSection
 from validation.runs.row import Row
 from validation.scenes.scene import Scene
+from validation.solvers.contract import Role
 from validation.theory import columns
 
 
@@ -26,9 +27,11 @@ class HOOKS(AdviceHooks):
         if driven is not None and driven.frequency is not None:
             yield Motion("the input", 2 * math.pi * driven.frequency)
 
-    def alarms(self, scene: Scene, row: Row | None = None) -> Iterator[Alarm]:
-        """Yield the alarms of contacts that open or slip."""
-        return column_alarms(scene, row)
+    def alarms(self, scene: Scene, rows: Mapping[str, Row] | None = None) -> Iterator[Alarm]:
+        """Yield the alarms of contacts that open or slip, after a run those of the judged method's."""
+        row = None if rows is None else first_row(rows, Role.JUDGED)
+        if rows is None or row is not None:
+            yield from column_alarms(scene, row)
 
     def contact_limits(self, scene: Scene) -> ColumnLimits | None:
         """Return what is known of contacts that open or slip, None of a bonded column."""

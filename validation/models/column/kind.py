@@ -35,9 +35,5 @@ class Column(Kind):
         has_weight = column.law == "unilateral" and column.gravity > 0
         return ("input",) if has_weight or any(layer.velocity for layer in column.layer) else ()
 
-    def motion_unread(self, scene: Any) -> str | None:
-        """Return that a bonded column is judged by its wave."""
-        return "one with a bonded column" if scene.column.law == "bonded" else None
-
 
 KIND = Column

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from validation.runs.history import Array
 from validation.scenes.keys import Key, Section
 from validation.scenes.outline import check_polygon
 from validation.scenes.tables import Count, Flag, Positive, Real, Stiffness
@@ -197,12 +198,16 @@ def centroid(vertices: Vertices) -> tuple[float, float]:
     return float(x), float(y)
 
 
-def polar_moment(vertices: Vertices) -> float:
-    """Return the polar second moment of an outline about its centroid [m4]: sum (a x b) (a.a + a.b + b.b) / 12."""
+def second_moments(vertices: Vertices) -> Array:
+    """Return the second moments of an outline about its centroid [m4], shape (2, 2); their trace is the polar one.
+
+    Each triangle of the centroid and an edge from a to b gives (a x b) (a a + (a b + b a) / 2 + b b) / 12.
+    """
     a = np.array(vertices) - centroid(vertices)
     b = np.roll(a, -1, axis=0)
     crosses = a[:, 0] * b[:, 1] - b[:, 0] * a[:, 1]
-    return float(crosses @ np.sum(a * a + a * b + b * b, axis=1)) / 12
+    products = np.einsum("n,ni,nj->ij", crosses, a, a + b / 2) + np.einsum("n,ni,nj->ij", crosses, b, b + a / 2)
+    return np.asarray(products / 12)
 
 
 def thickness(vertices: Vertices) -> float:

@@ -30,10 +30,6 @@ class BlocksInThePlane(Kind):
             return {"solvers": ["dda", "fem"], "columns": ["displacement"]}
         return {"solvers": ["dda"], "columns": list(table.assembly.pose_columns)}
 
-    def motion_unread(self, scene: Any) -> str:
-        """Return that no history of such blocks is explained."""
-        return f"a scene of {self.words}"
-
     def has_column(self, scene: Any, column: str) -> bool:
         """Whether a column is of moving blocks, corners and edges that there are."""
         plane: PlaneSection = scene.plane

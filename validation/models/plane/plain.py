@@ -6,26 +6,33 @@ import math
 from pathlib import Path
 from typing import Any, ClassVar
 
+import numpy as np
+
 from validation.errors import InputError
-from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, polar_moment
-from validation.models.plane.joints import PlaneContactSection
+from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, second_moments
+from validation.models.plane.joints import PlaneContactSection, PlaneTouchSection
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.outline import area
 from validation.scenes.plain import PlainHooks
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene
 
-SHAPES = frozenset(PlaneBlockSection.model_fields) - {"name", "density", "velocity", "spin", "fixed"}
+STATED = {"name", "density", "velocity", "spin", "fixed", "young", "poisson"}
+SHAPES = frozenset(PlaneBlockSection.model_fields) - STATED
 
 
 class HOOKS(PlainHooks):
-    """Rigid blocks, each where it is at t = 0, that touch by one law under their weight."""
+    """Blocks, each where it is at t = 0, that touch by the law of their pair under their weight."""
 
-    tables: ClassVar = {"plane.blocks": PlaneBlockSection, "plane.contact": PlaneContactSection}
+    tables: ClassVar = {
+        "plane.blocks": PlaneBlockSection,
+        "plane.contact": PlaneContactSection,
+        "plane.touches": PlaneTouchSection,
+    }
     unstated: ClassVar = {PlaneBlockSection: SHAPES}
 
     def data(self, scene: Scene) -> dict[str, Any]:
-        """Return blocks, contact and gravity.
+        """Return blocks, contacts and gravity; null where there is no law, no pair with its own, no stated contact.
 
         Raises
         ------
@@ -33,18 +40,20 @@ class HOOKS(PlainHooks):
             The scene has more than that.
         """
         plane = scene.table(PlaneSection)
-        more = [name for name in ("observe", "pair", "touch", "bond", "load", "ramp") if getattr(plane, name)]
-        if plane.moves and not all(math.isinf(block.young) for block in plane.assembly.blocks):
-            more.append("young")
-        if more or plane.contact is None:
-            rule = "plain data hold rigid blocks of one contact under weight"
-            raise InputError(rule, source=scene.name, field=f"plane.{more[0] if more else 'contact'}")
-        blocks = [_block(block) for block in plane.assembly.blocks]
+        if more := [name for name in ("observe", "bond", "load", "ramp") if getattr(plane, name)]:
+            rule = "plain data hold blocks and contacts under weight"
+            raise InputError(rule, source=scene.name, field=f"plane.{more[0]}")
+        blocks = plane.assembly.blocks
+        pairs = []
+        for (first, second), springs in plane.assembly.springs_of_pairs.items():
+            pairs.append({"blocks": [blocks[first].name, blocks[second].name], "contact": self.table(springs)})
         return {
             "plane": {
                 "gravity_m_per_s2": list(plane.gravity),
-                "contact": self.table(plane.contact),
-                "blocks": blocks,
+                "contact": plane.contact and self.table(plane.contact),
+                "pairs": pairs or None,
+                "touches": [self.table(touch) for touch in plane.touch] or None,
+                "blocks": [_block(block) for block in blocks],
             }
         }
 
@@ -63,9 +72,11 @@ def _block(block: PlacedBlock) -> dict[str, Any]:
         "vertices_m": [list(corner) for corner in block.vertices],
         "centroid_m": list(centroid(block.vertices)),
         "angle_rad": block.angle,
+        "young_Pa": None if math.isinf(block.young) else block.young,
+        "poisson": None if math.isinf(block.young) else block.poisson,
         "density_kg_per_m3": block.density,
         "mass_kg": mass,
-        "inertia_kg_m2": block.density * polar_moment(block.vertices),
+        "inertia_kg_m2": block.density * float(np.trace(second_moments(block.vertices))),
         "velocity_m_per_s": list(block.velocity),
         "spin_rad_per_s": block.spin,
     }

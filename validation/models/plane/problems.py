@@ -11,7 +11,6 @@ import functools
 import math
 import re
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,14 +18,17 @@ import numpy as np
 from validation.diagnosis.numbers import Values
 from validation.errors import InputError
 from validation.models.plane import measures
+from validation.models.plane.blocks import centroid
 from validation.models.plane.boxes import BoxesOnGround, boxes_of
+from validation.models.plane.canon import CANON_ASKS, canon_problems
+from validation.models.plane.posed import EITHER_WAY, PREFIX, PlaneCase, PlaneProblem, own_scene
 from validation.models.plane.tables import PlaneSection
 from validation.problems.numbered import UNKNOWN, JudgedNumber, around
 from validation.problems.problem import Problem, ProblemHooks
 from validation.runs.columns import unit_of
 from validation.runs.history import Array, History
 from validation.runs.units import ratios
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import Scene
 from validation.theory.boxes import (
     ShakenBox,
     SpringImpact,
@@ -37,78 +39,9 @@ from validation.theory.boxes import (
 from validation.theory.rocking import Rectangle
 
 FIRST_ROW = 0.3  # relative, of the height of a box: what it may have changed by at the first row
-PREFIX = "rigid-"  # of the scenes of problems
 BOX = "plane.block.1"  # the first box of a scene, after its ground
 MINUTE = 60.0  # s
 SETTLED = 0.5  # s after a landing: what moves away then has rebounded
-EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
-
-
-@dataclass(frozen=True)
-class BoxCase:
-    """A case of a problem.
-
-    Attributes
-    ----------
-    label
-        The values that it differs by from the problem's own scene, in words; empty for that one.
-    values
-        The same as keys of a scene.
-    quantities
-        What is measured on its answers, where it is another question than that of the problem's own scene.
-    """
-
-    label: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-    quantities: Callable[[Scene], tuple[JudgedNumber, ...]] | None = None
-
-
-@dataclass(frozen=True)
-class BoxProblem:
-    """A problem of boxes on a ground.
-
-    Attributes
-    ----------
-    name
-        Of the problem; its scene is `PREFIX` + name.
-    quantities
-        Function of a scene that returns what is measured on its answers.
-    variants
-        The cases beside the problem's own scene.
-    forces
-        Whether forces are asked for where a program reports them.
-    changeable
-        Keys of `[plane]` that may be others than in the problem's scene, so that the same numbers answer the question.
-    """
-
-    name: str
-    quantities: Callable[[Scene], tuple[JudgedNumber, ...]]
-    variants: tuple[BoxCase, ...] = ()
-    forces: bool = False
-    changeable: tuple[str, ...] = ()
-
-    @property
-    def cases(self) -> tuple[BoxCase, ...]:
-        """All cases, the problem's own scene first."""
-        return (BoxCase(""), *self.variants)
-
-    def scene(self, case: BoxCase | None = None) -> Scene:
-        """Return the scene of a case; the problem's own by default."""
-        own_scene = _scene(self.name)
-        if case is None or not case.label:
-            return self._with_forces(own_scene)
-        changed = own_scene.with_values(dict(case.values))
-        return self._with_forces(changed).model_copy(update={"name": f"{PREFIX}{self.name}[{case.label}]"})
-
-    def _with_forces(self, scene: Scene) -> Scene:
-        if not self.forces:
-            return scene
-        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
-
-
-@functools.cache
-def _scene(name: str) -> Scene:
-    return load_scene(PREFIX + name)
 
 
 # ---- standing -------------------------------------------------------------------------------------------------------
@@ -152,7 +85,7 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
 
 FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
 STANDING_CASES = tuple(
-    BoxCase(f"friction {friction:g} deg", {"plane.contact.friction": friction, "time.steps": 40})
+    PlaneCase(f"friction {friction:g} deg", {"plane.contact.friction": friction, "time.steps": 40})
     for friction in FRICTIONS
 )
 
@@ -186,15 +119,15 @@ SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs leave restitution away below a thresho
 LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of the curves' first runs
 
 
-def _restitution_cases() -> tuple[BoxCase, ...]:
+def _restitution_cases() -> tuple[PlaneCase, ...]:
     cases = []
-    half_height = boxes_of(_scene("restitution")).boxes[0].height / 2
+    half_height = boxes_of(own_scene("restitution")).boxes[0].height / 2
     for e in RESTITUTIONS:
         for speed in SPEEDS:
             if (e, speed) == (0.5, 1.0):  # the problem's own scene
                 continue
             thrown = {f"{BOX}.at": [0.0, half_height + LANDING * speed], f"{BOX}.velocity": [0.0, -speed]}
-            cases.append(BoxCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown}))
+            cases.append(PlaneCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown}))
     return tuple(cases)
 
 
@@ -316,8 +249,8 @@ LIGHT = 10.0  # kg/m3, of the lower box
 RATIOS = (1, 10, 1000)  # of the mass of the upper box to that of the lower one; 100 is the problem's own
 
 
-def _heavy_top_cases() -> tuple[BoxCase, ...]:
-    return tuple(BoxCase(f"mass ratio {ratio}", {"plane.block.2.density": LIGHT * ratio}) for ratio in RATIOS)
+def _heavy_top_cases() -> tuple[PlaneCase, ...]:
+    return tuple(PlaneCase(f"mass ratio {ratio}", {"plane.block.2.density": LIGHT * ratio}) for ratio in RATIOS)
 
 
 # ---- toppling -------------------------------------------------------------------------------------------------------
@@ -379,14 +312,14 @@ SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
 DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
 
 
-def _toppling_cases() -> tuple[BoxCase, ...]:
-    box = rectangle_of(boxes_of(_scene("toppling")))
+def _toppling_cases() -> tuple[PlaneCase, ...]:
+    box = rectangle_of(boxes_of(own_scene("toppling")))
     cases = []
     for factor in SPINS:
         spin = factor * critical_spin(box)
         velocity = [-spin * box.height / 2, spin * box.width / 2]
         started = {f"{BOX}.velocity": velocity, f"{BOX}.spin": spin, "time.steps": DECIDED}
-        cases.append(BoxCase(f"spin {factor:g} of critical", started, overturning))
+        cases.append(PlaneCase(f"spin {factor:g} of critical", started, overturning))
     return tuple(cases)
 
 
@@ -527,20 +460,26 @@ def _times(factor: float, value: float | None) -> float | None:
 
 
 @functools.cache
-def box_problems() -> Mapping[str, BoxProblem]:
+def box_problems() -> Mapping[str, PlaneProblem]:
     """Return the problems of boxes by name."""
     problems = (
-        BoxProblem("standing", standing, STANDING_CASES, changeable=("contact.friction", "gravity")),
-        BoxProblem("restitution", restitution, _restitution_cases(), changeable=("contact.restitution",)),
-        BoxProblem("bouncing", bouncing),
-        BoxProblem("tumbling", tumbling),
-        BoxProblem("pile", pile, forces=True),
-        BoxProblem("heavy-top", pile, _heavy_top_cases(), forces=True),
-        BoxProblem("toppling", toppling, _toppling_cases()),
-        BoxProblem("shaken", shaken),
-        BoxProblem("impact", impact, forces=True),
+        PlaneProblem("standing", standing, STANDING_CASES, changeable=("contact.friction", "gravity")),
+        PlaneProblem("restitution", restitution, _restitution_cases(), changeable=("contact.restitution",)),
+        PlaneProblem("bouncing", bouncing),
+        PlaneProblem("tumbling", tumbling),
+        PlaneProblem("pile", pile, forces=True),
+        PlaneProblem("heavy-top", pile, _heavy_top_cases(), forces=True),
+        PlaneProblem("toppling", toppling, _toppling_cases()),
+        PlaneProblem("shaken", shaken),
+        PlaneProblem("impact", impact, forces=True),
     )
     return {box_problem.name: box_problem for box_problem in problems}
+
+
+@functools.cache
+def plane_problems() -> Mapping[str, PlaneProblem]:
+    """Return all problems of blocks in the plane by name."""
+    return {**box_problems(), **{problem.name: problem for problem in canon_problems()}}
 
 
 ASKS = {
@@ -556,7 +495,7 @@ ASKS = {
 }
 
 
-def problem_posed(scene: Scene) -> BoxProblem:
+def problem_posed(scene: Scene) -> PlaneProblem:
     """Return the problem that a scene of blocks poses: one of the suite's, some of its data perhaps changed.
 
     Raises
@@ -565,18 +504,18 @@ def problem_posed(scene: Scene) -> BoxProblem:
         It is none of them; what is measured on any other scene of blocks, and against what, nobody has said.
     """
     name = scene.name.removeprefix(PREFIX).partition("[")[0]
-    if name not in ASKS or not scene.name.startswith(PREFIX):
-        rule = f"must be one of {', '.join(ASKS)}: blocks that move are judged by the numbers of a problem"
+    if name not in plane_problems() or not scene.name.startswith(PREFIX):
+        rule = f"must be one of {', '.join(plane_problems())}: blocks that move are judged by the numbers of a problem"
         raise InputError(rule, source=scene.name, field="plane", advice="name the problem, and use --set")
-    problem = box_problems()[name]
-    own_scene = problem.scene()
+    problem = plane_problems()[name]
+    as_posed = problem.scene()
     stated = _flat(scene)
-    for field_name, value in _flat(own_scene).items():
+    for field_name, value in _flat(as_posed).items():
         if stated.get(field_name) != value and field_name not in problem.changeable:
             free = " and ".join(f"plane.{key}" for key in problem.changeable) or "nothing"
             rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
             raise InputError(rule, source=scene.name, field=f"plane.{field_name}")
-    same_time = (scene.time.step, scene.time.steps) == (own_scene.time.step, own_scene.time.steps)
+    same_time = (scene.time.step, scene.time.steps) == (as_posed.time.step, as_posed.time.steps)
     if not same_time:
         raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
     return problem
@@ -589,10 +528,11 @@ def _flat(scene: Scene) -> dict[str, Any]:
     return data | {f"contact.{name}": value for name, value in (contact or {}).items()}
 
 
-def _problem(name: str, posed: BoxProblem, case: BoxCase) -> Problem:
+def _problem(name: str, posed: PlaneProblem, case: PlaneCase) -> Problem:
     scene = posed.scene(case)
     title = ": ".join(part for part in (scene.title, case.label) if part)
-    return Problem(name, ASKS[posed.name], title, scene, None, (case.quantities or posed.quantities)(scene))
+    asks = (ASKS | CANON_ASKS)[posed.name]
+    return Problem(name, asks, title, scene, None, (case.quantities or posed.quantities)(scene))
 
 
 class HOOKS(ProblemHooks):
@@ -600,7 +540,7 @@ class HOOKS(ProblemHooks):
 
     def problems(self) -> Iterator[tuple[str, Callable[[], Problem]]]:
         """Yield the cases of all problems; a case has its values in the name."""
-        for posed in box_problems().values():
+        for posed in plane_problems().values():
             for case in posed.cases:
                 label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower()).strip("-")
                 name = "-".join(part for part in (posed.name, label) if part)
@@ -621,9 +561,12 @@ class HOOKS(ProblemHooks):
 
     def other_units(self, scene: Scene, history: History) -> Iterator[tuple[str, str]]:
         """Yield heights that begin in another unit."""
-        starts = {f"{box.name}.y": box.y for box in boxes_of(scene).boxes}
+        blocks = scene.table(PlaneSection).assembly.blocks
+        starts = {f"{block.name}.y": centroid(block.vertices)[1] for block in blocks if not block.held}
         for column, start in starts.items():
             values = history.columns.get(column, np.array([start]))
+            if abs(start) < FIRST_ROW:  # m: no height that a unit would show in
+                continue
             for ratio, other_unit in ratios(unit_of(column, scene.kind.columns)).items():
                 if abs(values[0] / start / ratio - 1) < FIRST_ROW:
                     rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"

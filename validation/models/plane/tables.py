@@ -10,12 +10,13 @@ import math
 from functools import cached_property
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import model_validator
 
-from validation.models.plane import assembly
+from validation.models.plane import assembly, geometry
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import Point as Point
-from validation.models.plane.blocks import Vertices, cells
+from validation.models.plane.blocks import Vertices, cells, thickness
 from validation.models.plane.contents import GENERATORS, PlaneContents
 from validation.models.plane.generators import MOST_BLOCKS
 from validation.models.plane.joints import Segment as Segment
@@ -42,6 +43,7 @@ class ObserveSection(Section):
     point: Annotated[Point | None, Key("m", "in its place")] = None
     direction: Annotated[tuple[Real, Real], Key("", "of the displacement, a unit vector")]
     less: Annotated[tuple[Segment, ...], Key("m", "edges, the mean of whose displacements is subtracted")] = ()
+    stress: Annotated[Point | None, Key("m", "where the mean stress of the blocks is observed that meet there")] = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
@@ -129,6 +131,15 @@ class PlaneSection(PlaneContents):
         if self.observe is None:
             raise ValueError("observe: is needed for what is asked, got blocks that move")
         return self.observe
+
+    @property
+    def stressed_blocks(self) -> list[int]:
+        """Numbers of the glued blocks that meet where the stress is observed, of the nearest ones if none is there."""
+        place = np.array([self.observed.stress])
+        polygons = self.polygons
+        apart = [0.0 if geometry.inside(place, p)[0] else geometry.distances(place, p)[0] for p in polygons]
+        near = min(apart) + assembly.TOUCHING * min(thickness(polygon) for polygon in polygons)
+        return [number for number, distance in enumerate(apart) if distance <= near]
 
     @property
     def tractions(self) -> tuple[tuple[Segment, tuple[float, float]], ...]:

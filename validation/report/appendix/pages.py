@@ -10,13 +10,14 @@ from validation.report.appendix.provenance import parameter_table, provenance
 from validation.report.blocks import Blocks, Heading, References
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import Groups, Verdicts
+from validation.report.verification import matrix
 from validation.runs.results import Results
 
 
 def appendix(
     results: Results, groups: Groups, verdicts: Verdicts, studies: Sequence[str], gates: bool = False
 ) -> Blocks:
-    """Return words, alarms, parameters, provenance and references, and the gates that passed if they are asked for."""
+    """Return words, alarms, parameters, provenance and references; of gates, if asked for, what they verify too."""
     alarms: Blocks = [*alarm_lines(groups)] if len(groups) > 1 else []  # of one scene on its own page
     return [
         Heading("Appendix"),
@@ -24,6 +25,6 @@ def appendix(
         *([Heading("Alarms", 2), *alarms] if alarms else []),
         *parameter_table(groups),
         *provenance(results, studies),
-        *(gate_table(verdicts) if gates else ()),
+        *([*matrix(verdicts), *gate_table(verdicts)] if gates else ()),
         References(),
     ]

@@ -39,9 +39,8 @@ def answer_figure(scene: Scene, answer: Answer, slide: bool = False) -> Figure:
         pressure = {PRESSURE: answer.pressures[name]} if name in answer.pressures else {}
         histories_by_name[name] = History(time, {DISPLACEMENT: values, **pressure})
     drawn = (DISPLACEMENT, PRESSURE) if answer.pressures else (DISPLACEMENT,)
-    point = "centroid" if "block" in scene.tables() else "top"
     panel = HistoryPanel(
-        f"displacement of the {point}" + (", contact pressure" if answer.pressures else ""),
+        f"displacement of the {scene.kind.point}" + (", contact pressure" if answer.pressures else ""),
         histories_by_name,
         {},
         next(iter(answer.curves)),

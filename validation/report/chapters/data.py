@@ -19,7 +19,6 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import FULL, by_role
 
 Verdicts = Sequence[VerdictRecord]
-DerivedRows = Mapping[tuple[str, str], Mapping[str, Any]]  # (scene or case, name) -> metrics
 
 
 @dataclass(frozen=True)
@@ -118,14 +117,13 @@ def case_groups(results: Results, manifest: Manifest, drawn: bool = True) -> lis
     return groups
 
 
-def groups_by_name(results: Results, manifest: Manifest) -> Groups:
-    """Return the scenes of a study with their histories, by the scenes' names."""
-    return {group.name: group for group in case_groups(results, manifest)}
-
-
-def derived_rows(manifest: Manifest) -> DerivedRows:
-    """Return the metrics of a study's derived rows."""
-    return {(row["scene"], row["name"]): row["metrics"] for row in manifest.get("derived", [])}
+def groups_of_studies(results: Results, manifests: Iterable[Manifest], drawn: bool = True) -> dict[str, CaseGroup]:
+    """Return the scenes of studies by their names, each as the first study has it."""
+    groups: dict[str, CaseGroup] = {}
+    for manifest in manifests:
+        for group in case_groups(results, manifest, drawn):
+            groups.setdefault(group.name, group)
+    return groups
 
 
 def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:

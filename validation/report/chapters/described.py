@@ -8,28 +8,26 @@
     [[NAME]]        the entries of a list
 
 A column has a title, and where needed a group, a kind and what it is `of`: an expression of a case as
-`validation.report.chapters.queries` has them, or a word for a value that the module computes from the case.
+`validation.report.chapters.queries` has them, or a word for a value of the module's own.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from validation.metrics.catalogue import in_words
 from validation.report.blocks import FigureBlock, Head, Kind, Table, TableColumn, table
-from validation.report.chapters.data import CaseGroup, CaseResults
+from validation.report.chapters.data import CaseResults
 from validation.report.chapters.queries import value_of_case
 from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.texts import FILLED, Texts
-from validation.runs.numbers import DASH, FORMS, decimal
+from validation.runs.numbers import FORMS, decimal
 from validation.runs.row import Value
-
-CaseValue = Value | Callable[[CaseResults], Value]
 
 
 @dataclass(frozen=True)
@@ -61,16 +59,9 @@ class CaseColumn:
             return FORMS[self.form](number, self.digits)
         return decimal(number, self.decimals)
 
-    def of_case(
-        self, case: CaseResults | None, group: CaseGroup | None = None, own: Mapping[str, CaseValue] = {}
-    ) -> str:
-        """Return the cell of a case of a group; `own` are values, or functions of the case."""
-        if case is None:
-            return DASH
-        if self.of in own:
-            value = own[self.of]
-            return self.text(value(case) if callable(value) else value)
-        return self.text(value_of_case(case, group, self.of))
+    def of_case(self, case: CaseResults, own: Mapping[str, Value] = {}) -> str:
+        """Return the cell of a case; `own` are values by names that stand in place of an expression."""
+        return self.text(own[self.of] if self.of in own else value_of_case(case, None, self.of))
 
 
 class Description(Texts):
@@ -102,11 +93,6 @@ class Description(Texts):
         if values:
             described["caption"] = FILLED.vformat(described["caption"], (), values)
         return table(heads or [column.head for column in self.columns(name)], rows, **described)
-
-    def case_table(self, name: str, group: CaseGroup, own: Mapping[str, CaseValue] = {}) -> Table:
-        """Return a table with a row for each case of a group."""
-        columns = self.columns(name)
-        return self.table(name, ([column.of_case(case, group, own) for column in columns] for case in group.cases))
 
     def panel(self, name: str, lines: Sequence[ChartLine], **parts: Any) -> ChartPanel:
         """Return a panel with these lines; `parts` stand beside or in place of the described ones."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from validation.metrics.catalogue import in_words, is_count, words_of
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
@@ -32,9 +34,8 @@ def measured(v: VerdictRecord) -> str:
     return f"{words_of(v['metric'])}{until}"
 
 
-def band(v: VerdictRecord) -> str:
-    """Return the band of a verdict's gate, with as many digits as tell its edges apart."""
-    low, high = v["band"]
+def band_cell(low: float, high: float) -> str:
+    """Return a band with as many digits as tell its edges apart."""
     size = max(abs(low), abs(high))
     digits = next((d for d in range(4, 16) if high - low > 3 * 10.0**-d * size), 16)
     if low != high and digits > NARROW:
@@ -48,6 +49,18 @@ def reason(v: VerdictRecord) -> str:
     width = f" ± {short(uncertainty, 2)}" if uncertainty else ""
     why = f" {capital(v['why'])}." if v.get("why") else ""
     return f"{v['reason']} [{v['reference_kind']}{width}]{why}"
+
+
+def verdict_line(verdicts: Verdicts) -> Callout:
+    """Return the one line of verdicts."""
+    if not verdicts:
+        return Callout("No gate was judged.", "warn")
+    count = Counter(v["verdict"] for v in verdicts)
+    gates = "gate" if len(verdicts) == 1 else "gates"
+    text = f"{len(verdicts)} {gates}: {count['PASS']} passed, {count['FAIL']} failed, {count['NOT RUN']} not run."
+    if count["FAIL"]:
+        return Callout(text, "fail")
+    return Callout(text, "warn" if count["NOT RUN"] else "pass")
 
 
 def not_passed(verdicts: Verdicts) -> Blocks:
@@ -75,7 +88,7 @@ def gate_table(verdicts: Verdicts) -> Table:
     rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in verdicts:
         subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
-        row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band(v))
+        row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band_cell(*v["band"]))
         rows_by_reason.setdefault(reason(v), []).append(row)
     lines: list[tuple[str, ...]] = []
     for why, rows in rows_by_reason.items():

@@ -28,6 +28,7 @@ An expression says what is looked up of a line:
 from __future__ import annotations
 
 import fnmatch
+import itertools
 import math
 import operator
 import re
@@ -36,7 +37,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from validation.report.chapters.data import CaseGroup, CaseResults, derived_rows, groups_by_name
+from validation.report.chapters.data import CaseGroup, CaseResults, groups_of_studies
 from validation.runs.case_name import scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -71,14 +72,17 @@ class Line:
 
 
 class StudyTable:
-    """The table of a study, from its results."""
+    """The table of a study, from its results; of several the scenes and rows of all, the rest of the first."""
 
-    def __init__(self, results: Results, manifest: Manifest) -> None:
-        self.manifest = manifest
-        self.groups = groups_by_name(results, manifest)
-        self.derived = derived_rows(manifest)
-        self.verdicts = results.verdicts(manifest["study"])
-        self.data: Mapping[str, Any] = manifest.get("data") or {}
+    def __init__(self, results: Results, *manifests: Manifest, drawn: bool = True) -> None:
+        self.manifest = manifests[0]
+        self.groups = groups_of_studies(results, manifests, drawn)
+        rows = itertools.chain.from_iterable(manifest.get("derived", []) for manifest in reversed(manifests))
+        self.derived: Mapping[tuple[str, str], Mapping[str, Any]] = {
+            (row["scene"], row["name"]): row["metrics"] for row in rows
+        }
+        self.verdicts = results.verdicts(self.manifest["study"])
+        self.data: Mapping[str, Any] = self.manifest.get("data") or {}
         self.cases = {case.name: (group, case) for group in self.groups.values() for case in group.cases}
 
     def lines(self, query: Query) -> list[Line]:
@@ -100,6 +104,8 @@ class StudyTable:
                     for verdict in (one for one in group.verdicts if one["scene"] == case.name):
                         low, high = verdict["band"]
                         judged = {"metric": verdict["metric"], "value": verdict["value"], "low": low, "high": high}
+                        until = verdict["id"].partition("@")[2].removesuffix("s")
+                        judged |= {"pair": "|".join(verdict["pair"]), "until": _number(until)}
                         yield replace(line, words={**words, **judged})
                 else:
                     yield line

@@ -11,10 +11,10 @@ from pathlib import Path
 
 import numpy as np
 
+from validation.advice.hooks import AdviceHooks
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
-from validation.report.blocks import Beside, Blocks, Callout, FigureBlock, Heading, Paragraph
-from validation.report.chapters.alarms import alarm_lines
+from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph
 from validation.report.chapters.budget import budget_blocks
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.data import CaseGroup, CaseResults, Verdicts, case_groups
@@ -24,10 +24,6 @@ from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
-from validation.report.figures.drawing import scene_figure
-from validation.report.scene.differences import difference_table
-from validation.report.scene.page import SceneDescription
-from validation.runs.case_name import CaseName
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import bounded, percent, plain, power, short
@@ -47,7 +43,6 @@ PERIODS = 5  # of the first mode, over which the figure that opens a page shows 
 VISIBLE = 0.1  # relative difference that is seen on a page, while the motions are still seen to be the same one
 FEWEST = 3  # steps that make a line
 LEAD_COLUMNS = 2  # that this figure holds
-DRAWING_SHARE = 0.38  # of the width of a page
 LEAD_ROW = 30.0  # mm, height of a column in it
 _PREFIX = {DISPLACEMENT: "displacement", PRESSURE: "pressure"}
 
@@ -56,7 +51,7 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     """Return the chapter of a study: its question, then a section for each scene; of one scene its page."""
     groups = case_groups(results, manifest)
     if len(groups) == 1:
-        return scene_page(groups[0], directory, summarised=True)
+        return scene_page(groups[0], directory)
     columns = [_columns(group)[:1] if len(groups) > FEW else None for group in groups]
     blocks = opening(manifest)
     for group, drawn in zip(groups, columns, strict=True):
@@ -64,45 +59,12 @@ def scene_chapter(results: Results, manifest: Manifest, directory: Path) -> Bloc
     return [*blocks, *ledger_blocks(groups, manifest["study"], directory)]
 
 
-def scene_page(group: CaseGroup, directory: Path, summarised: bool = False) -> Blocks:
-    """Return the page of a scene: drawing and finding, the case that shows it best, alarms, all cases, numbers.
-
-    If `summarised`, the finding is followed by what page 1 of a report says, in place of data, alarms and differences.
-    """
+def scene_page(group: CaseGroup, directory: Path) -> Blocks:
+    """Return the page of a scene: finding, what page 1 of a report says, the case that shows it best, all cases."""
     _, finding, *section = scene_section(group, directory, () if _is_shown_whole(group) else None)
+    summary = scene_summary(group, directory)
     lead = lead_figure(group, directory)
-    budgets = budget_blocks(group, directory)
-    if summarised:
-        return [Heading(group.title), finding, *scene_summary(group, directory), *lead, *section, *budgets]
-    drawing = histories.saved(scene_figure(group.cases[0].scene), directory, f"{group.slug}-drawing.svg", "")
-    return [
-        Heading(group.title),
-        Beside((drawing,), (finding, description(group).facts()), DRAWING_SHARE),
-        *lead,
-        *alarm_lines({group.name: group}),
-        *section,
-        *difference_blocks(group),
-        *budgets,
-    ]
-
-
-def description(group: CaseGroup) -> SceneDescription:
-    """Return what is known of a scene without its runs."""
-    varied: dict[str, dict[str, None]] = {}
-    for case in group.cases:
-        for key, value in CaseName.parse(case.name).values.items():
-            varied.setdefault(key, {})[value] = None
-    scenes = [case.scene for case in group.cases]
-    return SceneDescription(scenes, len(scenes), {key: [*values] for key, values in varied.items()}, group.solvers)
-
-
-def difference_blocks(group: CaseGroup) -> Blocks:
-    """Return what the solvers of a scene differ by; nothing where no pair was compared."""
-    labels = {case.name: case.label for case in group.cases}
-    compared = difference_table(
-        group.comparisons, lambda case: labels.get(case, case), lambda share: bounded(share, short(share, 3))
-    )
-    return [compared] if compared.rows else []
+    return [Heading(group.title), finding, *summary, *lead, *section, *budget_blocks(group, directory)]
 
 
 def opening(manifest: Manifest, verdicts: Verdicts = (), lead: str = "", remark: str = "") -> Blocks:
@@ -140,7 +102,7 @@ def scene_section(
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
     scene = group.cases[0].scene
-    if features.linear(scene) and "block" in scene.tables():
+    if features.linear(scene) and AdviceHooks.of(scene).has_budget:
         table = damping_table(group)
         blocks += [table] if table.rows else []
     return blocks

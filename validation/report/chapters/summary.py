@@ -17,13 +17,13 @@ from validation.advice.coarse import removal_of
 from validation.report.blocks import Beside, Blocks, Heading, Paragraph, Points, Table
 from validation.report.chapters.alarms import alarm_lines
 from validation.report.chapters.data import CaseGroup, CaseResults, Groups, varied_fields
-from validation.report.chapters.described import CaseValue, Description
+from validation.report.chapters.described import Description
 from validation.report.chapters.text import AS_STATED, parameters, range_of, span
 from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.hooks import SCHEMES, ShowingHooks
 from validation.runs.numbers import DASH, bounded, percent, plain, short
-from validation.runs.row import Row
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -40,7 +40,7 @@ LEVELS = (0.1, 0.01, 0.001)  # errors of the displacement that a fastest run is 
 ERRORS = ("displacement.l2", "pressure.l2", "horizontal.l2")
 COSTS = (*ERRORS, "unknowns", "solves", "steps", "setup", "stepping")
 MESHES = ("fem", "fenicsx")
-Lines = Iterable[tuple[CaseResults, Mapping[str, CaseValue]]]  # of a table: the case, and what is computed from it
+Lines = Iterable[tuple[CaseResults, Mapping[str, Value]]]  # of a table: the case, and what is computed from it
 
 
 def scene_summary(group: CaseGroup, directory: Path) -> Blocks:
@@ -60,7 +60,7 @@ def overview(groups: Groups) -> Table:
     """Return a line for each scene: how far DDA is off, what its first mode is damped by, what a run costs."""
     lines = []
     for group in groups.values():
-        own: dict[str, CaseValue] = {"title": group.title, "cases": float(len(group.cases))}
+        own: dict[str, Value] = {"title": group.title, "cases": float(len(group.cases))}
         errors = [errors_of(group, case, "dda", reference_of(group, case)) for case in group.cases]
         for metric in ERRORS:
             values = [found[metric] for found in errors if metric in found]
@@ -80,7 +80,7 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
     previous = ""
     for case, own in lines:
         label = "" if case.label in (AS_STATED, previous) else case.label
-        rows.append([column.of_case(case, None, {"case": label, **own}) for column in described])
+        rows.append([column.of_case(case, {"case": label, **own}) for column in described])
         previous = case.label
     kept = [place for place, cells in enumerate(zip(*rows, strict=True)) if not set(cells) <= {DASH, "", "0"}]
     return PAGE.table(name, [[row[i] for i in kept] for row in rows], [described[i].head for i in kept], **values)

@@ -12,8 +12,8 @@ from validation.runs.case_name import CaseName
 from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
 from validation.runs.text import shown
-from validation.scenes.keys import keys_of, stated_value
-from validation.scenes.scene import Scene
+from validation.scenes.keys import key_of_any_entry, keys_of, stated_value
+from validation.scenes.scene import Scene, tables_of_scenes
 
 AS_STATED = "as stated"  # label of a case without swept values
 _MEANINGS = (
@@ -84,7 +84,7 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     for field, value in CaseName.parse(name).values.items():
         if field in without:
             continue
-        symbol, unit = _symbol(scene, field)
+        symbol, unit = _symbol(field)
         if field == "contact.stiffness":
             unit = ""
             value = f"{scene.contact.stiffness / scene.block.young:.4g}E"
@@ -94,11 +94,12 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     return ", ".join(parts) or AS_STATED
 
 
-def _symbol(scene: Scene, field: str) -> tuple[str, str]:
+def _symbol(field: str) -> tuple[str, str]:
     """Return the symbol of a key and its unit, as they stand beside a number."""
-    place, _, name = field.partition(".")
-    table = scene.tables().get(place)
-    for key_name, _, key in keys_of(type(table)) if table is not None else ():
+    tables = tables_of_scenes()
+    place, _, name = key_of_any_entry(field, tables).rpartition(".")
+    table = tables.get(place)
+    for key_name, _, key in keys_of(table) if table is not None else ():
         if key_name == name:
             unit = "°" if key.unit == "deg" else f" {key.unit.translate(UNITS)}".rstrip()
             unit = "E" if field == "block.glue_ratio" else unit
@@ -133,7 +134,7 @@ def parameter_items(scene: Scene, varied: set[str]) -> list[str]:
             is_newmarks = path in NEWMARK_DATA and scene.time.scheme != "newmark"
             if path in varied | NO_DATA | hooks.no_data or is_default or is_newmarks:
                 continue
-            symbol, unit = _symbol(scene, path)
+            symbol, unit = _symbol(path)
             items.append(f"{symbol} = {written(value)}{unit}" if symbol else f"{written(value)}{unit}")
     return items
 

@@ -15,6 +15,8 @@ and is left out where a table or figure that it names shows nothing:
     { picture = "cuts" }                                   scenes as they are drawn
     { frames = "push" }                                    a motion at some instants, with contact forces
     { call = "f" }                                         what the function f(table, directory) of chapter.py returns
+    { sketch = "figures-3-4", share = 0.4, beside = [] }   the two-block model of a scene, and parts beside it
+    { points = ["a", "b"], heading = "In {count} points" } texts, each after ``NAME-question``; what has no numbers goes
 
 and ``when``, a list of scenes that must be there. `validation.report.chapters.queries` has queries and expressions:
 
@@ -43,7 +45,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.report.blocks import Blocks, Callout, FigureBlock, Heading, Paragraph, Table, table
+from validation.report.blocks import Beside, Blocks, Callout, FigureBlock, Heading, Paragraph, Points, Table, table
 from validation.report.chapters.described import CaseColumn, Description
 from validation.report.chapters.ledger import ledger_blocks
 from validation.report.chapters.queries import Line, Query, StudyTable
@@ -53,6 +55,7 @@ from validation.report.figures.charts import ChartLine
 from validation.report.figures.drawing import FigureHooks, scenes_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
+from validation.report.figures.model import model_figure
 from validation.runs.history import Array
 from validation.runs.numbers import DASH
 from validation.runs.records import Manifest
@@ -63,6 +66,7 @@ from validation.solvers.registry import by_role
 
 NO_QUERY: Query = {}
 COLUMN_FIELDS = {one.name for one in fields(CaseColumn)}
+COUNTS = ("no", "one", "two", "three", "four", "five")
 LINE_FIELDS = {one.name for one in fields(ChartLine)} - {"name", "x", "y", "shaded", "notes"}
 
 
@@ -87,10 +91,10 @@ class WrittenChapter:
     directory: Path
     module: ModuleType | None = None
 
-    def blocks(self) -> Blocks:
-        """Return the blocks of all parts."""
+    def blocks(self, name: str = "parts") -> Blocks:
+        """Return the blocks of all parts, or of those of another list."""
         blocks: Blocks = []
-        for part in self.page.entries("parts"):
+        for part in self.page.entries(name):
             needed = {*part.get("when", ()), *filter(None, [part.get("heading_of"), part.get("section")])}
             if not needed <= set(self.table.groups):
                 continue
@@ -109,6 +113,10 @@ class WrittenChapter:
         if "call" in part:
             blocks: Blocks = getattr(self.module, part["call"])(self.table, self.directory)
             return blocks
+        if "sketch" in part:
+            return self._sketch(part)
+        if "points" in part:
+            return self._pointed(part)
         if "section" in part:
             group = self.table.groups[part["section"]]
             without = tuple(by_role(Role.TRUTH)) if part.get("without") == "truth" else ()
@@ -144,6 +152,17 @@ class WrittenChapter:
         lead = self.text(part["opening"]) if part["opening"] else ""
         remark = self.text(part["remark"]) if "remark" in part else ""
         return opening(self.table.manifest, self.table.verdicts if part.get("gates") else (), lead, remark)
+
+    def _sketch(self, part: Query) -> Blocks:
+        scene = self.table.groups[part["sketch"]].cases[0].scene
+        figure = model_figure(f"a = {scene.block.side or 0:g} m", f"q = {scene.load.pressure / 1e6:g} MPa")
+        beside = itertools.chain.from_iterable(map(self._part, part["beside"]))
+        return [Beside((saved(figure, self.directory, "model.svg", ""),), tuple(beside), part["share"])]
+
+    def _pointed(self, part: Query) -> Blocks:
+        texts = {name: self.text(name) for name in part["points"]}
+        items = tuple((self.text(f"{name}-question"), text) for name, text in texts.items() if text)
+        return [Heading(part["heading"].format(count=COUNTS[len(items)]), 3), Points(items)]
 
     def _paragraph(self, name: str, part: Query) -> Blocks:
         text = self.text(name)
@@ -232,7 +251,7 @@ class WrittenChapter:
         return pattern.format(text, *others)
 
     def _caption(self, text: str) -> str:
-        values = {word: self._word(word) for _, word, _, _ in string.Formatter().parse(text) if word}
+        values = {word: self._word(word) or DASH for _, word, _, _ in string.Formatter().parse(text) if word}
         return text.format_map(values) if values else text
 
     # ---- figures ----------------------------------------------------------------------------------------------------
@@ -249,12 +268,23 @@ class WrittenChapter:
             for line in panel["lines"]:
                 lines += self._lines(_within(line, query))
             if lines:
-                panels.append(self.page.panel(panel_name, lines))
+                panels.append(self.page.panel(panel_name, lines, marks=self._marks(panel.get("marks", {}))))
         if not panels:
             return []
         caption = self._caption(described["caption"])
         scene = described.get("scene", "")
         return [self.page.figure(name, panels, self.directory, scene, whole_caption=caption, file=file)]
+
+    def _marks(self, marks: Query) -> dict[str, float]:
+        """Return marks, at a number or where a number of the chapter stands, which may stand in their words as well."""
+        places: dict[str, float] = {}
+        for words, place in marks.items():
+            if isinstance(place, str):
+                number = self.page.described("number", place)
+                value = self.table.picked(self.table.lines(number), number | {"of": number["value"]})
+                place = value * number.get("factor", 1.0) if isinstance(value, int | float) else math.nan
+            places[self._caption(words)] = place
+        return places
 
     def _figure_of_cases(self, name: str, described: Query) -> list[FigureBlock]:
         """Return a figure of histories over time steps, with a panel for each case of a scene."""

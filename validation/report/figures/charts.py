@@ -31,9 +31,6 @@ from validation.report.figures.histories import (
 from validation.runs.history import Array
 from validation.runs.numbers import tick_text
 
-SETTINGS = ("#0072b2", "#009e73", "#cc79a7", "#8c6d1f")  # colours of settings, which are no solvers
-DASHED = (4.0, 1.8)  # pt
-DOTS = 3.2  # pt, size of dots
 LETTER = 1.42  # mm, width of a letter of a name
 Names = Literal["ends", "beside", "none", "upper left", "upper center", "lower left"]  # or where the legend stands
 DECADES = 1.5  # a shorter logarithmic axis has ticks at 1, 2 and 5

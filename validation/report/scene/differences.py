@@ -16,15 +16,13 @@ DIFFERENCES = {
 }  # metric and title of its column
 
 
-def difference_table(
-    compared: Iterable[ComparisonRecord], name: Callable[[str], str], written: Callable[[float], str] = "{:.3g}".format
-) -> Table:
+def difference_table(compared: Iterable[ComparisonRecord], name: Callable[[str], str]) -> Table:
     """Return a row for each pair of a case that some difference is known of, in per cent."""
     rows = []
     for c in compared:
         values = [c["metrics"].get(metric, NOT_REPORTED) for metric in DIFFERENCES]
         if set(values) != {NOT_REPORTED}:
-            cells = [written(100 * v) if isinstance(v, float | int) else str(v) for v in values]
+            cells = [f"{100 * v:.3g}" if isinstance(v, float | int) else str(v) for v in values]
             rows.append((name(c["scene"]), f"{c['solver']} | {c['reference']}", *cells))
     heads: list[Head] = ["case", "pair", *(TableColumn(title, "decimal") for title in DIFFERENCES.values())]
     return table(heads, rows, "Differences of displacement v and contact pressure, relative, in per cent:")

@@ -1,4 +1,4 @@
-"""The model of a scene, drawn in text with its parameters beside it, and these words alone."""
+"""The model of a scene, drawn in text with its parameters beside it."""
 
 from __future__ import annotations
 
@@ -17,11 +17,6 @@ def drawing(scene: Scene, width: int | None) -> Iterator[str]:
     across, rows = ShowingHooks.of(scene).drawing(scene, width)
     for art, words in rows:
         yield (art.ljust(across + BESIDE) + words).rstrip()
-
-
-def model_words(scene: Scene) -> list[str]:
-    """Return what stands beside the drawing: loads, sizes, materials, contacts."""
-    return [words for _, words in ShowingHooks.of(scene).drawing(scene, None)[1] if words]
 
 
 def body_width(slenderness: float) -> int:

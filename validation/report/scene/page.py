@@ -11,7 +11,7 @@ from typing import Any
 from validation.advice.plain import Line
 from validation.report.blocks import Blocks, Callout, Listing, Table, TableColumn, table
 from validation.report.scene import numbers
-from validation.report.scene.drawing import drawing, model_words
+from validation.report.scene.drawing import drawing
 from validation.report.scene.hooks import Number, ShowingHooks
 from validation.runs.numbers import stated_text
 from validation.scenes import features
@@ -68,11 +68,6 @@ class SceneDescription:
         for case, case_numbers in zip(self.cases, self.numbers, strict=True):
             counts.update(numbers.remarks(case, case_numbers))
         return counts
-
-    def facts(self) -> Table:
-        """Return the model in words and what is run, for a page that draws it."""
-        words = model_words(self.cases[0])
-        return _fact_table([("model", words[0]), *(("", line) for line in words[1:]), *self._facts()])
 
     def blocks(self, width: int | None = None) -> Blocks:
         """Return the model, the numbers with their range over the cases, and the limits that some lie beyond."""

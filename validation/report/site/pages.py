@@ -13,15 +13,15 @@ from pathlib import Path
 from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
 from validation.report.chapters.data import CaseGroup, case_groups
-from validation.report.chapters.gates import gate_list, not_passed
+from validation.report.chapters.gates import gate_list, not_passed, verdict_line
 from validation.report.chapters.scene import scene_page
-from validation.report.front.decisions import discount_page, spring_page, step_page
-from validation.report.front.first import verdict_line
-from validation.report.front.groups import groups_of_studies, paper_scene
+from validation.report.front import DECISIONS as THREE
+from validation.report.front import front_chapter
 from validation.report.names import Readable
 from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
+from validation.report.verification import matrix
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -29,6 +29,7 @@ from validation.runs.results import Results
 NAME = "DDA validation"
 MARK = html.REFERENCES  # the page that marks a directory as such a site
 CALCULATORS = "calculators.html"
+VERIFIED = "verification.html"
 DECISIONS = "decisions.html"
 SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
 Progress = Callable[[int, int, str], None]
@@ -89,6 +90,7 @@ class Site:
         self._docs = docs
         self._manifests = {study: results.manifest(study) for study in studies}
         self._verdicts = [v for v in results.verdicts() if v["study"] in self._manifests]
+        self._matrix = matrix(self._verdicts)
         self._imprint = identity(manifest.get("provenance") or {} for manifest in self._manifests.values())
         self._study_pages = page_names("study", studies)
         names: dict[str, None] = {}
@@ -100,6 +102,8 @@ class Site:
 
     def _write(self, file: str, title: str, blocks: Blocks, **values: object) -> None:
         menu = [("index.html", "Results"), (CALCULATORS, "Calculators"), (html.REFERENCES, "References")]
+        if self._matrix:
+            menu.append((VERIFIED, "Verification"))
         if self._docs:
             menu.append((f"{self._docs}/index.html", "Documentation"))
         stem = file.removesuffix(".html")
@@ -143,13 +147,12 @@ class Site:
         return directory
 
     def _write_decisions(self) -> Blocks:
-        """Write the page of the three decisions and return what leads there; nothing without the paper's block."""
-        groups = groups_of_studies(self._results, self.studies)
-        paper = paper_scene(groups)
-        if paper is None:
+        """Write the page of the three decisions and return what leads there; nothing where no study has any."""
+        front = front_chapter(self._results, self.studies, self._place / DECISIONS.removesuffix(".html"))
+        if front is None:
             return []
-        directory = self._directory(DECISIONS)
-        decisions = [decide(groups, paper, directory) for decide in (step_page, spring_page, discount_page)]
+        front.directory.mkdir()
+        decisions = [front.blocks(name) for name in THREE]
         title = "Three decisions"
         self._write(DECISIONS, title, [Heading(title), *itertools.chain.from_iterable(decisions)])
         links = []
@@ -164,7 +167,7 @@ class Site:
         return self._manifests[study].get("title") or study
 
     def write_other_pages(self) -> None:
-        """Write the first page, the calculators, the sources and what all pages share."""
+        """Write the first page, what is verified, the calculators, the sources and what all pages share."""
         lead = (
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
@@ -182,6 +185,8 @@ class Site:
             Links((Link(CALCULATORS, "Damping of a step, and the step for a damping"),)),
         ]
         self._write("index.html", NAME, index)
+        if self._matrix:
+            self._write(VERIFIED, "Verification", self._matrix)
         sources = "The paper whose model is tested, and the sources of the methods."
         self._write(html.REFERENCES, "References", [Heading("References"), Paragraph(sources, "lead"), References()])
         self._write(

@@ -161,6 +161,7 @@ class BarsEvents(Solver):
     handles = features.SCHEMES | frozenset(
         {features.COLUMN, features.UNILATERAL_COLUMN, features.FRICTIONAL_COLUMN, features.RIGID_JOINTS}
     )
+    only = features.COLUMN
     unread = ("column.solve_limit", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference.events", "fem_reference.problem")
     role = Role.TRUTH
@@ -171,8 +172,6 @@ class BarsEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why there is no exact motion for this scene."""
-        if "column" not in scene.tables():
-            return "it takes columns only"
         if scene.table(ColumnSection).law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for a bonded one'
         if scene.time.discount != 1:

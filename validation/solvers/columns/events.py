@@ -240,6 +240,7 @@ class ColumnEvents(Solver):
 
     name = "column-events"
     handles = features.OF_MOVING_COLUMN | features.SCHEMES | {features.COLUMN, features.RIGID_BLOCKS}
+    only = features.COLUMN
     unread = ("column.glue", "column.solve_limit", *OF_SCHEMES)
     sources = ("fem_reference.events", "fem_reference.problem")
     role = Role.LIMIT
@@ -250,8 +251,6 @@ class ColumnEvents(Solver):
 
     def applicable(self, scene: Scene) -> str | None:
         """Return None, or why the motion from switch to switch is not that of the scene."""
-        if "column" not in scene.tables():
-            return "it takes columns only"
         column = scene.table(ColumnSection)
         if column.law == "bonded":
             return 'it requires column.law = "unilateral" or "frictional"; layers is exact for bonded columns'

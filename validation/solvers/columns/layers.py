@@ -66,6 +66,7 @@ class ExactLayers(Solver):
 
     name = "layers"
     handles = features.SCHEMES | {features.COLUMN}
+    only = features.COLUMN
     unread = ("column.glue", *OF_SCHEMES)
     sources: tuple[str, ...] = ("fem_reference",)
     role = Role.TRUTH
@@ -77,8 +78,6 @@ class ExactLayers(Solver):
         """Return None, or why there is no exact motion for this scene."""
         from fem_reference.exact.layers import applicable
 
-        if "column" not in scene.tables():
-            return "it takes columns only"
         return applicable(time_of(scene))
 
     def build(self, scene: Scene, full: bool) -> Prepared:

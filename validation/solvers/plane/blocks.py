@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 import dda
-from validation.runs.history import Array
+from validation.runs.history import STRESSES, Array
 from validation.solvers.plane.modelled import PlaneModelled
 
 
@@ -34,9 +36,21 @@ class PlaneBlocks(PlaneModelled):
 
     def stress_error(self) -> float:
         """Return the largest error of a stress component at rest over the largest component of the loads' stress."""
-        stresses = self.model.strains @ self.model.system.blocks[0].material.elasticity().T
-        error = abs(stresses - np.array(self.plane.stress))
+        error = abs(self.stresses() - np.array(self.plane.stress))
         return float(np.max(error) / np.max(np.abs(self.plane.stress)))
+
+    def stresses(self) -> Array:
+        """Return s_xx, s_yy, s_xy of each block at rest [Pa], shape (blocks, 3)."""
+        stresses: Array = self.model.strains @ self.model.system.blocks[0].material.elasticity().T
+        return stresses
+
+    def static(self) -> Mapping[str, float]:
+        """Return displacement, stress error and the stress where it is observed, at rest."""
+        values = dict(super().static())
+        if self.plane.observed.stress is not None:
+            mean = np.mean(self.stresses()[self.plane.stressed_blocks], axis=0)
+            values |= zip(STRESSES, mean.tolist(), strict=True)
+        return values
 
 
 def first_contact(

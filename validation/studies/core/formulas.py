@@ -15,6 +15,10 @@ from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
 from validation.studies.core.damping import derived as damping_rows
 from validation.studies.core.damping import ratio as ratio
+from validation.studies.core.decisions import curves as curves
+from validation.studies.core.decisions import derived as closed_rows
+from validation.studies.core.decisions import first_peak as first_peak
+from validation.studies.core.decisions import springs as springs
 from validation.suite.bands import Band, about, cases, fitted_order, near
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
@@ -129,11 +133,12 @@ def order(finished: Finished) -> Mapping[str, Value]:
 
 
 def further_rows() -> tuple[Derived, ...]:
-    """Return the rows of damping, of the order of elements, and of their drift on point springs."""
+    """Return the rows of damping, of the first pages, of the order of elements, and of their drift on point springs."""
     points = tuple((case.name, "fem") for case in cases(POINT_SPRINGS))
     meshes = tuple(itertools.product((case.name for case in cases(MESHES)), ("fem", "bar")))
     return (
         *damping_rows(),
+        *closed_rows(),
         Derived(MESHES, "order", meshes, order),
         Derived(POINT_SPRINGS, "drift", points, drift, ("displacement.static",)),
     )

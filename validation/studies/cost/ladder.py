@@ -165,8 +165,7 @@ class Ladder:
         InputError
             The scene is of no block, its base moves, or the block turns or does not come down in time.
         """
-        if "block" not in base.tables():
-            raise InputError("must have the table block", source=base.name, field="--scene", value=base.kind.name)
+        features.refuse_column(base, "cost")
         fixed = {
             "run.geometry": "small",
             "contact.rule": "newmark",

@@ -103,7 +103,7 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Mapping[str,
         ours = in_plane(plane, column)
         if "force" in column or "pressure" in column:
             quantity = "force"
-            values = values * (special.block.base_length if special.kind.name == "block" else 1.0)
+            values = values * (1.0 if special.kind.feature else special.block.base_length)  # a column is of unit width
         else:
             quantity = "rotation" if column == "rotation" else "displacement"
             ours = ours - ours[0]

@@ -43,20 +43,12 @@ def displacements(
             following = (k + 1) % 3
             at_point.setdefault(corners[k][1], set()).add(number)
             on_edge[corners[k][1], corners[following][1]] = number, own_numbers[following]
-    elastic = young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+    elastic = elasticity(young, poisson)
     rows: list[Array] = []
     columns: list[Array] = []
     values: list[Array] = []
     for triangle, own_nodes in zip(triangles, nodes, strict=True):
-        (x0, y0), (x1, y1), (x2, y2) = triangle
-        double = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-        b = np.array([y1 - y2, y2 - y0, y0 - y1]) / double
-        c = np.array([x2 - x1, x0 - x2, x1 - x0]) / double
-        strain = np.zeros((3, 6))
-        strain[0, ::2] = b
-        strain[1, 1::2] = c
-        strain[2, ::2] = c
-        strain[2, 1::2] = b
+        strain, double = _strain(triangle)
         own = np.ravel([[2 * numbers[node], 2 * numbers[node] + 1] for node in own_nodes])
         rows.append(np.repeat(own, 6))
         columns.append(np.tile(own, 6))
@@ -81,6 +73,32 @@ def displacements(
     solution[kept] = spsolve(stiffness[np.ix_(kept, kept)], force[kept])
     by_node = solution.reshape(-1, 2)
     return np.array([by_node[sorted(at_point[place])].mean(axis=0) for place in places])
+
+
+def elasticity(young: float, poisson: float) -> Array:
+    """Return the matrix of plane stress [Pa], shape (3, 3)."""
+    return young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
+
+
+def stress(triangle: Sequence[Point], corners: Array, young: float, poisson: float) -> Array:
+    """Return the stress of a triangle whose corners are displaced [m], shape (3, 2), as [Pa], shape (3,)."""
+    strain, _ = _strain(triangle)
+    components: Array = elasticity(young, poisson) @ strain @ corners.ravel()
+    return components
+
+
+def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
+    """Return the strains of a triangle per displacement of its corners, shape (3, 6), and twice its area."""
+    (x0, y0), (x1, y1), (x2, y2) = triangle
+    double = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
+    b = np.array([y1 - y2, y2 - y0, y0 - y1]) / double
+    c = np.array([x2 - x1, x0 - x2, x1 - x0]) / double
+    strain = np.zeros((3, 6))
+    strain[0, ::2] = b
+    strain[1, 1::2] = c
+    strain[2, ::2] = c
+    strain[2, 1::2] = b
+    return strain, double
 
 
 def _joined(nodes: Sequence[Sequence[Node]]) -> Iterator[tuple[Node, Node]]:

@@ -23,8 +23,8 @@ from validation.models.plane.tables import PlaneSection
 from validation.runs.row import Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene, parse_scene
-from validation.studies.plates.closed import disc_widening, hole_displacement, hole_stress
-from validation.studies.plates.elements import displacements
+from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement, hole_stress
+from validation.studies.plates.elements import displacements, stress
 from validation.studies.plates.shapes import Point, Triangle, disc, outline, ring
 from validation.suite.bands import Band, about, near
 
@@ -41,6 +41,8 @@ DISCS = (4, 8, 12)
 GLUES = (10.0, 100.0, 1000.0)
 ROUNDING = 1e-9  # of a sparse solution: 1e4 eps times the condition of triangles and glue
 STATIC = "displacement.static"
+STRESS = ("stress.xx", "stress.yy")
+STRESSED = {"hole": (0.0, INNER), "disc": (0.0, 0.0)}  # where the stress is looked at: its peak, and the middle [m]
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 Loads = list[tuple[tuple[Point, Point], tuple[float, float]]]
 
@@ -88,7 +90,12 @@ def _scene(shape: str, n: int, glue: float, triangles: Sequence[Triangle], loads
             "glue": glue,
             "block": [{"vertices": [list(point) for point in triangle]} for triangle in triangles],
             "load": [{"edge": [list(start), list(end)], "traction": list(value)} for (start, end), value in loads],
-            "observe": {"point": [1.0, 0.0], "less": [[[-1.0, 0.0], [-1.0, 0.0]]], "direction": [1.0, 0.0]},
+            "observe": {
+                "point": [1.0, 0.0],
+                "less": [[[-1.0, 0.0], [-1.0, 0.0]]],
+                "direction": [1.0, 0.0],
+                "stress": list(STRESSED[shape]),
+            },
         },
         "time": {"step": 100.0, "steps": 1},  # of statics: implicit, far beyond the first period
         "run": {"solvers": ["dda", "fem"] if firm else ["dda"], "columns": ["displacement"]},
@@ -134,20 +141,35 @@ def exact(case: Scene) -> float:
     return 2 * hole_displacement(INNER, 0.0, TENSION, YOUNG, POISSON)
 
 
+def exact_stress(case: Scene) -> tuple[float, float]:
+    """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
+    if "disc" in case.name:
+        return disc_centre(PRESSURE, HALF_ARC)
+    s_xx, s_yy, _ = hole_stress(np.array([STRESSED["hole"]]), INNER, TENSION)[0]
+    return float(s_xx), float(s_yy)
+
+
 @functools.cache
-def linear(name: str) -> float:
-    """Return by how much the points part by linear elements on its triangles, joined by springs if glued softly [m]."""
+def linear(name: str) -> tuple[float, float]:
+    """Return what linear elements on its triangles have, joined by springs if glued softly.
+
+    By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
+    """
     case = next(scene for scene in scenes() if scene.name == name)
     plane = case.table(PlaneSection)
-    places = [(1.0, 0.0), (-1.0, 0.0)]
+    stressed = STRESSED["disc" if "disc" in name else "hole"]
+    triangles = [triangle for triangle in plane.polygons if stressed in triangle]
+    places = [(1.0, 0.0), (-1.0, 0.0), *(corner for triangle in triangles for corner in triangle)]
     loads = []
     for (start, end), traction in plane.tractions:
         length = math.dist(start, end)
         half = traction[0] * length / 2, traction[1] * length / 2
         loads.append((start, end, half, half))
     spring = math.inf if plane.glue == FIRM else plane.glue * plane.young
-    right, left = displacements(plane.polygons, loads, YOUNG, POISSON, places, spring)
-    return float(right[0] - left[0])
+    right, left, *corners = displacements(plane.polygons, loads, YOUNG, POISSON, places, spring)
+    moved = np.reshape(corners, (-1, 3, 2))
+    stresses = [stress(*pair, YOUNG, POISSON)[0] for pair in zip(triangles, moved, strict=True)]
+    return float(right[0] - left[0]), float(np.mean(stresses))
 
 
 def firm_of(case: Scene) -> str:
@@ -171,32 +193,40 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
-        "glue": blocks / linear(firm_of(case)) - 1,
+        "glue": blocks / linear(firm_of(case))[0] - 1,
     }
+    stress_xx, stress_yy = (or_nan(finished.rows[case.name, "dda"].metrics[name]) for name in STRESS)
+    exact_xx, exact_yy = exact_stress(case)
+    values["stress"] = stress_xx / exact_xx - 1
+    values["stress size"] = abs(stress_xx / exact_xx - 1)
+    if "disc" in case.name:  # at the hole it is none
+        values["stress along"] = stress_yy / exact_yy - 1
     if (case.name, "fem") in finished.rows:
         elements = or_nan(finished.rows[case.name, "fem"].metrics[STATIC])
         values |= {
             "outline": elements / exact(case) - 1,
             "outline size": abs(elements / exact(case) - 1),
-            "strain": linear(case.name) / elements - 1,
+            "strain": linear(case.name)[0] / elements - 1,
         }
     return values
 
 
 def orders(shape: str, finished: Finished) -> Mapping[str, Value]:
     """Return the order of the error by the two scenes of most cells."""
-    errors = []
-    for case in by_shape()[shape][-2:]:
-        errors.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / exact(case) - 1)
-    coarse, fine = (cells(case) for case in by_shape()[shape][-2:])
-    return {"order": math.log(abs(errors[0] / errors[1])) / math.log(fine / coarse)}
+    coarse, fine = (parts(case, finished) for case in by_shape()[shape][-2:])
+    values: dict[str, Value] = {}
+    for name in ("whole", "stress", "stress along"):
+        if name in fine:
+            errors = abs(float(str(coarse[name])) / float(str(fine[name])))
+            values[name] = math.log(errors) / math.log(float(str(fine["cells"])) / float(str(coarse["cells"])))
+    return values
 
 
 def glue_order(finished: Finished) -> Mapping[str, Value]:
     """Return the order with which glue's error falls with its stiffness."""
     softs = []
     for case in by_shape()["glue"][-2:]:
-        softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(firm_of(case)) - 1)
+        softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(firm_of(case))[0] - 1)
     return {"order": math.log(abs(softs[0] / softs[1])) / math.log(GLUES[-1] / GLUES[-2])}
 
 
@@ -212,10 +242,10 @@ def derived() -> tuple[Derived, ...]:
     for case in scenes():
         solvers = [solver for solver in case.run.solvers if solver != "fenicsx"]
         needs = tuple((case.name, solver) for solver in solvers)
-        rows.append(Derived(case.name, "parts", needs, partial(parts, case), (STATIC,)))
+        rows.append(Derived(case.name, "parts", needs, partial(parts, case), (STATIC, *STRESS)))
     for shape in ("hole", "disc"):
         needs = tuple((case.name, "dda") for case in by_shape()[shape])
-        rows.append(Derived(f"plates-{shape}", "order", needs, partial(orders, shape), (STATIC,)))
+        rows.append(Derived(f"plates-{shape}", "order", needs, partial(orders, shape), (STATIC, *STRESS)))
     needs = tuple((case.name, "dda") for case in by_shape()["glue"])
     rows.append(Derived("plates-glue", "order", needs, glue_order, (STATIC,)))
     for case in with_fenicsx():
@@ -230,16 +260,27 @@ def glued(case: Scene) -> Band:
     Linear elements have no joints: above those stands what firm glue adds, 3 l/2gh. A joint of length l gives way by
     l/2g of a strain where the block behind it gives way by its height h; a triangle has three.
     """
-    low, high = near(linear(case.name), ROUNDING)
+    low, high = near(linear(case.name)[0], ROUNDING)
+    return low, high * (1 + gives_way(case))
+
+
+def glued_stress(case: Scene) -> Band:
+    """Return s_xx of the same triangles where it is looked at [Pa]; band: rounding, and what firm glue changes."""
+    _, value = linear(case.name)
+    return near(value, ROUNDING + gives_way(case))
+
+
+def gives_way(case: Scene) -> float:
+    """Return by how much firm glue gives way, of a strain; of glue that the elements have too, nothing."""
     plane = case.table(PlaneSection)
     if plane.glue != FIRM:
-        return low, high
+        return 0.0
     slender = 0.0
     for polygon in plane.polygons:
         corners = np.array(polygon)
         lengths = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
         slender = max(slender, float(np.max(lengths)) ** 2 / (2 * area(polygon)))
-    return low, high * (1 + 3 * slender / (2 * plane.glue))
+    return 3 * slender / (2 * plane.glue)
 
 
 def sagitta(case: Scene) -> Band:
@@ -251,4 +292,4 @@ def sagitta(case: Scene) -> Band:
 def first_order_in_glue() -> Band:
     """Return 1 -/+ C/g, the next term, with the softer of both glues."""
     _, soft, _ = by_shape()["glue"]
-    return about(1.0, linear(soft.name) / linear(firm_of(soft)) - 1)
+    return about(1.0, linear(soft.name)[0] / linear(firm_of(soft))[0] - 1)

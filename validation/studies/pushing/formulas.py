@@ -12,9 +12,9 @@ from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
-from scipy.optimize import brentq
 
 from validation.engine.finished import Derived, Finished
+from validation.models.plane.canon import ACTIVE, PASSIVE, wedges_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.row import Value
@@ -24,7 +24,6 @@ from validation.studies.pushing.exact import Pushing, at
 from validation.suite.bands import Band, cases
 
 PUSHING = ("pushing-both", "pushing-held")
-PASSIVE, ACTIVE = math.radians(10), math.radians(50)  # dips of the planes that the wedges slide on
 LOCKED = "pushing-locked"
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
@@ -165,45 +164,6 @@ def _first_order(name: str) -> Band:
 # ---- two wedges ---------------------------------------------------------------------------------------------------
 
 
-def weights_and_friction(scene: Scene) -> tuple[float, float, float, float]:
-    """Return the weights of the active and the passive wedge [N], tan(phi) below them and tan(delta) between them."""
-    plane = scene.table(PlaneSection)
-    assembly = plane.assembly
-    rock, passive, active = (assembly.members[name][0] for name in ("rock", "passive", "active"))
-    W1, W2 = (plane.density * area(assembly.blocks[block].vertices) * -plane.gravity[1] for block in (active, passive))
-    below, between = (
-        (contact.friction_coefficient if contact else None) or 0.0
-        for contact in (assembly.springs_between(passive, rock), assembly.springs_between(passive, active))
-    )
-    return W1, W2, below, between
-
-
-def wedge_motion(scene: Scene) -> dict[str, float]:
-    """Return accelerations [m/s2] and normal forces [N] of rigid wedges that slide."""
-    W1, W2, below, between = weights_and_friction(scene)
-    p = math.atan(below)
-    q = math.atan(between)
-    a1 = ACTIVE
-    a2 = PASSIVE
-    g = -scene.table(PlaneSection).gravity[1]
-
-    def left_over(P: float) -> float:
-        A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
-        A2 = (P * math.cos(p - a2 + q) - W2 * math.sin(p - a2)) / (W2 / g * math.cos(p))
-        return A2 * math.cos(a2) - A1 * math.cos(a1)
-
-    P = float(brentq(left_over, 0.0, W1 + W2, xtol=1e-6, rtol=1e-14))
-    A1 = (W1 * math.sin(a1 - p) - P * math.cos(a1 - p - q)) / (W1 / g * math.cos(p))
-    normal = P * math.cos(q)
-    return {
-        "active": A1,
-        "passive": A1 * math.cos(a1) / math.cos(a2),
-        "interface": normal,
-        "active base": W1 * math.cos(a1) + P * math.sin(a1 - q),
-        "passive base": W2 * math.cos(a2) - P * math.sin(a2 - q),
-    }
-
-
 def up_dip(history: History, block: str, dip: float) -> Array:
     """Return the way of a wedge down its plane [m]."""
     x, y = (history.columns[f"{block}.{part}"] for part in ("x", "y"))
@@ -224,7 +184,7 @@ def against_wedges(scene: Scene, history: History) -> Mapping[str, Value]:
     }
     for name, columns in corners.items():
         measured[name] = float(np.mean(sum(history.columns[column][late] for column in columns)))
-    exact = wedge_motion(scene)
+    exact = wedges_of(scene).motion()
     speed = max(float(way[-1] - way[-2]) for way in ways.values()) / scene.time.step
     return {name: value / exact[name] - 1 for name, value in measured.items()} | {
         "speed": speed,
@@ -239,28 +199,15 @@ def rigid_wedges(case: Scene) -> Band:
 
 
 def factor_of_safety(case: Scene) -> float:
-    """Return F by which tan(phi) and tan(delta) are divided where the wedges are at their limit.
-
-    With tan p = tan(phi)/F below them and tan q = tan(delta)/F between them what the active one pushes with is what the
-    passive one resists: W1 sin(a1 - p) / cos(a1 - p - q) = W2 sin(p - a2) / cos(p - a2 + q), for p between a2 and a1.
-    """
-    W1, W2, below, between = weights_and_friction(case)
-
-    def left_over(F: float) -> float:
-        p = math.atan(below / F)
-        q = math.atan(between / F)
-        push = W1 * math.sin(ACTIVE - p) / math.cos(ACTIVE - p - q)
-        return push - W2 * math.sin(p - PASSIVE) / math.cos(p - PASSIVE + q)
-
-    least = below / math.tan(ACTIVE) * (1 + 1e-9)
-    most = below / math.tan(PASSIVE)
-    return float(brentq(left_over, least, most, xtol=1e-15, rtol=1e-14))
+    """Return the factor of safety of the wedges of a scene."""
+    return wedges_of(case).factor_of_safety
 
 
 def limit(case: Scene) -> Mapping[str, Value]:
     """Return the factor of safety of the wedges and their angles of friction [rad], below and between them."""
-    _, _, below, between = weights_and_friction(case)
-    return {"factor": factor_of_safety(case), "below": math.atan(below), "between": math.atan(between)}
+    wedges = wedges_of(case)
+    angles = {"below": math.atan(wedges.below), "between": math.atan(wedges.between)}
+    return {"factor": wedges.factor_of_safety, **angles}
 
 
 def at_the_limit(case: Scene) -> Band:

@@ -317,9 +317,11 @@ def curves() -> Mapping[str, Any]:
         "dda, exact in time": exact.reported("dda", DRAWN),  # type: ignore[arg-type]
         "continuum": response(exact.scene, DRAWN, "continuum"),
     }
-    return {"frequency": short(DRAWN), "curves": [_curve(name, reported) for name, reported in responses.items()]}
-
-
-def _curve(name: str, reported: Response) -> dict[str, Any]:
-    parts = {column: [short(part) for part in polar(values)] for column, values in reported.columns.items()}
-    return {"name": name, "solver": reported.solver, "exact": reported.exact, "columns": parts}
+    drawn = []
+    for name, reported in responses.items():
+        curve: dict[str, Any] = {"name": name, "frequency": short(DRAWN)}
+        for column, values in reported.columns.items():
+            size, phase = polar(values)
+            curve |= {column: short(size), f"{column}_phase": short(phase)}
+        drawn.append(curve)
+    return {"curves": drawn}

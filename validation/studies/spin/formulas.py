@@ -9,13 +9,12 @@ from functools import partial
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
-from validation.models.plane.blocks import PlacedBlock
+from validation.models.plane.canon import moving_blocks, slide_of, spinning_of, stiffness_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.studies.spin.exact import Slide, Spinning
 from validation.suite.bands import Band, cases, fitted_order, near
 from validation.theory.spectra import EPS
 
@@ -24,25 +23,7 @@ SPINNING = ("spin-square", "spin-rectangle")
 TIPPING = ("spin-ledge", "spin-ledge-smooth")
 
 
-def moving_block(scene: Scene) -> PlacedBlock:
-    """Return the one block that moves."""
-    (block,) = (block for block in scene.table(PlaneSection).assembly.blocks if not block.fixed)
-    return block
-
-
-def outline(scene: Scene) -> tuple[float, float]:
-    """Return width and height of the block [m]."""
-    width, height = np.ptp(moving_block(scene).vertices, axis=0)
-    return float(width), float(height)
-
-
 # ---- blocks that spin -----------------------------------------------------------------------------------------------
-
-
-def spinning_of(scene: Scene) -> Spinning:
-    """Return the exact problem of a block that spins."""
-    block = moving_block(scene)
-    return Spinning(*outline(scene), block.density, block.young, block.poisson, block.spin)
 
 
 def errors_of(scene: Scene, history: History) -> dict[str, float]:
@@ -123,7 +104,7 @@ def steady(case: Scene) -> dict[str, Band]:
 
 def against_flight(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return how far a block in flight is from its parabola and its even turn, over the largest way and angle."""
-    block = moving_block(scene)
+    (block,) = moving_blocks(scene)
     t = history.time - history.time[0]
     started = history.time[0]
     gravity = scene.table(PlaneSection).gravity
@@ -136,19 +117,10 @@ def against_flight(scene: Scene, history: History) -> Mapping[str, Value]:
     return {"way": largest, "angle": float(np.max(np.abs(angle))) / (block.spin * scene.time.duration)}
 
 
-def slide_of(scene: Scene) -> Slide:
-    """Return the exact problem of a block that slides over a table."""
-    plane = scene.table(PlaneSection)
-    block = moving_block(scene)
-    friction = plane.contact.friction_coefficient if plane.contact else None
-    place = float(np.mean([x for x, _ in block.vertices]))
-    return Slide(*outline(scene), friction or 0.0, place, block.velocity[0], -plane.gravity[1])
-
-
 def weight_over_stiffness(scene: Scene) -> float:
     """Return W/p [m]."""
     plane = scene.table(PlaneSection)
-    block = moving_block(scene)
+    (block,) = moving_blocks(scene)
     weight = block.density * area(block.vertices) * -plane.gravity[1]
     return weight / plane.contact.stiffness if plane.contact else 0.0
 
@@ -212,12 +184,6 @@ def against_ledge(scene: Scene, history: History) -> Mapping[str, Value]:
         return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}
     turn, exact = turn_at_end(scene, history)
     return accounted | {"turn": turn / exact - 1, "rigid turn": exact}
-
-
-def stiffness_of(scene: Scene) -> float:
-    """Return the normal spring of a corner [N/m]."""
-    contact = scene.table(PlaneSection).contact
-    return contact.stiffness if contact else math.inf
 
 
 def extrapolated(name: str, finished: Finished) -> Mapping[str, Value]:

@@ -9,17 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.engine.finished import Derived, Finished
-from validation.models.plane.tables import PlaneSection
-from validation.runs.history import Array, History
-from validation.runs.row import Value
-from validation.scenes.outline import area
-from validation.scenes.scene import Scene
-from validation.studies.standing.limits import (
+from validation.models.plane.canon import friction_of, half_truss, stiffness_of
+from validation.models.plane.limits import (
     flat_height,
     harmonic,
     keyed_dip,
@@ -27,8 +24,12 @@ from validation.studies.standing.limits import (
     least_thickness,
     seat_forces,
     stepped_dip,
+    stepped_friction,
 )
-from validation.studies.standing.truss import HalfTruss
+from validation.models.plane.tables import PlaneSection
+from validation.runs.history import Array, History
+from validation.runs.row import Value
+from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
 
 REST = 1e-6  # of the weight: what is left of oscillations after a second of a damping of 5/s and more, exp(-c t)
@@ -37,16 +38,17 @@ OVERHANG = "standing-overhang"
 DROP = "standing-truss-drop"
 
 
-def moving(plane: PlaneSection) -> list[str]:
-    """Return the names of the blocks that move."""
-    return [block.name for block in plane.assembly.blocks if not block.fixed]
+def moving(plane: PlaneSection, history: History | None = None) -> list[str]:
+    """Return the names of the blocks that move, of those alone whose places a history has."""
+    names = [block.name for block in plane.assembly.blocks if not block.fixed]
+    return [name for name in names if history is None or f"{name}.x" in history.columns]
 
 
 def unbalanced(scene: Scene, history: History) -> Mapping[str, Value]:
     """Return the unbalanced share of the weight at the end, the greatest way of a centroid [m], and the limit."""
     plane = scene.table(PlaneSection)
     columns = history.columns
-    ways = [[columns[f"{name}.{part}"] for part in "xy"] for name in moving(plane)]
+    ways = [[columns[f"{name}.{part}"] for part in "xy"] for name in moving(plane, history)]
     way = max(math.hypot(x[-1] - x[0], y[-1] - y[0]) for x, y in ways)
     speed = max(math.hypot(x[-1] - x[-2], y[-1] - y[-2]) for x, y in ways) / scene.time.step
     share = float(speed) * (scene.time.gg_rate or 0.0) / math.hypot(*plane.gravity)
@@ -82,7 +84,7 @@ def _dip(plane: PlaneSection) -> float:
 
 def _stepped(plane: PlaneSection) -> tuple[float, float]:
     columns = plane.columns[0]
-    limit = stepped_dip(columns.heights, columns.width, columns.rise, _coefficient(plane))
+    limit = stepped_dip(columns.heights, columns.width, columns.rise, friction_of(plane))
     return math.degrees(limit), math.radians(columns.dip) / limit - 1
 
 
@@ -94,31 +96,46 @@ def _arch(plane: PlaneSection) -> tuple[float, float]:
     arch = plane.arch[0]
     stiffness = plane.contact.stiffness if plane.contact else math.inf
     softness = plane.density * math.hypot(*plane.gravity) * arch.radius / stiffness
-    limit = least_thickness(arch.radius, arch.voussoirs) + 1.5 * softness * arch.radius
+    limit = least_thickness(arch.radius, arch.voussoirs, arch.chords) + 1.5 * softness * arch.radius
     return limit, 1 - arch.thickness / limit
 
 
-def _flat(plane: PlaneSection) -> tuple[float, float]:
-    _, limit = flat_limits(plane)
-    return limit, plane.columns[0].heights[-1] / limit - 1
+class Bracket(NamedTuple):
+    """What columns with friction between them ask for, by the recursion and by the linear program."""
+
+    recursion: float  # a height [m], or tan(phi)
+    program: float
+    over_recursion: float  # what they are over that: above 1 it lets them fall
+    over_program: float
 
 
-def flat_limits(plane: PlaneSection) -> tuple[float, float]:
-    """Return the heights of the recursion and of the linear program for columns on a flat base [m]."""
+def bracket_of(plane: PlaneSection) -> Bracket:
+    """Return the greatest heights on a flat base, or the least friction of the book's columns, which have steps."""
     columns = plane.columns[0]
-    return flat_height(len(columns.heights), columns.width, math.radians(columns.dip), _coefficient(plane))
+    dip = math.radians(columns.dip)
+    mu = friction_of(plane)
+    if columns.rise:
+        recursion, program = stepped_friction(columns.heights, columns.width, columns.rise, dip)
+        return Bracket(recursion, program, recursion / mu, program / mu)
+    height = columns.heights[-1]
+    recursion, program = flat_height(len(columns.heights), columns.width, dip, mu)
+    return Bracket(recursion, program, height / recursion, height / program)
+
+
+def _bracket(plane: PlaneSection) -> tuple[float, float]:
+    bounds = bracket_of(plane)
+    return bounds.program, bounds.over_program - 1
 
 
 def settings(scene: Scene, history: History) -> Mapping[str, Value]:
-    """Return how columns on a flat base rest, beside both heights and the springs that they have."""
+    """Return how columns with friction between them rest, beside both limits and the springs that they have."""
     plane = scene.table(PlaneSection)
-    height = plane.columns[0].heights[-1]
-    recursion, program = flat_limits(plane)
+    bounds = bracket_of(plane)
     return {
         **unbalanced(scene, history),
-        "recursion": recursion,
-        "over recursion": height / recursion,
-        "over program": height / program,
+        "recursion": bounds.recursion,
+        "over recursion": bounds.over_recursion,
+        "over program": bounds.over_program,
         "shear": plane.contact.shear / plane.contact.stiffness if plane.contact else 1.0,
     }
 
@@ -133,7 +150,7 @@ def _leaning(plane: PlaneSection) -> tuple[float, float]:
     block = plane.block[0]
     length, thickness = block.rectangle or (math.nan, math.nan)
     limit = leaning_friction(math.radians(block.turned), length / thickness)
-    return limit, 1 - _coefficient(plane) / limit
+    return limit, 1 - friction_of(plane) / limit
 
 
 def _keystone(plane: PlaneSection) -> tuple[float, float]:
@@ -141,19 +158,16 @@ def _keystone(plane: PlaneSection) -> tuple[float, float]:
     outline = np.array(plane.block[0].vertices)
     first, second = (float(np.ptp(outline[k : k + 2, 0])) for k in (0, 2))
     narrowing = math.atan((first - second) / 2 / float(np.ptp(outline[:, 1])))
-    return 0.0, math.copysign(narrowing / math.atan(_coefficient(plane)), -narrowing * plane.gravity[1])
-
-
-def _coefficient(plane: PlaneSection) -> float:
-    """Return tan(phi)."""
-    return (plane.contact.friction_coefficient if plane.contact else None) or 0.0
+    return 0.0, math.copysign(narrowing / math.atan(friction_of(plane)), -narrowing * plane.gravity[1])
 
 
 LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] = {
     "standing-keyed": ("dip [°]", _keyed),
     "standing-stepped": ("dip [°]", _stepped),
-    "standing-flat": ("height [m]", _flat),
+    "standing-flat": ("height [m]", _bracket),
+    "standing-book": ("tan φ", _bracket),
     "standing-arch": ("thickness [m]", _arch),
+    "standing-arch-24": ("thickness [m]", _arch),
     OVERHANG: ("overhang [m]", _overhang),
     "standing-leaning": ("tan φ", _leaning),
     "standing-keystone": ("lean [°]", _keystone),
@@ -167,13 +181,9 @@ def verdict(case: Scene) -> Band:
 
 
 def bracket(case: Scene) -> Band | None:
-    """Return the same of columns on a flat base: they stand at 0.8 of the recursion, above it no band."""
-    plane = case.table(PlaneSection)
-    recursion, program = flat_limits(plane)
-    height = plane.columns[0].heights[-1]
-    if height < 0.81 * recursion or height > program:
-        return verdict(case)
-    return None
+    """Return the same of columns with friction between them: they stand at 0.8 of the recursion, above it no band."""
+    bounds = bracket_of(case.table(PlaneSection))
+    return verdict(case) if bounds.over_recursion < 0.81 or bounds.over_program > 1 else None
 
 
 # ---- columns that turn ----------------------------------------------------------------------------------------------
@@ -241,16 +251,11 @@ def seats(finished: Finished) -> Mapping[str, Value]:
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
         forces = [float(finished.needed_history(case.name, "dda").columns[column][-1]) for case in (soft, stiff)]
         ratios = [force / (weight * inner) - 1 for force in forces]
-        stiffer = _stiffness(stiff) / _stiffness(soft)
+        stiffer = stiffness_of(stiff) / stiffness_of(soft)
         values[f"soft {number}"] = ratios[0]
         values[f"stiff {number}"] = ratios[1]
         values[f"rigid {number}"] = (stiffer * ratios[1] - ratios[0]) / (stiffer - 1)
     return values
-
-
-def _stiffness(case: Scene) -> float:
-    contact = case.table(PlaneSection).contact
-    return contact.stiffness if contact else math.inf
 
 
 def second_correction() -> Band:
@@ -264,33 +269,12 @@ def second_correction() -> Band:
     length, height = pile.rectangle
     weight = pile.count * soft.table(PlaneSection).density * length * height * 9.81
     share = (sum(pile.offsets) + length / 2) / harmonic(pile.count, length)
-    tilt = pile.count * weight / (_stiffness(soft) * length)
+    tilt = pile.count * weight / (stiffness_of(soft) * length)
     first = tilt * pile.count * height / 2 / ((1 - share) * length / 2)
     return -(first**2), first**2
 
 
 # ---- half a truss ---------------------------------------------------------------------------------------------------
-
-
-def half_truss(scene: Scene) -> HalfTruss:
-    """Return the exact problem of a scene of half a truss."""
-    plane = scene.table(PlaneSection)
-    blocks = {block.name: block for block in plane.block}
-    outline = np.array(blocks["half"].vertices)
-    length, height = (float(extent) for extent in np.ptp(outline, axis=0))
-    crown = plane.pair[0].stiffness or math.inf
-    span = min(x for x, _ in blocks["crown"].outline)
-    return HalfTruss(
-        length=length,
-        height=height,
-        mass=plane.density * area(blocks["half"].outline),
-        turned=-math.radians(blocks["half"].turned),
-        place=blocks["half"].at,
-        span=span,
-        abutment=_stiffness(scene),
-        crown=crown,
-        gravity=-plane.gravity[1],
-    )
 
 
 def at_rest(scene: Scene, history: History) -> Mapping[str, Value]:

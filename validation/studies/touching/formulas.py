@@ -13,36 +13,23 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.engine.finished import Derived, Finished
-from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.canon import TOGETHER, falling, polygons
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Row, Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.solvers.plane.blocks import first_contact
-from validation.studies.touching.corner import FallingRectangle, Rebound, on_springs, rigid_impulse
-from validation.studies.touching.first import FirstTouch, MovingPolygon, first_touches, normals
 from validation.suite.bands import Band, cases
+from validation.theory.corner_impact import FallingRectangle, Rebound, on_springs, rigid_impulse
+from validation.theory.first_touch import FirstTouch, first_touches, normals
 
 STIFF = "touching-stiff"
 TOUCHED = 1e-9  # m/s: a change of velocity by which a contact has pressed
 CORNERS = "corner-corner"  # as the query calls it
-TOGETHER = 1e-9  # of the time: touches that are one
 
 
 # ---- who touches whom, and when -------------------------------------------------------------------------------------
-
-
-def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
-    """Return the two blocks of a scene as moving polygons."""
-    first, second = (_about_centroid(block) for block in scene.table(PlaneSection).assembly.blocks)
-    return first, second
-
-
-def _about_centroid(block: PlacedBlock) -> MovingPolygon:
-    """Return a block as a polygon about its centroid."""
-    middle = centroid(block.vertices)
-    return MovingPolygon(np.array(block.vertices) - middle, middle, block.velocity, block.spin)
 
 
 def touch_of(scene: Scene) -> FirstTouch | None:
@@ -168,23 +155,6 @@ def small_turn(case: Scene) -> Band:
 
 
 # ---- a rectangle that lands on a corner -----------------------------------------------------------------------------
-
-
-def falling(scene: Scene) -> FallingRectangle:
-    """Return the rectangle of a scene."""
-    plane = scene.table(PlaneSection)
-    block = plane.block[0]
-    width, height = block.rectangle or (math.nan, math.nan)
-    return FallingRectangle(
-        width=width,
-        height=height,
-        mass=plane.density * width * height,
-        place=block.at,
-        angle=math.radians(block.turned),
-        velocity=block.velocity,
-        spin=block.spin,
-        gravity=-plane.gravity[1],
-    )
 
 
 def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:

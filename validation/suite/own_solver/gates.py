@@ -17,6 +17,7 @@ from validation.engine.judge import reads
 from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE, HISTORY, MODES, REFERENCE, STATIC
+from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import about, near
 from validation.suite.folders import get_study, judged_studies
@@ -152,8 +153,8 @@ def applies(study: str, gate: Gate) -> bool:
     if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
         return False
     case = cases(study)[gate.cases[0]]
-    is_centred_block = "block" in case.scene.tables() and case.scene.block.subdivide is None and case.scene.load.centred
-    return is_centred_block and "stability" not in case.measures
+    beyond = features.FIRST | {case.scene.kind.feature}  # a block, whose kind has none, under a centred pressure
+    return beyond.isdisjoint(features.of(case.scene)) and "stability" not in case.measures
 
 
 def group(gate: Gate, scene: Scene) -> str:

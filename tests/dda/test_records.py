@@ -1,0 +1,24 @@
+"""Records that hold arrays are compared by identity: equality of arrays is no truth value."""
+
+import importlib
+import pkgutil
+from dataclasses import fields, is_dataclass
+
+import pytest
+
+import dda
+
+MODULES = [importlib.import_module(module.name) for module in pkgutil.walk_packages(dda.__path__, "dda.")]
+RECORDS = {
+    record.__name__: record
+    for module in MODULES
+    for record in vars(module).values()
+    if isinstance(record, type) and is_dataclass(record) and record.__module__ == module.__name__
+}
+
+
+@pytest.mark.parametrize("name", RECORDS)
+def test_what_holds_arrays_is_compared_by_identity(name):
+    record = RECORDS[name]
+    if any("Array" in str(field.type) or "Block" in str(field.type) for field in fields(record)):
+        assert record.__eq__ is object.__eq__

@@ -1,0 +1,214 @@
+"""Results made by hand, so that a test knows every number that a report should print, and what a figure shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
+from oracles.made_cases import between, kept_study, made_history, made_row
+
+from validation.engine.finished import Finished
+from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.runs.history import History
+from validation.runs.results import Results
+from validation.runs.run import Outcome
+from validation.scenes.scene import Scene, load_scene
+from validation.suite.folders import get_study
+
+
+def cases(name: str, *metrics: dict[str, Any]) -> list[Any]:
+    """Return cases of a scene with rows of DDA, and of the bar where its first peak is given."""
+    kept = []
+    for scene, own in zip(load_scene(name).expand(), metrics, strict=False):
+        bar = {"pressure.peak": own.pop("bar")} if "bar" in own else {}
+        history = made_history(scene.time.step, [-0.01] * 4)
+        kept += [(scene, made_row(solver, row, scene.name), history) for solver, row in (("dda", own), ("bar", bar))]
+    return kept
+
+
+def core_results(directory: Path) -> Results:
+    """Return the study `core` with all that the first pages speak of, its rows in closed form computed."""
+    results = Results(directory)
+    forms = [
+        {"pressure.static": 5e6, "pressure.minimum": least, "mode1.damping": xi, "pressure.peak": peak, "bar": bar}
+        for least, xi, peak, bar in (
+            (1e6, 0.372, 6.3e6, 7e6),
+            (1e5, 0.16, 8.4e6, 8e6),
+            (-4e5, 0.08, 9e6, 8e6),
+            (-1.4e6, 0.009, 11e6, 10e6),
+        )
+    ]
+    stiff = {"displacement.fine_settling_step": 41.0, "pressure.fine_settling_step": 157.0}
+    settled = [{"displacement.settling_step": float(n), "pressure.settling_step": n + 3.0} for n in (44, 22, 21)]
+    kept = [
+        *cases("model-form", *forms),
+        *cases("figures-3-4", *({"mode1.damping": xi} for xi in (0.372, 0.16, 0.0845))),
+        *cases("figures-5-6", *settled[:2], settled[2] | stiff),
+        *cases("figure-9", {"mode1.measured_damping": 1e-12}, {"mode1.measured_damping": 0.123}),
+    ]
+    names = list(dict.fromkeys(scene.name for scene, *_ in kept if scene.name.startswith("model-form")))
+    pairs = []
+    errors = ((0.008, 0.007), (0.036, 0.04), (0.09, 0.1), (0.64, 0.74))
+    for i, (name, (v, p)) in enumerate(zip(names, errors, strict=True)):
+        pairs.append(between(name, "dda", "bar", displacement_l2=v, pressure_l2=p))
+        pairs.append(between(name, "bar", "continuum", displacement_l2=0.5 + i / 10, pressure_l2=0.7))
+    core = get_study("core")
+    rows = {(row.scene, row.solver): row for _, row, _ in kept}
+    scenes = {"figures-3-4", *(scene for scene, _ in rows)}
+    recipes = {(row.scene, row.name): row for row in core.derived()
+               if row.scene in scenes and row.name != "damping" and rows.keys() >= {*row.needs}}  # fmt: skip
+    finished = Finished(rows, results, recipes)
+    derived = [{"scene": scene, "name": name, "metrics": finished.row(scene, name).metrics} for scene, name in recipes]
+    kept_study(results, kept, pairs, study="core", derived=derived, data=core.data())
+    gates = [Gate(names[-1], ("dda", "bar"), "pressure.l2", 0, 1, "so", until=until) for until in (0.2, 0.02)]
+    results.write_verdicts("core", [judge(gate, gate.until).record("core") for gate in gates])
+    return results
+
+
+# ---- results made by hand -------------------------------------------------------------------------------------------
+
+WORK = {"unknowns": 2, "solves": 7, "steps": 100}
+PAIRS = {  # solver and reference -> displacement and pressure, relative L2 [1]
+    ("dda", "bar"): (0.0363, 0.0405),
+    ("dda", "dda-textbook"): (1.1e-13, 1.2e-11),
+    ("fem", "bar"): (2.1e-6, 2.2e-6),
+    ("bar", "continuum"): (0.041, 0.042),
+    ("dda", "continuum"): (0.051, 0.052),
+    ("block-events", "bar-events"): (0.31, 0.32),
+    ("dda", "block-events"): (0.21, 0.22),
+}
+ALARM = {"kind": "hidden tension", "sentence": "it pulls"}
+
+
+def vibration(scene: Scene, solver: str) -> History:
+    """Return a damped vibration, each solver's at a frequency of its own; where steps are fine it is dense."""
+    time = scene.time.step * np.arange(1, scene.time.steps + 1)
+    frequency = {"dda": 344.561, "dda-textbook": 344.561, "continuum": 320.0}.get(solver, 327.682)
+    shape = 1 - np.exp(-30 * time) * np.cos(frequency * time)
+    return History(time, {"displacement": -0.01 * shape, "contact_pressure": 5e6 * shape})
+
+
+def made_rows(scene: Scene, **more: Any) -> list[Any]:
+    """Return the cases of a scene with rows and histories of its solvers, each number of a size of its own."""
+    kept = []
+    for number, case in enumerate(scene.expand(), start=1):
+        for place, solver in enumerate(case.run.solvers, start=1):
+            metrics = {
+                "displacement.static": -0.01, "pressure.static": 5e6, "displacement.settling_step": 44.0 + place,
+                "pressure.settling_step": "undefined", "pressure.minimum": -0.338e6 * number,
+                "displacement.peak": -0.0123 * number, "mode1.frequency": 327.682 + 16.9 * (solver == "dda"),
+                "mode1.damping": 0.3 / number, "mode1.measured_damping": "not reported",
+            } | more  # fmt: skip
+            seconds = {"setup": 1e-3 * place, "stepping": 4e-3 * number * place}
+            row = made_row(solver, metrics, case.name, work=WORK, seconds=seconds)
+            kept.append((case, row, vibration(case, solver)))
+    return kept
+
+
+def budget(scene: str) -> dict[str, Any]:
+    """Return a damping budget of constant curves, of which that of the contact ends."""
+    dt = np.geomspace(1e-5, 1e-2, 20)
+    first = {part: [value] * 20 for part, value in (("total", 0.05), ("algorithmic", 0.012), ("kinetic", 0.015))}
+    contact = {part: [0.9] * 15 + [None] * 5 for part in first}
+    return {
+        "scene": scene, "steps": [1e-3, 2e-3], "gg": 0.98, "gg_rate": None, "dt": dt.tolist(), "floor": 1.0521,
+        "modes": {"first axial": first, "contact": contact}, "real roots at": 3.96,
+        "limits": {"real roots": 4e-3, "wave transit": 3e-4, "overdamped below": 2e-5},
+    }  # fmt: skip
+
+
+def made_results(directory: Path) -> Results:
+    """Return three studies, a sweep, two scenes, a contact that opens: each verdict, alarms and a budget."""
+    results = Results(directory)
+    lost = {"energy.given": 21.0, "energy.lost_switching": 5.01, "energy.lost_friction": 0.0}
+    absent = {"mode1.frequency": "undefined", "mode1.damping": "undefined"}
+    short = {"time.steps": 60}
+    settled = {"displacement.settling_step": 30.0, "pressure.settling_step": 40.0}
+    contents = {
+        "mine": [made_rows(load_scene("figures-3-4").with_values(short))],
+        "two": [made_rows(load_scene("figure-8").with_values(short)), made_rows(load_scene("figures-5-6"), **settled)],
+        "solo": [made_rows(load_scene("unlocked").with_values(short), **lost, **absent)],
+    }
+    scene, row, _ = contents["solo"][0][0]  # seconds of a run that did not complete are no cost
+    contents["solo"][0].append((scene, replace(row, solver="fem", key="lost", outcome=Outcome.OVERFLOW), None))
+    verdicts = []
+    for study, groups in contents.items():
+        kept = [case for group in groups for case in group]
+        names = list(dict.fromkeys(scene.name for scene, *_ in kept))
+        pairs = []
+        for number, name in enumerate(names, start=1):
+            for (solver, reference), (v, p) in PAIRS.items():
+                pairs.append(between(name, solver, reference, displacement_l2=v * number, pressure_l2=p * number))
+            bounds = {"displacement.l2": 0.02, "pressure.l2": 0.09}
+            gates = [Gate(name, ("dda", "bar"), metric, 0.01, high, f"of {name}") for metric, high in bounds.items()]
+            verdicts += [judge(gate, 0.0363 * number).record(study) for gate in gates]
+        waits = Verdict(
+            Gate(names[0], ("dda", "fenicsx"), "pressure.max", 0, 1e-6, "w", "other code", 1e-9),
+            None,
+            Status.NOT_RUN,
+            "no",
+        )
+        verdicts.append(waits.record(study))
+        parts = {
+            "provenance": {"commit": study, "system": "Linux"},
+            "alarms": [ALARM | {"scene": name} for name in names],
+        }
+        budgets = [budget(names[0])] if study == "mine" else []
+        kept_study(results, kept, pairs, study=study, title=f"Study {study}", budgets=budgets, **parts)
+        results.write_verdicts(study, [verdict for verdict in verdicts if verdict["study"] == study])
+    return results
+
+
+# ---- what a figure shows --------------------------------------------------------------------------------------------
+
+
+def figure_text(figure: Figure) -> str:
+    """Return what a figure shows, a line for each thing on it, without what depends on fonts or rounding."""
+    lines = []
+    for axes in figure.axes:
+        place = (25.4 * np.outer([1, 1], figure.get_size_inches())).ravel() * axes.get_position().bounds
+        lines.append(f"axes at {_short(place)} mm, x {_axis(axes.xaxis)}, y {_axis(axes.yaxis)}")
+        lines += [f"  title {text!r}" for text in (axes.get_title(loc="left"), axes.get_title()) if text]
+        for line in axes.lines:
+            x, y = (np.asarray(values, dtype=float) for values in line.get_data())
+            shown = f"{_kind(axes, line)} {to_hex(line.get_color())} {line.get_linestyle()} {line.get_linewidth():g}"
+            dots = f" {line.get_marker()} {line.get_markersize():g} {to_hex(line.get_markerfacecolor())}"
+            ends = _short([*x[:1], *x[-1:], *y[:1], *y[-1:], *_range(y)])
+            lines.append(f"  line {shown}{dots * (line.get_marker() != 'None')}: {x.size} at {ends}")
+        for patch in axes.patches:
+            corners = patch.get_path().vertices
+            lines.append(f"  patch {to_hex(patch.get_facecolor())}: {len(corners)} within {_short(_range(corners))}")
+        for collection in axes.collections:
+            shade = collection.get_array()
+            values = [] if shade is None else _range(np.asarray(shade))
+            lines.append(f"  {type(collection).__name__} {_short(values)}, alpha {collection.get_alpha()}")
+        for text in axes.texts:
+            place = f"{_kind(axes, text)} {_short(text.get_position())}"
+            lines.append(f"  text {text.get_text()!r} {place} {to_hex(text.get_color())}")
+    return "\n".join(lines)
+
+
+def _kind(axes: Any, artist: Any) -> str:
+    return "in axes" if artist.get_transform() == axes.transAxes else "data"
+
+
+def _axis(axis: Any) -> str:
+    ticks = axis.get_major_locator()()
+    low, high = sorted(axis.get_view_interval())
+    inside = [tick for tick in ticks if low <= tick <= high]
+    return f"{axis.get_label_text()!r} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}"
+
+
+def _range(values: Any) -> list[float]:
+    finite = np.asarray(values, dtype=float)
+    finite = finite[np.isfinite(finite)]
+    return [float(finite.min()), float(finite.max())] if finite.size else []
+
+
+def _short(values: Any) -> str:
+    # What lies halfway between two numbers of three digits is the greater one on every processor.
+    return " ".join(f"{0.0 if abs(value) < 1e-9 else value * (1 + 1e-9):.3g}" for value in values)

@@ -1,0 +1,168 @@
+"""A report and its figures from results made by hand, word by word: numbers, units, sentences, lines and axes."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from oracles.made_cases import made_case, made_group, made_history
+
+from validation.metrics.catalogue import CATALOGUE
+from validation.report import book
+from validation.report.appendix.pages import appendix
+from validation.report.chapters.data import groups_of_studies
+from validation.report.chapters.scene import scene_page, slide_figure
+from validation.report.figures import motion, response
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import HistoryPanel
+from validation.report.figures.drawing import scene_figure
+from validation.report.figures.histories import Margins
+from validation.report.figures.solution import solution_figure
+from validation.report.figures.space_time import SpaceTime, space_time_figure
+from validation.report.front import front_pages
+from validation.runs.history import DISPLACEMENT, PRESSURE
+from validation.runs.results import Results
+from validation.scenes.scene import load_scene, scene_names
+from validation.suite.folders import study_folders
+
+STUDIES = ("mine", "two", "solo")
+
+
+@pytest.mark.parametrize("study", STUDIES)
+def test_a_chapter_says_and_draws_what_its_rows_hold(
+    study: str, made_results: Results, kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
+) -> None:
+    kept(f"chapter-{study}", book.chapter_blocks(made_results, study, tmp_path))
+    kept_figures(f"figures-{study}", drawn)
+
+
+def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results: Results, kept: Any) -> None:
+    groups = groups_of_studies(made_results, map(made_results.manifest, STUDIES), drawn=False)
+    verdicts = made_results.verdicts()
+    passed = [{**verdicts[0], "verdict": "PASS", "id": f"{number}@0.2s", "reason": "so"} for number in range(3)]
+    last = appendix(made_results, groups, [*verdicts, *passed], STUDIES, True)
+    blocks = [*front_pages(None, groups, verdicts), *last]
+    kept("report", blocks)
+    assert not [name for name in CATALOGUE if name in str(blocks)]  # quantities have words
+
+
+@pytest.mark.parametrize("name", ["waves-blocks", "beams-squares", "rigid-standing", "slope-base"])
+def test_each_kind_of_scene_has_its_page_and_drawing(
+    name: str, kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
+) -> None:
+    scene = load_scene(name).expand()[0]
+    kept(f"scene-{name}", scene_page(made_group(made_case(scene, {"dda": {}})), tmp_path))
+    kept_figures(f"drawing-{name}", drawn)
+
+
+def test_scenes_are_drawn_inside_their_axes() -> None:
+    for name in scene_names()[::12]:  # of every family some
+        (axes,) = scene_figure(load_scene(name).expand()[0]).axes
+        corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
+        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+        assert left <= corners[:, 0].min() and corners[:, 0].max() <= right, name
+        assert low <= corners[:, 1].min() and corners[:, 1].max() <= high, name
+
+
+# ---- units ----------------------------------------------------------------------------------------------------------
+
+FACTORS = {  # unit beside a number and that of the metric -> factor
+    ("mm", "m"): 1e3, ("MPa", "Pa"): 1e-6, ("kPa", "Pa"): 1e-3, ("ms", "s"): 1e3, ("kN", "N"): 1e-3,
+    ("MPa", "N"): 5e-7,  # of a force on the 2 m of the paper's block
+}  # fmt: skip
+PLACES = [
+    (folder.path / file, kind, name)
+    for folder in study_folders().values()
+    for file in ("chapter.toml", "front.toml")
+    if (folder.path / file).exists() and folder.form == "study"
+    for kind in ("table", "panel")
+    for name in tomllib.loads((folder.path / file).read_text("utf-8")).get(kind, {})
+]
+
+
+@pytest.mark.parametrize(("path", "kind", "name"), PLACES)
+def test_a_metric_is_printed_in_the_unit_that_stands_beside_it(path: Path, kind: str, name: str) -> None:
+    described = tomllib.loads(path.read_text("utf-8"))[kind][name]
+    if kind == "table":
+        columns = [column for column in described.get("columns", ()) if isinstance(column, dict)]
+        shown = [(f"{c.get('group', '')} {c.get('title', '')}", c.get("of", ""), c.get("factor", 1.0)) for c in columns]
+    else:
+        title = f"{described.get('title', '')} {described.get('y_label', '')}"
+        shown = [(title, line.get("y", ""), line.get("y_factor", 1.0)) for line in described["lines"]]
+    for title, expression, factor in shown:
+        metric = str(expression).partition(" else ")[0].rpartition(" ")[2]
+        unit = re.search(r"\[(mm|MPa|kPa|ms|kN|m|Pa|s|N)\]", title)
+        if unit and metric in CATALOGUE and ":" not in str(expression):
+            base = CATALOGUE[metric].unit
+            wanted = FACTORS[unit[1], base] if unit[1] != base else 1.0
+            assert abs(factor) == pytest.approx(wanted), (title, expression)
+
+
+# ---- figures of their own -------------------------------------------------------------------------------------------
+
+TIME = np.linspace(0.0, 0.1, 101)
+
+
+def answers(*names: str) -> list[response.ResponseCurve]:
+    curves = []
+    for number, name in enumerate(names, start=1):
+        size, phase = np.array([4.0, 8.0, 2.0]) / number, np.array([0.1, -0.5 * number, 3.0])
+        columns = {DISPLACEMENT: (1e-3 * size, phase), PRESSURE: (2e6 * size, phase)}
+        curves.append(
+            response.ResponseCurve(f"{name} as stepped", name, number > 1, np.array([1.0, 2.0, 4.0]), columns)
+        )
+    return curves
+
+
+def panel(**values: Any) -> HistoryPanel:
+    return HistoryPanel("", {name: made_history(0.1, v) for name, v in values.items()}, {"displacement": 1.0}, "bar")
+
+
+def charts() -> list[ChartPanel]:
+    x = np.array([1.0, 10.0, 20.0])
+    run = ChartLine("dda", x, 2 * x, "#d55e00", shaded=(x, 3 * x), note=" (own)")
+    other = ChartLine("program", x, 3 * x, "#000000", width=0, dots=3.2, hollow=True, notes=("1", "2", "3"))
+    stated = {"marks": {"a/c": 12.0, "beyond": 99.0}, "levels": {"5 %": 5.0}}
+    return [
+        ChartPanel("Slip", "t [s]", "slip [mm]", (run, other), names="upper left", x_ticks=4, **stated),
+        ChartPanel("Error", "n", "", (other, run), logarithmic=(True, True), x_range=(0.5, 30.0)),
+        ChartPanel("", "", "", (run,), x_ticks={1.0: "one"}, y_ticks=3, names="beside"),
+        ChartPanel("Nothing", "t [s]", "", (), names="lower left"),
+    ]
+
+
+def figures(group: Any) -> dict[str, Figure]:
+    """Return figures that no chapter above draws."""
+    moved, forces = np.array([0 * TIME, 1e-2 * TIME]), np.array([2e6 + 0 * TIME, 0 * TIME])
+    column = SpaceTime("two blocks", TIME, np.array([0.0, 1.0, 3.0]), moved, forces)
+    steps = np.arange(1, 20_001)
+    blown = panel(dda=np.where(steps > 9, 1e300, 1.0)[:20], bar=np.linspace(0, 1, 20), fem=np.linspace(0, 1.001, 20))
+    fast = panel(dda=1 - np.cos(0.5 * steps))
+    three = charts()
+    slide = slide_figure(group)
+    assert slide is not None
+    return {
+        "response": response.response_figure(answers("dda", "bar"), False),
+        "response per metre": response.response_figure(answers("dda", "bar"), True, per_metre=True),
+        "damping": response.ratio_figure(np.array([1.0, 2.0]), {"as stepped": np.full(2, 0.01), "b": np.full(2, 0.03)}),
+        "column": space_time_figure([column, SpaceTime("weak", TIME, column.faces, 0 * moved, forces / 1e3)], 46.0),
+        "blown up": motion.history_figure([blown], "displacement", apart=True),
+        "fast": motion.history_figure([fast, fast], "displacement", apart=True),
+        "slide": slide,
+        "charts": chart_figure(three[:2]),
+        "shared": chart_figure(three[:1] * 2, 40.0, Margins(), shared=True),
+        "rows": chart_figure(three, [(30.0, 4.0), (20.0, 0.0)], Margins(top=12.0)),
+        "solution": solution_figure(
+            made_history(0.1, [1.0, 2.0], [3.0, 4.0]), ["displacement", "contact_pressure"], "dda"
+        ),
+    }
+
+
+def test_figures_hold_lines_names_and_axes(made_results: Results, kept_figures: Any) -> None:
+    group = groups_of_studies(made_results, [made_results.manifest("mine")])["figures-3-4"]
+    kept_figures("figures", figures(group))

@@ -1,0 +1,198 @@
+"""What a scene may not state, or a solver does not take, in one table: scene, solver, change, and words that say why.
+
+What is refused for a feature by its name stands in the tables of `test_features`.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import dda
+import fem_reference
+from validation import advise, damping, load_scene, response
+from validation.advice.wave_advice import advise_wave
+from validation.diagnosis.judgement import compare
+from validation.diagnosis.reading import Foreign
+from validation.errors import InputError
+from validation.scenes.scene import Scene, parse_scene
+from validation.solvers.names import check_names
+from validation.solvers.registry import solve
+
+HERE = Path(__file__).parent
+LOCKED = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 3, "fem.elements": 2})
+OPEN = load_scene("unlocked").expand()[1].with_values({"time.step": 1e-3, "time.steps": 3, "fem.elements": 2})
+CONTACT = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8}
+RUBBING = OPEN.with_values({"contact": CONTACT | {"friction": 25.0}, "fem": {"elements": 2, "foundation": "corner"}})
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+EXPLICIT = {"time.alpha": 0.0, "time.delta": 0.5}
+SITE = parse_scene(load_scene(HERE / "site.toml").definition(), "site")
+LAYER = {"thickness": 2.0, "density": 2400.0, "young": 1e9, "poisson": 0.2, "blocks": 2, "velocity": -0.5}
+STACK = parse_scene(
+    {
+        "column": {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "heights": [0.5], "layer": [LAYER]},
+        "time": {"step": 1e-4, "steps": 3, "alpha": 0.25, "delta": 0.5},
+        "run": {"columns": ["displacement"]},
+    },
+    "stack",
+)
+ADAPTIVE = LOCKED.with_values({"damping.kinetic": "adaptive"})
+VISCOUS = LOCKED.with_values({"damping.mass": 20.0, "damping.stiffness": 3e-4})
+
+TABLE: list[tuple[Scene, str, dict[str, Any], str]] = [
+    (LOCKED, "fenicsx", EXPLICIT | {"time.step": 0.01}, "time.step: must not exceed"),
+    (LOCKED, "fenicsx", {"run.columns": ["rotation"]}, "run.columns"),
+    (OPEN, "bar", {"block.poisson": 0.2}, "Poisson's ratio is 0.2"),
+    (OPEN, "bar", {"fem.foundation": "corner"}, "the foundation is 'corner'"),
+    (OPEN, "bar", EXPLICIT, "unstable for the high frequencies"),
+    (OPEN, "bar", {"run.columns": ["rotation"]}, "run.columns"),
+    (RUBBING, "dda", {"contact.band": [0.0, 1e-6]}, "is frictional under lagged rules only"),
+    (OPEN, "fenicsx", {"fem": {"elements": 8, "foundation": "patch", "patch_width": 0.5}}, "none on patches"),
+    (
+        OPEN,
+        "dda",
+        AVERAGE | {"contact": CONTACT | {"rule": "energy-conserving"}, "load.eccentricity": 0.2},
+        "needs shear = 0 where the base can slide",
+    ),
+    (RUBBING, "fem", {"run.columns": ["slide_m"]}, "must be among"),
+    (RUBBING, "fem", {"load.base_motion": "time,x\n0,1e-6\n1,0.001\n"}, "must be zero at t = 0 where contact opens"),
+    (ADAPTIVE, "dda", {"time.gg": 0.9}, "time: gg"),
+    (ADAPTIVE, "dda", {"damping.floor": 1.5}, "damping.floor"),
+    (LOCKED, "dda", {"damping.floor": 0.5}, "floor goes with"),
+    (SITE, "dda", {"column.motion": "love"}, "column.motion: must be"),
+    (SITE, "dda", {"column.base": "springs"}, "base_density does not go with base = 'springs'"),
+    (SITE, "dda", {"column.base_speed": 0.0}, "column.base_speed: must be greater than 0"),
+    (SITE, "dda", {"column.heights": [30.0]}, "heights must be at most the column's height 18"),
+    (SITE, "dda", {"column.joint": [{"height": 19.0, "stiffness": 1e9}]}, "joint.height must be at most"),
+    (SITE, "dda", {"column.joint": [{"height": 9.9, "stiffness": 1e9}]}, "joints: must lie where blocks meet"),
+    (SITE, "dda", {"column.layer": []}, "column.layer: must"),
+    (SITE, "dda", {"input.pressure": 1.0}, "pressure does not go with ricker at the base"),
+    (SITE, "dda", {"input.record": "a.csv"}, "one of shape and record is required, got both"),
+    (SITE, "dda", {"input.at": "top"}, "pressure is required with ricker at the top"),
+    (SITE, "dda", {"fem": {"foundation": "corner"}}, "fem: foundation does not go with column"),
+    (SITE, "dda", {"load": {"pressure": 1.0}}, "load: does not go with column"),
+    (SITE, "dda", {"input": None}, "input: is required, got nothing"),
+    (LOCKED, "dda", {"input": SITE.definition()["input"]}, "input: does not go without column"),
+    *((SITE, solver, {"time.alpha": 0.0}, "time.step: must not exceed") for solver in ("dda", "fem")),
+    (STACK, "dda", {"run.columns": ["gap_1"]}, "run.columns: .*gap_1"),
+    (STACK, "dda", {"run.columns": ["displacement_2"]}, "run.columns: .*displacement_2"),
+    (STACK, "bars-events", {"input": {"shape": "ricker", "velocity": 0.1, "frequency": 50.0}}, "Ricker"),
+    (STACK, "bars-events", {"time.gg": 0.99}, "gg is below 1"),
+    (STACK, "bars-events", {"column.layer": [LAYER | {"young": "inf", "blocks": 1}]}, "rigid blocks"),
+]  # fmt: skip
+RECORDS = {  # of a base's motion
+    "time,z\n0,0\n": "header must be time,x or time,y or time,x,y",
+    "time,x\n0,0\n0,1\n": "time must increase from row to row, got 0 after 0",
+    "time,x\n0,nan\n": "must hold finite numbers",
+    "time,x\n0,a\n": ":2:3: must be a number, got 'a'",
+    "time,x\n": "must hold rows of numbers under the header",
+}
+TABLE += [(LOCKED, "dda", {"load.base_motion": text}, words) for text, words in RECORDS.items()]
+OF_COLUMNS = {
+    "time,displacement\n0,0\n1,1\n": "header must be time,velocity or time,acceleration",
+    "time,velocity\n0,0\n": "at least two rows",
+    "time,velocity\n0,0\n0,1\n": "time must increase",
+}
+TABLE += [(SITE, "dda", {"input": {"record": text}}, words) for text, words in OF_COLUMNS.items()]
+
+
+def written(value: Any, path: Path) -> Any:
+    """Return a value with the texts of records in it as files."""
+    if isinstance(value, dict):
+        return {key: written(part, path) for key, part in value.items()}
+    if isinstance(value, str) and value.startswith("time,"):
+        path.write_text(value)
+        return str(path)
+    return value
+
+
+@pytest.mark.parametrize(("scene", "solver", "change", "words"), TABLE, ids=[words for *_, words in TABLE])
+def test_what_is_not_taken_is_said(
+    scene: Scene, solver: str, change: dict[str, Any], words: str, tmp_path: Path
+) -> None:
+    with pytest.raises(InputError, match=words):
+        solve(scene.with_values(written(change, tmp_path / "record.csv")), solver)
+
+
+ASKS = [
+    *((ADAPTIVE, "self-adaptive damping", ask) for ask in (damping, lambda scene: response(scene, [1.0], "fem"))),
+    *(
+        (scene, words, ask)
+        for scene, words in ((ADAPTIVE, "self-adaptive damping"), (VISCOUS, "damping tables"))
+        for ask in (
+            lambda scene: advise(scene, 0.05),
+            lambda scene: advise_wave(scene, 5.0, 0.1),
+            lambda scene: compare(scene, None),
+        )
+    ),
+    (SITE, "site: damping takes scenes of a block only", damping),
+    (SITE, "compare takes scenes of a block, or of a column", lambda scene: compare(scene, Foreign(np.ones(1), {}))),
+    (SITE, "load: is needed for what is asked, got a scene of a column", lambda scene: scene.load),
+    (LOCKED, "input: is needed for what is asked, got a scene of a block", lambda scene: scene.input),
+    (LOCKED, "frequencies: must be finite and not negative, got -1", lambda scene: response(scene, [1.0, -1.0], "dda")),
+    (LOCKED, "must be a list of numbers", lambda scene: response(scene, [], "dda")),
+    (
+        LOCKED.with_values(EXPLICIT | {"time.step": 0.1}),
+        "time.step: must not exceed",
+        lambda scene: response(scene, 1.0, "dda"),
+    ),
+    (
+        LOCKED.with_values({"time.gg": 0.0}),
+        "gg: must be positive for a damping rate",
+        lambda scene: response(scene, 1.0, "dda", exact=True),
+    ),
+    (load_scene("rocking").expand()[0], "does not apply", lambda scene: response(scene, 1.0, "bar")),
+    *(
+        (LOCKED, "figures-3-4: solver .*no frequency response", lambda scene, name=name: response(scene, 1.0, name))
+        for name in ("fenicsx", "dda-textbook", "dda-60")
+    ),
+]  # fmt: skip
+
+
+def named(**gate: Any) -> None:
+    """Check the names in a scene with a gate."""
+    whole = {"pair": ["dda", "fem"], "metric": "pressure.l2", "band": [0.0, 1.0], "reason": "a test"} | gate
+    check_names(parse_scene(LOCKED.definition() | {"run": {"solvers": ["dda"]}, "gate": [whole]}, "mine"), "mine.toml")
+
+
+ASKS += [
+    (LOCKED, "gate.0.pair: must be solvers that run.solvers lists, got 'fem'", lambda scene: named()),
+    (LOCKED, "gate.0.pair: must name a solver and a reference", lambda scene: named(pair=["dda"])),
+    (LOCKED, "gate.0.metric: must be among", lambda scene: named(metric="pressure.l3")),
+]
+
+
+@pytest.mark.parametrize(("scene", "words", "ask"), ASKS)
+def test_what_is_asked_of_a_scene_that_does_not_have_it_is_said(scene: Scene, words: str, ask: Any) -> None:
+    with pytest.raises(InputError, match=words):
+        ask(scene)
+
+
+@pytest.mark.parametrize("package", [dda, fem_reference])
+def test_a_discount_that_adapts_goes_with_no_other(package: Any) -> None:
+    from validation.solvers.dda import model_of
+    from validation.solvers.fem import problem_of
+
+    run = {dda: lambda *a, **k: dda.solve(model_of(LOCKED), *a, **{"floor": 0.0} | k)}
+    run[fem_reference] = lambda *a, **k: fem_reference.solve_adaptive(problem_of(LOCKED), *a, **k)
+    for numbers in ((0.5, 1.0, 0.9, 1e-3), (0.5, 1.0, 1.0, 1e-3, "zero", 1.0)):
+        with pytest.raises(ValueError, match="adapt"):
+            run[package](package.Scheme(*numbers), 3)
+    with pytest.raises(ValueError, match="floor"):
+        run[package](package.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
+
+
+@pytest.mark.parametrize(
+    ("record", "words"),
+    [
+        ("time,x,y\n0,0,0\n1,1,0\n2,1,1\n", "must run along one straight line"),
+        ("time,y\n0,0\n1,0\n", "must move for a response"),
+    ],
+)
+def test_a_base_without_a_direction_has_no_response(record: str, words: str, tmp_path: Path) -> None:
+    moved = LOCKED.with_values(written({"load.base_motion": record}, tmp_path / "record.csv"))
+    with pytest.raises(InputError, match=words):
+        response(moved, 1.0, "dda")

@@ -1,0 +1,224 @@
+r"""What springs and step make of the contacts of moving blocks, known before anything is run.
+
+A block of the mass m that moves by u = (x, y, angle) and, if it is elastic, by the strains (ex, ey, gxy), displaces a
+corner c by B_c u. With the mass matrix M, the stiffness K of its strains and a spring p in both directions at c, its
+highest frequency on that corner alone, the other side being fixed, is the largest root of
+
+    (K + p B_c^T B_c - w^2 M) u = 0.
+
+Where both sides move, the opening is a difference of two such displacements, and w^2 is at most the sum of both: that
+of the two fastest blocks bounds any one contact. A rigid square has w^2 = 4 p / m, a soft one of one strain 7 p / m.
+
+At rest one spring that carries all that moves gives way by W / p; a block that lands on one spring at the speed v sinks
+by v sqrt(m / p). Both are to stay below `OVERLAP` of a block's thickness, beyond which a scene is refused as one of
+blocks that lie in each other. The step is the longest at which a landing on a spring of that frequency, at any place in
+the step, gives back its speed to within the error (`validation.theory.rebound`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from validation.advice.across import rebound_of
+from validation.advice.friction import left_of_a_distance
+from validation.advice.plain import PlainAnswer, in_columns
+from validation.errors import InputError
+from validation.models.plane.assembly import OVERLAP
+from validation.models.plane.blocks import PlacedBlock, centroid, second_moments, thickness
+from validation.models.plane.tables import OWN_STIFFNESS, PlaneSection
+from validation.runs.history import Array
+from validation.runs.numbers import share_text, significant
+from validation.scenes.outline import area
+from validation.scenes.scene import Scene
+from validation.theory.edges import edge
+from validation.theory.stepping import Stepping
+
+DIGITS = 2  # of springs and step, as much as a rule of thumb has
+ROUNDED_DOWN = 0.95  # of a step that is rounded to so few digits: not beyond it
+RESOLVED, LONGEST = 0.01, 10.0  # w dt between which a step is looked for; beyond, a contact lasts one step
+GRID = 40  # of w dt between them
+EDGE = 1e-3  # relative, of the step that is looked for
+LINEAR = np.array(  # displacements that are linear in place: of the angle, and of the strains ex, ey, gxy
+    [[[0.0, -1.0], [1.0, 0.0]], [[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]]
+)
+
+
+@dataclass(frozen=True)
+class MovingAdvice(PlainAnswer):
+    """What springs and step make of the contacts, and which to take."""
+
+    scene: str
+    blocks: int  # that move
+    stiffness: tuple[float, float]  # of the softest and of the stiffest spring [N/m]
+    fastest: tuple[str, ...]  # the blocks of the fastest contact, one or two
+    frequency: float  # w of that contact [rad/s]
+    omega_dt: float  # w dt [1]
+    sinking: float  # W / p of one spring under all that moves [m]
+    sinking_share: float  # of the thickness of the thinnest block [1]
+    landing: float  # v sqrt(m / p) at the velocities of t = 0, the greatest share of a thickness [m]
+    landing_share: float  # that share [1]
+    rebound: tuple[float, float]  # least and greatest, of a landing at any place in a step [1]
+    error: float  # of the rebound, that is allowed [1]
+    settings: dict[str, float]  # for Scene.with_values
+
+
+def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
+    """Return the highest frequency of a block on a spring in both directions at one of its corners [rad/s]."""
+    from scipy.linalg import eigh
+
+    linear = LINEAR[:1] if math.isinf(block.young) else LINEAR
+    moments = second_moments(block.vertices)
+    mass = np.zeros((2 + len(linear), 2 + len(linear)))
+    mass[:2, :2] = area(block.vertices) * np.eye(2)
+    mass[2:, 2:] = np.einsum("ikl,jkm,lm->ij", linear, linear, moments)
+    strains = np.zeros_like(mass)
+    if len(linear) > 1:
+        strains[3:, 3:] = area(block.vertices) * _elasticity(block)
+    corners = np.array(block.vertices) - centroid(block.vertices)
+    greatest = 0.0
+    for corner in corners:
+        B = np.column_stack([np.eye(2), (linear @ corner).T])
+        squares = eigh(strains + stiffness * B.T @ B, block.density * mass, eigvals_only=True)
+        greatest = max(greatest, float(squares[-1]))
+    return math.sqrt(greatest)
+
+
+def _elasticity(block: PlacedBlock) -> Array:
+    """Return the stiffness of stresses over strains (ex, ey, gxy) [Pa]."""
+    young = block.young
+    poisson = block.poisson
+    if block.hypothesis == "plane strain":
+        young = young / (1 - poisson**2)
+        poisson = poisson / (1 - poisson)
+    normal = young / (1 - poisson**2)
+    shear = young / (2 * (1 + poisson))
+    return np.array([[normal, poisson * normal, 0.0], [poisson * normal, normal, 0.0], [0.0, 0.0, shear]])
+
+
+def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> MovingAdvice:
+    """Return what springs and step of moving blocks make of their contacts, and which to take.
+
+    Parameters
+    ----------
+    scene
+        Without a sweep.
+    error
+        Of the rebound of a landing, that is allowed [1].
+    keep_springs
+        Whether the springs are those of real joints, and stay.
+
+    Raises
+    ------
+    InputError
+        Nothing touches, or no step brings the rebound within the error.
+    """
+    plane = scene.table(PlaneSection)
+    springs = spring_range(plane)
+    if springs is None:
+        rule = "advise tells of contacts of moving blocks, and nothing touches"
+        raise InputError(rule, source=scene.name, field="plane.contact", value="nothing")
+    softest, stiffest = springs
+    moving = [block for block in plane.assembly.blocks if not block.held]
+    masses = np.array([block.density * area(block.vertices) for block in moving])
+    sizes = np.array([thickness(block.vertices) for block in moving])
+    speeds = np.array([math.hypot(*block.velocity) for block in moving])
+    weight = float(np.sum(masses)) * math.hypot(*plane.gravity)
+    landings = speeds * np.sqrt(masses / softest)
+    deepest = int(np.argmax(landings / sizes))
+    fastest, frequency = fastest_contact(moving, stiffest)
+    rebound = rebound_of(Stepping.of(scene).stages, frequency * scene.time.step)
+    settings: dict[str, float] = {}
+    needed = max(weight / (OVERLAP * np.min(sizes)), np.max(masses * (speeds / (OVERLAP * sizes)) ** 2))
+    if needed > 0 and plane.contact is not None and not keep_springs:
+        settings["plane.contact.stiffness"] = significant(float(needed), DIGITS)
+        _, stiffest = spring_range(scene.with_values(settings).table(PlaneSection)) or springs
+    longest = longest_omega(Stepping.of(scene), error)
+    if longest is None:
+        rule = f"no step down to w dt = {RESOLVED:g} gives a landing its speed back to within the error by this scheme"
+        raise InputError(rule, source=scene.name, field="--error", value=f"{error:g}")
+    _, new_frequency = fastest_contact(moving, stiffest)
+    settings["time.step"] = significant(ROUNDED_DOWN * longest / new_frequency, DIGITS)
+    return MovingAdvice(
+        scene=scene.name,
+        blocks=len(moving),
+        stiffness=springs,
+        fastest=fastest,
+        frequency=frequency,
+        omega_dt=frequency * scene.time.step,
+        sinking=weight / softest,
+        sinking_share=weight / softest / float(np.min(sizes)),
+        landing=float(landings[deepest]),
+        landing_share=float(landings[deepest] / sizes[deepest]),
+        rebound=(rebound.least, rebound.most),
+        error=error,
+        settings=settings,
+    )
+
+
+def spring_range(plane: PlaneSection) -> tuple[float, float] | None:
+    """Return the softest and the stiffest spring of a contact, of shear too [N/m]; None where nothing touches.
+
+    Where a contact is rigid they are those that `dda` takes in its place.
+    """
+    assembly = plane.assembly
+    laws = [*assembly.springs_of_pairs.values(), *([] if assembly.springs is None else [assembly.springs])]
+    normal = [OWN_STIFFNESS if math.isinf(law.stiffness) else law.stiffness for law in laws]
+    shear = [OWN_STIFFNESS if math.isinf(law.shear) else law.shear for law in laws]
+    return (min(normal), max(normal + shear)) if laws else None
+
+
+def fastest_contact(moving: Sequence[PlacedBlock], stiffness: float) -> tuple[tuple[str, ...], float]:
+    """Return the blocks of the fastest contact on a spring and the bound of its frequency [rad/s]."""
+    squares = {block.name: highest_frequency(block, stiffness) ** 2 for block in moving}
+    fastest = sorted(squares, key=squares.__getitem__)[-2:]
+    return tuple(reversed(fastest)), math.sqrt(sum(squares[name] for name in fastest))
+
+
+def longest_omega(stepping: Stepping, error: float) -> float | None:
+    """Return the largest w dt up to which a landing gives its speed back to within an error; None where none does."""
+
+    def is_followed(omega: float) -> bool:
+        rebound = rebound_of(stepping.stages, omega)
+        return max(1 - rebound.least, rebound.most - 1) <= error
+
+    omegas = np.geomspace(RESOLVED, LONGEST, GRID).tolist()
+    beyond = next((number for number, omega in enumerate(omegas) if not is_followed(omega)), None)
+    if beyond is None:
+        return float(LONGEST)
+    return edge(is_followed, omegas[beyond - 1], omegas[beyond], EDGE) if beyond else None
+
+
+def lines(scene: Scene, source: str, advice: MovingAdvice) -> Iterator[str]:
+    """Yield the lines of one page of text; `source` has the words of the scene on a command line."""
+    t = scene.time
+    stepping = Stepping.of(scene)
+    discounted = f"{stepping.numbers}, gg = {t.discount:.6g}"
+    yield f"{scene.name}: blocks that move: {advice.blocks}, dt = {t.step:g} s, {discounted}"
+    yield ""
+    yield "What these settings do"
+    stiffness = " to ".join(f"{p:.4g}" for p in dict.fromkeys(advice.stiffness))
+    law = scene.table(PlaneSection).contact
+    of_dda = ", which dda takes for rigid contact" if law is not None and math.isinf(law.stiffness) else ""
+    facts = [("springs", f"p = {stiffness} N/m{of_dda}")]
+    if advice.sinking:
+        share = f"{share_text(advice.sinking_share)} of the thinnest block"
+        facts.append(("weight", f"of all that moves: one spring gives way by W / p = {advice.sinking:.3g} m, {share}"))
+    if advice.landing:
+        share = f"{share_text(advice.landing_share)} of its thickness"
+        facts.append(("landing", f"at t = 0: on one spring by v sqrt(m / p) = {advice.landing:.3g} m, {share}"))
+    corner = f"a corner of {' on '.join(advice.fastest)} alone"
+    facts.append(("contact", f"{corner}: w = {advice.frequency:.4g} rad/s, w dt = {advice.omega_dt:.3g}"))
+    least, most = advice.rebound
+    facts.append(("rebound", f"a landing on it gives back {least:.3g} to {most:.3g} of its speed, by where in a step"))
+    if t.discount < 1:
+        facts.append(("discount", f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"))
+    yield in_columns([(f"  {name}", sentence) for name, sentence in facts])
+    yield ""
+    yield f"What to take for {share_text(OVERLAP)} of a block's thickness and a rebound to {share_text(advice.error)}"
+    yield in_columns([(f"  {key}", f"{value:.{DIGITS}g}") for key, value in advice.settings.items()])
+    sets = " ".join(f"--set {key}={value:g}" for key, value in advice.settings.items())
+    yield f"next: dda-validate run {source} {sets}"

@@ -1,0 +1,243 @@
+r"""Whether blocks can rest: admissible contact forces by a linear program, and limits in closed form.
+
+Blocks rest only if there are forces N >= 0, |T| <= mu N at the ends of their contacts that balance the weights. That
+these exist is necessary; it is sufficient too where nothing can slide or all forces are determined. With friction a
+prestress may be admissible that no history of the blocks brings about (a key stone that is wider below).
+"""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq, linprog
+
+from validation.models.plane.blocks import centroid
+from validation.models.plane.generators import ArchSection, ColumnsSection, GeneratorSection
+from validation.runs.history import Array
+from validation.scenes.outline import area
+
+Outline = tuple[tuple[float, float], ...]
+
+NEAR = 1e-6  # m, by which a corner that touches an edge may be beside it
+LEAST_PUSH = 1e-7  # m2 of rock: what a toe begins to need; a recursion is zero below its limit
+PARALLEL = 1e-6  # sine of the angle between faces that lie on each other
+
+
+class ContactPoint(NamedTuple):
+    """A place where two blocks touch."""
+
+    block: int  # whose corner it is
+    on: int  # whose edge
+    place: Array  # (2,) [m]
+    normal: Array  # (2,) outwards from the edge
+
+
+def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
+    """Yield every corner on an edge: inside of it, or at its end where two faces lie on each other."""
+    corners = [np.array(outline) for outline in outlines]
+    for block, points in enumerate(corners):
+        for on, others in enumerate(corners):
+            if block == on or np.any(points.min(axis=0) > others.max(axis=0) + NEAR):
+                continue
+            for start, end in zip(others, np.roll(others, -1, axis=0), strict=True):
+                length = float(np.hypot(*(end - start)))
+                along = (end - start) / length
+                normal = np.array([along[1], -along[0]])
+                for number, point in enumerate(points):
+                    before = float((point - start) @ along)
+                    if abs(float((point - start) @ normal)) > NEAR or not -NEAR <= before <= length + NEAR:
+                        continue
+                    if NEAR < before < length - NEAR or _lies_on(points, number, along):
+                        yield ContactPoint(block, on, point, normal)
+
+
+def _lies_on(points: Array, number: int, along: Array) -> bool:
+    """Whether an edge that meets in a corner runs against a direction: its face lies on that one."""
+    for first, second in ((number - 1, number), (number, (number + 1) % len(points))):
+        side = points[second] - points[first]
+        side = side / np.hypot(*side)
+        if abs(side[0] * along[1] - side[1] * along[0]) < PARALLEL and side @ along < 0:
+            return True
+    return False
+
+
+def can_rest(
+    outlines: Sequence[Outline], held: Sequence[bool], mu: float | None, gravity: tuple[float, float] = (0.0, -1.0)
+) -> bool:
+    """Return whether forces at contacts of friction mu balance the weights of blocks of one density.
+
+    Parameters
+    ----------
+    outlines, held
+        Corners of every block [m], and whether it is fixed.
+    mu
+        tan(phi) of all contacts, None where nothing can slide.
+    gravity
+        In which direction the weights act.
+    """
+    rows = {number: 3 * place for place, number in enumerate(k for k, fixed in enumerate(held) if not fixed)}
+    points = list(contact_points(outlines))
+    balance = np.zeros((3 * len(rows), 2 * len(points)))
+    weights = np.zeros(3 * len(rows))
+    for number, row in rows.items():
+        x, y = centroid(outlines[number])
+        borne = -area(outlines[number]) * np.array(gravity) / math.hypot(*gravity)
+        weights[row : row + 3] = [*borne, x * borne[1] - y * borne[0]]
+    slides = []
+    for column, point in enumerate(points):
+        along = np.array([point.normal[1], -point.normal[0]])
+        for number, sign in ((point.block, 1.0), (point.on, -1.0)):
+            if number in rows:
+                arm = point.place
+                for place, direction in enumerate((point.normal, along)):
+                    force = [*direction, arm[0] * direction[1] - arm[1] * direction[0]]
+                    balance[rows[number] : rows[number] + 3, 2 * column + place] += sign * np.array(force)
+        for sign in (1.0, -1.0) if mu is not None else ():
+            bound = np.zeros(2 * len(points))
+            bound[2 * column] = -(mu or 0.0)
+            bound[2 * column + 1] = sign
+            slides.append(bound)
+    solution = linprog(
+        np.zeros(2 * len(points)),
+        A_ub=np.array(slides) if slides else None,
+        b_ub=np.zeros(len(slides)) if slides else None,
+        A_eq=balance,
+        b_eq=weights / np.max(np.abs(weights)),
+        bounds=[(0.0, None), (None, None)] * len(points),
+        method="highs",
+    )
+    return bool(solution.status == 0)
+
+
+def drawn(section: GeneratorSection) -> tuple[list[Outline], list[bool]]:
+    """Return the outlines that a table draws, and which of them are fixed."""
+    outlines = []
+    held = []
+    for _, outline, fixed in section.outlines():
+        outlines.append(outline)
+        held.append(fixed)
+    return outlines, held
+
+
+def last_that_rests(rests: Callable[[float], bool], stands: float, falls: float) -> float:
+    """Return the last value from one that rests on towards one that does not, to 1e-7 of their distance."""
+    least = 1e-7 * abs(falls - stands)
+    while abs(falls - stands) > least:
+        middle = (stands + falls) / 2
+        stands, falls = (middle, falls) if rests(middle) else (stands, middle)
+    return stands
+
+
+@functools.cache
+def least_thickness(radius: float, voussoirs: int, chords: int = 1) -> float:
+    """Return the least thickness at which a semicircle of equal voussoirs stands, nothing slides [m]."""
+
+    def rests(thickness: float) -> bool:
+        arch = ArchSection(name="arch", radius=radius, thickness=thickness, voussoirs=voussoirs, chords=chords)
+        return can_rest(*drawn(arch), None)
+
+    return last_that_rests(rests, 0.2 * radius, 0.05 * radius)
+
+
+@functools.cache
+def flat_height(count: int, width: float, dip: float, mu: float) -> tuple[float, float]:
+    """Return the height of the highest of columns y_n = H n/N on a flat base: by the recursion, and the greatest [m].
+
+    Above the greatest no contact forces balance the weights. In between it is the history that decides.
+    """
+
+    def heights(H: float) -> tuple[float, ...]:
+        return tuple(H * n / count for n in range(1, count + 1))
+
+    def rests(H: float) -> bool:
+        columns = ColumnsSection(name="column", width=width, heights=heights(H), dip=math.degrees(dip))
+        return can_rest(*drawn(columns), mu)
+
+    low = 1.001 * width / math.tan(dip)  # a single column of that height stands
+    push = brentq(lambda H: recursion(heights(H), width, 0.0, dip, mu) - LEAST_PUSH, low, 100 * low, xtol=1e-12)
+    return float(push), last_that_rests(rests, low, 100 * low)
+
+
+@functools.cache
+def stepped_friction(heights: tuple[float, ...], width: float, rise: float, dip: float) -> tuple[float, float]:
+    """Return tan(phi) that columns on a stepped base need: by the recursion, and the least.
+
+    Below the least no contact forces balance the weights. In between it is the history that decides.
+    """
+    columns = ColumnsSection(name="column", width=width, heights=heights, dip=math.degrees(dip), rise=rise)
+    outlines, held = drawn(columns)
+    least = math.tan(dip) / 2  # in which nothing stands; above 1 the recursion has no sliding
+    push = brentq(lambda mu: recursion(heights, width, rise, dip, mu) - LEAST_PUSH, math.tan(dip), 0.99, xtol=1e-12)
+    return float(push), last_that_rests(lambda mu: can_rest(outlines, held, mu), 1.0, least)
+
+
+def keyed_dip(height: float, count: int, width: float) -> float:
+    """Return the dip at which columns topple that are keyed to a base and smooth between them [rad].
+
+    Heights rise evenly from the toe, y_n = H n/N. Smooth sides pass moments on, the columns turn together, and stand
+    while the sum of W_n (y_n sin a - dx cos a) is negative: tan a = 3 N dx/((2 N + 1) H).
+    """
+    return math.atan(3 * count * width / ((2 * count + 1) * height))
+
+
+def harmonic(count: int, length: float) -> float:
+    """Return how far so many equal blocks overhang at most [m]: l/2 (1 + 1/2 + ... + 1/n)."""
+    return length / 2 * sum(1 / k for k in range(1, count + 1))
+
+
+def seat_forces(count: int, length: float, share: float) -> list[tuple[float, float]]:
+    """Return the forces at the edge and at the inner corner of each seat from above, over the weight of a block.
+
+    The k blocks above a seat, each offset by a share of its limit l/2k, press at e = (1 - share) l/2 from the edge of
+    a seat of c = l - share l/2k.
+    """
+    forces = []
+    for k in range(1, count + 1):
+        seat = length - share * length / (2 * k)
+        inward = (1 - share) * length / 2
+        forces.append((k * (1 - inward / seat), k * inward / seat))
+    return forces
+
+
+def leaning_friction(inclination: float, slenderness: float) -> float:
+    """Return tan(phi) that a block on a floor needs to lean on a smooth wall: (cot psi - d/L)/2, L/d: slenderness."""
+    return (1 / math.tan(inclination) - 1 / slenderness) / 2
+
+
+def recursion(heights: Sequence[float], width: float, rise: float, dip: float, mu: float) -> float:
+    """Return the force that the toe of columns on a stepped base needs, over the weight of a unit of area [m2].
+
+    Goodman and Bray (1976): from the highest column down, P of the next one is what toppling or sliding leaves,
+    with the forces between columns at the tops of the contacts and their friction at its limit. Zero: it stands.
+
+    Parameters
+    ----------
+    heights
+        Of the columns from the toe on [m].
+    width, rise
+        Of a column along the dip, and of the base from a column to the next [m].
+    dip, mu
+        Of the treads [rad], and tan(phi).
+    """
+    push = 0.0
+    sine = math.sin(dip)
+    cosine = math.cos(dip)
+    for n in reversed(range(len(heights))):
+        height = heights[n]
+        weight = height * width
+        upper = min(height, heights[n + 1] + rise) if n + 1 < len(heights) else height  # where the one above pushes
+        lower = min(height, heights[n - 1] - rise) if n else height  # where it pushes the one below
+        over = weight * (height * sine - width * cosine) / 2
+        topples = (push * (upper - mu * width) + over) / lower
+        slides = push - weight * (mu * cosine - sine) / (1 - mu**2)
+        push = max(0.0, topples, slides)
+    return push
+
+
+def stepped_dip(heights: Sequence[float], width: float, rise: float, mu: float) -> float:
+    """Return the dip at which columns on a stepped base begin to topple [rad]."""
+    return float(brentq(lambda dip: recursion(heights, width, rise, dip, mu) - LEAST_PUSH, 0.0, 1.0, xtol=1e-12))
