@@ -28,7 +28,7 @@ def test_each_part_of_the_bench_runs():
     code = (
         "import bench; print(bench.fenicsx_line(4, 20)); print(bench.two_workers(2, 4)); "
         "print(bench.grown('n', [1, 2, 4], lambda n: n**2)); "
-        "print(bench.compete(bench.dda_contest(50, None, 0, 1e-9, 1))); "
+        "print(bench.compete(bench.dda_contest(50, bench.dda_model(), 0, 1e-9, 1))); "
         "bench.opening_steps(200); bench.slipping_steps(200); bench.turning_steps(100); bench.fem_steps(300, 200); "
         "bench.accuracy_lines([0.02])"
     )
