@@ -10,7 +10,7 @@ from peers import box2d, pymunk
 from peers.bodies import bodies_of, friction_between
 
 from validation.gates.gate import Status
-from validation.models.plane.blocks import centroid, polar_moment
+from validation.models.plane.blocks import centroid, second_moments
 from validation.models.plane.tables import PlaneSection
 from validation.problems.judge import judge
 from validation.problems.problem import problem
@@ -27,7 +27,7 @@ def test_bodies_have_the_mass_the_inertia_and_the_outline_of_their_blocks(name: 
     scene = load_scene(f"rigid-{name}")
     for body, block in zip(bodies_of(scene), scene.table(PlaneSection).assembly.blocks, strict=True):
         assert body.mass == pytest.approx(block.density * area(block.vertices))
-        assert body.inertia == pytest.approx(block.density * polar_moment(block.vertices))
+        assert body.inertia == pytest.approx(block.density * np.trace(second_moments(block.vertices)))
         turn = np.array([[np.cos(body.angle), np.sin(body.angle)], [-np.sin(body.angle), np.cos(body.angle)]])
         assert body.corners @ turn + body.place == pytest.approx(np.array(block.vertices))
         assert sum(area(tuple(part)) for part in body.parts) == pytest.approx(area(block.vertices))
