@@ -49,7 +49,7 @@ def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -
         assert {word for word in words if word.startswith("--")} <= known
 
 
-@pytest.mark.parametrize("name", {*GROUP, *COMMANDS})
+@pytest.mark.parametrize("name", sorted({*GROUP, *COMMANDS}))
 def test_the_page_that_a_command_names_is_there(name: str) -> None:
     epilog = (GROUP | COMMANDS)[name].epilog
     page = Path(epilog.removeprefix("Page: "))
