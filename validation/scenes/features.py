@@ -185,7 +185,7 @@ def refuse_ramp(scene: Scene, what: str) -> None:
         raise InputError(f"{what} takes loads that act at once only", source=scene.name, value=", ".join(courses))
 
 
-def refuse_column(scene: Scene, what: str) -> None:
+def refuse_column(scene: Scene, what: str, field: str | None = None) -> None:
     """Refuse a scene with the feature of a kind where only a block, which has none, has an answer.
 
     Raises
@@ -194,4 +194,5 @@ def refuse_column(scene: Scene, what: str) -> None:
         The scene is of a column, or of blocks in the plane.
     """
     if scene.kind.feature:
-        raise InputError(f"{what} takes scenes of a block only", source=scene.name, value=scene.kind_in_words)
+        rule = f"{what} takes scenes of a block only"
+        raise InputError(rule, source=scene.name, field=field, value=scene.kind_in_words)

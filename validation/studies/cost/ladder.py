@@ -165,7 +165,7 @@ class Ladder:
         InputError
             The scene is of no block, its base moves, or the block turns or does not come down in time.
         """
-        features.refuse_column(base, "cost")
+        features.refuse_column(base, "cost", "--scene")
         fixed = {
             "run.geometry": "small",
             "contact.rule": "newmark",
