@@ -102,8 +102,9 @@ class Corners:
         self.path = None
         if record is not None:
             x, y = (np.interp(instants, record.time, part) for part in (record.x, record.y))
-            self.path = x - x[0], y  # the springs along the base are relaxed at t = 0, wherever it is then
-            march.data.qpos[6:8] = 0.0, y[0]
+            # springs that never let go are relaxed where the record is zero, others where they touch at t = 0
+            self.path = x if scene.contact.law == "locked" else x - x[0], y
+            march.data.qpos[6:8] = self.path[0][0], y[0]
 
     @property
     def needed(self) -> bool:
