@@ -51,9 +51,9 @@ def verify(
     Of the gates with one reason the tightest is printed, and every one that fails. A margin is how much of the way from
     the truth to the edge of the band the value leaves. What is verified, by which sources, and what is missing is the
     page verification of the documentation. Exit status: 0 all passes, 1 something fails or nothing was judged, 2 bad
-    input.
+    input. `--solver my_solver:solve` judges a program of yours.
 
-    Example: [bold]dda-validate verify arch[/bold] or [bold]dda-validate verify wedge --solver my_solver:solve[/bold]
+    Example: [bold]dda-validate verify ledge[/bold]
     """
     from validation.gates.gate import Status
     from validation.report.blocks import table
