@@ -185,7 +185,8 @@ def figure_text(figure: Figure) -> str:
         for collection in axes.collections:
             shade = collection.get_array()
             values = [] if shade is None else _range(np.asarray(shade))
-            lines.append(f"  {type(collection).__name__} {_short(values)}, alpha {collection.get_alpha()}")
+            kind = type(collection).__name__.replace("FillBetweenPoly", "Poly")  # its name since matplotlib 3.10
+            lines.append(f"  {kind} {_short(values)}, alpha {collection.get_alpha()}")
         for text in axes.texts:
             place = f"{_kind(axes, text)} {_short(text.get_position())}"
             lines.append(f"  text {text.get_text()!r} {place} {to_hex(text.get_color())}")
