@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+import numpy as np
+
+from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 
 def moduli(scene: Scene) -> tuple[float, float]:
-    """Return (E', mu') that turn the plane-stress formulas into the scene's hypothesis.
+    """Return (E', mu') that turn the plane-stress formulas into the scene's hypothesis."""
+    return plane_moduli(scene.block.young, scene.block.poisson, scene.block.hypothesis)
 
-    Plane strain: E' = E / (1 - mu^2), mu' = mu / (1 - mu).
-    """
-    E, mu = scene.block.young, scene.block.poisson
-    return (E, mu) if scene.block.hypothesis == "plane stress" else (E / (1 - mu * mu), mu / (1 - mu))
+
+def plane_moduli(young: float, poisson: float, hypothesis: str) -> tuple[float, float]:
+    """Return (E', mu') of a material; plane strain: E' = E / (1 - mu^2), mu' = mu / (1 - mu)."""
+    if hypothesis == "plane stress":
+        return young, poisson
+    return young / (1 - poisson * poisson), poisson / (1 - poisson)
+
+
+def elasticity(young: float, poisson: float) -> Array:
+    """Return the stresses over the strains (ex, ey, gxy) of plane stress [Pa], shape (3, 3)."""
+    return young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
 
 
 def size(scene: Scene) -> tuple[float, float]:

@@ -30,11 +30,11 @@ from validation.errors import InputError
 from validation.models.plane.assembly import OVERLAP
 from validation.models.plane.blocks import PlacedBlock, centroid, second_moments, thickness
 from validation.models.plane.tables import OWN_STIFFNESS, PlaneSection
-from validation.runs.history import Array
 from validation.runs.numbers import share_text, significant
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.theory.edges import edge
+from validation.theory.statics import elasticity, plane_moduli
 from validation.theory.stepping import Stepping
 
 DIGITS = 2  # of springs and step, as much as a rule of thumb has
@@ -77,7 +77,7 @@ def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
     mass[2:, 2:] = np.einsum("ikl,jkm,lm->ij", linear, linear, moments)
     strains = np.zeros_like(mass)
     if len(linear) > 1:
-        strains[3:, 3:] = area(block.vertices) * _elasticity(block)
+        strains[3:, 3:] = area(block.vertices) * elasticity(*plane_moduli(block.young, block.poisson, block.hypothesis))
     corners = np.array(block.vertices) - centroid(block.vertices)
     greatest = 0.0
     for corner in corners:
@@ -85,18 +85,6 @@ def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
         squares = eigh(strains + stiffness * B.T @ B, block.density * mass, eigvals_only=True)
         greatest = max(greatest, float(squares[-1]))
     return math.sqrt(greatest)
-
-
-def _elasticity(block: PlacedBlock) -> Array:
-    """Return the stiffness of stresses over strains (ex, ey, gxy) [Pa]."""
-    young = block.young
-    poisson = block.poisson
-    if block.hypothesis == "plane strain":
-        young = young / (1 - poisson**2)
-        poisson = poisson / (1 - poisson)
-    normal = young / (1 - poisson**2)
-    shear = young / (2 * (1 + poisson))
-    return np.array([[normal, poisson * normal, 0.0], [poisson * normal, normal, 0.0], [0.0, 0.0, shear]])
 
 
 def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> MovingAdvice:

@@ -10,6 +10,7 @@ from scipy.sparse import coo_matrix
 from scipy.sparse.linalg import spsolve
 
 from validation.runs.history import Array
+from validation.theory.statics import elasticity
 
 Point = tuple[float, float]
 Node = tuple[int, Point]  # the triangle whose own it is, or 0, and its place
@@ -73,11 +74,6 @@ def displacements(
     solution[kept] = spsolve(stiffness[np.ix_(kept, kept)], force[kept])
     by_node = solution.reshape(-1, 2)
     return np.array([by_node[sorted(at_point[place])].mean(axis=0) for place in places])
-
-
-def elasticity(young: float, poisson: float) -> Array:
-    """Return the matrix of plane stress [Pa], shape (3, 3)."""
-    return young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
 
 
 def stress(triangle: Sequence[Point], corners: Array, young: float, poisson: float) -> Array:
