@@ -15,6 +15,7 @@ from validation.advice.alarms import alarms, fixed_discount
 from validation.advice.block_alarms import TENSION
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
+from validation.theory.stepping import Stepping
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
@@ -101,3 +102,15 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
+
+
+def test_a_budgets_curves_are_the_ratios_of_the_scheme_with_and_without_its_discount() -> None:
+    scene = oblong()
+    (found,) = budget.budgets([scene])
+    for name, w in zip(("first axial", "contact"), frequencies(scene), strict=True):
+        curves = found["modes"][name]
+        for i in (0, 40, 70):
+            dt = found["dt"][i]
+            discounted, plain = (Stepping(dt, 0.36, 0.7, gg).damping_ratio(w * dt) for gg in (0.97, 1.0))
+            parts = [curves[part][i] for part in ("total", "algorithmic", "kinetic")]
+            assert parts == pytest.approx([discounted, plain, discounted - plain], rel=1e-3)
