@@ -128,29 +128,9 @@ def test_a_rigid_block_lands_as_the_map_with_overshoots_up_to_gg(gg: float) -> N
             assert found == pytest.approx(expected, abs=1e-6)
 
 
-def test_a_contact_that_settles_never_ends_and_one_that_ends_does_not_settle() -> None:
-    """Random states of a closed block: those said to stay are stepped on, and their free gap keeps its sign."""
-    ratio, gg, tau = 50.0, 0.9, 2e-3
-    _, closed, free_gap = landing._step_matrices(Stepping(1.0, 0.5, 1.0, gg), gg, tau, ratio)
-    settling = landing._Settling.of(closed, free_gap)
-    assert settling is not None
-    random = np.random.default_rng(3)
-    z, vectors = np.linalg.eig(closed)
-    slowest = vectors[:, int(np.argmax(np.abs(z)))].real
-    slowest *= -np.sign(free_gap @ slowest)
-    states = np.outer(random.uniform(0, 2, 400), slowest)
-    states += random.normal(size=(400, 6)) * np.array([0.01, 0.01, 1.0, 0.1, 0.1, 0.1])
-    states = states[states @ free_gap < 0]
-    stays = settling.stays(states)
-    ends = np.zeros(len(states), dtype=bool)
-    moving = states
-    for _ in range(5000):
-        moving = moving @ closed.T
-        ends |= moving @ free_gap > 1e-12
-    assert 20 < stays.sum() < len(states) - 20 and ends.any()
-    assert not (ends & stays).any()
-    undamped = landing._step_matrices(Stepping(1.0, 0.25, 0.5, 1.0), 1.0, tau, ratio)[1]
-    assert landing._Settling.of(undamped, free_gap) is None
+def test_a_landing_of_very_many_steps_is_not_stepped() -> None:
+    few, many = (landing.stepped_landing(Stepping(1.0, 0.5, 1.0), 2.0, step, 1.0) for step in (1e-3, 1e-5))
+    assert few is not None and many is None
 
 
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked() -> None:
