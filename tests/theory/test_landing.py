@@ -80,6 +80,21 @@ def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between() -> None:
     assert landing.own_landing(2.0).restitution == pytest.approx(0.9307, abs=1e-4)
 
 
+def test_springs_next_to_rigid_land_as_the_rigid_stop() -> None:
+    """Where rounding would hide the gap: a contact at k = 1e291 has an end."""
+    below, above = (landing.own_landing(factor * landing.STIFFEST) for factor in (1.0, 1 + 1e-9))
+    for name in ("restitution", "first_rate", "depth"):
+        assert getattr(below, name) == pytest.approx(getattr(above, name), rel=1e-6)
+    assert below.duration == pytest.approx(above.duration, rel=1e-8)
+    assert below.contacts == above.contacts == landing.own_landing(1e291).contacts
+
+
+def test_a_weight_that_lifts_the_block_hides_no_landing() -> None:
+    """It leaves its springs at every step."""
+    lifted = load_scene("open-close").expand()[0].with_values({"load.gravity": -1e6})
+    assert landing.hidden_from(lifted) is None
+
+
 def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch: pytest.MonkeyPatch) -> None:
     """The rigid blocks of the study `rebound` have k down to 1e-16, at which strain rings 1e8 times in a contact."""
     above, below = (landing.own_landing(factor * landing.SOFTEST) for factor in (1.0, 1 - 1e-9))
