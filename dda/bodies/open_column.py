@@ -199,7 +199,7 @@ def row_rates(march: March, rates: Array, base: float) -> Array:
     """Return how fast each row opens or slips, (rows,), for velocities or accelerations of the modes."""
     # no product of a library, whose fused sums tear apart blocks that fall alike
     moved = [moved_row(march.body, r, rates) for r in range(len(march.body.first))]
-    return np.array(moved) - march.body.ground[:, 1] * base
+    return np.asarray(np.array(moved) - march.body.ground[:, 1] * base)
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> tuple[Array, Array]:
