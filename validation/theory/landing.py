@@ -269,8 +269,8 @@ def hidden_from(scene: Scene) -> float | None:
 
         dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
 
-    whatever p and gg. None where it does not rise at all, rises at every step (r <= -1: a weight that lifts it), or does
-    not start on its springs at rest, and of schemes other than Newmark's.
+    whatever p and gg. None where it does not rise at all, where a weight that lifts it makes it rise at every step
+    (r <= -1), where it does not start on its springs at rest, and of schemes other than Newmark's.
     """
     t = scene.time
     if t.scheme != "newmark":
