@@ -9,7 +9,6 @@ import pytest
 from conftest import typed
 
 from validation.cli.app import NUMERICAL_FAILURE
-from validation.engine import duration
 
 STACK = """
 [column]
@@ -61,14 +60,3 @@ def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
     assert done.returncode == NUMERICAL_FAILURE
     assert "needs more solves than its limit" in done.stdout
     assert "ALARM solve limit" in done.stdout
-
-
-def test_solve_says_how_long_an_exact_motion_takes_where_that_is_long(
-    stack: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert "steps, " not in typed("solve", stack, "--solver", "column-events").stderr
-    monkeypatch.setattr(duration, "TOLD", 0.0)
-    monkeypatch.setattr(duration, "NOISE", 1e-9)
-    ended = typed("solve", stack, "--solver", "column-events")
-    assert ended.returncode == 0
-    assert ", column-events: " in ended.stderr and "steps, " in ended.stderr
