@@ -19,9 +19,10 @@ from dda import (
     response,
     solve_unilateral,
 )
-from dda.bodies.bonded_column import Drive, solve_column
 from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
+from dda.bodies.column_history import solve_column
+from dda.bodies.column_march import Drive
 from dda.bodies.opening_block import unknowns_of
 from dda.linear.natural_modes import free_modes
 
