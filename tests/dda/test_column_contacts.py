@@ -179,35 +179,6 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
 # ---- contacts that hold, and rigid blocks ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("base", "weights", "start"),
-    thinned(
-        itertools.product(["pulled", "welded", "spring", "half-space"], [AVERAGE, CONSTANT], ["zero", "consistent"]), 5
-    ),
-)
-def test_contacts_that_never_switch_are_the_bonded_column(base, weights, start):
-    """Without a strength to exceed, or told to hold tension where the base would open every contact."""
-    pulled = base == "pulled"
-    blocks = [Layer(4.0, 2500.0, 2e9, 0.2, 4), Layer(3.0, 2000.0, 1e9, 0.3, 3)]
-    springs = [Spring(x, 1e9) for x in (*[0.0] * (base in ("spring", "pulled")), 1.0, 2.0, 4.0, 5.0)]
-    impedance = 2e6 if base == "half-space" else None
-    bonded = Column(blocks, "pressure" if pulled else "shear", joints=springs, impedance=impedance)
-    never = replace(bonded, law="unilateral" if pulled else "frictional")
-    t = 2e-4 * np.arange(401)
-    w = 400.0
-    moved = 1e-3 * (1 - np.cos(w * t)), 1e-3 * w * np.sin(w * t), 1e-3 * w * w * np.cos(w * t)
-    drive = Drive(*moved, 0 * t if pulled else 1e5 * np.sin(w * t))
-    names = ["displacement", "contact_pressure", "displacement_1", "stress_1", "displacement_2", "stress_2"]
-    scheme = Scheme(*weights, 0.999, 2e-4, start)
-    one = solve_column(never, scheme, drive, names, [2.5, 0.25], ColumnOptions(bonded=pulled))
-    other = solve_column(bonded, scheme, drive, names, [2.5, 0.25])
-    assert one.step_switches.sum() == 0
-    assert not pulled or solve_column(never, scheme, drive, names, [2.5, 0.25]).step_switches.sum() > 0
-    for name in names:
-        largest = np.abs(other.columns[name]).max()
-        np.testing.assert_allclose(one.columns[name], other.columns[name], rtol=0, atol=1e-9 * largest)
-
-
 def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch):
     steps = []
 
