@@ -54,7 +54,7 @@ from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
 if TYPE_CHECKING:
-    from dda.bodies.contact_column import ColumnContactResult
+    from dda.bodies.column_history import ColumnResult
 
 REPEATS = 300  # runs of a scene for one history, about: compiled code pays
 ROUNDS, NUDGE = 8, 1e-6  # evaluations of a fit, those of derivatives apart, and its relative change of a number
@@ -239,7 +239,7 @@ class ColumnSearch:
         stepping = self.reading.stepping
         return np.asarray(np.cumsum(stepping.steps)[stepping.rows])
 
-    def result(self, values: Values, steps: int, shift: float = 0.0) -> ColumnContactResult | None:
+    def result(self, values: Values, steps: int, shift: float = 0.0) -> ColumnResult | None:
         """Return what a change gives at the first steps of the history; None where there is no such run.
 
         Parameters
@@ -247,8 +247,8 @@ class ColumnSearch:
         shift
             Relative change of all densities.
         """
-        from dda.bodies.bonded_column import Drive
-        from dda.bodies.contact_column import ColumnOptions, solve_contact_column
+        from dda.bodies.column_history import ColumnOptions, solve_column
+        from dda.bodies.column_march import Drive
         from validation.solvers.columns.blocks import dda_column
         from validation.solvers.dda import scheme_of
 
@@ -264,7 +264,7 @@ class ColumnSearch:
             steps *= round(self.scene.time.step / scene.time.step)
             drive = Drive(**vars(motion_at(scene, scene.time.step * np.arange(steps + 1.0))))
             options = ColumnOptions(None, section.settled, bonded=is_bonded, repeats=REPEATS)
-            result = solve_contact_column(column, scheme_of(scene), drive, [DISPLACEMENT, PRESSURE], (), options)
+            result = solve_column(column, scheme_of(scene), drive, [DISPLACEMENT, PRESSURE], (), options)
         except (InputError, ArithmeticError, ValueError):
             return None
         return result if len(result.time) == steps else None
