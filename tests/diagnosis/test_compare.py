@@ -18,7 +18,7 @@ from validation import load_scene, solve
 from validation.diagnosis.fits.fit import fit, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.other_solvers import slipped
+from validation.diagnosis.other_solvers import SolverSearch
 from validation.diagnosis.reading import Foreign, Stepping, read
 from validation.diagnosis.readings import Reading
 from validation.diagnosis.sentences import span
@@ -260,6 +260,7 @@ def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch: pytes
     run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")
     seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor"})
     steps = Stepping(np.full(20, s.time.step), np.arange(20))
-    (found,) = slipped(s, "fem", Reading(steps, run_.displacement, run_.contact_pressure, ()))
-    assert (found.cause, found.value) == ("young-factor", pytest.approx(0.9, rel=1e-6))
-    assert found.misfit < 1e-9
+    search = SolverSearch(s, Reading(steps, run_.displacement, run_.contact_pressure), "fem")
+    best = search.explanations()[0]
+    assert (best.id, best.value) == ("young-factor", pytest.approx(0.9, rel=1e-6))
+    assert best.left < 1e-9
