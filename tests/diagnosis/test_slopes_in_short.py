@@ -76,8 +76,7 @@ def own(scene: Scene) -> np.ndarray:
 
 def beside(scene: Scene, place: np.ndarray) -> SlopeSearch:
     steps = Stepping(np.full(scene.time.steps, scene.time.step), np.arange(scene.time.steps))
-    units = np.zeros(scene.time.steps)
-    return SlopeSearch(scene, Reading(steps, place[0], sideways=place[1], rounding=units, sideways_rounding=units))
+    return SlopeSearch(scene, Reading(steps, place, np.zeros(place.shape)))
 
 
 def test_noise_is_no_departure_and_a_shape_is_one() -> None:

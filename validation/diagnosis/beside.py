@@ -29,14 +29,14 @@ from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm, outlyin
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import Fitted, fitted, nearest, nearest_start
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.readings import FIELDS, Reading, words_of_slips
+from validation.diagnosis.readings import Reading, words_of_slips
 from validation.diagnosis.schemes import scheme_numbers
 from validation.diagnosis.variant import own_scheme
 from validation.errors import InputError
 from validation.metrics.contact import AGREED
 from validation.metrics.values import largest
-from validation.runs.history import Array
-from validation.runs.numbers import share_text, significant
+from validation.runs.history import PRESSURE, Array
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
@@ -150,19 +150,17 @@ class SceneSearch:
 
     def __post_init__(self) -> None:
         """Begin with the scene's own run."""
-        of_reading = [[getattr(self.reading, place) for place in FIELDS[name]] for name in self.NAMES]
-        columns = [(values, rounding) for values, rounding in of_reading if values is not None]
-        self.recorded = np.array([values for values, _ in columns])
+        self.recorded = self.reading.recorded
         scene_run = self.run({}, self.recorded.shape[1])
         if scene_run is None:
             raise InputError("dda cannot run it at the steps of the history", source=self.scene.name)
         self.scene_run = scene_run
-        units = []
-        for (values, rounding), run in zip(columns, scene_run, strict=True):
-            size = max(largest(values), largest(run))
-            unit = (last_digits(values) if rounding is None else rounding) + ARITHMETIC * size
-            units.append(np.maximum(unit, np.finfo(float).tiny))  # of a column that is zero throughout
-        allowed = np.array(units) + self.spread({}, scene_run)
+        units = self.reading.rounding
+        if units is None:
+            units = np.array([last_digits(values) for values in self.recorded])
+        sizes = np.max(np.abs(np.hstack([self.recorded, scene_run])), axis=1, keepdims=True)
+        least = np.finfo(float).tiny  # of a column that is zero throughout
+        allowed = np.maximum(units + ARITHMETIC * sizes, least) + self.spread({}, scene_run)
         self.allowed = allowed[:, np.all(np.isfinite(allowed), axis=0)]
 
     # ---- of a kind of scene -----------------------------------------------------------------------------------------
@@ -459,13 +457,16 @@ def answer_of(
     values = {name: significant(value, 6) for name, value in verdict.causes.items() if value is not None}
     words = words_of_slips(reading.corrected)
     if explained:
-        words |= verdict.words
+        words |= {name: verdict.words[name] for name in verdict.causes}
         if {"scheme", "start"} & verdict.causes.keys():
             scheme |= {name: verdict.best[f"time.{name}"] for name in ("alpha", "delta")}
         scheme["gg"] = verdict.best.get("time.gg", scheme["gg"])
         if "scheme" in verdict.causes:
             words["scheme"] = f"a different scheme from the scene's {stated}"
             stated = verdict.words["scheme"]
+        elif "exact-in-time" in verdict.causes:
+            scheme = dict.fromkeys(("alpha", "delta", "gg"))
+            stated = sentences.scheme_words(None, None, None)
         else:
             stated = sentences.scheme_of(replace(own, gg=scheme["gg"]))
     nearest_causes: dict[str, Any] | None = None
@@ -484,6 +485,7 @@ def answer_of(
         sentence = f"{sentence}; {_first_rows(search)}."
     (judged_solver, *_) = by_role(Role.JUDGED)
     curves = {"the file": search.recorded, judged_solver: search.scene_run, "best": columns}
+    has_pressure = PRESSURE in search.NAMES[: len(columns)]
     horizon = [_horizon(search)] if search.rows < search.scene_run.shape[1] else []
     return Answer(
         sentence=sentence,
@@ -498,7 +500,7 @@ def answer_of(
         nearest=nearest_causes,
         alike=[dict(one) for one in verdict.alike],
         evidence=tuple(stages),
-        pressures={name: run[1] for name, run in curves.items()} if reading.pressure is not None else {},
+        pressures={name: run[1] for name, run in curves.items()} if has_pressure else {},
         slips=reading.corrected if explained else (),
         model=search.model,
     )
@@ -518,11 +520,10 @@ def _stages(search: SceneSearch) -> list[Stage]:
     is_noise = search.is_noise(search.scene_run)
     for name, misfit, share in zip(search.NAMES, search.misfits(search.scene_run), shares, strict=False):
         beyond = np.flatnonzero(np.abs(share) > 1) + 1
-        agrees = is_noise or not len(beyond)
-        what = "is the scene's" if agrees else f"is {share_text(misfit)} off, from row {beyond[0]} on"
-        words = f"the {name.replace('_', ' ')} alone {what}"
         first = float(beyond[0]) if len(beyond) else None
-        stages.append(Stage(name, agrees, words, {"misfit": misfit, "first_row": first}))
+        agrees = is_noise or first is None
+        since = f", from row {first or 0:g} on"
+        stages.append(evidence.column_stage(name, agrees, misfit, since, {"first_row": first}))
     if search.rows < search.scene_run.shape[1]:
         time = float(search.time[max(search.rows - 1, 0)])
         stages.append(Stage("horizon", None, _horizon(search), {"time": time, "rows": float(search.rows)}))

@@ -16,7 +16,7 @@ from validation.diagnosis.numbers import Values, contacts, fixed, layers, places
 from validation.diagnosis.one_change import UNITS, of_discount, of_numbers, of_schemes
 from validation.diagnosis.other_solvers import DISCOUNTS, STARTS
 from validation.diagnosis.reading import Foreign, Stepping, steppings
-from validation.diagnosis.readings import Reading, slips
+from validation.diagnosis.readings import slips, without_slips
 from validation.errors import InputError
 from validation.metrics.contact import SHIFT
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
@@ -178,7 +178,7 @@ def compare_column(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> An
 
 def searches_of(scene: Scene, foreign: Foreign, stepping: Stepping) -> list[ColumnSearch]:
     """Return the ways to read signs and units, each beside the scene's own run."""
-    reading = Reading(stepping, foreign.displacement, foreign.pressure)
+    reading = without_slips(foreign, stepping)
     stepped = reading.scene_of(scene)
     scene_run = ColumnSearch(stepped, reading).scene_run
     readings = slips(foreign, stepping, scene_run[0], scene_run[-1], furthest=math.inf)

@@ -45,6 +45,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 
 SAME_SPLIT = 1e-4  # of a composite scheme
+NAMES = (DISPLACEMENT, PRESSURE)
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -58,28 +59,25 @@ class Case:
     reading: Reading
     column: Rectangle
     scene_variant: Variant
-    left_out: Flags | None = None  # single rows, of all columns below one another, that are none of the motion's
+    left_out: Flags | None = None  # single rows of each column that are none of the motion's
     as_read: Reading | None = None  # with those rows as the file has them; in `reading` they are as explained
 
     @cached_property
     def target(self) -> Target:
         """What is to be explained."""
         r = self.reading
-        columns = r.displacement, r.pressure, r.rounding, r.pressure_rounding
-        return Target(self.column, r.stepping.steps, r.stepping.rows, *columns, self.left_out)
+        return Target(self.column, r.stepping.steps, r.stepping.rows, r.recorded, r.rounding, self.left_out)
 
     @property
     def single_rows(self) -> list[tuple[str, int, float]]:
         """Column, step and error over the largest value of each row that is none of the motion's."""
+        rows: list[tuple[str, int, float]] = []
         if self.left_out is None or self.as_read is None:
-            return []
-        rows = []
-        pairs = (DISPLACEMENT, self.as_read.displacement), (PRESSURE, self.as_read.pressure)
-        flags_of_columns = self.left_out.reshape(-1, len(self.target.rows))
-        for flags, (name, values), mended in zip(flags_of_columns, pairs, self.target.recorded, strict=False):
-            for row in np.flatnonzero(flags):
-                error = abs(float(values[row] - mended[row])) / largest(mended) if values is not None else 0.0
-                rows.append((name, int(self.target.rows[row]) + 1, error))
+            return rows
+        for column, row in np.argwhere(self.left_out).tolist():
+            mended = self.target.recorded[column]
+            error = abs(float(self.as_read.recorded[column, row] - mended[row])) / largest(mended)
+            rows.append((NAMES[column], int(self.target.rows[row]) + 1, error))
         return rows
 
     def without_single_rows(self, explanation: Fit) -> Case | None:
@@ -88,15 +86,9 @@ class Case:
         left_out = target.outlying(explanation.residual)
         if left_out is None:
             return None
-        remainder = target.parts(np.where(left_out, explanation.residual, 0.0))
-        mended = [values - rest for values, rest in zip(target.recorded, remainder, strict=True)]
-        reading = replace(
-            self.reading,
-            displacement=mended[0],
-            pressure=None if target.pressure is None else mended[1],
-            rounding=target.bars[0].rounding,
-            pressure_rounding=None if target.pressure is None else target.bars[1].rounding,
-        )
+        mended = target.recorded - np.where(left_out, target.parts(explanation.residual), 0.0)
+        rounding = np.array([bar.rounding for bar in target.bars])
+        reading = replace(self.reading, recorded=mended, rounding=rounding)
         return replace(self, reading=reading, left_out=left_out, as_read=self.reading)
 
     @property
@@ -214,9 +206,8 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     scene_variant = own_variant(scene)
     read = readings_of(scene, column, scene_variant, foreign)
     cases = [Case(scene, foreign, reading, column, scene_variant) for reading in read]
-    pairs = zip((read[0].displacement, read[0].pressure), cases[0].expected, strict=True)
-    for values, expected in pairs:
-        factor = None if values is None else evidence.growth(values, expected)
+    for values, expected in zip(read[0].recorded, cases[0].expected, strict=False):
+        factor = evidence.growth(values, expected)
         if factor is not None:
             return _diverged(cases[0], factor)
     case, verdict = _best(cases)
@@ -312,7 +303,7 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     limits = [name for name in causes.BAND_FIELDS if name in ends]
     values |= {name: causes.roundest(*ends[name]) for name in limits}
-    alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
+    alike = either or families.as_good(target, verdict)
     alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
     nearest: dict[str, Any] | None = None
     if not (verdict.explained or alike):
@@ -342,12 +333,11 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         sentence = sentences.sentence(subject)
     best = histories(target.column, [best_fit.variant], target.steps)
     as_read = case.as_read or case.reading
-    curves = {
-        "the file": as_read.displacement,
-        DDA: expected[0][target.rows],
-        "best": best.displacement[target.rows, 0],
+    columns: dict[str, Sequence[Array]] = {
+        "the file": list(as_read.recorded),
+        DDA: [values[target.rows] for values in expected],
+        "best": [best.displacement[target.rows, 0], best.pressure[target.rows, 0]],
     }
-    pressures = {"the file": as_read.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         scheme=schemes.scheme_numbers(v),
         departure=first_departure,
@@ -358,14 +348,14 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         told=intervals(refitted) if verdict.explained else {},
         untold=untold(refitted) if verdict.explained else [],
         misfit=best_fit.misfit,
-        curves={name: (case.time, curve) for name, curve in curves.items()},
+        curves={name: (case.time, run[0]) for name, run in columns.items()},
         values=values,
         unexplained=unexplained,
         nearest=nearest,
         alike=alike,
         evidence=tuple(stages),
         slips=corrected if verdict.explained else (),
-        pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
+        pressures={name: run[1] for name, run in columns.items()} if target.pressure is not None else {},
         intervals=ends,
         remedy=assignments(ids, v, scene_variant) if verdict.explained else "",
     )

@@ -12,13 +12,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from validation.diagnosis import evidence
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunVerdict, SceneSearch, answer_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
+from validation.diagnosis.evidence import Departure
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading, slips
+from validation.diagnosis.readings import Reading, slips, without_slips
 from validation.diagnosis.variant import rectangle_of
 from validation.errors import InputError
 from validation.metrics.contact import SHIFT
@@ -78,6 +80,14 @@ class SolverSearch(SceneSearch):
         least = min(MESH, SHARE * self.left(self.scene_run)) if is_exact else 0.0
         return self.left(columns) <= least or super().is_noise(columns)
 
+    def departure(self, verdict: RunVerdict) -> Departure | None:
+        """Return where a history departs: what is exact in time, from the run of `dda` under the scene's scheme."""
+        if self.solver.name != WITHOUT_SCHEME:
+            return super().departure(verdict)
+        rows = self.reading.stepping.rows
+        own_run = get_solver(DDA).solve(self.scene).displacement[rows]
+        return evidence.measured(own_run, self.recorded[0], rows, 0.0)
+
 
 def rivals_of(scene: Scene) -> tuple[str, ...]:
     """Return the names of the solvers that a history of a scene is held against beside DDA."""
@@ -93,38 +103,36 @@ def not_installed(scene: Scene, solvers: Iterable[str]) -> tuple[str, ...]:
 
 def verdict_of_solvers(scene: Scene, readings: Sequence[Reading], names: Iterable[str]) -> RunVerdict | None:
     """Return what comes nearest of the solvers that apply to a scene, each as it is or with one thing changed."""
-    verdicts = []
+    searches = []
     for name in names:
         solver = get_solver(name)
-        if solver.refusal(scene) is not None or solver.missing(scene) is not None:
-            continue
-        if name == WITHOUT_SCHEME and scene.time.discount != 1:  # the damped one takes minutes over long histories
-            continue
-        for reading in readings:
-            search = SolverSearch(scene, reading, name)
-            verdict = RunVerdict(search, True)
-            if not search.is_scene(MESH if search.model else 0.0):
-                verdict = _with_base(verdict_of(search, search.explanations()))
-            if verdict.explained and name == WITHOUT_SCHEME:
-                words = words_of("exact-in-time", 0.0)
-                causes = {"exact-in-time": None, **verdict.causes}
-                verdict = replace(verdict, causes=causes, words={"exact-in-time": words, **verdict.words})
-            verdicts.append(verdict)
-    return min(verdicts, key=_rank, default=None)
+        # the damped continuum takes minutes over long histories
+        is_slow = name == WITHOUT_SCHEME and scene.time.discount != 1
+        if solver.refusal(scene) is None and solver.missing(scene) is None and not is_slow:
+            searches += [SolverSearch(scene, reading, name) for reading in readings]
+    own = [search for search in searches if search.is_scene(MESH if search.model else 0.0)]
+    if own:
+        nearest_own = min(own, key=lambda search: (len(search.reading.corrected), search.left(search.scene_run)))
+        return _named(RunVerdict(nearest_own, True))
+    verdicts = []
+    for search in searches:
+        verdict = _named(verdict_of(search, search.explanations()))
+        if verdict.explained:
+            return verdict
+        verdicts.append(verdict)
+    return min(verdicts, key=lambda verdict: verdict.left, default=None)
 
 
-def _rank(verdict: RunVerdict) -> tuple[bool, int, float]:
-    return not verdict.explained, len(verdict.causes), verdict.left
-
-
-def _with_base(verdict: RunVerdict) -> RunVerdict:
-    """Return a verdict in which springs that are a little softer are a base that yields."""
-    factor = verdict.causes.get("springs-factor") or 1.0
-    softness = -math.log(factor)
-    if not 0 < softness < 2 * BENIGN_COMPLIANCE:
-        return verdict
-    words = words_of("base-compliance", softness)
-    return replace(verdict, causes={"base-compliance": softness}, words={"base-compliance": words})
+def _named(verdict: RunVerdict) -> RunVerdict:
+    """Return a verdict with the names of what yields a little, a base, and of a solver that has no scheme."""
+    causes = dict(verdict.causes)
+    softness = -math.log(causes.get("springs-factor") or 1.0)
+    if 0 < softness < 2 * BENIGN_COMPLIANCE:
+        causes = {"base-compliance": softness}
+    if verdict.explained and verdict.search.model == WITHOUT_SCHEME:
+        causes["exact-in-time"] = None
+    new_words = {name: words_of(name, value or 0.0) for name, value in causes.items() if name not in verdict.causes}
+    return replace(verdict, causes=causes, words={**verdict.words, **new_words})
 
 
 def judged_without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
@@ -132,8 +140,7 @@ def judged_without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
     readings = []
     for stepping in steppings(foreign, scene.time.step):
         if np.ptp(stepping.steps) == 0:
-            plain = Reading(stepping, foreign.displacement, foreign.pressure)
-            run = get_solver(DDA).solve(plain.scene_of(scene))
+            run = get_solver(DDA).solve(without_slips(foreign, stepping).scene_of(scene))
             readings += slips(foreign, stepping, run.displacement[stepping.rows], run.contact_pressure[stepping.rows])
     verdict = verdict_of_solvers(scene, readings, (DDA, "fem"))
     if verdict is None:

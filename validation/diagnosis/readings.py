@@ -97,13 +97,14 @@ class Reading:
     """A history as it is read: its steps, with errors of sign and unit corrected."""
 
     stepping: Stepping
-    displacement: Array  # [m]
-    pressure: Array | None = None  # [Pa]
+    recorded: Array  # the displacement [m] and, if given, another column, (columns, rows)
+    rounding: Array | None = None  # units of their last digits, seen from the values if not given
     corrected: tuple[Slip, ...] = ()
-    rounding: Array | None = None  # [m]
-    pressure_rounding: Array | None = None  # [Pa]
-    sideways: Array | None = None  # [m]
-    sideways_rounding: Array | None = None  # [m]
+
+    @property
+    def displacement(self) -> Array:
+        """The displacement [m]."""
+        return np.asarray(self.recorded[0])
 
     @property
     def slips(self) -> tuple[str, ...]:
@@ -162,22 +163,27 @@ def slips(
     return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
 
 
-def without_slips(foreign: Foreign, stepping: Stepping, factors: Mapping[str, tuple[float, float]]) -> Reading:
+AS_IT_IS = dict.fromkeys((DISPLACEMENT, PRESSURE), (1.0, 1.0))
+
+
+def without_slips(
+    foreign: Foreign, stepping: Stepping, factors: Mapping[str, tuple[float, float]] = AS_IT_IS
+) -> Reading:
     """Return a history without a sign and a power of ten in each of some columns."""
     corrected = [Slip("unit", "time", stepping.factor)] if stepping.factor != 1 else []
-    columns: dict[str, Array] = {}
+    columns = []
+    units = []
     for name, (sign, factor) in factors.items():
-        field, rounding = FIELDS[name]
-        values = getattr(foreign, field)
+        values, stated = (getattr(foreign, place) for place in FIELDS[name])
         if values is None:
             continue
         # the units of the last digits as the file has them: in other units they are not seen any more
-        stated = getattr(foreign, rounding)
         unit = last_digits(values) if stated is None else stated
-        columns |= {field: values * sign / factor, rounding: unit / factor}
+        columns.append(values * sign / factor)
+        units.append(unit / factor)
         corrected += [Slip("sign", name, -1.0)] if sign < 0 else []
         corrected += [Slip("unit", name, factor)] if factor != 1 else []
-    return Reading(stepping, corrected=tuple(corrected), **columns)
+    return Reading(stepping, np.array(columns), np.array(units), tuple(corrected))
 
 
 def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:
