@@ -29,14 +29,6 @@ def solve(scene):
         time.sleep(0.02)
     return {"displacement": [-1e-3] * scene.time.steps}
 """
-SWEEP = '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
-
-
-@pytest.fixture
-def long_scene(tmp_path: Path) -> Path:
-    path = tmp_path / "long.toml"
-    path.write_text(SCENE.replace("steps = 50", "steps = 8000") + SWEEP)
-    return path
 
 
 def start(scene: Path, results: Path, jobs: int = 2) -> subprocess.Popen[str]:

@@ -82,28 +82,6 @@ def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any
 # ---- what a drawn axes shows --------------------------------------------------------------------------------------
 
 
-def height_of(axes: Axes, fraction: float) -> float:
-    """Return the value on the y axis at a height from 0 at the bottom to 1 at the top."""
-    low, high = axes.get_ylim()
-    if axes.get_yscale() == "log":
-        return float(low * (high / low) ** fraction)
-    return float(low + fraction * (high - low))
-
-
-def names_at(axes: Axes) -> dict[str, tuple[float, str]]:
-    """Return the names beside an axes: name -> value on the y axis at which its leader begins, and colour."""
-    leaders = [line for line in axes.lines if line.get_transform() == axes.transAxes]
-    starts = {round(float(line.get_ydata()[1]), 9): float(line.get_ydata()[0]) for line in leaders}
-    colors = {text.get_text(): to_hex(text.get_color()) for text in axes.texts}
-    return {name: (height_of(axes, starts[round(place, 9)]), colors[name]) for name, place in places_of(axes).items()}
-
-
-def places_of(axes: Axes) -> dict[str, float]:
-    """Return the names beside an axes and how high they stand, as a share of the height."""
-    beside = [text for text in axes.texts if text.get_transform() == axes.transAxes and text.get_position()[0] > 1]
-    return {text.get_text(): float(text.get_position()[1]) for text in beside}
-
-
 def rules_of(axes: Axes, color: str) -> tuple[list[float], list[float]]:
     """Return where the rules of a colour stand that cross an axes: heights of level ones, x of upright ones."""
     rules = [line for line in axes.lines if to_hex(line.get_color()) == color]

@@ -176,19 +176,6 @@ def symplectic_euler(run: Run) -> Rows:
     return rows
 
 
-def forward_euler(run: Run) -> Rows:
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    rows = []
-    for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        x, v = x + dt * v, run.gg * v + dt * a
-        rows.append((x, spring_force(run, b.B @ x)))
-    return rows
-
-
 def implicit_euler(run: Run) -> Rows:
     return theta(run, 1.0)
 
@@ -453,7 +440,6 @@ METHODS: dict[str, Callable[..., Rows]] = {
     "weights": by_weights,
     "leapfrog": leapfrog,
     "symplectic-euler": symplectic_euler,
-    "forward-euler": forward_euler,
     "implicit-euler": implicit_euler,
     "theta": theta,
     "composite": composite,

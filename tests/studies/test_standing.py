@@ -43,7 +43,7 @@ def test_limits_are_those_of_another_program():
     assert math.degrees(limits.stepped_dip([2, 4, 4, 4, 4], 1.0, 1.0, 0.8)) == pytest.approx(14.6417, abs=5e-5)
     assert limits.keyed_dip(2.36188746487, 5, 1.0) == pytest.approx(DIP, rel=1e-11)
     assert limits.least_thickness(1.0, 7) == pytest.approx(0.095703, abs=5e-7)
-    for voussoirs, thickness in ((7, 0.09624503108097), (8, 0.10086149113203), (24, 0.10717853400325)):
+    for voussoirs, thickness in ((8, 0.10086149113203), (24, 0.10717853400325)):
         by_chords = [limits.least_thickness(1.0, voussoirs, chords) for chords in (4, 8)]
         assert (4 * by_chords[1] - by_chords[0]) / 3 == pytest.approx(thickness, abs=2e-7)  # of arcs: second order
     assert limits.leaning_friction(math.radians(50), 7.5) == pytest.approx(0.352883148922, rel=1e-11)
