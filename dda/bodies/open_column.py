@@ -15,6 +15,8 @@ from dda.march.step import Body, Course, Length, March, State, moved_row, write_
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
 
+ROUNDING = 1e-12  # of the fastest row: what a common velocity of welded blocks leaves of a difference
+
 
 def base_of(column: Column) -> int:
     """Return what is below the lowest block."""
@@ -131,7 +133,13 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     a = np.zeros(len(z))
     if scheme.start == "consistent":
         unknown = rigid & (~opens | (opening == 0))
-        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown, force)
+        rate = row_rates(march, speed, base_speed)
+        nothing = ROUNDING * np.max(np.abs(rate), initial=0.0)
+        parts = unknown & (rate > nothing)
+        returns = unknown & ~opens & (rate < -nothing)
+        # a contact that slips has its strength against the slip, one whose faces part has none
+        force = np.where(parts, laws.lower, np.where(returns, laws.upper, force))
+        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown & ~parts & ~returns, force)
         a = own + B.T @ force
     if blocks.base == WELDED:
         force[0] = move_foot(blocks, drive, own, B[1:].T @ force[1:], speed, a)
@@ -181,11 +189,17 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
     )
     length = Length(np.zeros(4), np.ones(len(rates)), flexibility_for(n, True))
     write_flexibility(march, 1.0, length)
-    for r in range(n):  # no product of a library, whose fused sums tear apart blocks that fall alike
-        march.work.q[r] = moved_row(march.body, r, rates) - march.body.ground[r, 1] * base
+    march.work.q[:] = row_rates(march, rates, base)
     after = rows_of(force, unknown)
     find_in_band(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, march.work)
     return np.asarray(after.force)
+
+
+def row_rates(march: March, rates: Array, base: float) -> Array:
+    """Return how fast each row opens or slips, (rows,), for velocities or accelerations of the modes."""
+    # no product of a library, whose fused sums tear apart blocks that fall alike
+    moved = [moved_row(march.body, r, rates) for r in range(len(march.body.first))]
+    return np.asarray(np.array(moved) - march.body.ground[:, 1] * base)
 
 
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ import pytest
 from conftest import refused, typed
 
 from validation import load_scene, solve
-from validation.advice.draft import KINDS, MOVING, draft
+from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, draft
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
@@ -22,7 +22,7 @@ def default(question: str, value: float) -> float:
 @pytest.mark.parametrize(("kind", "rock"), [*((kind, "granite") for kind in KINDS), ("slope", "shale")])
 def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock: str, tmp_path: Path) -> None:
     done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
-    following = "show" if kind in MOVING else "advise"
+    following = "show" if kind in (*MOVING, *GLUED_BODIES) else "advise"
     assert done.returncode == 0 and f"next: dda-validate {following} mine.toml" in done.stdout
     scene = load_scene(tmp_path / "mine.toml")
     assert not [*plausibility_warnings(scene)]
@@ -61,6 +61,11 @@ def test_a_drawn_scene_does_what_it_is_called(kind: str, tmp_path: Path) -> None
         y = run.history.columns[f"{name}.y"]
         way = math.hypot(x[-1] - x[0], y[-1] - y[0])
         assert (way < 0.01) == (kind in ("stack", "wall", "arch"))
+
+
+def test_numbers_that_do_not_go_together_are_refused_before_a_file_is_written(tmp_path: Path) -> None:
+    assert "plane.plate" in refused("new", "mine.toml", "--kind", "plate", "--hole", "3", cwd=tmp_path)
+    assert not (tmp_path / "mine.toml").exists()
 
 
 def test_what_no_option_says_is_asked() -> None:

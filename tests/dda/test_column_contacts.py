@@ -106,7 +106,8 @@ def test_columns_step_as_in_the_papers(seeds):
     switches = 0
     for seed in seeds:
         problem, _ = random_column(seed)
-        rigid = seed in (2, 5)  # impacts on a rigid stop multiply rounding: of few of them only
+        # impacts on a rigid stop multiply rounding: of few of them only; 3, 19, 35, 43 and 59 begin with a slip on it
+        rigid = seed in (2, 3, 5, 19, 35, 43, 59)
         alpha, delta, start = NEWMARK[seed % 4]
         scheme = Scheme(alpha, delta, (1.0, 0.97)[seed % 2], 2e-4, start)
         switches += check_against_the_papers(problem, scheme, "newmark", {"weights": (alpha, delta)}, rigid)
@@ -115,6 +116,19 @@ def test_columns_step_as_in_the_papers(seeds):
             by_name = scheme_of(name, values, 2e-4, 0.98)
             switches += check_against_the_papers(problem, by_name, name, truth_of(values), rigid)
     assert switches > 4 * len(seeds)
+
+
+@pytest.mark.parametrize("speed", [0.3, -0.3])
+def test_a_block_that_slides_on_a_rigid_contact_has_its_friction_at_once(speed):
+    """A parabola, which average acceleration keeps if it begins with the deceleration of the friction."""
+    mass, strength, dt = 2000.0, 2e4, 1e-3
+    layer = Layer(1.0, mass, RIGID, velocity=speed)
+    column = Column([layer], "shear", joints=[Spring(0.0, RIGID, strength=strength)], law="frictional")
+    steps = 20  # it comes to rest after 30
+    result = solve_contact_column(column, Scheme(*AVERAGE, 1.0, dt, "consistent"), still(steps), ["slip_1"], [0.0])
+    t = dt * np.arange(1, steps + 1)
+    exact = speed * t - np.sign(speed) * strength / mass * t**2 / 2
+    assert np.max(np.abs(result.columns["slip_1"] - exact)) < 1e-14 * abs(speed)
 
 
 @pytest.mark.parametrize("seed", [1, 4])

@@ -193,7 +193,6 @@ LIGHT = [  # what a plain install does, in this order
     (["advise", "damping", *CASE], 0),
     (["advise", "response", *CASE], 0),
     (["advise", "contact", *CASE, "--set", "contact.law=unilateral"], 0),
-    (["advise", "rayleigh", *CASE], 0),
     (["advise", "step", *CASE, "--set", "time.steps=5", "--damping", "0.05"], 0),
 ]
 HEAVY = [  # what it does not, and the extra that does

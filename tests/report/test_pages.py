@@ -149,7 +149,6 @@ def figures(group: Any) -> dict[str, Figure]:
     return {
         "response": response.response_figure(answers("dda", "bar"), False),
         "response per metre": response.response_figure(answers("dda", "bar"), True, per_metre=True),
-        "damping": response.ratio_figure(np.array([1.0, 2.0]), {"as stepped": np.full(2, 0.01), "b": np.full(2, 0.03)}),
         "column": space_time_figure([column, SpaceTime("weak", TIME, column.faces, 0 * moved, forces / 1e3)], 46.0),
         "blown up": motion.history_figure([blown], "displacement", apart=True),
         "fast": motion.history_figure([fast, fast], "displacement", apart=True),

@@ -133,7 +133,7 @@ def test_the_two_codes_agree(scene: Scene, values: dict[str, object]) -> None:
 LOADS = {
     "eccentric": {"load.eccentricity": -0.25},
     "sideways": {"load": {"traction": 2e5}, "fem.foundation": "corner"},
-    "weight": {"load": {"gravity": 9.81}, "block.poisson": 0.2},
+    "weight": {"load": {"gravity": 9.81, "slope": 20.0}, "block.poisson": 0.2},
     "record": {"load": {"base_motion": "quake.csv"}, "time.start": "consistent"},
     "record on corners": {"load": {"base_motion": "quake.csv"}, "fem.foundation": "corner"},
     "all": {
@@ -274,7 +274,7 @@ def failed(finished: Finished) -> set[str]:
 
 
 def module_of(line: str) -> str:
-    """Return the one module of the worker in which the line stands, once; contact that opens has its own slips."""
+    """Return the one module of the worker in which the line stands, once."""
     modules = ("model.py", "newmark.py", "loop.py")
     counts = {name: (adapters_fenicsx.WORKER / name).read_text().count(line) for name in modules}
     (name,) = [name for name, count in counts.items() if count]

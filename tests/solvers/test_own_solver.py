@@ -240,7 +240,7 @@ def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(
     session = Session("six_unknowns:sound", Results(tmp_path))
     names = [name for name in gates.applying() if name.startswith("long-run")]
     assert names and {session.judge(name)[0].why for name in names} == {"the solver does not report modes(scene)"}
-    assert not session.finished.rows
+    assert not session.rows
 
 
 # ---- authors --------------------------------------------------------------------------------------------------------

@@ -50,7 +50,6 @@ TABLE: list[tuple[Scene, str, dict[str, Any], str]] = [
     (OPEN, "bar", EXPLICIT, "unstable for the high frequencies"),
     (OPEN, "bar", {"run.columns": ["rotation"]}, "run.columns"),
     (RUBBING, "dda", {"contact.band": [0.0, 1e-6]}, "is frictional under lagged rules only"),
-    (OPEN, "fenicsx", {"fem": {"elements": 8, "foundation": "patch", "patch_width": 0.5}}, "none on patches"),
     (
         OPEN,
         "dda",

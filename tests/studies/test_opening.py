@@ -72,7 +72,7 @@ FAULTS = [  # of the data by parts in 1e11 and less, which move every number by 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
-    cases = [case for case in get_study("opening").cases() if case.solver != "fenicsx"]  # not judged
+    cases = get_study("opening").cases()
     check_kill_matrix(get_study("opening"), cases, get_study("opening").gates(), FAULTS, tmp_path, finished_cases)
 
 
