@@ -9,7 +9,6 @@ from validation.errors import InputError
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver
 
-SQUARE = {"vertices": [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]]}
 EDGE = [[2.0, 0.0], [2.0, 1.0]]
 TABLES = {
     "plane": {

@@ -1,12 +1,7 @@
 """The study `plates`: closed forms and linear elements against other programs; every gate is bitten by a fault."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -59,17 +54,17 @@ def test_linear_elements_widen_a_hole_as_another_program_has_it():
     assert stresses == pytest.approx([2.82797e6, 2.82797e6], abs=5)
 
 
-def stiffer(by: float) -> Callable[..., Callable[..., Any]]:
+def stiffer(by):
     """Multiply Young's modulus of the blocks."""
     return lambda sound: lambda *a, **k: replace(sound(*a, **k), young=by * sound(*a, **k).young)
 
 
-def glued_by(factor: float) -> Callable[..., Callable[..., Any]]:
+def glued_by(factor):
     """Multiply the springs across every shared edge."""
     return lambda sound: lambda blocks, normal, shear: sound(blocks, factor * normal, shear)
 
 
-def pulled(factor: float) -> Callable[..., Callable[..., Any]]:
+def pulled(factor):
     """Multiply all tractions."""
     return lambda sound: lambda start, end, value: sound(start, end, (factor * value[0], factor * value[1]))
 
@@ -87,7 +82,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     study = get_study("plates")
     gates = [gate for gate in study.gates() if not any("fenicsx" in solver for solver in gate.pair)]
     check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)
