@@ -172,7 +172,7 @@ def test_a_discount_that_adapts_goes_with_no_other(package):
 
     model = {dda: model_of, fem_reference: problem_of}[package](LOCKED)
 
-    def run(scheme: Any, floor: float = 0.0) -> None:
+    def run(scheme, floor=0.0):
         package.solve(model, scheme, 3, floor=floor)
 
     for numbers in ((0.5, 1.0, 0.9, 1e-3), (0.5, 1.0, 1.0, 1e-3, "zero", 1.0)):
