@@ -128,12 +128,13 @@ def is_kept(loop: Loop, types: tuple[Any, ...]) -> bool:
     return any(kept.rglob("*.nbi"))
 
 
-def as_lists(value: Any) -> Any:
-    """Return arrays as lists, also within named tuples."""
+def as_lists(value: Any, known: dict[int, Any] | None = None) -> Any:
+    """Return arrays as lists, also within named tuples: one that stands in several places is one list."""
+    lists = {} if known is None else known
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return lists.setdefault(id(value), value.tolist())
     if isinstance(value, tuple):
-        return type(value)(*(as_lists(part) for part in value))  # a named tuple
+        return type(value)(*(as_lists(part, lists) for part in value))  # a named tuple
     return value
 
 

@@ -31,9 +31,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector
-from dda.model.arrays import Array
-from dda.model.polygon import section
+from dda.contact.dense import Vector, copy
+from dda.contact.rows import TOO_DEEP, TOO_MANY
+from dda.plane.bodies import Points
 from dda.plane.polygons import Corners, Parts, Sides, outlines
 
 REACH = 0.02  # of the size of the smallest block, within which contacts are kept
@@ -44,8 +44,6 @@ NEAR = 1e-3  # of that size, within which a contact inherits from one of other f
 DEEP = 0.25  # of that size: a corner that is deeper has lost its block, even if a step brought it there
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
 NONE = -1
-TOO_MANY = -2  # contacts, for the records that were given
-TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
 
 
 class FoundContacts(NamedTuple):
@@ -71,8 +69,9 @@ class Detection(NamedTuple):
     parts: Parts
     moves: Any  # (b,) 0 of blocks that cannot
     head: Any  # (b,) work: first contact of the step before of a block
+    spread: Vector  # (4,) work: where the parts that move begin, as a box
     depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
-    before: Matrix  # (n, 2) where the corners were when the last step that was accepted began [m]
+    before: Points  # (n,) where the corners were when the last step that was accepted began
     travel: Vector  # (b,) how far the corners of each moved in it, at most [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
@@ -81,8 +80,8 @@ class Detection(NamedTuple):
     size: float  # of the smallest block that moves [m]
 
 
-def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, most: int) -> Detection:
-    """Return what finds contacts of blocks with the corners (n, 2) [m], at most so many.
+def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, size: float) -> Detection:
+    """Return what finds contacts of blocks with these corners, at most so many.
 
     Parameters
     ----------
@@ -90,22 +89,21 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         Number of the law of two blocks, -1 where they are not looked at; blocks of which neither moves are not.
     """
     movable = np.array(moves, dtype=np.int64)
-    looked_at = np.array(law, dtype=np.int64)
-    looked_at[~np.logical_or.outer(movable, movable)] = NONE
+    looked_at = np.where(np.logical_or.outer(movable, movable), law, NONE)
     np.fill_diagonal(looked_at, NONE)
-    areas = [section(vertices).area for vertices, moving in zip(polygons, moves, strict=True) if moving]
     return Detection(
         *outlines(polygons),
         moves=movable,
         head=np.full(len(polygons), NONE),
+        spread=np.zeros(4),
         depth=np.zeros(len(polygons)),
-        before=np.full((sum(map(len, polygons)), 2), math.inf),
+        before=np.full(sum(map(len, polygons)), complex(math.inf)),
         travel=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=found_contacts(most),
         previous=found_contacts(most),
         count=np.zeros(2, np.int64),
-        size=float(np.sqrt(min(areas))),
+        size=size,
     )
 
 
@@ -119,10 +117,7 @@ def keep_contacts(detection: Detection) -> None:
     """Take the contacts of a step that was accepted for those of the step before."""
     contacts = detection.contacts
     previous = detection.previous
-    corners = detection.corners
-    for corner in range(len(corners.block)):
-        for axis in range(2):
-            detection.before[corner][axis] = corners.now[corner][axis]
+    copy(detection.corners.now, detection.before)
     detection.count[1] = detection.count[0]
     for number in range(detection.count[0]):
         previous.corner[number] = contacts.corner[number]
@@ -132,7 +127,7 @@ def keep_contacts(detection: Detection) -> None:
 
 
 def find_contacts(detection: Detection) -> int:
-    """Write the contacts of a step; return how many there are, or TOO_MANY or TOO_DEEP.
+    """Write the contacts of a step; return how many there are, or minus an outcome of `dda.contact.rows`.
 
     The corners are where the step begins, `now`, and where it would end without contact, `then`.
     """
@@ -147,10 +142,8 @@ def find_contacts(detection: Detection) -> int:
         detection.depth[block] = 0.0
         detection.travel[block] = 0.0
     for corner in range(len(corners.block)):
-        x = corners.now[corner][0] - detection.before[corner][0]
-        y = corners.now[corner][1] - detection.before[corner][1]
         block = corners.block[corner]
-        distance = math.hypot(x, y)
+        distance = abs(corners.now[corner] - detection.before[corner])
         if distance == math.inf:  # before the first step
             distance = REACH * detection.size / 2
         detection.travel[block] = max(detection.travel[block], distance)
@@ -207,27 +200,15 @@ def place_parts(detection: Detection) -> int:
     margin = REACH * detection.size / 2
     for number in range(len(parts.order)):
         box = parts.box[number]
-        for axis in range(2):
-            least = math.inf
-            greatest = -math.inf
-            for side in range(parts.first[number], parts.last[number]):
-                corner = sides.corner[side]
-                least = min(least, corners.now[corner][axis], corners.then[corner][axis])
-                greatest = max(greatest, corners.now[corner][axis], corners.then[corner][axis])
-            box[2 * axis] = least - margin
-            box[2 * axis + 1] = greatest + margin
-    along = 0
-    widest = -math.inf
-    for axis in range(2):
-        least = math.inf
-        greatest = -math.inf
-        for number in range(len(parts.order)):
-            if detection.moves[parts.block[number]] != 0:
-                least = min(least, parts.box[number][2 * axis])
-                greatest = max(greatest, parts.box[number][2 * axis])
-        if greatest - least > widest:
-            widest = greatest - least
-            along = axis
+        clear_box(box)
+        for side in range(parts.first[number], parts.last[number]):
+            grow_box(box, corners.now[sides.corner[side]], margin)
+            grow_box(box, corners.then[sides.corner[side]], margin)
+    clear_box(detection.spread)
+    for number in range(len(parts.order)):
+        if detection.moves[parts.block[number]] != 0:
+            grow_box(detection.spread, complex(parts.box[number][0], parts.box[number][2]), 0.0)
+    along = 1 if detection.spread[3] - detection.spread[2] > detection.spread[1] - detection.spread[0] else 0
     for number in range(1, len(parts.order)):  # nearly sorted from the step before
         p = parts.order[number]
         place = number - 1
@@ -238,8 +219,23 @@ def place_parts(detection: Detection) -> int:
     return along
 
 
+def clear_box(box: Vector) -> None:
+    """Take out all that a box holds."""
+    for axis in range(2):
+        box[2 * axis] = math.inf
+        box[2 * axis + 1] = -math.inf
+
+
+def grow_box(box: Vector, place: complex, margin: float) -> None:
+    """Let a box hold a place too."""
+    box[0] = min(box[0], place.real - margin)
+    box[1] = max(box[1], place.real + margin)
+    box[2] = min(box[2], place.imag - margin)
+    box[3] = max(box[3], place.imag + margin)
+
+
 def touch_parts(detection: Detection, p: int, r: int) -> int:
-    """Add the contacts of two convex parts; return how many contacts there are then, or TOO_MANY or TOO_DEEP."""
+    """Add the contacts of two convex parts; return how many contacts there are then, or minus an outcome."""
     corners = detection.corners
     sides = detection.sides
     parts = detection.parts
@@ -324,7 +320,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
 
 
 def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deepest: float) -> int:
-    """Add the contacts of two parts at an edge; return how many contacts there are then, or TOO_MANY or TOO_DEEP.
+    """Add the contacts of two parts at an edge; return how many contacts there are then, or minus an outcome.
 
     Parameters
     ----------
@@ -374,12 +370,12 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                     contacts.corner[0] = corner
                     contacts.edge[0] = start
                     contacts.gap[0] = gap
-                    return TOO_DEEP
+                    return -TOO_DEEP
                 continue
             if (parts.alone[p] == 0 or parts.alone[r] == 0) and is_known(detection, found, corner, start):
                 continue
             if found >= len(contacts.corner):
-                return TOO_MANY
+                return -TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
             contacts.gap[found] = gap
@@ -404,17 +400,15 @@ def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
     """Tell whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
     corners = detection.corners
     contacts = detection.contacts
-    place = corners.now[corner]
     near = 2 * SAME * detection.size
     for number in range(found):
         known = contacts.corner[number]
         against = contacts.edge[number]
         if known == corner and against == edge:
             return True
-        if corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]:
-            other = corners.now[known]
-            if math.hypot(place[0] - other[0], place[1] - other[1]) <= near:
-                return True
+        turned = corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]
+        if turned and abs(corners.now[corner] - corners.now[known]) <= near:
+            return True
     return False
 
 
@@ -426,47 +420,33 @@ def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
     return NONE
 
 
-def front(places: Matrix, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
+def front(places: Points, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
     """Return how far a part is in front of the edge of a side [m], and from which of its sides' corners."""
-    a = places[sides.corner[side]]
-    b = places[sides.end[side]]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
+    start = places[sides.corner[side]]
+    along = (places[sides.end[side]] - start).conjugate()
     least = math.inf
     lowest = NONE
     for number in range(parts.first[part], parts.last[part]):
-        c = places[sides.corner[number]]
-        gap = ty * (c[0] - a[0]) - tx * (c[1] - a[1])
+        gap = -(along * (places[sides.corner[number]] - start)).imag
         if gap < least:
             least = gap
             lowest = number
-    return least / math.sqrt(tx * tx + ty * ty), lowest
+    return least / abs(along), lowest
 
 
-def foot(places: Matrix, corner: int, start: int, end: int) -> tuple[float, float, float]:
+def foot(places: Points, corner: int, start: int, end: int) -> tuple[float, float, float]:
     """Return the length of an edge, how far along it a corner is, and its gap [m]."""
-    a = places[start]
-    b = places[end]
-    c = places[corner]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
-    x = c[0] - a[0]
-    y = c[1] - a[1]
-    length = math.sqrt(tx * tx + ty * ty)
-    return length, (tx * x + ty * y) / length, (ty * x - tx * y) / length
+    along = places[end] - places[start]
+    apart = along.conjugate() * (places[corner] - places[start])
+    length = abs(along)
+    return length, apart.real / length, -apart.imag / length
 
 
-def cosine_between(places: Matrix, sides: Sides, first: int, second: int) -> float:
+def cosine_between(places: Points, sides: Sides, first: int, second: int) -> float:
     """Return the cosine between two sides."""
-    a = places[sides.corner[first]]
-    b = places[sides.end[first]]
-    c = places[sides.corner[second]]
-    d = places[sides.end[second]]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
-    ux = d[0] - c[0]
-    uy = d[1] - c[1]
-    return float((tx * ux + ty * uy) / math.sqrt((tx * tx + ty * ty) * (ux * ux + uy * uy)))
+    one = places[sides.end[first]] - places[sides.corner[first]]
+    other = places[sides.end[second]] - places[sides.corner[second]]
+    return float((one.conjugate() * other).real / (abs(one) * abs(other)))
 
 
 def inherit(detection: Detection) -> None:
@@ -494,8 +474,7 @@ def inherit(detection: Detection) -> None:
                 elif previous.closed[old] != 0 and previous.heir[old] == NONE:
                     block = corners.block[previous.corner[old]]
                     on = corners.block[previous.edge[old]]
-                    place = corners.now[previous.corner[old]]
-                    distance = math.hypot(place[0] - corners.now[corner][0], place[1] - corners.now[corner][1])
+                    distance = abs(corners.now[previous.corner[old]] - corners.now[corner])
                     if min(block, on) == min(i, j) and max(block, on) == max(i, j) and distance < nearest:
                         nearest = distance
                         contacts.origin[number] = old

@@ -9,7 +9,7 @@ import numpy as np
 
 from dda.contact.rows import FOUND, NONE, OUTCOMES, TOO_DEEP, rows_of, solve, update
 from dda.march.step import History, March
-from dda.plane.many import SLACK, solve_states, update_all
+from dda.plane.many import solve_states, update_all
 from dda.plane.model import PlaneModel
 from dda.plane.taken import laws_for
 
@@ -95,8 +95,8 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
         first_met[tried] = number
         states.append(tried)
         if contacts > plane.dense:
-            solve_states(plane.many, plane.blocks, plane.places, laws, before, length, after, work)
-            update_all(laws, after, work, SLACK * plane.size)
+            solve_states(plane.many, laws, before, length, after, work)
+            update_all(plane.many, laws, after, work)
         else:
             solve(laws, before, length.flexible, after, work)
             update(laws, length.flexible, after, work, 1)

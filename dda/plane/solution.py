@@ -10,18 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
+from dda.contact.rows import INSIDE, LOWER, Laws, rows_of, work_for
 from dda.march.compiled import ANEW, run_loop
 from dda.march.energy import SUMS, energies_of
 from dda.march.step import Body, Course, History, March, march_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count
-from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
+from dda.plane.bodies import Blocks, as_complex, blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
 from dda.plane.outcomes import PlaneContact, found_contact, sentence, stated_contacts, unsettled_contacts
-from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
+from dda.plane.places import Places, place_contacts, push_contacts, write_rows
 from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
 from dda.plane.taken import Memory, Springs, write_laws
 from dda.scheme.newmark import Scheme, late_momentum
@@ -142,15 +142,17 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     driven = [i for i, part in enumerate(parts) if part.motion is not None]
     columns = [2 + len(ramps) + 2 * driven.index(i) if i in driven else -1 for i in range(len(parts))]
     blocks, k = blocks_of([p.block for p in parts], [p.rigid for p in parts], [p.held for p in parts], columns)
+    outlines = [as_complex(part.block.corners) for part in parts]
+    size = math.sqrt(min(part.block.section.area for part in parts if not part.held))
     loads, point_loads = loads_of(model, blocks.first, blocks.root_mass, ramps)
     b = len(parts)
     most = 0 if model.found is None else ROOM * b + ROOM
-    places = places_of(model, most)
+    places = places_of(model, blocks, most)
     springs, pairs = springs_of(model)
     c = len(places.law)
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
-    detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
+    detection = detection_of(outlines, [not part.held for part in parts], pairs, max(most, 1), size)
     edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
     real = detection.sides.real == 1
     edge_end[detection.sides.corner[real]] = detection.sides.end[real]
@@ -164,13 +166,12 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         ground=np.zeros((2 * dense, 2)),
         mobility=np.ones(len(k)),
     )
-    moving = [part.block.section.area for part in parts if not part.held]
     plane = Plane(
         blocks=blocks,
         places=places,
         loads=point_loads,
         late=2 - 2 * (scheme.delta if scheme.table is None else 0.5),
-        size=math.sqrt(min(moving)),
+        size=size,
         every=every,
         chords=poses_of(b),
         ends=poses_of(b),
@@ -188,7 +189,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
-        many=many_of(blocks, c),
+        many=many_of(blocks, places, size),
         strained=int(np.any(k > 0)),
         finds=int(model.found is not None),
         detection=detection,
@@ -197,14 +198,10 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     march = march_of(body, laws_of(springs, dense, dense), scheme, np.zeros(2 * dense), plane)
     laws = laws_of(springs, places.count[1], c)
     write_laws(springs, places, laws)
-    columns_of_course = 2 + len(ramps) + 2 * len(driven)
-    room = march.room._replace(start=np.zeros(columns_of_course), end=np.zeros(columns_of_course), free=np.zeros(m))
-    work = march.work._replace(
-        **{name: np.zeros(m) for name in ("q", "late", "z", "scale", "first", "mean")},
-        **{name: np.zeros(m, dtype=np.int64) for name in ("tried", "saved", "unknown", "place")},
-        **{name: np.zeros(c) for name in ("beta", "rate", "held")},
-        closing=np.zeros(c, dtype=np.int64),
-    )
+    start, end = np.zeros((2, 2 + len(ramps) + 2 * len(driven)))
+    room = march.room._replace(start=start, end=end, free=np.zeros(m))
+    of_equations = ("A", "right", "slope", "newton", "newton_right")
+    work = work_for(c, m, banded=True)._replace(**{name: getattr(march.work, name) for name in of_equations})
     return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
 
 
@@ -237,14 +234,14 @@ def loads_of(model: PlaneModel, first: Array, root_mass: Array, ramps: list[floa
         if place is None:
             rows[row, first[load.block] : first[load.block] + 2] += force / root_mass[load.block]
             continue
-        at.append(place - model.blocks[load.block].block.section.centroid)
+        at.append(place - np.array(model.blocks[load.block].block.section.centroid))
         forces.append(force)
         where.append(load.block)
         shares.append(2 + row)
     points = PointLoads(
         block=np.array(where, dtype=np.int64),
-        at=np.array(at).reshape(-1, 2),
-        force=np.array(forces).reshape(-1, 2),
+        at=as_complex(at),
+        force=as_complex(forces),
         share=np.array(shares, dtype=np.int64),
     )
     return rows, points
@@ -313,47 +310,52 @@ def laws_of(springs: Springs, contacts: int, capacity: int) -> Laws:
     )
 
 
-def places_of(model: PlaneModel, most: int) -> Places:
+def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
     """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
-    rows: list[tuple[int, int, int, int, Array, Array, Array]] = []
-
-    def outline(block: int) -> Array:
-        shape = model.blocks[block].block
-        return shape.corners - shape.section.centroid
-
-    def ends(block: int, edge: int) -> Array:
-        corners = outline(block)
-        return np.concatenate([corners[edge], corners[(edge + 1) % len(corners)]])
-
-    for contact in model.contacts:
-        at = outline(contact.block)[contact.corner]
-        rows.append((len(rows), contact.block, contact.on, 0, at, ends(contact.on, contact.edge), np.zeros(2)))
+    stated = len(model.contacts) + 2 * len(model.bonds)
+    n = stated + most
+    at, start, side, foot, normal = np.zeros((5, n), dtype=complex)
+    law, bonded = np.zeros((2, n), dtype=np.int64)
+    sides = np.zeros((n, 2), dtype=np.int64)
+    for k, contact in enumerate(model.contacts):
+        law[k] = k
+        sides[k] = contact.block, contact.on
+        at[k] = blocks.xi[blocks.start[contact.block] + contact.corner]
+        start[k], side[k] = edge_of(blocks, contact.on, contact.edge)
+    k = len(model.contacts)
     for number, bond in enumerate(model.bonds):
-        law = len(model.contacts) + number
-        edge = ends(bond.second, model.edge_of(bond.second, bond.start, bond.end))
+        edge = model.edge_of(bond.second, bond.start, bond.end)
         for place in (bond.start, bond.end):
-            at, foot = (np.array(place) - model.blocks[i].block.section.centroid for i in (bond.first, bond.second))
-            rows.append((law, bond.first, bond.second, 1, at, edge, foot))
-    stated = len(rows)
-    rows += [(0, 0, 0, 0, np.zeros(2), np.zeros(4), np.zeros(2))] * most
-    n = len(rows)
-    law_numbers, block, on, bonded = (np.array([row[part] for row in rows], dtype=np.int64) for part in range(4))
-    at, edge, foot = (np.array([row[part] for row in rows], dtype=float) for part in range(4, 7))
+            law[k] = len(model.contacts) + number
+            sides[k] = bond.first, bond.second
+            bonded[k] = 1
+            at[k] = complex(*place) - blocks.centroid[bond.first]
+            foot[k] = complex(*place) - blocks.centroid[bond.second]
+            start[k], side[k] = edge_of(blocks, bond.second, edge)
+            k += 1
     return Places(
         count=np.array([stated, stated]),
-        law=law_numbers,
-        sides=np.column_stack([block, on]),
+        law=law,
+        sides=sides,
         bonded=bonded,
-        at=at.reshape(-1, 2),
-        edge=edge.reshape(-1, 4),
-        foot=foot.reshape(-1, 2),
-        normal=np.zeros((n, 2)),
+        at=at,
+        start=start,
+        side=side,
+        foot=foot,
+        normal=normal,
+        gap=np.zeros(n),
         over=np.ones(n, dtype=np.int64),
         B=np.zeros((2 * n, 2, 6)),
         F=np.zeros((2 * n, 2, 6)),
         driven=np.zeros(2 * n),
         row=np.zeros((4, 6)),
     )
+
+
+def edge_of(blocks: Blocks, block: int, edge: int) -> tuple[complex, complex]:
+    """Return where an edge of a block starts, from its centroid, and the way from there to its end [m]."""
+    corners = blocks.xi[blocks.start[block] : blocks.start[block + 1]]
+    return corners[edge], corners[(edge + 1) % len(corners)] - corners[edge]
 
 
 def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
@@ -371,7 +373,7 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
     for k, contact in enumerate(model.contacts):
-        gap = gap_of(blocks, state.q, plane.ends, places, k)
+        gap = float(places.gap[k])
         if abs(gap) <= TOUCH * plane.size or not places.over[k]:
             gap = max(gap, 0.0) if not places.over[k] else 0.0
         state.rows.opening[k] = gap
@@ -425,15 +427,14 @@ def result_of(
     table = contacts_of(model, march, history, kept)
     motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
     q = motion[:, :, :6]
-    velocity = motion[:, :, 6:]
-    centroid = march.method.blocks.centroid + q[:, :, :2]
-    inertia = Inertia(march, q, velocity)
+    centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
+    rates = Rates(march, q, motion[:, :, 6:])
     sums = history.sums[: reached + 1 : every]
     stored = (
-        inertia.kinetic,
+        rates.kinetic,
         strain_energy(model, q),
         (table.normal**2 @ table.across + table.shear**2 @ table.along) / 2,
-        load_energy(model, march, q),
+        load_energy(model, q),
     )
     repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
     energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
@@ -449,7 +450,7 @@ def result_of(
         displacement=q[:, :, :2],
         angle=q[:, :, 2],
         strain=q[:, :, 3:],
-        velocity=velocity,
+        velocity=rates.velocity,
         contacts=tuple(contact for contact, other in zip(table.contacts, others, strict=True) if other),
         normal=table.normal[:, others],
         shear=table.shear[:, others],
@@ -458,7 +459,7 @@ def result_of(
         state=table.state[:, others],
         bond=bonds,
         energy=energy | {"balance": total - total[0]},
-        momentum=inertia.momentum(centroid),
+        momentum=rates.momentum(centroid),
         outcome=outcome,
         unsettled=unsettled,
         reached=reached,
@@ -523,32 +524,31 @@ def contacts_of(model: PlaneModel, march: March, history: History, kept: int) ->
     return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
 
 
-class Inertia:
-    """Kinetic energy and momentum of a history."""
+class Rates:
+    """Velocities, kinetic energy and momentum of a history."""
 
-    def __init__(self, march: March, q: Array, velocity: Array) -> None:
-        """Form m, J0, and what strains add."""
+    def __init__(self, march: March, q: Array, modes: Array) -> None:
+        """Form them from the rates of the modes, (k, b, 6)."""
         blocks = march.method.blocks
-        moving = np.diff(blocks.first) > 0
-        self.mass = np.where(moving, blocks.root_mass**2, 0.0)
-        self.velocity = velocity
         e = q[:, :, 3:]
-        rate = velocity[:, :, 3:]
-        omega = velocity[:, :, 2]
         strained = np.einsum("bij,kbj->kbi", blocks.M, e)
-        J = np.where(moving, blocks.root_inertia**2, 0.0) + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
+        J = blocks.root_inertia**2 + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
         gamma = blocks.gamma + np.einsum("kbm,bmi->kbi", e, blocks.G)
-        turning = np.einsum("kbi,kbi->kb", gamma, rate)
-        self.spin = J * omega + turning
-        moved = self.mass * np.sum(velocity[:, :, :2] ** 2, axis=2)
-        deformed = np.einsum("kbi,bij,kbj->kb", rate, blocks.M, rate)
-        self.kinetic: Array = np.sum(moved + J * omega**2 + 2 * omega * turning + deformed, axis=1) / 2
+        strain_rate = np.einsum("bij,kbj->kbi", blocks.shapes, modes[:, :, 3:])
+        turning = np.einsum("kbi,kbi->kb", gamma, strain_rate)
+        self.linear = blocks.root_mass[:, None] * modes[:, :, :2]
+        self.angular = blocks.root_inertia * modes[:, :, 2]  # about the centroid
+        omega = (self.angular - turning) / J
+        translation = modes[:, :, :2] / blocks.root_mass[:, None]
+        self.velocity: Array = np.concatenate([translation, omega[:, :, None], strain_rate], axis=2)
+        deformed = np.einsum("kbi,bij,kbj->kb", strain_rate, blocks.M, strain_rate)
+        turned = J * omega**2 + 2 * omega * turning + deformed
+        self.kinetic: Array = np.sum(np.sum(modes[:, :, :2] ** 2, axis=2) + turned, axis=1) / 2
 
     def momentum(self, centroid: Array) -> Array:
         """Return linear momentum and angular momentum about the origin, (k, 3)."""
-        linear = self.mass[:, None] * self.velocity[:, :, :2]
-        turned = centroid[:, :, 0] * linear[:, :, 1] - centroid[:, :, 1] * linear[:, :, 0]
-        return np.column_stack([linear.sum(axis=1), (turned + self.spin).sum(axis=1)])
+        turned = centroid[:, :, 0] * self.linear[:, :, 1] - centroid[:, :, 1] * self.linear[:, :, 0]
+        return np.column_stack([self.linear.sum(axis=1), (turned + self.angular).sum(axis=1)])
 
 
 def strain_energy(model: PlaneModel, q: Array) -> Array:
@@ -560,29 +560,21 @@ def strain_energy(model: PlaneModel, q: Array) -> Array:
     return total
 
 
-def load_energy(model: PlaneModel, march: March, q: Array) -> Array:
+def load_energy(model: PlaneModel, q: Array) -> Array:
     """Return minus the work that the whole loads do by the ways since t = 0, (k,) [J]."""
-    blocks = march.method.blocks
-    total = np.zeros(len(q))
-    for load in march.body.loads:
-        for i in range(len(model.blocks)):
-            if blocks.first[i + 1] > blocks.first[i]:
-                first = blocks.first[i]
-                total -= q[:, i, :2] @ (load[first : first + 2] * blocks.root_mass[i])
-    points = march.method.loads
-    for i, at, force in zip(points.block, points.at, points.force, strict=True):
-        total -= way_of(q[:, i], at) @ force
+    mass = np.array([0.0 if part.held else part.block.total_mass for part in model.blocks])
+    total: Array = -(q[:, :, :2] @ np.array(model.gravity)) @ mass
+    for load in model.loads:
+        force, place = load.resultant
+        section = model.blocks[load.block].block.section
+        at = np.zeros(2) if place is None else place - section.centroid
+        total -= (complex(*force).conjugate() * way_of(q[:, load.block], complex(*at))).real
     return total
 
 
-def way_of(q: Array, at: Array) -> Array:
-    """Return the displacement of a material point of a block from t = 0, (k, 2) [m]."""
-    x, y = at
-    cos = -2 * np.sin(q[:, 2] / 2) ** 2  # less one
-    sin = np.sin(q[:, 2])
-    ex = x * q[:, 3] + y * q[:, 5] / 2
-    ey = x * q[:, 5] / 2 + y * q[:, 4]
-    moved: Array = q[:, :2] + np.column_stack(
-        [cos * (x + ex) - sin * (y + ey) + ex, sin * (x + ex) + cos * (y + ey) + ey]
-    )
-    return moved
+def way_of(q: Array, at: complex) -> NDArray[np.complex128]:
+    """Return the displacement of a material point of a block from t = 0, (k,) [m]."""
+    shear = q[:, 5] / 2
+    stretch = q[:, 3] * at.real + shear * at.imag + 1j * (shear * at.real + q[:, 4] * at.imag)
+    turned: NDArray[np.complex128] = np.expm1(1j * q[:, 2]) * (at + stretch)
+    return q[:, 0] + 1j * q[:, 1] + stretch + turned

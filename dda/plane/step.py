@@ -36,6 +36,7 @@ from dda.model.arrays import Array
 from dda.plane.bodies import (
     RIGID,
     Blocks,
+    Points,
     Poses,
     by_modes,
     direction,
@@ -56,6 +57,7 @@ from dda.plane.taken import (
     place_corners,
     take_found,
     take_memory,
+    take_row,
     write_laws,
 )
 
@@ -63,7 +65,7 @@ ROUNDS = 40  # of a stage
 SETTLED = 1e-12  # last change of an increment over the size of a block; the next would be this times the step's turn
 SETTLED_FORCE = 1e-9  # last change of the inertia forces over the largest; that of short steps moves no increment
 FAR = 1e300  # m, gap of a corner that is not over its edge
-STATE = 12  # numbers that are kept of a block: D from t = 0, and its velocities
+STATE = 12  # numbers that are kept of a block: D from t = 0, and the rates of its modes
 
 
 class PlaneState(NamedTuple):
@@ -84,8 +86,8 @@ class PointLoads(NamedTuple):
     """Dead forces on material points."""
 
     block: Any  # (l,)
-    at: Matrix  # (l, 2) from the centroid, unstrained [m]
-    force: Matrix  # (l, 2) [N]
+    at: Points  # (l,) from the centroid, unstrained
+    force: Points  # (l,) [N]
     share: Any  # (l,) column of what is prescribed that has its share
 
 
@@ -169,14 +171,16 @@ def make_stage(
         if places.count[0] > 0:
             write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
             free_contacts(march, memory)
-            if places.count[0] > plane.dense:
-                outcome, spent = find_many(
-                    plane.many, blocks, places, laws, memory.rows, length, after.rows, march.work, plane.size, turn > 0
-                )
-            else:
+            outcome = NONE
+            again = turn > 0
+            if places.count[0] <= plane.dense:
                 write_contact_flexibility(march, length)
                 outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
-            solves += spent
+                solves += spent
+                again = False
+            if outcome == NONE:  # of few contacts too: some that neither press nor part, whose signs are rounding's
+                outcome, spent = find_many(plane.many, laws, memory.rows, length, after.rows, march.work, again)
+                solves += spent
             if outcome != FOUND:
                 return outcome, solves
             push_contacts(blocks, places, after.rows.force, room.pushed)
@@ -229,10 +233,8 @@ def take_contacts(march: March, before: AnyState) -> int:
 
 def copy_memory(before: AnyState, memory: Memory) -> None:
     """Take the contacts of a state for those that a stage begins with."""
-    copy(before.rows.state, memory.rows.state)
-    copy(before.rows.opening, memory.rows.opening)
-    copy(before.rows.force, memory.rows.force)
-    copy(before.path, memory.path)
+    for r in range(len(before.path)):
+        take_row(before.rows, before.path, r, memory, r)
     copy(before.slid, memory.slid)
 
 
@@ -285,11 +287,9 @@ def push_loads(march: March, after: AnyState) -> float:
     weights = plane.row[2]
     for k in range(len(loads.block)):
         i = loads.block[k]
-        force = loads.force[k]
-        at = loads.at[k]
-        share = march.room.end[loads.share[k]]
-        direction(plane.chords, i, share * force[0], share * force[1], at[0], at[1], chord)
-        direction(plane.ends, i, share * force[0], share * force[1], at[0], at[1], end)
+        force = march.room.end[loads.share[k]] * loads.force[k]
+        direction(plane.chords, i, force, loads.at[k], chord)
+        direction(plane.ends, i, force, loads.at[k], end)
         for m in range(6):
             chord[m] = (1 - plane.late) * chord[m] + plane.late * end[m]
         by_modes(blocks, i, plane.chords, chord, True, weights)
@@ -443,8 +443,7 @@ def account_stage(
     for k in range(len(loads.block)):
         i = loads.block[k]
         share = (1 - late) * room.start[loads.share[k]] + late * room.end[loads.share[k]]
-        x, y = moved(plane.chords, i, plane.D[i], loads.at[k][0], loads.at[k][1])
-        work = loads.force[k][0] * x + loads.force[k][1] * y
+        work = (loads.force[k].conjugate() * moved(plane.chords, i, plane.D[i], loads.at[k])).real
         own_work += share * work
         sums[GIVEN] += (share - 1) * work
     if march.scheme.newmark:
@@ -456,35 +455,21 @@ def account_stage(
 
 
 def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
-    """Write where the blocks are and how fast they move, at the steps that are kept; tell whether all is finite."""
+    """Write where the blocks are and the rates of their modes, at the steps that are kept; tell if all is finite."""
     plane = march.method
-    blocks = plane.blocks
-    scheme = march.scheme
-    discount = kept_discount(scheme, number)
+    first = plane.blocks.first
+    discount = kept_discount(march.scheme, number)
     total = 0.0
     for i in range(len(plane.x)):
-        plane.x[i] = discount * state.p[i] + scheme.lag * state.a[i]
+        plane.x[i] = (discount * state.p[i] + march.scheme.lag * state.a[i]) / march.scheme.step
         total += state.z[i] + plane.x[i]
-    if number % plane.every != 0:
-        return math.isfinite(total)
-    stand(plane, state.q)
-    for i in range(len(blocks.root_mass)):
-        first = blocks.first[i]
-        modes = blocks.first[i + 1] - first
-        place = STATE * i
-        for k in range(6):
-            rows[number // plane.every, place + k] = state.q[i][k]
-            rows[number // plane.every, place + 6 + k] = 0.0
-        if modes == 0:
-            continue
-        for axis in range(2):
-            rows[number // plane.every, place + 6 + axis] = plane.x[first + axis] / blocks.root_mass[i] / scheme.step
-        plane.spin[0] = plane.x[first + 2] / blocks.root_inertia[i] / scheme.step
-        if modes > RIGID:
-            inertia_forces(blocks, i, plane.x, state.a, scheme.step, plane.ends, plane.spin, plane.loaded)
-            for k in range(3):
-                rows[number // plane.every, place + 9 + k] = plane.spin[1 + k]
-        rows[number // plane.every, place + 8] = plane.spin[0]
+    if number % plane.every == 0:
+        for i in range(len(state.q)):
+            for k in range(6):
+                rows[number // plane.every, STATE * i + k] = state.q[i][k]
+                rows[number // plane.every, STATE * i + 6 + k] = (
+                    plane.x[first[i] + k] if k < first[i + 1] - first[i] else 0.0
+                )
     return math.isfinite(total)
 
 

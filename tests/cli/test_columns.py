@@ -1,9 +1,6 @@
 """`contact`, `advise` and `show` of columns whose contacts open or slip."""
 
-from __future__ import annotations
-
 import json
-from pathlib import Path
 
 import pytest
 from conftest import typed
@@ -35,13 +32,13 @@ solvers = ["dda"]
 
 
 @pytest.fixture
-def stack(tmp_path: Path) -> Path:
+def stack(tmp_path):
     path = tmp_path / "stack.toml"
     path.write_text(STACK.format(more=""))
     return path
 
 
-def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack: Path) -> None:
+def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack):
     data = json.loads(typed("advise", "contact", stack, "--json").stdout)
     run = data["runs"]["dda"]
     assert run["contact.most_solves"] == 8.0 == data["limits"]["solves"]  # the first impact closes one in each solve
@@ -53,7 +50,7 @@ def test_contact_tells_what_the_steps_of_a_stack_took_and_what_to_allow(stack: P
     assert any(line.startswith("Allow 8 solves") for line in lines)
 
 
-def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path: Path) -> None:
+def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path):
     path = tmp_path / "limited.toml"
     path.write_text(STACK.format(more="solve_limit = 6"))
     done = typed("advise", "contact", path)

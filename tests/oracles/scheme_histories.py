@@ -8,7 +8,6 @@ that is always closed (`opens=False`) or presses only; contact methods of their 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -27,26 +26,26 @@ class Body:
     g: float = 0.0
 
     @property
-    def M(self) -> np.ndarray:
+    def M(self):
         m = self.rho * self.a**2
         return np.diag([m, m * self.a**2 / 12])
 
     @property
-    def K(self) -> np.ndarray:
+    def K(self):
         """Of the block alone, without the springs."""
         return np.diag([0.0, self.E * self.a**2])
 
     @property
-    def B(self) -> np.ndarray:
+    def B(self):
         """Row of the gap."""
         return np.array([1.0, -self.a / 2])
 
     @property
-    def k(self) -> float:
+    def k(self):
         return 2 * self.p
 
     @property
-    def F(self) -> np.ndarray:
+    def F(self):
         load = self.q * self.a
         return np.array([-load - self.rho * self.a**2 * self.g, -load * self.a / 2])
 
@@ -63,7 +62,7 @@ class Run:
     gg: float = 1.0
     opens: bool = False
 
-    def history(self) -> tuple[np.ndarray, np.ndarray]:
+    def history(self):
         """Return displacement and contact pressure of every step."""
         rows = METHODS[self.method](self, **self.numbers)
         x = np.array([row[0] for row in rows])
@@ -71,15 +70,12 @@ class Run:
         return x[:, 0], N / self.body.a
 
 
-Rows = list[tuple[np.ndarray, float]]
-
-
-def spring_force(run: Run, w: float) -> float:
+def spring_force(run, w):
     """Return the force of the springs at a gap."""
     return -run.body.k * w if w < 0 or not run.opens else 0.0
 
 
-def is_closed(run: Run, solve: Callable[[bool], tuple[np.ndarray, float]], before: bool) -> bool:
+def is_closed(run, solve, before):
     """Return which state of the contact agrees with the gap that a solve with it gives, the one before first."""
     if not run.opens:
         return True
@@ -95,7 +91,7 @@ def is_closed(run: Run, solve: Callable[[bool], tuple[np.ndarray, float]], befor
 # ---- schemes --------------------------------------------------------------------------------------------------------
 
 
-def alpha_family(run: Run, am: float, af: float, beta: float, gamma: float, zero: bool, form: str = "force") -> Rows:
+def alpha_family(run, am, af, beta, gamma, zero, form="force"):
     """(1 - am) M a1 + am M a + (1 - af) r(x1) + af r(x) = F, in the unknown x1 (Chung and Hulbert 1993)."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -108,7 +104,7 @@ def alpha_family(run: Run, am: float, af: float, beta: float, gamma: float, zero
         u = run.gg * v
         ahead = x + dt * u + dt * dt * (0.5 - beta) * a
 
-        def solve(on: bool, x=x, a=a, N=N, ahead=ahead) -> tuple[np.ndarray, float]:
+        def solve(on, x=x, a=a, N=N, ahead=ahead):
             springs = b.k * on * np.outer(b.B, b.B)
             old = b.K @ x - (b.B * N if form == "force" else -springs @ x)
             S = (1 - am) * b.M + (1 - af) * beta * dt * dt * (b.K + springs)
@@ -128,27 +124,27 @@ def alpha_family(run: Run, am: float, af: float, beta: float, gamma: float, zero
     return rows
 
 
-def newmark(run: Run, alpha: float, delta: float, zero: bool = False) -> Rows:
+def newmark(run, alpha, delta, zero=False):
     return alpha_family(run, 0.0, 0.0, alpha, delta, zero)
 
 
-def by_weights(run: Run, am: float, af: float, zero: bool, form: str) -> Rows:
+def by_weights(run, am, af, zero, form):
     return alpha_family(run, am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af, zero, form)
 
 
-def chung_hulbert(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
+def chung_hulbert(run, r, zero=False, form="force"):
     return by_weights(run, (2 * r - 1) / (r + 1), r / (r + 1), zero, form)
 
 
-def hht(run: Run, e: float, zero: bool = False, form: str = "force") -> Rows:
+def hht(run, e, zero=False, form="force"):
     return by_weights(run, 0.0, e, zero, form)
 
 
-def wbz(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
+def wbz(run, r, zero=False, form="force"):
     return by_weights(run, (r - 1) / (r + 1), 0.0, zero, form)
 
 
-def leapfrog(run: Run) -> Rows:
+def leapfrog(run):
     """Velocities at half steps; the first one is v_0 + dt a_0 / 2."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -163,7 +159,7 @@ def leapfrog(run: Run) -> Rows:
     return rows
 
 
-def symplectic_euler(run: Run) -> Rows:
+def symplectic_euler(run):
     b, dt = run.body, run.dt
     x = np.zeros(2)
     v = np.zeros(2)
@@ -176,29 +172,16 @@ def symplectic_euler(run: Run) -> Rows:
     return rows
 
 
-def forward_euler(run: Run) -> Rows:
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    rows = []
-    for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        x, v = x + dt * v, run.gg * v + dt * a
-        rows.append((x, spring_force(run, b.B @ x)))
-    return rows
-
-
-def implicit_euler(run: Run) -> Rows:
+def implicit_euler(run):
     return theta(run, 1.0)
 
 
-def midpoint(run: Run) -> Rows:
+def midpoint(run):
     """Of a constant load and springs that hold it is the trapezoidal rule in this form."""
     return theta(run, 0.5)
 
 
-def theta(run: Run, share: float) -> Rows:
+def theta(run, share):
     """v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -209,7 +192,7 @@ def theta(run: Run, share: float) -> Rows:
     for _ in range(run.steps):
         u = run.gg * v
 
-        def solve(on: bool, x=x, u=u, N=N) -> tuple[np.ndarray, float]:
+        def solve(on, x=x, u=u, N=N):
             K = b.K + b.k * on * np.outer(b.B, b.B)
             ahead = x + dt * (1 - share) * u
             force = b.F - share * K @ ahead - (1 - share) * (b.K @ x - b.B * N)
@@ -224,18 +207,18 @@ def theta(run: Run, share: float) -> Rows:
     return rows
 
 
-def composite(run: Run, split: float, r: float) -> Rows:
+def composite(run, split, r):
     """The weights of Noh and Bathe 2019."""
     q1 = (r + 1) / (2 * split * (r - 1) + 4)
     return two_stages(run, split, (split - 1) * q1 + 0.5, q1, 0.5 - split * q1)
 
 
-def tr_bdf2(run: Run) -> Rows:
+def tr_bdf2(run):
     """The backward difference of second order as weights of slopes (Hosea and Shampine 1996)."""
     return two_stages(run, 2 - math.sqrt(2), math.sqrt(2) / 4, math.sqrt(2) / 4, 1 - math.sqrt(2) / 2)
 
 
-def two_stages(run: Run, split: float, q0: float, q1: float, q2: float) -> Rows:
+def two_stages(run, split, q0, q1, q2):
     """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), and x1 so of u, vg, v1."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -244,10 +227,10 @@ def two_stages(run: Run, split: float, q0: float, q1: float, q2: float) -> Rows:
     closed = True
     rows = []
 
-    def implicit(known: np.ndarray, rate: np.ndarray, h: float, before: bool) -> tuple[np.ndarray, ...]:
+    def implicit(known, rate, h, before):
         """Solve x1 = known + h v1, v1 = rate + h a1, M a1 + K x1 = F."""
 
-        def solve(on: bool) -> tuple[np.ndarray, float]:
+        def solve(on):
             K = b.K + b.k * on * np.outer(b.B, b.B)
             x1 = np.linalg.solve(b.M + h * h * K, b.M @ (known + h * rate) + h * h * b.F)
             return x1, b.B @ x1
@@ -266,7 +249,7 @@ def two_stages(run: Run, split: float, q0: float, q1: float, q2: float) -> Rows:
     return rows
 
 
-def houbolt(run: Run) -> Rows:
+def houbolt(run):
     """(2 x1 - 5 x + 4 x_-1 - x_-2) / dt^2; the first two rows by average acceleration."""
     b, dt = run.body, run.dt
     K = b.K + b.k * np.outer(b.B, b.B)
@@ -278,7 +261,7 @@ def houbolt(run: Run) -> Rows:
     return [(x, -b.k * b.B @ x) for x in past[1 : run.steps + 1]]
 
 
-def wilson(run: Run, share: float = 1.4) -> Rows:
+def wilson(run, share=1.4):
     b, dt = run.body, run.dt
     K = b.K + b.k * np.outer(b.B, b.B)
     x = np.zeros(2)
@@ -297,11 +280,11 @@ def wilson(run: Run, share: float = 1.4) -> Rows:
     return rows
 
 
-def runge_kutta(run: Run) -> Rows:
+def runge_kutta(run):
     """The classical one of order four."""
     b, dt = run.body, run.dt
 
-    def rate(y: np.ndarray) -> np.ndarray:
+    def rate(y):
         N = spring_force(run, b.B @ y[:2])
         return np.concatenate([y[2:], np.linalg.solve(b.M, b.F - b.K @ y[:2] + b.B * N)])
 
@@ -320,7 +303,7 @@ def runge_kutta(run: Run) -> Rows:
 # ---- contact methods ------------------------------------------------------------------------------------------------
 
 
-def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
+def contact_split(run, law, number=0.0):
     """A contact force beside average acceleration of the block: Kane et al. 1999, or Armero and Petocz 1998."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -347,14 +330,14 @@ def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
     return rows
 
 
-def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) -> float:
+def _energy_conserving(k, C, w0, wf, opens):
     if not opens:
         return -k * (wf + w0) / (2 + k * C)
 
-    def energy(w: float) -> float:
+    def energy(w):
         return k * min(w, 0.0) ** 2 / 2
 
-    def force(w1: float) -> float:
+    def force(w1):
         if abs(w1 - w0) < 1e-14:
             return -k * min(w0, 0.0)
         return -(energy(w1) - energy(w0)) / (w1 - w0)
@@ -368,9 +351,7 @@ def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) ->
     return force((low + high) / 2)
 
 
-def by_free_gap(
-    run: Run, alpha: float, delta: float, zero: bool, force: Callable[[float, float, float], float]
-) -> Rows:
+def by_free_gap(run, alpha, delta, zero, force):
     """Newmark's step with a contact force at its end of the free gap, its rate and the compliance B M_eff^(-1) B."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -393,13 +374,11 @@ def by_free_gap(
     return rows
 
 
-def dashpot(
-    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
-) -> Rows:
+def dashpot(run, c, alpha=0.25, delta=0.5, clipped=True, zero=False):
     """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
     k, dt = run.body.k, run.dt
 
-    def force(wf: float, rate: float, C: float) -> float:
+    def force(wf, rate, C):
         N = -(k * wf + c * rate) / (1 + C * (alpha * dt * dt * k + delta * dt * c))
         if run.opens and wf >= 0:
             return 0.0
@@ -408,7 +387,7 @@ def dashpot(
     return by_free_gap(run, alpha, delta, zero, force)
 
 
-def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
+def moreau(run, e, theta=0.5):
     """Moreau-Jean: velocity-level contact with Newton's restitution where the forecast gap is not positive."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -427,10 +406,10 @@ def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
     return rows
 
 
-def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance: float = 0.0, r: float = 0.0) -> Rows:
+def lagrange(run, alpha, delta, zero=False, tolerance=0.0, r=0.0):
     """Rigid contact in displacements: complementarity, or passes of an augmented Lagrangian down to a penetration."""
 
-    def force(wf: float, rate: float, compliance: float) -> float:
+    def force(wf, rate, compliance):
         C = alpha * run.dt**2 * compliance
         if not tolerance:
             return max(0.0, -wf / C)
@@ -445,7 +424,7 @@ def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance
     return by_free_gap(run, alpha, delta, zero, force)
 
 
-METHODS: dict[str, Callable[..., Rows]] = {
+METHODS = {
     "newmark": newmark,
     "chung-hulbert": chung_hulbert,
     "hht": hht,
@@ -453,7 +432,6 @@ METHODS: dict[str, Callable[..., Rows]] = {
     "weights": by_weights,
     "leapfrog": leapfrog,
     "symplectic-euler": symplectic_euler,
-    "forward-euler": forward_euler,
     "implicit-euler": implicit_euler,
     "theta": theta,
     "composite": composite,
@@ -469,6 +447,6 @@ METHODS: dict[str, Callable[..., Rows]] = {
 }
 
 
-def rounded(values: np.ndarray, digits: int) -> np.ndarray:
+def rounded(values, digits):
     """Return values as a file with so many significant digits gives them."""
     return np.array([float(f"{value:.{digits - 1}e}") for value in values]) if digits < 17 else values

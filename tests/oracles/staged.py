@@ -49,6 +49,11 @@ class System:
             N = (self.reference - self.opening(t, x)) / self.compliance
         return np.clip(np.where(self.compliance > 0, N, 0.0), self.lower, self.upper)
 
+    def forces_of_rates(self, N, rate):
+        """Return N with those of rigid rows that slip at the start: their strength, against the slip."""
+        held = np.where(rate > 0, self.lower, self.upper)
+        return np.where((self.compliance == 0) & (np.abs(rate) > 1e-9) & self.slips, held, N)
+
     def implicit(self, t, known_x, known_v, beta, gamma, am=0.0, af=0.0, old=0.0):
         """Return a1, x1 and N of x1 = known_x + beta a1, v1 = known_v + gamma a1; `old` are the terms of the start."""
         left = (1 - am) * self.M + (1 - af) * (gamma * self.C + beta * self.K)
@@ -95,6 +100,8 @@ def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False
     M, C, K = s.M, s.C, s.K
     s.reference = np.zeros(len(s.B))
     N = s.forces(0.0, x)
+    if not zero:
+        N = s.forces_of_rates(N, s.B @ v)
     a = np.zeros_like(x) if zero else np.linalg.solve(M, s.F(0.0) + s.B.T @ N - C @ v - K @ x)
     rows = [(x, v, N)]
     half = v - dt / 2 * a

@@ -6,7 +6,7 @@ import importlib.util
 
 import numpy as np
 import pytest
-from peers import box2d, pymunk
+from peers import box2d, mujoco, pymunk
 from peers.bodies import bodies_of, friction_between
 
 from validation.gates.gate import Status
@@ -18,7 +18,11 @@ from validation.runs.history import History
 from validation.scenes.outline import area
 from validation.scenes.scene import load_scene
 
-PROGRAMS = {"pymunk": (pymunk.Pymunk, "pymunk"), "box2d": (box2d.Box2D, "pyb2d3")}
+PROGRAMS = {
+    "pymunk": (pymunk.Pymunk, "pymunk"),
+    "box2d": (box2d.Box2D, "pyb2d3"),
+    "mujoco": (mujoco.MuJoCo, "mujoco"),
+}
 ANSWERED = ("wedges", "overhang", "overhang-farther", "touch-clip", "touch-miss")
 
 
@@ -57,9 +61,10 @@ def test_what_is_no_rigid_polygon_is_refused(program: str, name: str) -> None:
         solver().solve(load_scene(f"rigid-{name}"))
 
 
-def test_box2d_refuses_friction_by_pair() -> None:
+@pytest.mark.parametrize("solver", [box2d.Box2D, mujoco.AsItComes])
+def test_friction_by_pair_is_refused_where_it_follows_from_two_surfaces(solver: type) -> None:
     with pytest.raises(NotImplementedError, match="friction by pair"):
-        box2d.Box2D().solve(load_scene("rigid-pushing"))
+        solver().solve(load_scene("rigid-pushing"))
 
 
 @pytest.mark.parametrize("name", ANSWERED)

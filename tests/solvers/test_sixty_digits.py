@@ -2,7 +2,6 @@
 
 import pytest
 from conftest import thinned
-from flint import arb
 from mpmath import mp, mpf
 from oracles import block_in_digits
 
@@ -13,7 +12,7 @@ COLUMNS = ("displacement", "contact_pressure")
 OBLONG = {"block.width": 1.3, "block.height": 2.9, "contact.shear_stiffness": 3e8}
 
 
-def exactly(values: list[arb]) -> list[mpf]:
+def exactly(values):
     """Midpoints of balls; call it with enough digits set."""
     return [mpf(value.str(mp.dps, radius=False)) for value in values]
 

@@ -38,6 +38,8 @@ FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
 SOFTEST = 1e-6
 """k below which the block lands as a rigid mass, to k / 2; its strain would ring 1 / sqrt(k) times in the contact."""
+STIFFEST = 1e18
+"""k above which the landing is that on a rigid stop, to 0.6 / sqrt(k); from 1e20 on rounding hides the gap."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
 MOST = 20_000
@@ -49,10 +51,19 @@ STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
-    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
+    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-].
+
+    Raises
+    ------
+    FloatingPointError
+        It is below the smallest number of double precision.
+    """
     modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
-    return 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
+    ratio = 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
+    if ratio == 0:
+        raise FloatingPointError("stiffness of the springs over that of the block: 0")
+    return ratio
 
 
 # ---- the block's own landing --------------------------------------------------------------------------------------
@@ -118,6 +129,9 @@ def own_landing(ratio: float) -> OwnLanding:
         raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
     if ratio < SOFTEST:
         return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
+    if ratio > STIFFEST:
+        *speeds, rebound = rigid_stop()
+        return OwnLanding(rebound, 1.0, max(speeds), math.pi / (2 * math.sqrt(ratio)), len(speeds))
     closed = np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
     depths: list[float] = []
@@ -255,8 +269,8 @@ def hidden_from(scene: Scene) -> float | None:
 
         dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
 
-    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest, and of schemes
-    other than Newmark's.
+    whatever p and gg. None where it does not rise at all, where a weight that lifts it makes it rise at every step
+    (r <= -1), where it does not start on its springs at rest, and of schemes other than Newmark's.
     """
     t = scene.time
     if t.scheme != "newmark":
@@ -265,7 +279,7 @@ def hidden_from(scene: Scene) -> float | None:
     height = statics.height(scene)
     weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
     from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
-    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
+    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and -1 < weight < 2):
         return None
     free = spectra.transit(scene) / math.sqrt(6 * t.alpha)
     return free * math.sqrt((1 - weight / 2) / (1 + weight))

@@ -44,14 +44,21 @@ def on_endless_ground(scene: Scene) -> BoxesOnGround:
     NotImplementedError
         The scene is of something else, or a box stands, or would be carried by its velocity, beyond an end.
     """
+    if ground_ends(scene):
+        raise NotImplementedError("a ground that ends below a box: this program's is a plane without end")
+    return boxes_of(scene)
+
+
+def ground_ends(scene: Scene) -> bool:
+    """Whether a box stands, or would be carried by its velocity, beyond an end of the ground."""
     pile = boxes_of(scene)
     for box in pile.boxes:
         reach = max(box.width, box.height) / 2
         carried = 0.0 if box.spin else box.velocity[0] * scene.time.duration  # one that spins turns about its corner
         places = (box.x, box.x + carried)
         if min(places) - reach < pile.ends[0] or max(places) + reach > pile.ends[1]:
-            raise NotImplementedError("a ground that ends below a box: this program's is a plane without end")
-    return pile
+            return True
+    return False
 
 
 def is_pile(scene: Scene) -> bool:

@@ -1,4 +1,4 @@
-"""Rigid boxes on MuJoCo's own contact.
+"""Rigid polygons, as prisms one metre deep, on MuJoCo's own contact.
 
 MuJoCo's contact is a law of accelerations: a point that touches is given a = -k r - b v, for its depth r and its
 velocity v, as far as its impedance d counters what else pushes. The tangents have a law of their own.
@@ -20,9 +20,21 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from peers.boxes import Pose, base_velocity, boxes_of, correction_rate, on_endless_ground, record, spring_step, substeps
+from peers.bodies import bodies_of, friction_between
+from peers.boxes import (
+    SLOW_CORRECTION,
+    Pose,
+    base_velocity,
+    boxes_of,
+    ground_ends,
+    is_pile,
+    record,
+    spring_step,
+    substeps,
+)
 from peers.mujoco_model import Columns, March, model_text, refuse
 from peers.spatial import check_plane
+from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
@@ -37,109 +49,133 @@ LANDING = 0.5  # of an approach is stopped in a step, where nothing rebounds
 REST_CORRECTION = 10.0
 PILE_CORRECTION = 100.0
 CORNERS = 4  # contact points of a box that lies flat
-HALF_DEPTH = 0.5  # m of boxes
-THICKNESS = 1.0  # m of a ground that moves
-HEAVY = 1e6  # mass of a ground that moves, over that of the boxes
+HALF_DEPTH = 0.5  # m of prisms
+HEAVY = 1e6  # mass of a ground that moves, over that of the blocks
+SAME = 1e-9  # m: corners of one level
+STICKS = 100.0  # coefficient of friction where nothing slips
 OPTIONS = 'cone="elliptic" impratio="1e6" tolerance="1e-12"'
-GROUND = "ground"
 
 
 class World:
-    """Boxes and ground as bodies of MuJoCo: free in space as they come, else on joints that keep them in the plane."""
+    """Blocks as bodies of MuJoCo: free in space as they come, else on joints that keep them in the plane."""
 
     def __init__(self, scene: Scene, *, default: bool) -> None:
-        pile = on_endless_ground(scene)
         self.scene = scene
         self.default = default
-        self.moves = bool(pile.base_amplitude)
+        self.blocks = bodies_of(scene)
+        self.moving = [block for block in self.blocks if not block.held]
+        plane = scene.table(PlaneSection)
+        self.moves = any(block.motion for block in plane.block)
+        self.rebound = (plane.contact.restitution if plane.contact else None) or 0.0
         self.own_step = USUAL_STEP if default else STEP
+        given = any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness)
         if default:
-            refuse("MuJoCo's contact has no coefficient of restitution", where=pile.rebound != 0)
-            refuse("MuJoCo's stiffness is no default of its own", where=pile.stiffness is not None)
-        if pile.stiffness is not None:
-            refuse(
-                "contact of given stiffness below several boxes: MuJoCo's is one over mass", where=len(pile.boxes) > 1
-            )
+            refuse("MuJoCo's contact has no coefficient of restitution", where=self.rebound != 0)
+            refuse("MuJoCo's stiffness is no default of its own", where=given)
+            refuse("friction by pair: MuJoCo takes the greater one of its two bodies'", where=bool(plane.pair))
+        if given:
+            lone = is_pile(scene) and len(self.moving) == 1
+            refuse("contact of given stiffness below several boxes: MuJoCo's is one over mass", where=not lone)
             soft = "contact of given stiffness with friction: MuJoCo softens both together"
-            refuse(soft, where=pile.friction != 0)
+            refuse(soft, where=boxes_of(scene).friction != 0)
             self.own_step = min(self.own_step, spring_step(scene))
         step = scene.time.step / substeps(scene, self.own_step)
-        along, up = pile.pull
+        along, up = plane.gravity
         options = f'timestep="{step!r}"' if default else f'timestep="{step!r}" {OPTIONS}'
-        bodies = "".join(self._bodies())
+        # A plane without end is the ground that one takes as it comes; held prisms are it elsewhere.
+        self.flat = default and not self.moves and is_pile(scene) and not ground_ends(scene)
+        self.meshes: list[str] = []
+        bodies = "".join(map(self._body, range(len(self.blocks))))
         pairs = "" if default else f"<contact>{''.join(self._pairs(step))}</contact>"
-        text = model_text(options, bodies, gravity=f"{along!r} 0 {up!r}", contact=pairs)
-        self.march = March(text)
-        self.geoms = [self.march.model.geom(GROUND).id]
-        self.first = 1 if self.moves else 0  # coordinate at which those of the boxes begin
-        self.turns = [angle for _, _, angle in pile.starts]
+        more = f"<asset>{''.join(self.meshes)}</asset>{pairs}"
+        self.march = March(model_text(options, bodies, gravity=f"{along!r} 0 {up!r}", contact=more))
+        self.first = 1 if self.moves else 0  # coordinate at which those of the blocks begin
+        self.turns = [block.angle for block in self.moving]
         self._start()
-        if pile.stiffness is not None:
-            self._soften(pile.stiffness)
+        if given:
+            self._soften(boxes_of(scene).stiffness or 0.0)
+
+    def _body(self, number: int) -> str:
+        block = self.blocks[number]
+        x, y = block.place
+        density = block.density
+        slides = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
+        joints = "<freejoint/>" if self.default else f'{slides}<joint type="hinge" axis="0 -1 0"/>'
+        turned = ""
+        if block.held:
+            joints = '<joint type="slide" axis="1 0 0"/>' if self.moves else ""
+            turned = f'quat="{math.cos(block.angle / 2)!r} 0 {-math.sin(block.angle / 2)!r} 0"'
+            density = float(HEAVY * sum(moving.mass for moving in self.moving) / block.mass * density)
+        shapes = list(map(self._shape, block.parts))
+        if block.held and self.flat:
+            shapes = [f'type="plane" size="1 1 1" pos="0 0 {-y!r}"']
+        geoms = "".join(
+            f'<geom name="{number}.{place}" density="{density!r}" {self._surface()} {shape}/>'
+            for place, shape in enumerate(shapes)
+        )
+        return f'<body pos="{x!r} 0 {y!r}" {turned}>{joints}{geoms}</body>'
 
     def _surface(self) -> str:
         """Return the attributes of a geom: its friction, of a pair the greater of the two; else pairs state it."""
         if not self.default:
             return 'contype="0" conaffinity="0"'
-        friction = boxes_of(self.scene).friction_coefficient
+        friction = self._friction(0, 1)
         return f'condim="3" friction="{friction!r} 0 0"' if friction else 'condim="1"'
 
-    def _bodies(self) -> Iterator[str]:
-        pile = boxes_of(self.scene)
-        surface = self._surface()
-        if self.moves:
-            left, right = boxes_of(self.scene).ends
-            mass = HEAVY * sum(box.mass for box in pile.boxes)
-            size = f"{(right - left) / 2!r} {HALF_DEPTH + THICKNESS!r} {THICKNESS / 2!r}"
-            joint = '<joint type="slide" axis="1 0 0"/>'
-            geom = f'<geom name="{GROUND}" type="box" size="{size}" mass="{mass!r}" {surface}/>'
-            position = f"{(left + right) / 2!r} 0 {-THICKNESS / 2!r}"
-            yield f'<body pos="{position}">{joint}{geom}</body>'
-        else:
-            yield f'<geom name="{GROUND}" type="plane" size="1 1 1" {surface}/>'
-        slides = '<joint type="slide" axis="1 0 0"/><joint type="slide" axis="0 0 1"/>'
-        joints = "<freejoint/>" if self.default else f'{slides}<joint type="hinge" axis="0 -1 0"/>'
-        for number, (box, (x, y, _)) in enumerate(zip(pile.boxes, pile.starts, strict=True)):
-            size = f"{box.width / 2!r} {HALF_DEPTH!r} {box.height / 2!r}"
-            geom = f'<geom name="{number}" type="box" size="{size}" density="{box.density!r}" {surface}/>'
-            yield f'<body pos="{x!r} 0 {y!r}">{joints}{geom}</body>'
+    def _shape(self, part: list[tuple[float, float]]) -> str:
+        """Return a convex part: a box where it is a level rectangle, of exact contacts in MuJoCo, else a mesh."""
+        xs, ys = ([point[axis] for point in part] for axis in (0, 1))
+        levels = [{round(value / SAME) for value in values} for values in (xs, ys)]
+        if len(part) == CORNERS and [len(level) for level in levels] == [2, 2]:
+            size = f"{(max(xs) - min(xs)) / 2!r} {HALF_DEPTH!r} {(max(ys) - min(ys)) / 2!r}"
+            return f'type="box" size="{size}" pos="{(max(xs) + min(xs)) / 2!r} 0 {(max(ys) + min(ys)) / 2!r}"'
+        name = f"mesh{len(self.meshes)}"
+        vertices = " ".join(f"{x!r} {depth!r} {y!r}" for depth in (-HALF_DEPTH, HALF_DEPTH) for x, y in part)
+        self.meshes.append(f'<mesh name="{name}" vertex="{vertices}"/>')
+        return f'type="mesh" mesh="{name}"'
+
+    def _friction(self, first: int, second: int) -> float:
+        return min(friction_between(self.scene, first, second), STICKS)
 
     def _pairs(self, step: float) -> Iterator[str]:
-        pile = boxes_of(self.scene)
-        if pile.rebound:
+        piled = len(self.moving) > 1
+        if self.rebound:
             impedance = REBOUND_IMPEDANCE
-            rate = impedance * (1 + pile.rebound) / step  # MuJoCo divides by the impedance
-            stiffness = correction_rate(self.scene) / step
+            rate = impedance * (1 + self.rebound) / step  # MuJoCo divides by the impedance
+            stiffness = SLOW_CORRECTION / step
         else:
             impedance = REST_IMPEDANCE
             rate = LANDING / step
-            stiffness = rate * (PILE_CORRECTION if len(pile.boxes) > 1 else REST_CORRECTION)
+            stiffness = rate * (PILE_CORRECTION if piled else REST_CORRECTION)
         stop = math.sqrt(step * TIME_CONSTANT)
         law = f'solref="{-stiffness!r} {-rate!r}" solreffriction="0 {-1 / stop!r}"'
         law += f' solimp="{impedance} {impedance} 0.001 0.5 2"'
-        friction = pile.friction_coefficient
-        law += f' condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else ' condim="1"'
-        names = [GROUND, *map(str, range(len(pile.boxes)))]
-        for upper, name in enumerate(names):
-            for below in names[:upper]:
-                yield f'<pair geom1="{below}" geom2="{name}" {law}/>'
+        for upper, block in enumerate(self.blocks):
+            for below in range(upper):
+                if not (block.held and self.blocks[below].held):
+                    yield from self._pair(below, upper, law)
+
+    def _pair(self, first: int, second: int, law: str) -> Iterator[str]:
+        friction = self._friction(first, second)
+        slides = f'condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else 'condim="1"'
+        for part in range(len(self.blocks[first].parts)):
+            for other in range(len(self.blocks[second].parts)):
+                yield f'<pair geom1="{first}.{part}" geom2="{second}.{other}" {law} {slides}/>'
 
     def _start(self) -> None:
-        """Set angles and velocities, and note the boxes' geoms."""
-        pile = boxes_of(self.scene)
+        """Set angles and velocities."""
         data = self.march.data
-        for number, (box, (_, _, angle)) in enumerate(zip(pile.boxes, pile.starts, strict=True)):
-            self.geoms.append(self.march.model.geom(str(number)).id)
-            along, up = box.velocity
+        for number, block in enumerate(self.moving):
+            along, up = block.velocity
             if self.default:
                 place = self.first + 7 * number
-                data.qpos[place + 3 : place + 7] = math.cos(angle / 2), 0, -math.sin(angle / 2), 0
+                data.qpos[place + 3 : place + 7] = math.cos(block.angle / 2), 0, -math.sin(block.angle / 2), 0
                 place = self.first + 6 * number
-                data.qvel[place : place + 6] = along, 0, up, 0, -box.spin, 0
+                data.qvel[place : place + 6] = along, 0, up, 0, -block.spin, 0
             else:
                 place = self.first + 3 * number
-                data.qpos[place + 2] = angle
-                data.qvel[place : place + 3] = along, up, box.spin
+                data.qpos[place + 2] = block.angle
+                data.qvel[place : place + 3] = along, up, block.spin
 
     def _soften(self, stiffness: float) -> None:
         """Make the contact of a box with the ground a spring.
@@ -172,13 +208,13 @@ class World:
                 self.turns[number] = turn + math.remainder(-2 * math.atan2(y, w) - turn, math.tau)
 
     def poses(self) -> list[Pose]:
-        """Return position and angle of each box; what is no number after a breakdown."""
+        """Return position and angle of each block; what is no number after a breakdown."""
         data = self.march.data
-        pile = boxes_of(self.scene)
         if data.warning.number.any():
-            return [(math.nan, math.nan, math.nan)] * len(pile.boxes)
+            return [(math.nan, math.nan, math.nan)] * len(self.moving)
         poses = []
-        for number, (x, y, _) in enumerate(pile.starts):
+        for number, block in enumerate(self.moving):
+            x, y = block.place
             if self.default:
                 place = self.first + 7 * number
                 poses.append((float(data.qpos[place]), float(data.qpos[place + 2]), self.turns[number]))
@@ -191,18 +227,20 @@ class World:
         """Return the normal force below each box in the present state [N]."""
         self.march.look()
         data = self.march.data
-        values = dict.fromkeys(range(1, len(self.geoms)), 0.0)
+        order = [block.name for block in (*(held for held in self.blocks if held.held), *self.moving)]
+        values = dict.fromkeys(order[1:], 0.0)
         force = np.zeros(6)
         for number in range(data.ncon):
-            geoms = sorted(self.geoms.index(geom) for geom in data.contact[number].geom)
+            names = [self.march.model.geom(geom).name.partition(".")[0] for geom in data.contact[number].geom]
+            below, above = sorted(order.index(self.blocks[int(name)].name) for name in names)
             self.march.mujoco.mj_contactForce(self.march.model, data, number, force)
-            if geoms[1] == geoms[0] + 1:
-                values[geoms[1]] += float(force[0])
+            if above == below + 1:
+                values[order[above]] += float(force[0])
         return list(values.values())
 
 
 def boxes(scene: Scene, *, default: bool) -> Columns:
-    """Return the motion of rigid boxes.
+    """Return the motion of rigid polygons.
 
     Raises
     ------
