@@ -145,6 +145,9 @@ def find_many(
     """
     copy(after.state if again else before.state, work.tried)
     for k in range(laws.contacts):
+        if laws.compliance[k] == 0:  # a rigid contact, whose force is no function of its way
+            return NONE, 0
+    for k in range(laws.contacts):
         if many.places.over[k] == 0:  # it carries nothing, and its gap is too large to be solved with
             work.tried[k] = LOWER
             work.tried[laws.contacts + k] = INSIDE

@@ -171,12 +171,16 @@ def make_stage(
         if places.count[0] > 0:
             write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
             free_contacts(march, memory)
-            if places.count[0] > plane.dense:
-                outcome, spent = find_many(plane.many, laws, memory.rows, length, after.rows, march.work, turn > 0)
-            else:
+            outcome = NONE
+            again = turn > 0
+            if places.count[0] <= plane.dense:
                 write_contact_flexibility(march, length)
                 outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
-            solves += spent
+                solves += spent
+                again = False
+            if outcome == NONE:  # of few contacts too: some that neither press nor part, whose signs are rounding's
+                outcome, spent = find_many(plane.many, laws, memory.rows, length, after.rows, march.work, again)
+                solves += spent
             if outcome != FOUND:
                 return outcome, solves
             push_contacts(blocks, places, after.rows.force, room.pushed)

@@ -7,9 +7,10 @@ import pytest
 
 import dda
 from dda import BaseMotion, Block, Contact, Load, Material, Scheme, TwoBlockModel
-from dda.bodies.bonded_column import Drive, solve_column
 from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
+from dda.bodies.column_history import solve_column
+from dda.bodies.column_march import Drive
 
 SCHEME = Scheme(0.5, 1.0, 1.0, 1e-3)
 MOVED = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.03, -0.02]])

@@ -18,9 +18,7 @@ NAMED = {
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},
-    "diagnosis/judgement.py": {"dda", "fem", "bar", "continuum"},
-    "diagnosis/other_solvers.py": {"fem", "continuum"},
-    "diagnosis/slopes.py": {"dda"},
+    "diagnosis/other_solvers.py": {"dda", "fem", "bar", "continuum"},
 }
 
 

@@ -257,7 +257,7 @@ def test_rooms_say_what_they_are_for():
             assert ast.get_docstring(ast.parse(text(room / "__init__.py"))), room
 
 
-FILLED = {"engine/run.py", "diagnosis/columns.py", "diagnosis/stepping.py", "problems/cause.py", "problems/models.py"}
+FILLED = {"engine/run.py", "diagnosis/beside.py", "diagnosis/stepping.py", "problems/cause.py", "problems/models.py"}
 
 
 def test_records_are_frozen_but_for_what_a_search_or_a_run_fills():

@@ -8,9 +8,9 @@ from flint import arb
 from oracles.column_motions import COLUMNS
 
 from dda import Scheme
-from dda.bodies.bonded_column import Drive
 from dda.bodies.column import Column, Layer, Spring
-from dda.bodies.contact_column import ColumnOptions, solve_contact_column
+from dda.bodies.column_history import ColumnOptions, solve_column
+from dda.bodies.column_march import Drive
 from fem_reference.events.column_model import ColumnProblem
 
 # instants at which they are known [s]
@@ -98,7 +98,7 @@ def error_of(case, weights, steps):
     drive = Drive(*course(problem.base_motion, times), course(problem.pressure, times)[0])
     scheme = Scheme(*weights, 1.0, case.until / steps, "consistent")
     options = ColumnOptions(settled=problem.at_rest)
-    result = solve_contact_column(column_of(problem), scheme, drive, list(case.exact), case.heights, options)
+    result = solve_column(column_of(problem), scheme, drive, list(case.exact), case.heights, options)
     assert result.outcome == "completed"
     errors = []
     for part in {name.rpartition("_")[0] for name in case.exact}:

@@ -170,13 +170,16 @@ def test_a_discount_that_adapts_goes_with_no_other(package):
     from validation.solvers.dda import model_of
     from validation.solvers.fem import problem_of
 
-    run = {dda: lambda *a, **k: dda.solve(model_of(LOCKED), *a, **{"floor": 0.0} | k)}
-    run[fem_reference] = lambda *a, **k: fem_reference.solve_adaptive(problem_of(LOCKED), *a, **k)
+    model = {dda: model_of, fem_reference: problem_of}[package](LOCKED)
+
+    def run(scheme, floor=0.0):
+        package.solve(model, scheme, 3, floor=floor)
+
     for numbers in ((0.5, 1.0, 0.9, 1e-3), (0.5, 1.0, 1.0, 1e-3, "zero", 1.0)):
         with pytest.raises(ValueError, match="adapt"):
-            run[package](package.Scheme(*numbers), 3)
+            run(package.Scheme(*numbers))
     with pytest.raises(ValueError, match="floor"):
-        run[package](package.Scheme(0.5, 1.0, 1.0, 1e-3), 3, floor=-0.1)
+        run(package.Scheme(0.5, 1.0, 1.0, 1e-3), floor=-0.1)
 
 
 @pytest.mark.parametrize(
