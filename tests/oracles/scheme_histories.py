@@ -1,7 +1,8 @@
 """Histories of the two-block model by other programs' time schemes and contact methods, each as its authors write it.
 
-Two unknowns, v of the centroid and the strain ey; each scheme is the recursion of its paper with matrices and a loop,
-and shares nothing with `dda`, `fem_reference` or what `compare` steps. Contact is a spring of 2 p under both corners
+Two unknowns, v of the centroid and the strain ey. Schemes that `oracles.staged` has are stepped there, each other one
+is the recursion of its paper with matrices and a loop; nothing is shared with `dda`, `fem_reference` or what `compare`
+steps. Contact is a spring of 2 p under both corners
 that is always closed (`opens=False`) or presses only; contact methods of their own are below the schemes.
 """
 
@@ -12,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from oracles.staged import System, march, of_second_order, theta
 
 
 @dataclass(frozen=True)
@@ -75,88 +77,30 @@ def spring_force(run, w):
     return -run.body.k * w if w < 0 or not run.opens else 0.0
 
 
-def is_closed(run, solve, before):
-    """Return which state of the contact agrees with the gap that a solve with it gives, the one before first."""
-    if not run.opens:
-        return True
-    closed = before
-    for _ in range(8):
-        w = solve(closed)[1]
-        if (w < 0) == closed:
-            return closed
-        closed = not closed
-    return closed
-
-
 # ---- schemes --------------------------------------------------------------------------------------------------------
 
 
-def alpha_family(run, am, af, beta, gamma, zero, form="force"):
-    """(1 - am) M a1 + am M a + (1 - af) r(x1) + af r(x) = F, in the unknown x1 (Chung and Hulbert 1993)."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
-    closed = True
-    N = 0.0
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-        ahead = x + dt * u + dt * dt * (0.5 - beta) * a
-
-        def solve(on, x=x, a=a, N=N, ahead=ahead):
-            springs = b.k * on * np.outer(b.B, b.B)
-            old = b.K @ x - (b.B * N if form == "force" else -springs @ x)
-            S = (1 - am) * b.M + (1 - af) * beta * dt * dt * (b.K + springs)
-            right = b.F - am * b.M @ a - af * old - (1 - af) * (b.K + springs) @ ahead
-            a1 = np.linalg.solve(S, right)
-            x1 = ahead + beta * dt * dt * a1
-            w = b.B @ ((1 - af) * x1 + af * x) if form == "state" else b.B @ x1
-            return a1, w
-
-        closed = is_closed(run, solve, closed)
-        a1, w = solve(closed)
-        x = ahead + beta * dt * dt * a1
-        v = u + dt * ((1 - gamma) * a + gamma * a1)
-        a = a1
-        N = -b.k * w * closed
-        rows.append((x, N if form == "force" else spring_force(run, b.B @ x)))
-    return rows
+def staged(run, name="", form="force", **numbers):
+    """Return the rows of a scheme of `oracles.staged`; springs that hold are part of the stiffness."""
+    b = run.body
+    springs = b.k * np.outer(b.B, b.B)
+    rows = b.B[None, :] if run.opens else None
+    system = System(b.M, b.K if run.opens else b.K + springs, lambda t: b.F, B=rows, p=b.k)
+    rest = np.zeros(2)
+    x, _, N = march(system, name, run.dt, run.steps, rest, rest, run.gg, mean=form == "state", **numbers)
+    return list(zip(x[1:], N[1:, 0] if run.opens else -b.k * x[1:] @ b.B, strict=True))
 
 
 def newmark(run, alpha, delta, zero=False):
-    return alpha_family(run, 0.0, 0.0, alpha, delta, zero)
+    return staged(run, weights=(alpha, delta), zero=zero)
 
 
-def by_weights(run, am, af, zero, form):
-    return alpha_family(run, am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af, zero, form)
-
-
-def chung_hulbert(run, r, zero=False, form="force"):
-    return by_weights(run, (2 * r - 1) / (r + 1), r / (r + 1), zero, form)
+def by_weights(run, am, af, zero=False, form="force"):
+    return staged(run, form=form, stage=of_second_order(am, af), zero=zero)
 
 
 def hht(run, e, zero=False, form="force"):
     return by_weights(run, 0.0, e, zero, form)
-
-
-def wbz(run, r, zero=False, form="force"):
-    return by_weights(run, (r - 1) / (r + 1), 0.0, zero, form)
-
-
-def leapfrog(run):
-    """Velocities at half steps; the first one is v_0 + dt a_0 / 2."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    half = None
-    rows = []
-    for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        half = dt * a / 2 if half is None else run.gg * half + dt * a
-        x = x + dt * half
-        rows.append((x, spring_force(run, b.B @ x)))
-    return rows
 
 
 def symplectic_euler(run):
@@ -169,83 +113,6 @@ def symplectic_euler(run):
         v = run.gg * v + dt * np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
         x = x + dt * v
         rows.append((x, spring_force(run, b.B @ x)))
-    return rows
-
-
-def implicit_euler(run):
-    return theta(run, 1.0)
-
-
-def midpoint(run):
-    """Of a constant load and springs that hold it is the trapezoidal rule in this form."""
-    return theta(run, 0.5)
-
-
-def theta(run, share):
-    """v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    N = 0.0
-    closed = True
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-
-        def solve(on, x=x, u=u, N=N):
-            K = b.K + b.k * on * np.outer(b.B, b.B)
-            ahead = x + dt * (1 - share) * u
-            force = b.F - share * K @ ahead - (1 - share) * (b.K @ x - b.B * N)
-            v1 = np.linalg.solve(b.M + share**2 * dt * dt * K, b.M @ u + dt * force)
-            return v1, b.B @ (ahead + dt * share * v1)
-
-        closed = is_closed(run, solve, closed)
-        v, w = solve(closed)
-        x = x + dt * (share * v + (1 - share) * u)
-        N = -b.k * w * closed
-        rows.append((x, N))
-    return rows
-
-
-def composite(run, split, r):
-    """The weights of Noh and Bathe 2019."""
-    q1 = (r + 1) / (2 * split * (r - 1) + 4)
-    return two_stages(run, split, (split - 1) * q1 + 0.5, q1, 0.5 - split * q1)
-
-
-def tr_bdf2(run):
-    """The backward difference of second order as weights of slopes (Hosea and Shampine 1996)."""
-    return two_stages(run, 2 - math.sqrt(2), math.sqrt(2) / 4, math.sqrt(2) / 4, 1 - math.sqrt(2) / 2)
-
-
-def two_stages(run, split, q0, q1, q2):
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), and x1 so of u, vg, v1."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.linalg.solve(b.M, b.F)
-    closed = True
-    rows = []
-
-    def implicit(known, rate, h, before):
-        """Solve x1 = known + h v1, v1 = rate + h a1, M a1 + K x1 = F."""
-
-        def solve(on):
-            K = b.K + b.k * on * np.outer(b.B, b.B)
-            x1 = np.linalg.solve(b.M + h * h * K, b.M @ (known + h * rate) + h * h * b.F)
-            return x1, b.B @ x1
-
-        on = is_closed(run, solve, before)
-        x1, w = solve(on)
-        v1 = (x1 - known) / h
-        return x1, v1, (v1 - rate) / h, on, -b.k * w * on
-
-    for _ in range(run.steps):
-        u = run.gg * v
-        h = split * dt / 2
-        _, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
-        x, v, a, closed, N = implicit(x + dt * (q0 * u + q1 * vg), u + dt * (q0 * a + q1 * ag), q2 * dt, closed)
-        rows.append((x, N))
     return rows
 
 
@@ -426,17 +293,17 @@ def lagrange(run, alpha, delta, zero=False, tolerance=0.0, r=0.0):
 
 METHODS = {
     "newmark": newmark,
-    "chung-hulbert": chung_hulbert,
+    "chung-hulbert": lambda run, r, **how: staged(run, "chung-hulbert", rho=r, **how),
     "hht": hht,
-    "wbz": wbz,
+    "wbz": lambda run, r, **how: staged(run, "wbz", rho=r, **how),
     "weights": by_weights,
-    "leapfrog": leapfrog,
+    "leapfrog": lambda run: staged(run, "leapfrog"),
     "symplectic-euler": symplectic_euler,
-    "implicit-euler": implicit_euler,
-    "theta": theta,
-    "composite": composite,
-    "tr-bdf2": tr_bdf2,
-    "midpoint": midpoint,
+    "implicit-euler": lambda run: staged(run, stage=theta(1.0)),
+    "theta": lambda run, share: staged(run, stage=theta(share)),
+    "composite": lambda run, split, r: staged(run, "composite", rho=r, split=split),
+    "tr-bdf2": lambda run: staged(run, "composite", split=2 - math.sqrt(2)),
+    "midpoint": lambda run: staged(run, stage=theta(0.5)),
     "houbolt": houbolt,
     "wilson": wilson,
     "runge-kutta": runge_kutta,

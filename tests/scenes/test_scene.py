@@ -10,7 +10,7 @@ import pytest
 from conftest import SCENE
 
 from validation.errors import InputError
-from validation.scenes.scene import load_scene, parse_assignment, parse_scene, scene_names
+from validation.scenes.scene import load_scene, parse_assignment, parse_scene
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
 
@@ -142,13 +142,6 @@ def test_assignments_are_toml_or_words():
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
     with pytest.raises(InputError, match="must be key=value"):
         parse_assignment("time.step")
-
-
-@pytest.mark.parametrize("name", scene_names())
-def test_built_in_scenes_load_and_expand(name):
-    scene = load_scene(name)
-    assert scene.title
-    assert all(not case.sweep for case in scene.expand())
 
 
 def test_the_papers_figures_are_there():

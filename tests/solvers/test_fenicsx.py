@@ -33,8 +33,6 @@ from validation.solvers.registry import get_solver
 from validation.studies.two_codes.formulas import POLYGONS, SAME
 from validation.suite.folders import get_study
 
-pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
-
 
 def error(scene, solver="fenicsx"):
     """Largest difference of the two codes over the maximum, of any column."""

@@ -25,7 +25,6 @@ from validation.suite.folders import get_study
 
 ROOT = Path(__file__).parents[2]
 PAPER = get_study("paper")
-pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
 OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS for need in claim.needs}
 
