@@ -28,14 +28,11 @@ from validation.solvers.registry import get_solver
 
 
 def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> None:
-    names = ("predicted_radius", "spectral_radius", "condition_number", "scaled_residual", "largest_omega")
-    told = dict(zip(names, (0.91, 0.92, 3e5, 4e-16, 5.5), strict=True))
+    told = {"predicted_radius": 0.91, "spectral_radius": 0.92, "largest_omega": 5.5}
     found = solo(Measurable(made_history(0.1, np.ones(3)), 0.1, diagnostics=told), ("stability",))
     assert found == {
         "stability.radius": 0.91,
         "stability.radius_seen": 0.92,
-        "stability.condition": 3e5,
-        "stability.residual": 4e-16,
         "stability.omega": 5.5,
         "stability.growth": "undefined",
         "stability.kind": "stable",
