@@ -31,7 +31,11 @@ def column(load=LOAD):
     return equations(Column(layers, "pressure", None, [Spring(0.0, 4e9), Spring(3.0, 2e9)]))
 
 
-BODIES = [block, sub_blocks, column]
+def welded_column(load=LOAD):
+    return equations(Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)]))
+
+
+BODIES = [block, sub_blocks, column, welded_column]
 PLANE = [block, sub_blocks]
 
 
