@@ -1,4 +1,4 @@
-"""Stability of the step of the two-block model."""
+"""Conditioning and stability of the step of the two-block model."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from dda.bodies.gap_form import GapForm
 from dda.bodies.two_block import TwoBlockModel
 from dda.linear.answers import Mode, modes
 from dda.model.arrays import Array
@@ -15,18 +16,39 @@ from dda.scheme.newmark import Scheme, staged_step, step_matrices
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """Stability of the step."""
+    """Conditioning and stability of the assembled step."""
 
+    condition_number: float  # of S = M + alpha dt^2 K in D, unscaled [-]
+    scaled_condition_number: float  # of the scaled S that is factored [-]
+    scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
     spectral_radius: float  # largest |lambda| seen: the step applied to unit states of the reached modes [-]
     predicted_radius: float  # the same from trace and determinant in closed form [-]
     largest_omega: float  # largest w dt over the reached modes [-]
 
 
+def _scaled(form: GapForm, scheme: Scheme) -> tuple[Array, Array, Array]:
+    """Return M, dt^2 K (diagonal) and dt^2 F in unknowns scaled for a diagonal of S near one."""
+    k = scheme.step**2 * form.K
+    F = scheme.step**2 * form.F
+    diagonal = step_matrices(scheme, np.diag(form.M), k)[-1]
+    scale = np.ldexp(1.0, -(np.frexp(diagonal)[1] // 2))
+    return scale[:, None] * form.M * scale, scale * k * scale, scale * F
+
+
 def diagnostics(model: TwoBlockModel, scheme: Scheme) -> Diagnostics:
-    """Return spectral radius of the step and the largest w dt."""
+    """Return conditioning, residual and spectral radius of the assembled step."""
+    form = model.reached
+    M, k, F = _scaled(form, scheme)
+    S = step_matrices(scheme, M, np.diag(k))[-1]
+    x = np.linalg.solve(S, F)
+    residual = np.abs(S @ x - F) / (np.abs(S) @ np.abs(x) + np.abs(F))
+    unscaled = step_matrices(scheme, model.mass, scheme.step**2 * model.stiffness)[-1]
     reached = modes(model, scheme)
     omegas = np.array([mode.frequency * scheme.step for mode in reached])
     return Diagnostics(
+        condition_number=float(np.linalg.cond(unscaled)),
+        scaled_condition_number=float(np.linalg.cond(S)),
+        scaled_residual=float(np.max(residual)),
         spectral_radius=_stepped_radius(scheme, reached),
         predicted_radius=_predicted(scheme, omegas),
         largest_omega=float(np.max(omegas)),

@@ -1,4 +1,4 @@
-"""Stability of one step of the finite-element model."""
+"""Conditioning and stability of one step of the finite-element model."""
 
 from __future__ import annotations
 
@@ -10,22 +10,33 @@ from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.scheme.eigen import DENSE, eigenvalues, highest_frequency, lowest
 from fem_reference.scheme.modal import roots
+from fem_reference.scheme.newmark import Stepper
 
 
 @dataclass(frozen=True)
 class Diagnostics:
-    """What one step does to the mesh's modes."""
+    """What one step does to the mesh's modes, and how well its matrix is conditioned."""
 
+    condition_number: float  # of S = M + alpha dt^2 K [-]; NaN for meshes too large for dense matrices
+    scaled_residual: float  # max |S x - b| / (|S| |x| + |b|) of one solution with the load [-]
     spectral_radius: float  # largest |lambda| seen: the code's own step applied to unit states of single modes [-]
     predicted_radius: float  # largest |lambda| of the same modes by the stages of one step [-]
     largest_omega: float  # largest w dt [-]
 
 
 def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Model | None = None) -> Diagnostics:
-    """Return spectral radii of the step and the largest w dt."""
+    """Return conditioning, residual and spectral radius of the step."""
     model = build(problem, full) if model is None else model
     omegas = _frequencies(problem, model) * scheme.step
+    stepper = Stepper(model.M, model.K, model.F, scheme)
+    S = stepper.S
+    b = scheme.step**2 * model.F
+    x = stepper.solve(b)
+    residual = np.abs(S @ x - b) / (abs(S) @ np.abs(x) + np.abs(b) + np.finfo(float).tiny)
+    small = len(model.F) <= DENSE
     return Diagnostics(
+        condition_number=float(np.linalg.cond(S.toarray())) if small else float("nan"),
+        scaled_residual=float(np.max(residual)),
         spectral_radius=max(float(np.max(np.abs(eigenvalues(w / scheme.step, scheme)))) for w in omegas),
         predicted_radius=max(float(np.max(np.abs(roots(float(w), scheme)))) for w in omegas),
         largest_omega=float(np.max(omegas)),

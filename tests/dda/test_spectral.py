@@ -87,3 +87,5 @@ def test_diagnostics_name_a_growing_scheme():
     assert grows.spectral_radius == pytest.approx(float(spectral.spectral_radius(grows.largest_omega, 0.0, 0.5)))
     calm = diagnostics(square(1e12), Scheme(*CONSTANT, 1.0, 1e-3))
     assert calm.spectral_radius <= 1
+    assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
+    assert calm.scaled_residual < 1e-15

@@ -131,7 +131,7 @@ class Prepared:
         raise NotReported("no modes are reported")
 
     def diagnostics(self) -> Mapping[str, float]:
-        """Return spectral radii of the step and the largest w dt."""
+        """Return spectral radius, condition number and residual of the step."""
         raise NotReported("no diagnostics are reported")
 
     def response(self, frequencies: Array, exact: bool = False) -> Mapping[str, Complex]:

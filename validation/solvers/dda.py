@@ -82,7 +82,7 @@ class OneBlock(Prepared):
         return dda.modes(self.body, self.scheme)
 
     def diagnostics(self) -> Mapping[str, float]:
-        """Return spectral radii of the step and the largest w dt."""
+        """Return spectral radius, condition numbers and residual."""
         return vars(dda.diagnostics(self.model, self.scheme))
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:

@@ -159,7 +159,7 @@ class Mesh(Prepared):
         return to_modes(fem_reference.modes(self.problem, self.scheme, model=self.model))
 
     def diagnostics(self) -> Mapping[str, float]:
-        """Return spectral radii of the mesh's step and the largest w dt."""
+        """Return spectral radii, condition number and residual of the mesh's step."""
         from fem_reference.scheme.diagnostics import diagnostics
 
         return vars(diagnostics(self.problem, self.scheme, model=self.model))
