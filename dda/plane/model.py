@@ -203,8 +203,8 @@ class PlaneModel:
         for number, contact in enumerate(self.contacts):
             field = f"contacts[{number}]"
             self._check_pair(field, "block", contact.block, "on", contact.on)
-            self._check_corner(f"{field}.corner", contact.block, contact.corner)
-            self._check_corner(f"{field}.edge", contact.on, contact.edge)
+            check_number(f"{field}.corner", contact.corner, len(self.blocks[contact.block].block.corners))
+            check_number(f"{field}.edge", contact.edge, len(self.blocks[contact.on].block.corners))
         for number, bond in enumerate(self.bonds):
             field = f"bonds[{number}]"
             self._check_pair(field, "first", bond.first, "second", bond.second)
@@ -212,7 +212,7 @@ class PlaneModel:
                 self.edge_of(getattr(bond, name), bond.start, bond.end, f"{field}.{name}")
         for number, load in enumerate(self.loads):
             field = f"loads[{number}]"
-            self._check_block(f"{field}.block", load.block)
+            check_number(f"{field}.block", load.block, len(self.blocks))
             if self.blocks[load.block].held:
                 raise ValueError(f"{field}.block: must move, got {self.name_of(load.block)}")
             if load.edge is not None:
@@ -244,19 +244,16 @@ class PlaneModel:
             raise ValueError(f"{field}: must lie on one edge of {self.name_of(block)}, got {start!r} to {end!r}")
         return edge
 
-    def _check_block(self, field: str, block: int) -> None:
-        if not 0 <= block < len(self.blocks):
-            raise ValueError(f"{field}: must be between 0 and {len(self.blocks) - 1}, got {block!r}")
-
     def _check_pair(self, field: str, first: str, i: int, second: str, j: int) -> None:
-        self._check_block(f"{field}.{first}", i)
-        self._check_block(f"{field}.{second}", j)
+        check_number(f"{field}.{first}", i, len(self.blocks))
+        check_number(f"{field}.{second}", j, len(self.blocks))
         if i == j:
             raise ValueError(f"{field}.{second}: must be another block than {first}, got {j!r}")
         if self.blocks[i].held and self.blocks[j].held:
             raise ValueError(f"{field}.{second}: one of two blocks must move, got {self.name_of(i)}, {self.name_of(j)}")
 
-    def _check_corner(self, field: str, block: int, corner: int) -> None:
-        count = len(self.blocks[block].block.corners)
-        if not 0 <= corner < count:
-            raise ValueError(f"{field}: must be between 0 and {count - 1}, got {corner!r}")
+
+def check_number(field: str, number: int, count: int) -> None:
+    """Raise ValueError unless a number is one of so many."""
+    if not 0 <= number < count:
+        raise ValueError(f"{field}: must be between 0 and {count - 1}, got {number!r}")
