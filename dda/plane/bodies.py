@@ -33,7 +33,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import free_block
 from dda.contact.dense import Matrix, Vector
@@ -120,7 +119,7 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
     ), np.concatenate([*k, np.zeros(0)])
 
 
-def as_complex(points: ArrayLike) -> Points:
+def as_complex(points: Any) -> Points:
     """Return points (n, 2) as complex numbers."""
     x, y = np.asarray(points, dtype=float).reshape(-1, 2).T
     return x + 1j * y

@@ -16,6 +16,7 @@ from dda.model.block import Block
 from dda.model.checks import check_finite, check_not_negative
 from dda.model.load import BaseMotion
 from dda.model.material import Hypothesis, Material
+from dda.plane.bodies import as_complex
 
 NEAR = 1e-6  # of an edge's length, by which points that are to lie on it may be beside it
 
@@ -230,17 +231,14 @@ class PlaneModel:
         ValueError
             If there is none, naming the field.
         """
-        corners = self.blocks[block].block.corners
-        following = np.roll(corners, -1, axis=0)
-        along = following - corners
-        square = np.sum(along**2, axis=1)
-        beside = np.zeros(len(corners))
-        for place in (start, end):
-            to = np.asarray(place, dtype=float) - corners
-            share = np.clip(np.sum(to * along, axis=1) / square, 0.0, 1.0)
-            beside = np.maximum(beside, np.hypot(*(to - share[:, None] * along).T))
-        edge = int(np.argmin(beside / np.sqrt(square)))
-        if beside[edge] > NEAR * math.sqrt(square[edge]):
+        corners = as_complex(self.blocks[block].block.corners)
+        along = np.roll(corners, -1) - corners
+        beside = np.zeros(len(corners))  # of the edges' lengths
+        for place in as_complex([start, end]):
+            ahead = (place - corners) / along  # of an edge from 0 to 1
+            beside = np.maximum(beside, np.abs(ahead - np.clip(ahead.real, 0.0, 1.0)))
+        edge = int(np.argmin(beside))
+        if beside[edge] > NEAR:
             raise ValueError(f"{field}: must lie on one edge of {self.name_of(block)}, got {start!r} to {end!r}")
         return edge
 

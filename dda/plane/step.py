@@ -288,11 +288,17 @@ def free_contacts(march: March, memory: PlaneState) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
+        free[r] = displacement_of(plane, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
             q[k] = FAR
+
+
+def displacement_of(plane: Plane, r: int) -> float:
+    """Return by how much the opening of a row changes in the stage by `plane.x` and by driven blocks [m]."""
+    displacement: float = plane.places.driven[r] + contact_displacement(plane.x, plane.blocks, plane.places, r)
+    return displacement
 
 
 def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneState) -> None:
@@ -310,11 +316,9 @@ def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneSta
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            displacement = places.driven[k] + contact_displacement(plane.x, plane.blocks, places, k)
-            rows.opening[k] = memory.rows.opening[k] + displacement
+            rows.opening[k] = memory.rows.opening[k] + displacement_of(plane, k)
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            displacement = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
-            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement - rows.opening[r]
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement_of(plane, r) - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
         rows.slip[r] = 0.0
