@@ -33,7 +33,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import free_block
 from dda.contact.dense import Matrix, Vector
@@ -120,7 +119,7 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
     ), np.concatenate([*k, np.zeros(0)])
 
 
-def as_complex(points: ArrayLike) -> Points:
+def as_complex(points: Any) -> Points:
     """Return points (n, 2) as complex numbers."""
     x, y = np.asarray(points, dtype=float).reshape(-1, 2).T
     return x + 1j * y
@@ -135,25 +134,30 @@ def poses_of(blocks: int) -> Poses:
 # ---- inertia of a strained block -------------------------------------------------------------------------------------
 
 
+def row_times(row: Vector, x: Vector, first: int, n: int) -> float:
+    """Return the sum of the first n products of a row and a part of a vector."""
+    total = 0.0
+    for e in range(n):
+        total += row[e] * x[first + e]
+    return total
+
+
 def inertia_of(blocks: Blocks, i: int, e: Vector, poses: Poses) -> None:
     """Write J and gamma of a block with strains e."""
-    root = blocks.root_inertia[i]
-    J = root * root
+    poses.J[i] = blocks.root_inertia[i] * blocks.root_inertia[i]
     for k in range(3):
-        of_strain = 0.0
-        turning = blocks.gamma[i][k]
+        poses.J[i] += (2 * blocks.j[i][k] + row_times(blocks.M[i][k], e, 0, 3)) * e[k]
+        poses.gamma[i][k] = blocks.gamma[i][k]
         for m in range(3):
-            of_strain += blocks.M[i][k][m] * e[m]
-            turning += e[m] * blocks.G[i][m][k]
-        J += (2 * blocks.j[i][k] + of_strain) * e[k]
-        poses.gamma[i][k] = turning
-    poses.J[i] = J
+            poses.gamma[i][k] += e[m] * blocks.G[i][m][k]
 
 
 def inertia_forces(
     blocks: Blocks, i: int, p: Vector, a: Vector, step: float, poses: Poses, spin: Vector, out: Vector
-) -> None:
+) -> float:
     """Write what a strained block adds to the equations of its strain modes, and (r', e') into `spin`.
+
+    Returns its kinetic energy less that of the modes alone, p' p / 2 [J].
 
     Parameters
     ----------
@@ -168,19 +172,16 @@ def inertia_forces(
     turning = 0.0  # gamma e'' less what the modes have of it
     carried = 0.0
     moving = 0.0
+    unstrained = 0.0
     for k in range(3):
-        rate = 0.0
-        faster = 0.0
-        for m in range(3):
-            shape = blocks.shapes[i][k][m]
-            rate += shape * p[first + 3 + m]
-            faster += shape * a[first + 3 + m]
-        spin[1 + k] = rate / step
-        faster /= step * step
+        spin[1 + k] = row_times(blocks.shapes[i][k], p, first + 3, 3) / step
+        faster = row_times(blocks.shapes[i][k], a, first + 3, 3) / (step * step)
         turning += poses.gamma[i][k] * faster
         carried += blocks.gamma[i][k] * faster
         moving += poses.gamma[i][k] * spin[1 + k]
-    omega = (root * p[first + 2] / step - moving) / J
+        unstrained += blocks.gamma[i][k] * spin[1 + k]
+    H = root * p[first + 2] / step
+    omega = (H - moving) / J
     spin[0] = omega
     growth = 0.0
     for k in range(3):
@@ -194,14 +195,14 @@ def inertia_forces(
             force -= 2 * omega * blocks.G[i][m][k] * spin[1 + m]
         for m in range(3):
             out[first + 3 + m] += blocks.shapes[i][k][m] * force
+    excess: float = ((H * H - moving * moving) / J - (H * H - unstrained * unstrained) / (root * root)) / 2
+    return excess
 
 
 def pull_of(blocks: Blocks, i: int, k: int, e: Vector) -> float:
     """Return j + M e, the centrifugal force on a strain over r'^2."""
-    total = blocks.j[i][k]
-    for m in range(3):
-        total += blocks.M[i][k][m] * e[m]
-    return float(total)
+    pull: float = blocks.j[i][k] + row_times(blocks.M[i][k], e, 0, 3)
+    return pull
 
 
 # ---- where a step goes -----------------------------------------------------------------------------------------------
@@ -222,15 +223,10 @@ def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix)
         if modes == RIGID:
             continue
         for k in range(3):
-            D[3 + k] = 0.0
-            for m in range(3):
-                D[3 + k] += blocks.shapes[i][k][m] * x[first + 3 + m]
+            D[3 + k] = row_times(blocks.shapes[i][k], x, first + 3, 3)
             chords.e[i][k] = q[i][3 + k] + D[3 + k] / 2
         inertia_of(blocks, i, chords.e[i], chords)
-        turning = 0.0
-        for k in range(3):
-            turning += chords.gamma[i][k] * D[3 + k]
-        D[2] = (root * x[first + 2] - turning) / chords.J[i]
+        D[2] = (root * x[first + 2] - row_times(chords.gamma[i], D, 3, 3)) / chords.J[i]
 
 
 def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) -> None:

@@ -32,7 +32,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from dda.contact.dense import Vector, copy
-from dda.contact.rows import TOO_DEEP, TOO_MANY
+from dda.contact.rows import INSIDE, TOO_DEEP, TOO_MANY
 from dda.plane.bodies import Points
 from dda.plane.polygons import Corners, Parts, Sides, outlines
 
@@ -52,7 +52,6 @@ class FoundContacts(NamedTuple):
     corner: Any  # numbers among all corners
     edge: Any
     gap: Vector  # at the start of the step, along the edge's outward normal [m]
-    law: Any
     origin: Any  # contact of the step before from which it goes on, -1: none
     same: Any  # 1 where that is the same corner at the same edge
     normal: Vector  # force, as the step leaves it [N]
@@ -68,7 +67,7 @@ class Detection(NamedTuple):
     sides: Sides
     parts: Parts
     moves: Any  # (b,) 0 of blocks that cannot
-    head: Any  # (b,) work: first contact of the step before of a block
+    head: Any  # (b * b,) first contact of the step before of two blocks, NONE but while contacts are looked for
     spread: Vector  # (4,) work: where the parts that move begin, as a box
     depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
     before: Points  # (n,) where the corners were when the last step that was accepted began
@@ -94,7 +93,7 @@ def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, si
     return Detection(
         *outlines(polygons),
         moves=movable,
-        head=np.full(len(polygons), NONE),
+        head=np.full(len(polygons) ** 2, NONE),
         spread=np.zeros(4),
         depth=np.zeros(len(polygons)),
         before=np.full(sum(map(len, polygons)), complex(math.inf)),
@@ -113,8 +112,14 @@ def found_contacts(most: int) -> FoundContacts:
     return FoundContacts(*(np.zeros(most, float if name in numbers else np.int64) for name in FoundContacts._fields))
 
 
-def keep_contacts(detection: Detection) -> None:
-    """Take the contacts of a step that was accepted for those of the step before."""
+def keep_contacts(detection: Detection, force: Vector, state: Any, stated: int) -> None:
+    """Take the contacts of a step that was accepted for those of the step before.
+
+    Parameters
+    ----------
+    force, state
+        Of the rows after the step, those of so many stated contacts first.
+    """
     contacts = detection.contacts
     previous = detection.previous
     copy(detection.corners.now, detection.before)
@@ -122,8 +127,8 @@ def keep_contacts(detection: Detection) -> None:
     for number in range(detection.count[0]):
         previous.corner[number] = contacts.corner[number]
         previous.edge[number] = contacts.edge[number]
-        previous.normal[number] = contacts.normal[number]
-        previous.closed[number] = contacts.closed[number]
+        previous.normal[number] = force[stated + number]
+        previous.closed[number] = 1 if state[stated + number] == INSIDE else 0
 
 
 def find_contacts(detection: Detection) -> int:
@@ -134,11 +139,9 @@ def find_contacts(detection: Detection) -> int:
     corners = detection.corners
     parts = detection.parts
     previous = detection.previous
-    head = detection.head
-    blocks = len(head)
+    blocks = len(detection.moves)
     along = place_parts(detection)
     for block in range(blocks):
-        head[block] = NONE
         detection.depth[block] = 0.0
         detection.travel[block] = 0.0
     for corner in range(len(corners.block)):
@@ -150,15 +153,15 @@ def find_contacts(detection: Detection) -> int:
     for number in range(detection.count[1] - 1, -1, -1):
         corner = previous.corner[number]
         start = previous.edge[number]
-        keeper = keeper_of(detection, corners.block[corner], corners.block[start])
         if previous.closed[number] != 0:
             _, _, gap = foot(corners.now, corner, start, corners.after[start])
             for block in (corners.block[corner], corners.block[start]):
                 if detection.moves[block] != 0:
                     detection.depth[block] = max(detection.depth[block], 0.0 - gap)
         previous.heir[number] = NONE
-        previous.chain[number] = head[keeper]
-        head[keeper] = number
+        pair = pair_of(detection, corner, start)
+        previous.chain[number] = detection.head[pair]
+        detection.head[pair] = number
     detection.count[0] = 0
     for place in range(len(parts.order)):
         p = parts.order[place]
@@ -177,16 +180,16 @@ def find_contacts(detection: Detection) -> int:
                 return count
             detection.count[0] = count
     inherit(detection)
+    for number in range(detection.count[1]):
+        detection.head[pair_of(detection, previous.corner[number], previous.edge[number])] = NONE
     return int(detection.count[0])
 
 
-def keeper_of(detection: Detection, i: int, j: int) -> int:
-    """Return that of two blocks whose list holds their contacts: one that moves, as a floor has very many."""
-    if detection.moves[i] == 0:
-        return j
-    if detection.moves[j] == 0:
-        return i
-    return min(i, j)
+def pair_of(detection: Detection, corner: int, other: int) -> int:
+    """Return the number of the two blocks that have these corners, in either order."""
+    i = detection.corners.block[corner]
+    j = detection.corners.block[other]
+    return int(min(i, j) * len(detection.moves) + max(i, j))
 
 
 def place_parts(detection: Detection) -> int:
@@ -251,16 +254,12 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
-    old = detection.head[keeper_of(detection, i, j)]
+    old = detection.head[pair_of(detection, sides.corner[parts.first[p]], sides.corner[parts.first[r]])]
     while old >= 0:
         number = previous.corner[old]
         start = previous.edge[old]
         on = corners.block[start]
-        if (
-            previous.closed[old] != 0
-            and min(corners.block[number], on) == min(i, j)
-            and max(corners.block[number], on) == max(i, j)
-        ):
+        if previous.closed[old] != 0:
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
                 end = sides.end[edge]
@@ -379,7 +378,6 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
             contacts.corner[found] = corner
             contacts.edge[found] = start
             contacts.gap[found] = gap
-            contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
@@ -462,20 +460,16 @@ def inherit(detection: Detection) -> None:
             if contacts.same[number] != 0:
                 continue
             corner = contacts.corner[number]
-            i = corners.block[corner]
-            j = corners.block[contacts.edge[number]]
             nearest = NEAR * detection.size
-            old = detection.head[keeper_of(detection, i, j)]
+            old = detection.head[pair_of(detection, corner, contacts.edge[number])]
             while old >= 0:
                 if attempt == 0:
                     if previous.corner[old] == corner and previous.edge[old] == contacts.edge[number]:
                         contacts.origin[number] = old
                         contacts.same[number] = 1
                 elif previous.closed[old] != 0 and previous.heir[old] == NONE:
-                    block = corners.block[previous.corner[old]]
-                    on = corners.block[previous.edge[old]]
                     distance = abs(corners.now[previous.corner[old]] - corners.now[corner])
-                    if min(block, on) == min(i, j) and max(block, on) == max(i, j) and distance < nearest:
+                    if distance < nearest:
                         nearest = distance
                         contacts.origin[number] = old
                 old = previous.chain[old]

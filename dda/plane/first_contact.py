@@ -24,7 +24,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dda.model.arrays import Array
 from dda.model.checks import check_finite, check_positive
 from dda.model.polygon import checked_polygon
 from dda.plane.bodies import Points, as_complex
@@ -48,14 +47,9 @@ class UniformMotion(NamedTuple):
     vy: float
     spin: float  # [rad/s]
 
-    def angle_at(self, time: float) -> float:
-        """Return how far the polygon has turned [rad]."""
-        return self.angle + self.spin * time
-
-    def place(self, points: Points, time: float) -> Points:
-        """Return where points of the polygon are."""
-        origin = complex(self.x + self.vx * time, self.y + self.vy * time)
-        return origin + points * cmath.exp(1j * self.angle_at(time))
+    def turn(self, time: float) -> complex:
+        """Return the turn of the polygon, exp(i angle)."""
+        return cmath.exp(1j * (self.angle + self.spin * time))
 
 
 class TouchingCorner(NamedTuple):
@@ -118,7 +112,7 @@ def first_contact(
         check_finite(**motion._asdict())
     check_positive(until=until)
     extents = [max(float(np.ptp(polygon.real)), float(np.ptp(polygon.imag))) for polygon in polygons]
-    start = [motion.place(polygon, 0.0) for polygon, motion in zip(polygons, motions, strict=True)]
+    start = [complex(one.x, one.y) + polygon * one.turn(0.0) for polygon, one in zip(polygons, motions, strict=True)]
     rounding = ROUNDING * float(max(np.max(np.abs(place - start[1][0])) for place in start))
     near = NEAR * min(extents) + rounding
     if overlap(*start) > near:
@@ -159,8 +153,21 @@ def separation(ring: Points, points: Points) -> float:
     return float(np.max(np.min(-gaps, axis=1)))
 
 
+class Place(NamedTuple):
+    """Where a corner lies on an edge, and all edges that it lies on."""
+
+    point: TouchingCorner
+    at: complex  # from the origin of B [m]
+    on_a: tuple[int, ...]
+    on_b: tuple[int, ...]
+
+    def coincides(self, other: Place, near: float) -> bool:
+        """Tell whether another place is the same one."""
+        return bool(abs(self.at - other.at) <= 4 * near)
+
+
 class Pairs:
-    """All corners of a polygon that can touch, beside all edges of another one, in the axes of the latter."""
+    """All corners of a polygon that can touch, beside all edges of another one."""
 
     def __init__(self, outline: Points, other: Points, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
         """Take corners from `outline` and edges from `other`."""
@@ -178,28 +185,19 @@ class Pairs:
         self.origin = complex(motion.x - motion_of_edges.x, motion.y - motion_of_edges.y)
         self.velocity = complex(motion.vx - motion_of_edges.vx, motion.vy - motion_of_edges.vy)
 
-    def distances(self, time: float) -> tuple[Array, Array]:
-        """Return s and g of all corners and edges, (corners, edges) [m]."""
-        places, _ = self._in_axes_of_edges(time)
-        apart = (places[:, None] - self.starts) * self.tangents.conj()
-        return apart.real, -apart.imag
-
-    def _in_axes_of_edges(self, time: float) -> tuple[Points, Points]:
-        """Return places and velocities of the corners in the axes of the edges, (corners,)."""
-        spin = self.motion_of_edges.spin
-        turned = self.motion_of_edges.angle_at(time)
-        backwards = cmath.exp(-1j * turned)
-        origin = backwards * (self.origin + self.velocity * time)
-        from_origin = self.xi * cmath.exp(1j * (self.motion.angle_at(time) - turned))
-        turning = (self.motion.spin - spin) * 1j * from_origin
-        return origin + from_origin, backwards * self.velocity - 1j * spin * origin + turning
+    def relative(self, time: float) -> tuple[Points, Points]:
+        """Return s - i g of all corners and edges, (corners, edges) [m], and its rate in the axes of the edges."""
+        from_origin = self.xi * self.motion.turn(time)
+        turn = self.motion_of_edges.turn(time)
+        places = self.origin + self.velocity * time + from_origin
+        rates = self.velocity + 1j * (self.motion.spin * from_origin - self.motion_of_edges.spin * places)
+        axes = (self.tangents * turn).conj()
+        return (places[:, None] - self.starts * turn) * axes, rates[:, None] * axes
 
     def safe_time(self, time: float, window: float, tolerance: float) -> float:
         """Return for how long no corner touches an edge, at most the window; 0 where one touches [s]."""
-        along, gap = self.distances(time)
-        _, velocities = self._in_axes_of_edges(time)
-        rates = velocities[:, None] * self.tangents.conj()
-        apart = np.stack([gap, -gap, -along, along - self.lengths])
+        place, rates = self.relative(time)
+        apart = np.stack([-place.imag, place.imag, -place.real, place.real - self.lengths])
         rate = np.stack([-rates.imag, rates.imag, -rates.real, rates.real])
         spin = self.motion_of_edges.spin
         distance = max(abs(self.origin + self.velocity * instant) for instant in (time, time + window))
@@ -214,43 +212,34 @@ class Pairs:
         bounds = np.where(apart > tolerance, bounds, 0.0)
         return float(min(np.min(np.max(bounds, axis=0)), window))
 
-    def touching(self, time: float, near: float) -> list[tuple[int, int]]:
-        """Return numbers of corners and edges that touch, in `corners` and `edges`."""
-        along, gap = self.distances(time)
-        on_edge = (np.abs(gap) <= near) & (along >= -near) & (along <= self.lengths + near)
-        return [(int(corner), int(edge)) for corner, edge in np.argwhere(on_edge)]
-
-    def foot(self, corner: int, edge: int, time: float) -> float:
-        """Return at which share of an edge a corner is, both by their numbers here."""
-        along, _ = self.distances(time)
-        return float(np.clip(along[corner, edge] / self.lengths[edge], 0.0, 1.0))
+    def touching(self, time: float, near: float, block: int) -> list[Place]:
+        """Return every corner that lies on an edge; the corners are those of A, block 0, or of B."""
+        places, _ = self.relative(time)
+        along = places.real
+        origin = self.origin + self.velocity * time if block == 0 else 0.0
+        on_edge = (np.abs(places.imag) <= near) & (along >= -near) & (along <= self.lengths + near)
+        touching = []
+        for corner, edge in np.argwhere(on_edge).tolist():
+            foot = float(np.clip(along[corner, edge] / self.lengths[edge], 0.0, 1.0))
+            point = TouchingCorner(block, self.corners[corner], self.edges[edge], foot)
+            at = complex(origin + self.xi[corner] * self.motion.turn(time))
+            edges = self.edges_at(point.corner), (point.edge,)
+            touching.append(Place(point, at, edges[block], edges[1 - block]))
+        return touching
 
     def direction(self, edge: int, time: float) -> float:
         """Return the direction of an edge's outward normal against x, the edge by the number of its corner [rad]."""
         normal = -1j * complex(self.tangents[self.edges.index(edge)])
-        return cmath.phase(normal) + self.motion_of_edges.angle_at(time)
+        return cmath.phase(normal) + self.motion_of_edges.angle + self.motion_of_edges.spin * time
 
     def edges_at(self, corner: int) -> tuple[int, int]:
         """Return the two edges of the corners' own polygon that meet in one of its corners."""
         return self.ring[self.ring.index(corner) - 1], corner
 
 
-class Place(NamedTuple):
-    """Where a corner lies on an edge, and all edges that it lies on."""
-
-    point: TouchingCorner
-    at: complex  # from the origin of B [m]
-    on_a: tuple[int, ...]
-    on_b: tuple[int, ...]
-
-    def coincides(self, other: Place, near: float) -> bool:
-        """Tell whether another place is the same one."""
-        return bool(abs(self.at - other.at) <= 4 * near)
-
-
 def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[Touch, ...]:
     """Return all places at which two polygons touch; edges that lie on each other are one touch."""
-    places = places_at(time, A_on_B, B_on_A, near)
+    places = A_on_B.touching(time, near, 0) + B_on_A.touching(time, near, 1)
     touches = []
     on_edges: list[Place] = []
     for edge_of_A, edge_of_B in sorted({(a, b) for place in places for a in place.on_a for b in place.on_b}):
@@ -273,22 +262,6 @@ def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[
             direction = edges.direction(point.edge, time) + math.pi * point.block
             touches.append(Touch(CORNER_EDGE, (point,), one_normal(direction)))
     return tuple(sorted(touches, key=lambda touch: touch.points))
-
-
-def places_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> list[Place]:
-    """Return every corner that lies on an edge, those of A first."""
-    places = []
-    for block, pairs in enumerate((A_on_B, B_on_A)):
-        for corner, edge in pairs.touching(time, near):
-            foot = pairs.foot(corner, edge, time)
-            point = TouchingCorner(block, pairs.corners[corner], pairs.edges[edge], foot)
-            own_edges = pairs.edges_at(point.corner)
-            if block == 0:
-                at = pairs.starts[edge] + foot * pairs.lengths[edge] * pairs.tangents[edge]
-                places.append(Place(point, at, own_edges, (point.edge,)))
-            else:
-                places.append(Place(point, pairs.xi[corner], (point.edge,), own_edges))
-    return places
 
 
 def distinct(places: list[Place], near: float) -> list[Place]:

@@ -81,7 +81,7 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
     contacts = plane.places.count[0]
     laws = laws_for(march.laws, contacts)
     is_second = plane.made[0] > 0
-    before = (plane.second if is_second else plane.first).rows
+    before = (march.between if is_second else plane.begun).rows
     stage = march.last if is_second or march.scheme.stages == 1 else march.first
     length = stage.part if is_cut else stage.whole
     after = rows_of(np.zeros(len(before.force)), np.zeros(len(before.force)))

@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Rows
 from dda.march.step import Length
-from dda.plane.bodies import Blocks, Points, Poses, by_modes, direction, moved, point, strained, stretched
+from dda.plane.bodies import Blocks, Points, Poses, by_modes, direction, moved, point, row_times, strained, stretched
 
 AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
 
@@ -43,7 +43,7 @@ class Places(NamedTuple):
     B: Any  # (2c, 2, 6) what the modes of either block add to a row
     F: Any  # (2c, 2, 6) what a unit force of a row does to them
     driven: Vector  # (2c,) what driven blocks add to a row [m]
-    row: Matrix  # (4, 6) room for a row over D: of either block, of the chord and of the force
+    row: Matrix  # (2, 6) room for a row over D: of the chord and of the force
 
 
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
@@ -76,22 +76,16 @@ def write_rows(
         Weight of the directions at the end of a step in those of the forces.
     """
     n = places.count[0]
-    chord_i = places.row[0]
-    chord_j = places.row[1]
-    force_i = places.row[2]
-    force_j = places.row[3]
+    chord = places.row[0]
+    force = places.row[1]
     for k in range(n):
         i = places.sides[k][0]
         j = places.sides[k][1]
-        at = places.at[k]
-        foot = places.foot[k]
         side = places.side[k]
-        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
-        fixed_i = blocks.first[i + 1] == blocks.first[i]
-        fixed_j = blocks.first[j + 1] == blocks.first[j]
         # the edge as it is strained, in the axes of its block, in the middle of the step and at its end
         middle = strained(chords, j, side)
         psi = D[j][2]
+        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
         if has_strains:  # |t0| |t1| is |middle|^2 but for the square of a strain's increment
             crossed = middle.conjugate() * stretched(D[j], 3, side)
             psi += crossed.imag / square(middle)
@@ -103,36 +97,34 @@ def write_rows(
         # the corner from its foot
         stretch = before.opening[n + k] if places.bonded[k] == 1 else 0.0
         apart = places.normal[k] * complex(before.opening[k], -stretch)
-        way = moved(chords, i, D[i], at) - moved(chords, j, D[j], foot)
+        way = moved(chords, i, D[i], places.at[k]) - moved(chords, j, D[j], places.foot[k])
         mean = complex(apart.real + way.real / 2, apart.imag + way.imag / 2)
         apart += way
         for axis in range(2):
             r = k if axis == 0 else n + k
-            mean_normal = complex(half_turn.real * normal.real, half_turn.real * normal.imag)
-            if not fixed_i or blocks.motion[i] >= 0:
-                direction(chords, i, mean_normal, at, chord_i)
-            if not fixed_j or blocks.motion[j] >= 0:
-                direction(chords, j, -mean_normal, foot, chord_j)
-                turn_with(chord_j, spin * (normal.conjugate() * mean).imag, has_strains, middle, side)
             places.driven[r] = 0.0
-            if blocks.motion[i] >= 0:
-                places.driven[r] += chord_i[0] * D[i][0] + chord_i[1] * D[i][1]
-            if blocks.motion[j] >= 0:
-                places.driven[r] += chord_j[0] * D[j][0] + chord_j[1] * D[j][1]
-            if late != 0:
-                if not fixed_i:
-                    direction(ends, i, end_normal, at, force_i)
-                if not fixed_j:
-                    direction(ends, j, -end_normal, foot, force_j)
-                    turned = (end_normal.conjugate() * apart).imag
-                    turn_with(force_j, turned, has_strains, strained(ends, j, side), side)
-            for m in range(6):
-                force_i[m] = (1 - late) * chord_i[m] + (late * force_i[m] if late != 0 else 0.0)
-                force_j[m] = (1 - late) * chord_j[m] + (late * force_j[m] if late != 0 else 0.0)
-            by_modes(blocks, i, chords, chord_i, False, places.B[r][0])
-            by_modes(blocks, j, chords, chord_j, False, places.B[r][1])
-            by_modes(blocks, i, chords, force_i, True, places.F[r][0])
-            by_modes(blocks, j, chords, force_j, True, places.F[r][1])
+            for own in range(2):
+                block = places.sides[k][own]
+                place = places.at[k] if own == 0 else places.foot[k]
+                sign = 1.0 if own == 0 else -1.0
+                is_driven = blocks.motion[block] >= 0
+                if not is_driven and blocks.first[block + 1] == blocks.first[block]:
+                    continue
+                scale = sign * half_turn.real
+                direction(chords, block, complex(scale * normal.real, scale * normal.imag), place, chord)
+                if own == 1:
+                    turn_with(chord, spin * (normal.conjugate() * mean).imag, has_strains, middle, side)
+                if is_driven:
+                    places.driven[r] += chord[0] * D[block][0] + chord[1] * D[block][1]
+                if late != 0:
+                    direction(ends, block, complex(sign * end_normal.real, sign * end_normal.imag), place, force)
+                    if own == 1:
+                        turned = (end_normal.conjugate() * apart).imag
+                        turn_with(force, turned, has_strains, strained(ends, j, side), side)
+                for m in range(6):
+                    force[m] = (1 - late) * chord[m] + (late * force[m] if late != 0 else 0.0)
+                by_modes(blocks, block, chords, chord, False, places.B[r][own])
+                by_modes(blocks, block, chords, force, True, places.F[r][own])
             normal = complex(normal.imag, -normal.real)  # the direction along the edge
             end_normal = complex(end_normal.imag, -end_normal.real)
 
@@ -145,9 +137,7 @@ def contact_displacement(x: Vector, blocks: Blocks, places: Places, r: int) -> f
     for side in range(2):
         i = places.sides[k][side]
         first = blocks.first[i]
-        B = places.B[r][side]
-        for e in range(blocks.first[i + 1] - first):
-            total += B[e] * x[first + e]
+        total += row_times(places.B[r][side], x, first, blocks.first[i + 1] - first)
     return total
 
 

@@ -121,37 +121,37 @@ def _rings_by_side(parts: list[list[int]]) -> dict[tuple[int, int], list[int]]:
 
 def outlines(polygons: Sequence[Points]) -> tuple[Corners, Sides, Parts]:
     """Return corners, sides and convex parts of blocks with these corners."""
+    places = np.concatenate(polygons)
     sizes = [len(vertices) for vertices in polygons]
     start = np.cumsum([0, *sizes[:-1]])
-    convex: list[int] = []
-    ends: list[int] = []
-    sides: list[tuple[int, int, int, int, int]] = []
-    parts: list[tuple[int, int, int]] = []
+    after = np.arange(len(places))
+    convex = np.zeros(len(places), dtype=np.int64)
+    sides: list[list[int]] = []
+    parts: list[tuple[int, int, int, int]] = []
     for block, vertices in enumerate(polygons):
         ring = without_straight_corners(vertices)
-        turning_left = {corner for corner, turn in zip(ring, turns_of(vertices, ring), strict=True) if turn > 0}
-        convex += [int(corner in turning_left) for corner in range(len(vertices))]
-        following = dict(zip(ring, ring[1:] + ring[:1], strict=True))
-        ends += [int(start[block]) + following.get(corner, corner) for corner in range(len(vertices))]
-        for part in convex_parts(vertices):
+        corners = start[block] + np.array(ring)
+        after[corners] = np.roll(corners, -1)
+        convex[corners] = turns_of(vertices, ring) > 0
+        rings = convex_parts(vertices)
+        for part in rings:
             first = len(sides)
-            for number, corner in enumerate(part):
-                end = part[(number + 1) % len(part)]
-                after = first + (number + 1) % len(part)
-                prior = first + (number - 1) % len(part)
-                is_edge = int(following[corner] == end)
-                sides.append((int(start[block]) + corner, int(start[block]) + end, after, prior, is_edge))
-            parts.append((first, len(sides), block))
-    places = np.concatenate(polygons)
-    n = len(parts)
-    corners = Corners(
-        block=np.repeat(np.arange(len(polygons)), sizes),
-        start=np.repeat(start, sizes),
-        after=np.array(ends),
-        convex=np.array(convex),
-        now=places.copy(),
-        then=places.copy(),
+            numbers = first + np.arange(len(part))
+            own = start[block] + np.array(part)
+            ends = np.roll(own, -1)
+            real = after[own] == ends
+            sides += np.transpose([own, ends, np.roll(numbers, -1), np.roll(numbers, 1), real]).tolist()
+            parts.append((first, len(sides), block, int(len(rings) == 1)))
+    first_side, last_side, owner, alone = np.transpose(parts).copy()
+    return (
+        Corners(
+            block=np.repeat(np.arange(len(polygons)), sizes),
+            start=np.repeat(start, sizes),
+            after=after,
+            convex=convex,
+            now=places.copy(),
+            then=places.copy(),
+        ),
+        Sides(*np.transpose(np.array(sides, dtype=np.int64)).copy()),
+        Parts(first_side, last_side, owner, alone, np.zeros((len(parts), 4)), np.arange(len(parts))),
     )
-    first, last, owner = np.transpose(parts).copy()
-    alone = (np.bincount(owner)[owner] == 1).astype(np.int64)
-    return corners, Sides(*np.transpose(sides).copy()), Parts(first, last, owner, alone, np.zeros((n, 4)), np.arange(n))

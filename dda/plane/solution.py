@@ -6,11 +6,13 @@ import math
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of, work_for
+from dda.contact.rows import INSIDE, LOWER, laws_of, rows_of, work_for
+from dda.contact.unilateral import Unilateral
 from dda.march.compiled import ANEW, run_loop
 from dda.march.energy import SUMS, energies_of
 from dda.march.step import Body, Course, History, March, march_of
@@ -22,8 +24,8 @@ from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
 from dda.plane.outcomes import PlaneContact, found_contact, sentence, stated_contacts, unsettled_contacts
 from dda.plane.places import Places, place_contacts, push_contacts, write_rows
-from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
-from dda.plane.taken import Memory, Springs, write_laws
+from dda.plane.step import STATE, Plane, PointLoads, make_steps, push_loads
+from dda.plane.taken import PlaneState, Springs, write_laws
 from dda.scheme.newmark import Scheme, late_momentum
 
 TOGETHER = 6  # solves with all states updated at once
@@ -42,7 +44,7 @@ class PlaneResult:
     displacement: Array  # (k, b, 2) of the centroid since t = 0, to all digits [m]
     angle: Array  # (k, b) rotation since t = 0, counter-clockwise [rad]
     strain: Array  # (k, b, 3) ex, ey, gxy in axes that turn with the block
-    velocity: Array  # (k, b, 6) rates of all these
+    velocity: Array  # (k, b, 6) rates of all these; of a driven block in the middle of the last step
     contacts: tuple[PlaneContact, ...]
     normal: Array  # (k, c) N [N], positive in compression
     shear: Array  # (k, c) T along (n_y, -n_x), n the edge's outward normal [N]
@@ -100,7 +102,7 @@ def solve_plane(
     c = len(march.method.places.law)
     b = len(model.blocks)
     history = History(
-        motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
+        motion=np.zeros((kept + 1, STATE * b + (1 + c) * march.method.finds)),  # and which contacts are found
         force=np.zeros((kept + 1, 2 * c)),
         opening=np.zeros((kept + 1, 2 * c)),
         path=np.zeros((kept + 1, c)),
@@ -111,14 +113,44 @@ def solve_plane(
         sums=np.zeros((steps + 1, SUMS)),
     )
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
-    # what compiling takes, some 20 s, is 200,000 steps of a block or a contact in plain Python
+    # 200,000 steps of a block or a contact in plain Python, some 20 s, pay for compiling
     weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
     arguments = (march, start, deepcopy(start), course), (history, steps, cut)
     (reached, outcome), left, how = run_loop(make_steps, (), *arguments, weight)
     with np.errstate(all="ignore"):
         unsettled = unsettled_contacts(model, left[0], history, reached, outcome)
-    ended = sentence(model, reached, outcome, unsettled)
-    return result_of(model, scheme, march, history, every, reached, ended, unsettled, how)
+    kept = reached // every + 1
+    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
+    q = motion[:, :, :6]
+    centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
+    rates = Rates(march, q, motion[:, :, 6:])
+    time = scheme.step * every * np.arange(float(kept))
+    for i, part in enumerate(model.blocks):
+        if part.motion is not None:
+            rates.velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
+    columns, stored = contact_columns(model, march, history, kept)
+    parts = rates.kinetic, strain_energy(model, q), stored, load_energy(model, q), history.sums[: reached + 1 : every]
+    repeated = [np.concatenate([part[:1], part]) for part in parts]  # which returns what follows t = 0
+    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
+    total = np.sum(list(energy.values()), axis=0)
+    starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
+    return PlaneResult(
+        time=time,
+        centroid=centroid,
+        displacement=q[:, :, :2],
+        angle=q[:, :, 2],
+        strain=q[:, :, 3:],
+        velocity=rates.velocity,
+        **columns,
+        energy=energy | {"balance": total - total[0]},
+        momentum=rates.momentum(centroid),
+        outcome=sentence(model, reached, outcome, unsettled),
+        unsettled=unsettled,
+        reached=reached,
+        solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
+        cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
+        note=f"stepped, {how}",
+    )
 
 
 def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
@@ -144,7 +176,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     blocks, k = blocks_of([p.block for p in parts], [p.rigid for p in parts], [p.held for p in parts], columns)
     outlines = [as_complex(part.block.corners) for part in parts]
     size = math.sqrt(min(part.block.section.area for part in parts if not part.held))
-    loads, point_loads = loads_of(model, blocks.first, blocks.root_mass, ramps)
+    loads, point_loads = loads_of(model, blocks, len(ramps) + 2 * len(driven))
     b = len(parts)
     most = 0 if model.found is None else ROOM * b + ROOM
     places = places_of(model, blocks, most)
@@ -153,10 +185,6 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
     detection = detection_of(outlines, [not part.held for part in parts], pairs, max(most, 1), size)
-    edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
-    real = detection.sides.real == 1
-    edge_end[detection.sides.corner[real]] = detection.sides.end[real]
-    memories = [Memory(rows_of(np.zeros(m), np.zeros(m)), np.zeros(m), np.zeros(c)) for _ in range(2)]
     body = Body(
         k=k,
         loads=loads,
@@ -184,8 +212,7 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         spin=np.zeros(4),
         ground=np.zeros((m, 2)),
         springs=springs,
-        first=memories[0],
-        second=memories[1],
+        begun=state_of(len(k), b, np.zeros(m)),
         made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
@@ -193,13 +220,14 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         strained=int(np.any(k > 0)),
         finds=int(model.found is not None),
         detection=detection,
-        edge_end=edge_end,
     )
-    march = march_of(body, laws_of(springs, dense, dense), scheme, np.zeros(2 * dense), plane)
-    laws = laws_of(springs, places.count[1], c)
+    march = march_of(body, laws_of(Unilateral(1.0), dense, 2 * dense, TOGETHER), scheme, np.zeros(2 * dense), plane)
+    slips = bool(np.any(np.isfinite(springs.limit)))
+    stated = int(places.count[1])
+    laws = laws_of(Unilateral(1.0), c, m, TOGETHER)
+    laws = laws._replace(contacts=stated, rows=2 * stated, slips=slips, paired=False)
     write_laws(springs, places, laws)
-    start, end = np.zeros((2, 2 + len(ramps) + 2 * len(driven)))
-    room = march.room._replace(start=start, end=end, free=np.zeros(m))
+    room = march.room._replace(free=np.zeros(m))
     of_equations = ("A", "right", "slope", "newton", "newton_right")
     work = work_for(c, m, banded=True)._replace(**{name: getattr(march.work, name) for name in of_equations})
     return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
@@ -218,33 +246,23 @@ def ramps_of(model: PlaneModel) -> list[float]:
     return sorted({0.0, *(load.ramp for load in model.loads)})
 
 
-def loads_of(model: PlaneModel, first: Array, root_mass: Array, ramps: list[float]) -> tuple[Array, PointLoads]:
-    """Return the loads on centroids by their modes, a row a ramp, and those at other places."""
-    rows = np.zeros((len(ramps), int(first[-1])))
-    at: list[Array] = []
-    forces: list[Array] = []
-    where: list[int] = []
-    shares: list[int] = []
+def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, PointLoads]:
+    """Return the loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
+    ramps = ramps_of(model)
+    rows = np.zeros((columns, int(blocks.first[-1])))
     for i, part in enumerate(model.blocks):
         if not part.held:
-            rows[0, first[i] : first[i] + 2] = root_mass[i] * np.array(model.gravity)
+            rows[0, blocks.first[i] :][:2] = blocks.root_mass[i] * np.array(model.gravity)
+    elsewhere = []
     for load in model.loads:
         force, place = load.resultant
-        row = ramps.index(load.ramp)
+        i = load.block
         if place is None:
-            rows[row, first[load.block] : first[load.block] + 2] += force / root_mass[load.block]
-            continue
-        at.append(place - np.array(model.blocks[load.block].block.section.centroid))
-        forces.append(force)
-        where.append(load.block)
-        shares.append(2 + row)
-    points = PointLoads(
-        block=np.array(where, dtype=np.int64),
-        at=as_complex(at),
-        force=as_complex(forces),
-        share=np.array(shares, dtype=np.int64),
-    )
-    return rows, points
+            rows[ramps.index(load.ramp), blocks.first[i] :][:2] += force / blocks.root_mass[i]
+        else:
+            elsewhere.append((i, complex(*place) - blocks.centroid[i], complex(*force), 2 + ramps.index(load.ramp)))
+    block, at, force, share = np.array(elsewhere, dtype=complex).reshape(-1, 4).T.copy()
+    return rows, PointLoads(block.real.astype(np.int64), at, force, share.real.astype(np.int64))
 
 
 def course_of(model: PlaneModel) -> Course:
@@ -262,21 +280,16 @@ def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
     """Return the laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
     rows = [law_of(contact.springs) for contact in model.contacts]
     rows += [(1 / bond.stiffness, 1 / bond.shear, 0.0, math.inf, math.inf, 0.0) for bond in model.bonds]
-    blocks = len(model.blocks)
-    numbers = np.full((blocks, blocks), -1)
-    if model.found is not None:
-        known: dict[ContactSprings, int] = {}
-        stated = {(part.block, part.on) for part in model.contacts}
-        stated |= {(bond.first, bond.second) for bond in model.bonds}
-        for i in range(blocks):
-            for j in range(i):
-                springs = model.found(i, j) if callable(model.found) else model.found
-                if springs is None or (i, j) in stated or (j, i) in stated:
-                    continue
-                if springs not in known:
-                    known[springs] = len(rows)
-                    rows.append(law_of(springs))
-                numbers[i, j] = numbers[j, i] = known[springs]
+    known: dict[ContactSprings, int] = {}
+    numbers = np.full((len(model.blocks), len(model.blocks)), -1)
+    for i, j in np.argwhere(np.tri(len(numbers), k=-1)).tolist():
+        springs = model.found(i, j) if callable(model.found) else model.found
+        if springs is not None:
+            numbers[i, j] = numbers[j, i] = known.setdefault(springs, len(rows) + len(known))
+    pairs = [(part.block, part.on) for part in model.contacts] + [(part.first, part.second) for part in model.bonds]
+    for i, j in pairs:  # which have contacts of their own
+        numbers[i, j] = numbers[j, i] = -1
+    rows += [law_of(springs) for springs in known]
     across, along, friction, limit, tension, opens = np.array(rows, dtype=float).reshape(-1, 6).T.copy()
     return Springs(across, along, friction, limit, tension, opens.astype(np.int64)), numbers
 
@@ -287,27 +300,6 @@ def law_of(springs: ContactSprings) -> tuple[float, ...]:
     limit = springs.cohesion if slips else math.inf
     softness = 1 / springs.shear if springs.shear else 0.0
     return 1 / springs.stiffness, softness, springs.friction or 0.0, limit, springs.tension, 1.0
-
-
-def laws_of(springs: Springs, contacts: int, capacity: int) -> Laws:
-    """Return room for the laws of the rows of so many contacts, of which some are there."""
-    return Laws(
-        contacts=contacts,
-        rows=2 * contacts,
-        compliance=np.ones(2 * capacity),
-        lower=np.zeros(2 * capacity),
-        upper=np.zeros(2 * capacity),
-        opens=np.zeros(2 * capacity, dtype=np.int64),
-        friction=np.zeros(capacity),
-        slips=bool(np.any(np.isfinite(springs.limit))),
-        lagged=False,
-        paired=False,
-        banded=False,
-        closing=0.0,
-        retardation=0.0,
-        together=TOGETHER,
-        most=0,
-    )
 
 
 def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
@@ -348,7 +340,7 @@ def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
         B=np.zeros((2 * n, 2, 6)),
         F=np.zeros((2 * n, 2, 6)),
         driven=np.zeros(2 * n),
-        row=np.zeros((4, 6)),
+        row=np.zeros((2, 6)),
     )
 
 
@@ -372,18 +364,16 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
-    for k, contact in enumerate(model.contacts):
-        gap = float(places.gap[k])
-        if abs(gap) <= TOUCH * plane.size or not places.over[k]:
-            gap = max(gap, 0.0) if not places.over[k] else 0.0
-        state.rows.opening[k] = gap
-        state.rows.state[k] = LOWER if gap > 0 else INSIDE
-        if gap >= 0:
-            continue
+    touching = np.where(np.abs(places.gap) <= TOUCH * plane.size, 0.0, places.gap)
+    gap = np.where(places.over == 1, touching, np.maximum(places.gap, 0.0))[: len(model.contacts)]
+    state.rows.opening[: len(gap)] = gap
+    state.rows.state[: len(gap)] = np.where(gap > 0, LOWER, INSIDE)
+    for k in np.flatnonzero(gap < 0).tolist():
+        contact = model.contacts[k]
         if math.isinf(contact.springs.stiffness):
-            where = f"{model.name_of(contact.block)}, corner {contact.corner}"
-            raise ValueError(f"contacts[{k}]: must not begin behind an edge that is rigid, got {gap!r} m of {where}")
-        state.rows.force[k] = -gap * contact.springs.stiffness
+            where = f"{gap[k]} m of {model.name_of(contact.block)}, corner {contact.corner}"
+            raise ValueError(f"contacts[{k}]: must not begin behind an edge that is rigid, got {where}")
+        state.rows.force[k] = -gap[k] * contact.springs.stiffness
     p = np.zeros(len(march.body.k))
     for i, part in enumerate(model.blocks):
         first = blocks.first[i]
@@ -409,119 +399,50 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
 # ---- what comes out --------------------------------------------------------------------------------------------------
 
 
-def result_of(
-    model: PlaneModel,
-    scheme: Scheme,
-    march: March,
-    history: History,
-    every: int,
-    reached: int,
-    outcome: str,
-    unsettled: tuple[PlaneContact, ...],
-    how: str,
-) -> PlaneResult:
-    """Return the result of so many steps."""
-    kept = reached // every + 1
-    b = len(model.blocks)
-    stated = len(model.contacts)
-    table = contacts_of(model, march, history, kept)
-    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
-    q = motion[:, :, :6]
-    centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
-    rates = Rates(march, q, motion[:, :, 6:])
-    sums = history.sums[: reached + 1 : every]
-    stored = (
-        rates.kinetic,
-        strain_energy(model, q),
-        (table.normal**2 @ table.across + table.shear**2 @ table.along) / 2,
-        load_energy(model, q),
-    )
-    repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
-    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
-    total = np.sum(list(energy.values()), axis=0)
-    bonded = np.arange(len(table.contacts)) >= stated
-    bonded[stated + 2 * len(model.bonds) :] = False
-    bonds = np.stack([table.normal[:, bonded], table.shear[:, bonded]], axis=-1).reshape(kept, -1, 2, 2)
-    others = ~bonded
-    starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
-    return PlaneResult(
-        time=scheme.step * every * np.arange(float(kept)),
-        centroid=centroid,
-        displacement=q[:, :, :2],
-        angle=q[:, :, 2],
-        strain=q[:, :, 3:],
-        velocity=rates.velocity,
-        contacts=tuple(contact for contact, other in zip(table.contacts, others, strict=True) if other),
-        normal=table.normal[:, others],
-        shear=table.shear[:, others],
-        gap=table.gap[:, others],
-        slip=table.slip[:, others],
-        state=table.state[:, others],
-        bond=bonds,
-        energy=energy | {"balance": total - total[0]},
-        momentum=rates.momentum(centroid),
-        outcome=outcome,
-        unsettled=unsettled,
-        reached=reached,
-        solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
-        cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
-        note=f"stepped, {how}",
-    )
+def contact_columns(model: PlaneModel, march: March, history: History, kept: int) -> tuple[dict[str, Any], Array]:
+    """Return the fields of a result that tell of contacts and glue, and the energy stored in these, (k,) [J].
 
-
-@dataclass(frozen=True, eq=False)
-class ContactTable:
-    """Histories of contacts, a column each: those that are stated, both ends of bonds, those that were found closed."""
-
-    contacts: list[PlaneContact]
-    across: Array  # (c,) 1/p [m/N]
-    along: Array  # (c,) 1/p_s
-    normal: Array  # (k, c)
-    shear: Array
-    gap: Array
-    slip: Array
-    state: NDArray[np.int8]
-
-
-def contacts_of(model: PlaneModel, march: March, history: History, kept: int) -> ContactTable:
-    """Return the histories of contacts that are stated, or were closed at an instant that is kept."""
+    Contacts are those that are stated, and those that were found and closed at an instant that is kept.
+    """
     plane = march.method
-    springs = plane.springs
     stated = int(plane.places.count[1])
     contacts = stated_contacts(model)
     laws = list(plane.places.law[:stated])
-    columns: dict[tuple[int, int], int] = {}
+    columns: dict[int, int] = {}
     places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
     present = identity[:, 0] if plane.finds else np.full(kept, stated)
     for row in range(kept):
         for k in range(stated, int(present[row])):
-            corner, edge = identity[row, 1 + 2 * (k - stated) : 3 + 2 * (k - stated)].tolist()
-            if (corner, edge) not in columns:
+            number = int(identity[row, 1 + k - stated])
+            if number not in columns:
                 if history.state[row, k] != INSIDE:
                     continue
-                columns[corner, edge] = len(contacts)
-                contact = found_contact(march, corner, edge)
+                columns[number] = len(contacts)
+                contact = found_contact(march, *divmod(number, len(plane.blocks.xi)))
                 contacts.append(contact)
                 laws.append(plane.detection.law[contact.block * len(model.blocks) + contact.on])
-            places.append((row, k, columns[corner, edge]))
-    normal, shear, slip = np.zeros((3, kept, len(contacts)))
-    gap = np.full((kept, len(contacts)), np.nan)
-    state = np.zeros((kept, len(contacts)), dtype=np.int8)
+            places.append((row, k, columns[number]))
+    table = {name: np.zeros((kept, len(contacts))) for name in ("normal", "shear", "slip")}
+    table["gap"] = np.full((kept, len(contacts)), np.nan)
+    table["state"] = np.zeros((kept, len(contacts)), dtype=np.int8)
     numbers = np.arange(stated)
     of_stated = (np.arange(kept)[:, None], numbers, numbers)
     of_found = tuple(np.array(places, dtype=np.int64).reshape(-1, 3).T)
-    for at, number, column in (of_stated, of_found):
-        along = present[at] + number
-        normal[at, column] = history.force[at, number]
-        shear[at, column] = history.force[at, along]
-        gap[at, column] = history.opening[at, number]
-        slip[at, column] = history.path[at, number]
-        shear_state = history.state[at, along]
-        state[at, column] = np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state) * (
-            history.state[at, number] == INSIDE
-        )
-    return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
+    for at, one, column in (of_stated, of_found):
+        along = present[at] + one
+        table["normal"][at, column] = history.force[at, one]
+        table["shear"][at, column] = history.force[at, along]
+        table["gap"][at, column] = history.opening[at, one]
+        table["slip"][at, column] = history.path[at, one]
+        shear_state = np.where(history.state[at, along] == INSIDE, STICKS, -SLIPS * history.state[at, along])
+        table["state"][at, column] = np.where(history.state[at, one] == INSIDE, shear_state, 0)
+    stored = table["normal"] ** 2 @ plane.springs.across[laws] + table["shear"] ** 2 @ plane.springs.along[laws]
+    glued = np.array([contact.corner < 0 for contact in contacts], dtype=bool)
+    bonds = np.stack([table["normal"][:, glued], table["shear"][:, glued]], axis=-1)
+    fields: dict[str, Any] = {name: values[:, ~glued] for name, values in table.items()}
+    fields["contacts"] = tuple(contact for contact in contacts if contact.corner >= 0)
+    return fields | {"bond": bonds.reshape(kept, -1, 2, 2)}, stored / 2
 
 
 class Rates:

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from dda.contact.rows import TOO_DEEP, TOO_MANY
+from dda.contact.rows import INSIDE, LOWER, TOO_DEEP, TOO_MANY
 from dda.model.polygon import section
 from dda.plane.bodies import as_complex
 from dda.plane.detect import detection_of, find_contacts, keep_contacts
@@ -56,10 +56,8 @@ class Scene:
 
     def press(self, *forces):
         """Accept the step, with a force of each contact; those without one are open."""
-        contacts = self.detection.contacts
-        contacts.normal[: self.count] = forces
-        contacts.closed[: self.count] = np.array(forces) > 0
-        keep_contacts(self.detection)
+        states = [INSIDE if force > 0 else LOWER for force in forces]
+        keep_contacts(self.detection, forces, states, 0)
 
 
 NARROW = np.array([(0.0, 0.0), (0.94, 0.34), (0.34, 0.94)])
