@@ -153,10 +153,18 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
 
 def check_block(scene: Scene) -> None:
     """Refuse a block that compare does not step, or the solvers beside it, by its scheme."""
-    if scene.time.scheme != "newmark":
-        _refuse_other_schemes(scene)
     is_frictional = features.FRICTION in features.of(scene)
     is_rectangle = rectangle_of(scene) is not None
+    by_newmark_only = {
+        "blocks with friction": is_frictional,
+        "blocks that are no upright rectangle under a centred load": not is_rectangle,
+        "contact that opens under a block with Poisson's ratio": scene.contact.law == "unilateral"
+        and scene.block.poisson,
+    }
+    for what, holds in by_newmark_only.items():
+        if holds and scene.time.scheme != "newmark":
+            rule = f"compare takes {what} with Newmark's scheme only"
+            raise InputError(rule, source=scene.name, field="time.scheme", value=f'"{scene.time.scheme}"')
     if is_frictional or not is_rectangle:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if not (is_frictional or is_rectangle or features.linear(scene)):
@@ -167,24 +175,6 @@ def check_block(scene: Scene) -> None:
         )
     if is_frictional:
         slopes.refuse_other_scenes(scene)
-
-
-def _refuse_other_schemes(scene: Scene) -> None:
-    """Refuse a scene that is stepped here, or by the solvers beside it, by Newmark's scheme only."""
-    what = ""
-    if features.FRICTION in features.of(scene):
-        what = "blocks with friction"
-    elif rectangle_of(scene) is None:
-        what = "blocks that are no upright rectangle under a centred load"
-    elif scene.contact.law == "unilateral" and scene.block.poisson:
-        what = "contact that opens under a block with Poisson's ratio"
-    if what:
-        raise InputError(
-            f"compare takes {what} with Newmark's scheme only",
-            source=scene.name,
-            field="time.scheme",
-            value=f'"{scene.time.scheme}"',
-        )
 
 
 def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
