@@ -133,25 +133,17 @@ class PlateSection(BodySection):
         return layers
 
     def stresses(self, points: Array) -> Array:
-        """Return s_xx, s_yy, s_xy at points of an endless plate with the hole [Pa], shape (n, 3)."""
-        x, y = points.T
-        r = np.hypot(x, y)
-        t = np.arctan2(y, x)
-        q = (self.hole / r) ** 2
-        radial = self.tension / 2 * ((1 - q) + (1 - 4 * q + 3 * q**2) * np.cos(2 * t))
-        around = self.tension / 2 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * t))
-        shear = -self.tension / 2 * (1 + 2 * q - 3 * q**2) * np.sin(2 * t)
-        c = np.cos(t)
-        s = np.sin(t)
-        stress: Array = np.stack(
-            [
-                c**2 * radial + s**2 * around - 2 * s * c * shear,
-                s**2 * radial + c**2 * around + 2 * s * c * shear,
-                s * c * (radial - around) + (c**2 - s**2) * shear,
-            ],
-            axis=-1,
-        )
-        return stress
+        """Return s_xx, s_yy, s_xy at points of an endless plate with the hole [Pa], shape (n, 3).
+
+        By the potentials s/4 (z + 2 a^2/z) and -s/2 (z + a^2/z - a^4/z^3) of Kolosov and Muskhelishvili.
+        """
+        z = points[:, 0] + 1j * points[:, 1]
+        q = (self.hole / z) ** 2
+        half_sum = self.tension / 2 * (1 - 2 * q).real
+        half_difference = self.tension * (z.conj() / z * q - (1 - q + 3 * q**2) / 2)
+        x = half_sum - half_difference.real
+        y = half_sum + half_difference.real
+        return np.stack([x, y, half_difference.imag], axis=-1)
 
     @property
     def tractions(self) -> Loads:
