@@ -32,6 +32,7 @@ from validation.solvers.history_table import AS_NAMED, HeaderNames, read_table
 FILE = "submission.json"
 EXPORT = "dda-validate export-pack DIR writes the problems, and files to fill in"
 ABSENT = f"not_reported in {FILE} is for what the program cannot report"
+UNANSWERED = "must hold the table of a problem"
 DEEPEST = 4  # folders between the one that is named and a folder of answers
 TABLE = ".csv"
 FILLED_IN = {name: blank for name, blank in ANSWERS_TEMPLATE.items() if name not in CHOSEN}
@@ -149,6 +150,8 @@ def read_sets(
                 rule = f"must lie in {'/'.join(answer_set.address)}, by its program, version and settings_name"
                 defects.add(Place(folder), rule)
     _check_once(sets, defects)
+    if not sets and not len(defects):
+        defects.add(Place(root), UNANSWERED, value="none that is asked")
     defects.check()
     return sets
 
@@ -173,7 +176,7 @@ def _tables(folder: Path) -> list[Path]:
 def _read_set(
     folder: Path, own: Mapping[str, Problem] | None, defects: Defects, step: Callable[[str], None]
 ) -> AnswerSet | None:
-    """Return what a folder answers; None, and the defects, where something is wrong."""
+    """Return what a folder answers; None where that is nothing asked, or, with the defects, something is wrong."""
     document = read_document(folder / FILE, EXPORT)
     before = len(defects)
     pack = document.content.get("pack")
@@ -189,9 +192,9 @@ def _read_set(
             defects.add(document.place((field,)), rule, field=field, value=repr(text))
     # Tables of an unknown pack are checked by this one, so that all defects are told at once.
     answers = _answers(folder, document, pack or PACK, own, defects, step)
-    if len(defects) == before and not answers:
-        defects.add(Place(folder), "must hold the table of a problem", value="none that is filled in")
-    return AnswerSet(folder, data, answers) if data is not None and len(defects) == before else None
+    if len(defects) == before and not answers and own is None:
+        defects.add(Place(folder), UNANSWERED, value="none that is filled in")
+    return AnswerSet(folder, data, answers) if data is not None and answers and len(defects) == before else None
 
 
 def _answers(
@@ -240,7 +243,8 @@ def _answers(
         defects.add(document.place(("pack",)), rule, field="pack", value=repr(pack))
     names = [path.name for path in tables]
     for field in ("not_reported", "step_s"):
-        _check_problems(document, field, {**digests, **this_pack}, names, defects)
+        # Of a folder that answers more than is asked all is stated.
+        _check_problems(document, field, {**packs()[pack], **packs()[PACK], **(own or {})}, names, defects)
     order = [*names_of_pack(), *sorted(set(answers) - set(names_of_pack()))]
     return tuple(answers[name] for name in order if name in answers)
 

@@ -37,10 +37,13 @@ class Standing:
         By solver how many gates it passes, and of how many that judge it.
     values
         By id the value of each gate that decides, and the margin that it has.
+    others
+        By program how many of the problems that ask for it, cases counted, it passes, and of how many that it answered.
     """
 
     passed: Mapping[str, Sequence[int]] = field(default_factory=dict)
     values: Mapping[str, tuple[Value, float | None]] = field(default_factory=dict)
+    others: Mapping[str, Sequence[int]] = field(default_factory=dict)
 
 
 Standings = Sequence[tuple[Phenomenon, Standing]]
@@ -89,12 +92,21 @@ def truth_counts(shown: Phenomenon) -> str:
 
 
 def phenomenon_table(listed: Standings) -> Table:
-    """Return a row for each phenomenon: its study, its gates by the kind of truth, who passes how many of them."""
-    rows = []
-    for shown, stands in listed:
-        passed = ", ".join(f"{solver} {good}/{judged}" for solver, (good, judged) in stands.passed.items())
-        rows.append((shown.name, shown.study, truth_counts(shown), passed))
-    return table(("Phenomenon", "Study", "Gates by truth", "Passed"), rows)
+    """Return a row for each phenomenon: its study, its gates by the kind of truth, who passes how many of them.
+
+    Where answers of other programs are at hand, beside it what these pass of the problems that ask for it.
+    """
+    rows = [
+        (shown.name, shown.study, truth_counts(shown), _tally(stands.passed), _tally(stands.others))
+        for shown, stands in listed
+    ]
+    heads = ("Phenomenon", "Study", "Gates by truth", "Passed", "Problems, by others")
+    width = len(heads) if any(stands.others for _, stands in listed) else len(heads) - 1
+    return table(heads[:width], [row[:width] for row in rows])
+
+
+def _tally(passed: Mapping[str, Sequence[int]]) -> str:
+    return ", ".join(f"{name} {good}/{judged}" for name, (good, judged) in passed.items())
 
 
 def matrix_table(listed: Standings) -> Table:

@@ -1,7 +1,8 @@
 """The verification matrix: which phenomena are verified by which gates, and the run of one with any solver.
 
 A study states its ``phenomenon`` as a name, or as several names with the scenes on which each is shown (`fnmatch`
-patterns). Its ``sources`` say what the kind of problem and the truth rest on.
+patterns), and the ``problems`` of the pack that ask for it. Its ``sources`` say what the kind of problem and the truth
+rest on.
 """
 
 from __future__ import annotations
@@ -47,12 +48,19 @@ class Phenomenon:
         What problem and truths rest on, with keys of the bibliography.
     gates
         Those of the study on these scenes.
+    problems
+        Those of the pack that ask any program for it, all cases of each.
     """
 
     name: str
     study: str
     sources: str
     gates: tuple[Gate, ...] = field(repr=False)
+    problems: tuple[str, ...] = ()
+
+    def asked_by(self, problem: str) -> bool:
+        """Whether a problem of the pack, or a case of it, asks for it."""
+        return any(problem == name or problem.startswith(f"{name}-") for name in self.problems)
 
     def needs(self, gate: Gate) -> Iterator[tuple[str, str]]:
         """Yield the cases that a gate needs, by scene and solver, those behind derived rows included."""
@@ -89,12 +97,14 @@ def phenomena(studies: Iterable[str] | None = None) -> list[Phenomenon]:
 def _of_study(study: str, folder: StudyFolder) -> tuple[Phenomenon, ...]:
     stated = folder.fields["phenomenon"]
     patterns_by_name = stated if isinstance(stated, dict) else {stated: ["*"]}
+    asked = folder.fields.get("problems", ())
     gates = get_study(study).gates()
     listed = []
     for name, patterns in patterns_by_name.items():
         shown = tuple(gate for gate in gates if _is_shown(gate, patterns))
         if shown:
-            listed.append(Phenomenon(name, study, sources_of(study), shown))
+            problems = asked.get(name, ()) if isinstance(asked, dict) else asked
+            listed.append(Phenomenon(name, study, sources_of(study), shown, tuple(problems)))
     return tuple(listed)
 
 

@@ -4,6 +4,7 @@
 
     name, title, purpose    on the command line, heading and first sentence of the chapter
     phenomenon              what is verified; or several, each with (patterns of) the scenes that show it
+    problems                of the pack that ask for it, each with its cases; by phenomenon where there are several
     order                   place in the report
     sources                 what the methods rest on, with keys of the bibliography
     scenes                  built-in scenes, or the function that returns scenes; those of the folder if absent
@@ -57,7 +58,7 @@ from validation.suite.bands import OTHER, about, cases, half_unit
 from validation.suite.declaration import Study
 from validation.suite.printed import printed_numbers
 
-NOT_OF_A_STUDY = ("order", "phenomenon", "register", "sources", "of_scene")
+NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_scene")
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 

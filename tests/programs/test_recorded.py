@@ -1,0 +1,54 @@
+"""Answers of other programs that are kept: their verdicts are those that the page of what is verified states."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from conftest import script
+
+from validation.gates.gate import Status
+from validation.problems.problem import names
+from validation.suite.matrix import phenomena, phenomenon
+
+SHORT = ("push each", "impact on a corner", "on an incline")
+LONG = sorted({shown.name for shown in phenomena() if shown.problems} - {phenomenon(name).name for name in SHORT})
+SPOILED = [  # by ten per cent
+    ("pymunk-chipmunk", "stopping", "box.x_m"),
+    ("box2d-v3-pyb2d3", "corner", "box.angle_rad"),
+    ("mujoco", "pushing", "lower.x_m"),
+    ("siconos", "sliding", "horizontal_displacement_m"),
+]
+
+
+@pytest.mark.parametrize("name", [*SHORT, *(pytest.param(name, marks=pytest.mark.long) for name in LONG)])
+def test_the_page_states_what_is_judged(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    verification = script("verification", monkeypatch)
+    shown = phenomenon(name)
+    fresh = verification.by_others(shown, verification.judged_answers(list(filter(shown.asked_by, names()))))
+    assert {program: list(tally) for program, tally in fresh.items()} == verification.read()[shown.name].others
+
+
+@pytest.mark.parametrize(("program", "name", "column"), SPOILED)
+def test_a_column_that_is_spoiled_fails(
+    program: str, name: str, column: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    verification = script("verification", monkeypatch)
+    shutil.copytree(verification.ANSWERS / program, tmp_path / program)
+    monkeypatch.setattr(verification, "ANSWERS", tmp_path)
+    (sound,) = verification.judged_answers([name])
+    assert sound.judged[name].judgement.status is Status.PASS
+    (table,) = tmp_path.rglob(f"{name}.csv")
+    head, *rows = (line.split(",") for line in table.read_text(encoding="utf-8").splitlines())
+    place = head.index(column)
+    for row in rows:
+        row[place] = f"{1.1 * float(row[place]):.5g}"
+    table.write_text("\n".join(",".join(row) for row in [head, *rows]) + "\n", encoding="utf-8")
+    (spoiled,) = verification.judged_answers([name])
+    assert spoiled.judged[name].judgement.status is Status.FAIL
+
+
+def test_every_problem_of_the_pack_asks_for_one_phenomenon() -> None:
+    for name in names():
+        assert len([shown for shown in phenomena() if shown.asked_by(name)]) == 1, name
