@@ -225,6 +225,10 @@ def test_a_polygon_is_compared_with_the_linear_models() -> None:
     answer = compare(s.with_values({"time.alpha": 0.5625}), Foreign(theirs.time, theirs.displacement))
     assert answer.scheme == {"alpha": 0.5625, "delta": 1.0, "gg": 1.0}
     assert answer.departure is None
+    noise = 1e-3 * float(np.max(np.abs(theirs.displacement))) * np.random.default_rng(1).standard_normal(60)
+    noisy = Foreign(theirs.time, theirs.displacement + noise)
+    assert compare(s.with_values({"time.alpha": 0.5625}), noisy).causes == []
+    assert compare(s, noisy).causes == ["scheme"]
 
 
 # ---- the command line -----------------------------------------------------------------------------------------------

@@ -300,7 +300,9 @@ class SceneSearch:
         bar = CLEAR * explanations[0].left if explanations[0].is_noise else 0.0
         listed: list[RunExplanation] = []
         for each in sorted(explanations, key=lambda each: (bool(each.candidate.change.starts), each.left)):
-            if (each.ratio <= APART or each.left <= bar) and not any(_is_same(each, other) for other in listed):
+            # what a mesh leaves has a shape, with another cause as well; noise has none
+            is_near = each.left <= bar and (each.is_noise or bool(self.model))
+            if (each.ratio <= APART or is_near) and not any(_is_same(each, other) for other in listed):
                 listed.append(each)
         return sorted(listed, key=rank)
 

@@ -17,6 +17,7 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunVerdict, SceneSearch, answer_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
 from validation.diagnosis.evidence import Departure
+from validation.diagnosis.fits.bar import Bar
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
 from validation.diagnosis.reading import Foreign, steppings
@@ -52,6 +53,8 @@ class SolverSearch(SceneSearch):
         if name != DDA:
             self.model = name
             self.model_words = name + EXACT.get(name, "")
+        roundings = [None] * len(reading.recorded) if reading.rounding is None else list(reading.rounding)
+        self.bars = [Bar.of(values, unit) for values, unit in zip(reading.recorded, roundings, strict=True)]
         super().__init__(reading.scene_of(scene), reading)
 
     def candidates(self) -> Iterator[Candidate]:
@@ -75,10 +78,14 @@ class SolverSearch(SceneSearch):
         return columns if np.all(np.isfinite(columns)) else None
 
     def is_noise(self, columns: Array) -> bool:
-        """Whether columns leave white noise, or beside an exact solution what a mesh does, and little of all."""
+        """Whether columns leave noise as a linear motion shows it, or beside an exact solution what a mesh does."""
         is_exact = self.model and not self.solver.meshed
         least = min(MESH, SHARE * self.left(self.scene_run)) if is_exact else 0.0
-        return self.left(columns) <= least or super().is_noise(columns)
+        if self.left(columns) <= least:
+            return True
+        if self.rows < self.recorded.shape[1]:  # a run without bounds
+            return False
+        return all(bar.holds(row) for bar, row in zip(self.bars, self.recorded - columns, strict=True))
 
     def departure(self, verdict: RunVerdict) -> Departure | None:
         """Return where a history departs: what is exact in time, from the run of `dda` under the scene's scheme."""
@@ -114,8 +121,11 @@ def verdict_of_solvers(scene: Scene, readings: Sequence[Reading], names: Iterabl
     if own:
         nearest_own = min(own, key=lambda search: (len(search.reading.corrected), search.left(search.scene_run)))
         return _named(RunVerdict(nearest_own, True))
+    nearest: dict[str, SolverSearch] = {}
+    for search in sorted(searches, key=lambda search: search.left(search.scene_run)):
+        nearest.setdefault(search.model, search)  # of each solver the reading that comes nearest to it
     verdicts = []
-    for search in searches:
+    for search in nearest.values():
         verdict = _named(verdict_of(search, search.explanations()))
         if verdict.explained:
             return verdict
