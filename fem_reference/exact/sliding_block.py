@@ -16,15 +16,16 @@ acceleration A g on level ground that gives the base the velocity V moves the ma
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.interpolate import PPoly
 from scipy.optimize import brentq
 
 from fem_reference.problem.checks import require, require_numbers
-from fem_reference.problem.instants import by_pieces, instants
+from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 NOISE = 1e-12
@@ -82,26 +83,6 @@ class Segment:
         """Acceleration a time s after the start [m/s2]."""
         return self.a0 + self.a1 * s
 
-    def velocity(self, s: ArrayLike) -> Array:
-        """Velocity gained since just after the start [m/s]."""
-        t = np.asarray(s, dtype=float)
-        return np.asarray(self.a0 * t + self.a1 * t**2 / 2)
-
-    def displacement(self, s: ArrayLike) -> Array:
-        """Displacement since the start, of a base that is at rest just after it [m]."""
-        t = np.asarray(s, dtype=float)
-        return np.asarray(self.a0 * t**2 / 2 + self.a1 * t**3 / 6)
-
-    def after(self, s: float) -> Segment:
-        """What is left of the segment a time s later."""
-        return replace(self, start=self.start + s, jump=0.0, a0=self.acceleration(s))
-
-    def reaches(self, value: float) -> list[float]:
-        """Times after the start at which the acceleration is a value [s], none or one, without the start."""
-        length = self.end - self.start
-        crossings = [(value - self.a0) / self.a1] if self.a1 else []
-        return [s for s in crossings if NOISE * min(length, 1.0) < s <= length]
-
 
 def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
     """A record of the acceleration from t = 0 on, linear between its rows; a repeated instant is a jump, then zero.
@@ -151,31 +132,13 @@ def _rows(what: str, time: ArrayLike, values: ArrayLike) -> tuple[list[float], l
 
 
 @dataclass(frozen=True)
-class Stretch:
-    """The mass between two changes."""
-
-    base: Segment  # the base from the beginning of the stretch on
-    way: int  # 1 sliding towards +x, -1 towards -x, 0 at rest on the base
-    slide: float  # slide at the beginning [m]
-    velocity: float  # its rate [m/s]
-    push: float  # acceleration over a base at rest [m/s2]
-
-    def at(self, time: ArrayLike) -> tuple[Array, Array]:
-        """Slide [m] and its rate [m/s] at instants."""
-        s = np.asarray(time, dtype=float) - self.base.start
-        if self.way == 0:
-            return np.full_like(s, self.slide), np.zeros_like(s)
-        slide = self.slide + self.velocity * s + self.push * s**2 / 2 - self.base.displacement(s)
-        return slide, self.velocity + self.push * s - self.base.velocity(s)
-
-
-@dataclass(frozen=True)
 class SlidingMotion:
     """Exact motion of a mass from t = 0 to `end`."""
 
     block: SlidingBlock
     end: float  # last instant [s]
-    stretches: tuple[Stretch, ...]  # the motion in the order of time
+    slide: PPoly  # over the base [m], a cubic from each change to the next
+    ways: tuple[int, ...]  # of each of them: 1 sliding towards +x, -1 towards -x, 0 at rest on the base
 
     def at(self, times: ArrayLike) -> tuple[Array, Array]:
         """Slide over the base towards +x [m], and its rate [m/s], each of shape (times,).
@@ -186,22 +149,18 @@ class SlidingMotion:
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
-        motion = np.empty((2, len(t)))
-        for i, here in by_pieces(t, [one.base.start for one in self.stretches]):
-            motion[:, here] = self.stretches[i].at(t[here])
-        return motion[0], motion[1]
+        return self.slide(t), self.slide(t, 1)
 
     @property
     def switches(self) -> tuple[tuple[float, int], ...]:
         """Instants [s] at which the mass begins to slide (1, -1: the way) or comes to rest on the base (0)."""
-        ways = [(0.0, 0), *((one.base.start, one.way) for one in self.stretches)]
-        return tuple(after for before, after in pairwise(ways) if before[1] != after[1])
+        begun = zip(self.slide.x.tolist(), self.ways, strict=False)
+        return tuple(after for before, after in pairwise([(0.0, 0), *begun]) if before[1] != after[1])
 
     @property
     def slip(self) -> float:
         """Length of the way over the base, both directions added [m]."""
-        ends = [*(one.slide for one in self.stretches), float(self.at([self.end])[0][0])]
-        return math.fsum(abs(after - before) for before, after in pairwise(ends))
+        return math.fsum(np.abs(np.diff(self.slide(self.slide.x))))
 
 
 def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> SlidingMotion:
@@ -224,58 +183,59 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
     require(0 < end < math.inf, "end", "must be positive and finite", end)
     slide = 0.0
     velocity = 0.0
-    stretches = list[Stretch]()
+    times = []
+    ways = []
+    cubics = []
     for segment in base:
-        remainder: Segment | None = replace(segment, end=min(segment.end, end))
-        while remainder is not None and remainder.start < remainder.end:
-            stretch = _begin(block, remainder, slide, velocity - remainder.jump)
-            stretches.append(stretch)
-            after = _change(block, stretch)
-            s = remainder.end - remainder.start if after is None else after
-            slide, velocity = (float(x) for x in stretch.at(stretch.base.start + s))
-            velocity = velocity if after is None else 0.0
-            remainder = None if after is None else remainder.after(s)
-    return SlidingMotion(block, float(end), tuple(stretches))
+        time = segment.start
+        last = min(segment.end, end)
+        velocity -= segment.jump
+        while time < last:
+            acceleration = segment.acceleration(time - segment.start)
+            way = int(np.sign(velocity)) or _yields(block, acceleration, segment.a1)
+            rate = (velocity, block.push(way) - acceleration, -segment.a1 / 2)
+            change = _sticks(way, rate, last - time) if way else 0.0
+            if change == 0:  # at rest, also where rounding alone would let it slide
+                way = 0
+                rate = (0.0, 0.0, 0.0)
+                change = _slips(block, acceleration, segment.a1, last - time)
+            s = last - time if change is None else change
+            times.append(time)
+            ways.append(way)
+            cubics.append((rate[2] / 3, rate[1] / 2, rate[0], slide))
+            slide += ((rate[2] / 3 * s + rate[1] / 2) * s + rate[0]) * s
+            velocity = (rate[2] * s + rate[1]) * s + rate[0] if change is None else 0.0
+            # At least to the next float: a change that rounding puts at the present instant would come for ever.
+            time = last if change is None else max(time + s, math.nextafter(time, math.inf))
+    return SlidingMotion(block, float(end), PPoly(np.transpose(cubics), [*times, end]), tuple(ways))
 
 
-def _begin(block: SlidingBlock, base: Segment, slide: float, velocity: float) -> Stretch:
-    """The mass from an instant on."""
-    direction = int(np.sign(velocity)) or _yields(block, base)
-    return Stretch(base, direction, slide, velocity if direction else 0.0, block.push(direction))
-
-
-def _yields(block: SlidingBlock, base: Segment) -> int:
+def _yields(block: SlidingBlock, acceleration: float, growth: float) -> int:
     """The way in which a mass at rest on its base begins to slide, 0 if it stays."""
-    size = block.gravity + abs(base.a0)
-    for direction in (1, -1):
-        excess = direction * (block.push(direction) - base.a0)
-        if excess > NOISE * size or (abs(excess) <= NOISE * size and direction * base.a1 < 0):
-            return direction
+    size = block.gravity + abs(acceleration)
+    for way in (1, -1):
+        excess = way * (block.push(way) - acceleration)
+        if excess > NOISE * size or (abs(excess) <= NOISE * size and way * growth < 0):
+            return way
     return 0
 
 
-def _change(block: SlidingBlock, stretch: Stretch) -> float | None:
-    """Time after the beginning at which the mass sticks or slips, None if it does not within the segment."""
-    if stretch.way:
-        return _sticks(stretch)
-    base = stretch.base
-    crossings: list[float] = []
-    for direction in (1, -1):
-        if direction * base.a1 < 0:
-            crossings += base.reaches(block.push(direction))
-    return min(crossings, default=None)
+def _slips(block: SlidingBlock, acceleration: float, growth: float, length: float) -> float | None:
+    """Time after which a mass at rest on its base begins to slide, None if it does not within a length of time."""
+    ways = [way for way in (1, -1) if way * growth < 0]
+    crossings = [(block.push(way) - acceleration) / growth for way in ways]
+    return min((s for s in crossings if NOISE * min(length, 1.0) < s <= length), default=None)
 
 
-def _sticks(stretch: Stretch) -> float | None:
-    """The first root of the rate of the slide, which is monotone between the roots of its own rate."""
-    base = stretch.base
-    direction = stretch.way
+def _sticks(way: int, rate: tuple[float, float, float], length: float) -> float | None:
+    """The first root of the rate of a slide within a length of time, monotone before and after its extreme value."""
 
-    def rate(s: float) -> float:
-        return direction * (stretch.velocity + stretch.push * s - float(base.velocity(s)))
+    def forwards(s: float) -> float:
+        return way * ((rate[2] * s + rate[1]) * s + rate[0])
 
-    bounds = [0.0, *base.reaches(stretch.push), base.end - base.start]
+    turn = -rate[1] / (2 * rate[2]) if rate[2] else 0.0
+    bounds = [0.0, turn, length] if NOISE * min(length, 1.0) < turn <= length else [0.0, length]
     for low, high in pairwise(bounds):
-        if rate(high) < 0:
-            return float(brentq(rate, low, high, xtol=1e-300, rtol=ROUNDING)) if rate(low) > 0 else low
+        if forwards(high) < 0:
+            return float(brentq(forwards, low, high, xtol=1e-300, rtol=ROUNDING)) if forwards(low) > 0 else low
     return None

@@ -67,3 +67,13 @@ def test_an_independent_integration_agrees(seed: int) -> None:
     assert motion.slip > 0
     for end in (0.7, 1.3, 2.0):
         assert motion.at([end])[0] == pytest.approx(integrated(SLOPE, base, end), abs=1e-7)
+
+
+def test_a_slide_that_rounding_alone_would_begin_at_the_end_of_a_row_does_not_go_on_for_ever() -> None:
+    rng = np.random.default_rng(237)
+    t = np.concatenate([[0], np.cumsum(rng.uniform(0.05, 0.3, 20))])
+    t[5] = t[4]
+    motion = solve(SlidingBlock(0.0, 30.0, 9.81, 0.3), recorded(t, rng.uniform(-8, 8, 21)), 4.0)
+    times = [time for time, _ in motion.switches]
+    assert times == sorted(times)
+    assert motion.slip > 0
