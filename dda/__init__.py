@@ -23,7 +23,7 @@ from dda.model.block import Block
 from dda.model.load import BaseMotion, Load
 from dda.model.material import Material
 from dda.model.polygon import Section
-from dda.plane.first_contact import FirstContact, first_block_contact, first_contact
+from dda.plane.first_contact import FirstContact, first_contact
 from dda.plane.model import ContactSprings, CornerOnEdge, EdgeBond, PlaneBlock, PlaneLoad, PlaneModel
 from dda.plane.outcomes import PlaneContact
 from dda.plane.solution import PlaneResult, solve_plane
@@ -74,7 +74,6 @@ __all__ = [
     "UnilateralOptions",
     "contact_stiffness",
     "diagnostics",
-    "first_block_contact",
     "first_contact",
     "glued_blocks",
     "highest_frequency",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from fem_reference.contact.columns import UNILATERAL_COLUMNS
     from fem_reference.contact.points import Friction
     from fem_reference.exact.bar import Bar, applicable
-    from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, solve_adaptive
+    from fem_reference.history.adaptive import ADAPTIVE_COLUMNS
     from fem_reference.history.solver import solve, static
     from fem_reference.history.unilateral import Unilateral, UnilateralResult, solve_unilateral
     from fem_reference.mesh.model import assemble
@@ -43,7 +43,6 @@ _HOMES = {
     "UNILATERAL_COLUMNS": "contact.columns",
     "Unilateral": "history.unilateral",
     "UnilateralResult": "history.unilateral",
-    "solve_adaptive": "history.adaptive",
     "solve_unilateral": "history.unilateral",
 }
 
@@ -71,7 +70,6 @@ __all__ = [
     "modes",
     "named_scheme",
     "solve",
-    "solve_adaptive",
     "solve_unilateral",
     "static",
 ]

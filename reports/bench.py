@@ -32,9 +32,9 @@ from rivals import block_modes, block_numpy, column_numpy, elements_skfem, engin
 
 import dda  # noqa: E402
 import fem_reference  # noqa: E402
-from dda.bodies.bonded_column import Drive  # noqa: E402
 from dda.bodies.column import Column, Layer, Spring  # noqa: E402
-from dda.bodies.contact_column import ColumnContactResult, solve_contact_column  # noqa: E402
+from dda.bodies.column_history import ColumnResult, solve_column  # noqa: E402
+from dda.bodies.column_march import Drive  # noqa: E402
 from dda.march import compiled  # noqa: E402
 from validation import load_scene, solve  # noqa: E402
 from validation.engine.measure import completed  # noqa: E402
@@ -335,7 +335,7 @@ def fall_error(rotation: np.ndarray, dt: float, box: dict[str, float | tuple[flo
     return float(np.abs(rotation[:count] - exact).max() / tilt)
 
 
-def shaken_column(steps: int, blocks: int = 80) -> ColumnContactResult:
+def shaken_column(steps: int, blocks: int = 80) -> ColumnResult:
     """Return the history of rigid blocks with gaps between them on a shaken base, as `column_numpy` has it."""
     dt, amplitude, w = 4e-4, 1.86e-3, 125.66
     time = dt * np.arange(steps + 1)
@@ -346,7 +346,7 @@ def shaken_column(steps: int, blocks: int = 80) -> ColumnContactResult:
         gravity=9.81,
     )
     motion = amplitude * np.sin(w * time), amplitude * w * np.cos(w * time), -amplitude * w * w * np.sin(w * time)
-    return solve_contact_column(column, dda.Scheme(0.25, 0.5, 1.0, dt), Drive(*motion, 0 * time))
+    return solve_column(column, dda.Scheme(0.25, 0.5, 1.0, dt), Drive(*motion, 0 * time))
 
 
 def column_steps(steps: int = 10**5, checked: int = 300) -> str:

@@ -10,19 +10,16 @@ import signal
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator
 from contextlib import redirect_stderr, redirect_stdout
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
-from types import ModuleType
-from typing import Any
 
 import pytest
 
 os.environ.setdefault("OMP_NUM_THREADS", "1")  # small matrices: a second thread of BLAS only waits, and counts as work
 
 from validation.runs.results import Results
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 
 SCENE = """\
 title = "A small scene"
@@ -66,7 +63,7 @@ GATE = re.compile(r"test_gate\[(?P<name>(?P<scene>[^\[:]+)(?:\[[^\]]*\])?:(?P<ki
 
 
 @pytest.hookimpl(wrapper=True, specname="pytest_collection")
-def pytest_rest_while_collecting() -> Iterator[None]:
+def pytest_rest_while_collecting():
     """Let the garbage collector rest until all is collected, and leave that alone later.
 
     What is imported and collected stays to the end; to look through it takes as long as to collect it.
@@ -80,12 +77,12 @@ def pytest_rest_while_collecting() -> Iterator[None]:
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(items):
     """Mark the gates of all but the first case of each scene and kind as long.
 
     The kind is what a gate asks for of which solvers; a case that it is held against is named in brackets.
     """
-    short: set[tuple[str, str]] = set()
+    short = set()
     for item in items:
         gate = GATE.fullmatch(item.name)
         if gate is None:
@@ -97,18 +94,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             short.add(kind)
 
 
-def pytest_collection_finish() -> None:
+def pytest_collection_finish():
     """Let Hypothesis draw without the constants of our sources, for which it has no setting.
 
     They would make the examples depend on which modules a process has imported, and on any edit, for the time of
     parsing every source.
     """
-    providers: Any = sys.modules.get("hypothesis.internal.conjecture.providers")
+    providers = sys.modules.get("hypothesis.internal.conjecture.providers")
     if hasattr(providers, "is_local_module_file"):  # not in its older versions, which draw no such constants
         providers.is_local_module_file = lambda path: False
 
 
-def pytest_runtest_setup(item: pytest.Item) -> None:
+def pytest_runtest_setup(item):
     """Skip what needs FEniCSx by name where there is none, which is asked when the first such test is reached."""
     if item.get_closest_marker("fenicsx"):
         from validation.solvers.fenicsx import INSTALL_HINT, interpreter
@@ -117,7 +114,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
             pytest.skip(f"fenicsx is NOT RUN: {INSTALL_HINT}")
 
 
-def thinned(cases: Iterable[object], every: int) -> list[object]:
+def thinned(cases, every):
     """Mark all but every n-th case as long.
 
     Of a product of axes all values stay in the short tests if there are that many cases and n is prime to the
@@ -129,11 +126,11 @@ def thinned(cases: Iterable[object], every: int) -> list[object]:
     return [pytest.param(*case.values, marks=[*case.marks, *more]) for case, more in zip(cases, long, strict=True)]
 
 
-def _parts(case: object) -> tuple[object, ...]:
+def _parts(case):
     return case if isinstance(case, tuple) else (case,)
 
 
-def beside(finished_cases: Path, directory: Path) -> Results:
+def beside(finished_cases, directory):
     """Return a results directory of its own studies and verdicts, whose finished cases are those of all tests."""
     (finished_cases / "histories").mkdir(parents=True, exist_ok=True)
     (finished_cases / "rows.jsonl").touch()
@@ -145,7 +142,7 @@ def beside(finished_cases: Path, directory: Path) -> Results:
 
 
 @pytest.fixture
-def interruptible() -> Iterator[None]:
+def interruptible():
     """Let signals reach the processes that a test starts.
 
     They inherit that a job in the background ignores SIGINT, and SIGHUP under nohup.
@@ -158,18 +155,18 @@ def interruptible() -> Iterator[None]:
 
 
 @pytest.fixture
-def scene_file(tmp_path: Path) -> Path:
+def scene_file(tmp_path):
     path = tmp_path / "small.toml"
     path.write_text(SCENE)
     return path
 
 
 @pytest.fixture
-def scene(scene_file: Path) -> Scene:
+def scene(scene_file):
     return load_scene(scene_file)
 
 
-def scene_of(**changes: object) -> Scene:
+def scene_of(**changes):
     """Return the small scene with other values, each named by its section, two underscores and its key."""
     data = copy.deepcopy(tomllib.loads(SCENE))
     for name, value in changes.items():
@@ -178,7 +175,7 @@ def scene_of(**changes: object) -> Scene:
     return parse_scene(data, "x.toml")
 
 
-def script(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+def script(name, monkeypatch):
     """Load a script of `.ci`, whose name has no suffix, as a module."""
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     path = Path(__file__).parents[1] / ".ci" / name
@@ -190,7 +187,7 @@ def script(name: str, monkeypatch: pytest.MonkeyPatch) -> ModuleType:
     return module
 
 
-def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def cli(*arguments, cwd=None):
     """Run the command line as a user does."""
     return subprocess.run(
         [sys.executable, "-m", "validation", *map(str, arguments)],
@@ -202,7 +199,7 @@ def cli(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProc
     )
 
 
-def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+def typed(*arguments, cwd=None):
     """Run the command line in this process, where not the process is the point: no start-up, no workers unasked."""
     from validation.cli import main, run
 
@@ -219,7 +216,7 @@ def typed(*arguments: object, cwd: Path | None = None) -> subprocess.CompletedPr
     return subprocess.CompletedProcess(words, status, said.getvalue(), complained.getvalue())
 
 
-def refused(*arguments: object, cwd: Path | None = None) -> str:
+def refused(*arguments, cwd=None):
     """Type what is refused as bad input, by one line and status 2, and return that line."""
     done = typed(*arguments, cwd=cwd)
     assert done.returncode == 2 and len(done.stderr.strip().splitlines()) == 1, done.stderr

@@ -1,7 +1,5 @@
 """The names that Python's users import: their list, version, types, the shape of a solution and its errors."""
 
-from __future__ import annotations
-
 import ast
 import pickle
 import subprocess
@@ -12,22 +10,22 @@ from pathlib import Path
 import pytest
 
 import validation
-from validation import InputError, Outcome, Run, Scene, Solution, load_scene, solve
+from validation import InputError, Outcome, Run, load_scene, solve
 
 DOCS = Path(__file__).parents[1] / "docs/python.md"
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene():
     return load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 20})
 
 
 @pytest.fixture
-def solution(scene: Scene) -> Solution:
+def solution(scene):
     return solve(scene, "dda")
 
 
-def test_dir_lists_the_public_names_and_all_of_them_load() -> None:
+def test_dir_lists_the_public_names_and_all_of_them_load():
     assert set(validation.__all__) < set(dir(validation)) and "__version__" in dir(validation)
     assert not {name for name in dir(validation) if name.startswith("_")} - {"__version__"}
     assert all(getattr(validation, name) is not None for name in dir(validation))
@@ -36,7 +34,7 @@ def test_dir_lists_the_public_names_and_all_of_them_load() -> None:
         assert pickle.loads(pickle.dumps(getattr(validation, name))) is getattr(validation, name)
 
 
-def test_type_checkers_see_the_names_that_are_loaded() -> None:
+def test_type_checkers_see_the_names_that_are_loaded():
     """The names behind `TYPE_CHECKING` are those of the table, from the modules of the table."""
     tree = ast.parse(Path(str(validation.__file__)).read_text(encoding="utf-8"))
     imports = {}
@@ -46,12 +44,12 @@ def test_type_checkers_see_the_names_that_are_loaded() -> None:
     assert imports == validation._NAMES
 
 
-def test_the_page_of_python_names_each_of_them() -> None:
+def test_the_page_of_python_names_each_of_them():
     text = DOCS.read_text(encoding="utf-8")
     assert [name for name in dir(validation) if f"`{name}" not in text] == []
 
 
-def test_a_solution_is_a_run_with_a_short_text(scene: Scene, solution: Solution) -> None:
+def test_a_solution_is_a_run_with_a_short_text(scene, solution):
     assert isinstance(solution, Run) and (solution.scene, solution.solver) == (scene, "dda")
     peak = min(solution.displacement)
     assert repr(solution).startswith(f"<Solution: dda on {scene.name}, 20 steps, peak displacement {peak:.4g} m, ")
@@ -61,7 +59,7 @@ def test_a_solution_is_a_run_with_a_short_text(scene: Scene, solution: Solution)
     assert grown.outcome is not Outcome.COMPLETED and str(grown.outcome) in repr(grown)
 
 
-def test_columns_are_plotted_with_labelled_axes(solution: Solution, tmp_path: Path) -> None:
+def test_columns_are_plotted_with_labelled_axes(solution, tmp_path):
     figure = solution.plot(path=tmp_path / "history.svg")
     labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in figure.axes]
     assert labels == [("Time [s]", "Displacement [m]"), ("Time [s]", "Contact pressure [Pa]")]
@@ -72,13 +70,13 @@ def test_columns_are_plotted_with_labelled_axes(solution: Solution, tmp_path: Pa
 
 
 @pytest.mark.parametrize(("options", "field"), [({"columns": ["speed"]}, "columns"), ({"path": "x.gif"}, "path")])
-def test_what_cannot_be_plotted_is_refused(solution: Solution, options: dict[str, object], field: str) -> None:
+def test_what_cannot_be_plotted_is_refused(solution, options, field):
     with pytest.raises(InputError) as refused:
-        solution.plot(**options)  # type: ignore[arg-type]
+        solution.plot(**options)
     assert refused.value.field == field
 
 
-def test_a_sweep_is_refused_with_the_remedy_of_python() -> None:
+def test_a_sweep_is_refused_with_the_remedy_of_python():
     swept = load_scene("figures-3-4")
     with pytest.raises(InputError) as refused:
         solve(swept, "dda")
@@ -88,12 +86,12 @@ def test_a_sweep_is_refused_with_the_remedy_of_python() -> None:
     assert not picked.sweep and solve(picked, "dda").outcome is Outcome.COMPLETED
 
 
-def test_what_is_no_name_of_the_package_is_an_attribute_error() -> None:
+def test_what_is_no_name_of_the_package_is_an_attribute_error():
     with pytest.raises(AttributeError, match="no attribute 'nothing'"):
         _ = validation.nothing
 
 
-def test_a_folder_of_the_users_named_dda_is_named_by_python_too(tmp_path: Path) -> None:
+def test_a_folder_of_the_users_named_dda_is_named_by_python_too(tmp_path):
     (tmp_path / "dda").mkdir()
     (tmp_path / "dda/__init__.py").touch()
     code = "import validation\ntry:\n    validation.solve\nexcept ImportError as error:\n    print(error)"

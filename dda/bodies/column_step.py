@@ -1,4 +1,4 @@
-r"""Steps of a column whose contacts open or slip: its blocks in their modes, its contacts as rows.
+r"""Steps of a column: its blocks in their modes, what joins them as rows of contact.
 
 A block of mass m per area and stiffness K = E/h has a mean displacement u and a stretch e = top - foot, in which its
 inertia m, m/12 and its stiffness 0, K are diagonal; a rigid block has a stretch that nothing moves. The modes of block
@@ -7,8 +7,8 @@ i are 2i and 2i + 1,
     z = sqrt(m) u,    sqrt(m/12) e        u = z_2i / sqrt(m),    e/2 = sqrt(3/m) z_2i+1,
 
 and row i is the contact between its foot and the top of the block below, so that every row feels four modes and its
-neighbours alone (`Laws.banded`). Contacts have N >= 0, or -s <= N <= s in shear; welded faces are rigid and
-without bounds. All are one problem, the least of a strictly convex function of N within bounds, which has exactly one
+neighbours alone (`Laws.banded`). Contacts have N >= 0, or -s <= N <= s in shear; glue has no bounds, welded faces are
+rigid besides. All are one problem, the least of a strictly convex function of N within bounds, which has exactly one
 solution: no step is ever cut. Where touching blocks are stiff against a step a closing spreads by one contact a solve;
 N + 1 solves are the most known of contacts that open, 2 N + 1 of those that slip. Where states changed
 `SWEEPS` times the number of contacts, one changes at a time, which ends for every such matrix (Murty 1974).
@@ -16,13 +16,19 @@ N + 1 solves are the most known of contacts that open, 2 N + 1 of those that sli
 Displacements follow from gaps, slips and stretches, from the base upwards (`place_blocks`): neither stiff springs nor
 long steps, in which weight alone would move a block by g dt^2, cost digits.
 
-Two feet are no contacts, and row 0 only holds their force N_0. That of a half-space follows the velocity of the foot,
+A half-space follows the velocity V of its surface, N_0 = zeta (2 v - V). With a spring of stiffness p above it the
+surface has a motion of its own, and by the scheme's formulas for that (* what is known before the force)
 
-    N_0 = zeta (2 v - v_foot),
+    foot + (1/p + alpha h / (delta zeta)) N_0 = surface* + alpha h / delta (2 v - V*)
 
-so that N_1 changes it at once; a lowest block that is welded to a base has the base's motion for that of its foot:
-displacement, velocity and acceleration, since from its displacement alone average acceleration would make accelerations
-that alternate, ever more, around the right ones.
+is a row. Without one V = v_foot. A lowest block that is welded to a base has the motion of its top alone, of inertia
+m/3, on a spring of the stiffness K, with the load -m/6 y'' of the base's acceleration y''; it takes of the base the
+force
+
+    N_0 + m (g/2 + y''/3 + a_top/6).
+
+A rigid one moves as the base does. In an explicit stage forces move nothing before it ends: rigid rows then keep
+accelerations together.
 """
 
 from __future__ import annotations
@@ -32,17 +38,17 @@ from typing import Any, NamedTuple
 
 from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
-from dda.contact.rows import FOUND, LOWER
+from dda.contact.rows import FOUND, LOWER, Rows
 from dda.march.account import account, half_square, over_stages
-from dda.march.energy import GIVEN, IMPULSE
+from dda.march.energy import DAMPING, GIVEN, IMPULSE
 from dda.march.step import (
+    AnyState,
     Course,
     History,
     Length,
     March,
     Part,
     StageRoom,
-    State,
     begin_step,
     coupling,
     end_modes,
@@ -52,20 +58,22 @@ from dda.march.step import (
     free_velocity,
     kept_discount,
     length_of,
+    moved_row,
     prescribe,
     push_modes,
     steps_by,
 )
-from dda.scheme.stage import inertia_force, predictor, velocity_corrector
+from dda.scheme.stage import predictor, velocity_corrector
 
 SWEEPS = 4  # solves for each contact with all states updated at once
-ROW, ABSENT, HALF_SPACE, WELDED = range(4)  # what is below the lowest block: a row of contact, or no contact
+ROW, ABSENT, HALF_SPACE, SPRUNG = range(4)  # what is below the lowest block; SPRUNG: a spring and a half-space
+WELDED, CARRIED = 4, 5  # a base to which an elastic block is welded, or a rigid one
 PRESSURE, VELOCITY, ACCELERATION = 3, 4, 5  # of what is prescribed: on the top, of the base or the wave that comes up
 # of a step, after what is observed: states that changed, then the stored energies, momentum, extremes of the contacts
 SWITCHES, KINETIC, STRAINED, SPRINGS, MOMENTUM, WIDEST, DEEPEST, OPEN_SHARE, FURTHEST = range(9)
 RECORDED = FURTHEST + 1
 
-MODES, RATES, FORCES, GAP, SLIDE = range(5)  # what an observer reads
+MODES, RATES, FORCES, GAP, SLIDE, FOOT = range(6)  # what an observer reads
 
 
 class Observed(NamedTuple):
@@ -83,28 +91,36 @@ class Blocks(NamedTuple):
     root: Vector  # sqrt(m) [kg^1/2 / m]
     half: Vector  # half the stretch by its mode, sqrt(3/m); 0 of a rigid block
     gap: Vector  # gaps at t = 0 [m]
-    base: int  # among ROW, ABSENT, HALF_SPACE and WELDED
+    base: int  # what is below
+    mass: float  # of the lowest block [kg/m^2]
+    gravity: float  # [m/s^2]
     impedance: float  # zeta [Pa s/m]
     observed: Observed
 
 
-class Top(NamedTuple):
-    """The top of a block that is welded to the base, on its inertia m/3, before the contact above is found."""
+class ColumnState(NamedTuple):
+    """Where a column is: what `dda.march.step.State` has, and the surface of a half-space below a spring."""
 
-    inertia: float  # m/3 [kg/m^2]
-    flexibility: float  # 1 / (m/3 + weight K); 0 of a rigid block
-    stretch: float  # how far it moves from the base in a stage without that contact [m]
-    p: float  # h times its velocity, and h^2 times its acceleration, at the start of the step
-    a: float
-    a_before: float  # the same at the end of the stage before
-    R: float  # h^2 times the force on it at the start of the step
+    z: Vector
+    p: Vector
+    a: Vector
+    R: Vector
+    path: Vector
+    rows: Rows
+    surface: Vector  # (2,) dt times its velocity, and dt^2 times its acceleration [m]
 
 
 # ---- the stage -------------------------------------------------------------------------------------------------------
 
 
 def make_column_stage(
-    march: March, stage: StageRoom, start: State, before: State, after: State, course: Course, part: Part
+    march: March,
+    stage: StageRoom,
+    start: AnyState,
+    before: AnyState,
+    after: AnyState,
+    course: Course,
+    part: Part,
 ) -> tuple[int, int]:
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
     base = march.method.base
@@ -114,24 +130,20 @@ def make_column_stage(
     prescribe(march, course, stage, part)
     begin_step(march, start, length)
     free_modes(march, stage, length, before)
-    top = Top(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    if base == WELDED:
-        top = free_top(march, stage, length, before)
     free_rows(march, before)
-    follows = 0.0
     if base == HALF_SPACE:
-        follows = free_dashpot(march, stage, length, before)
-    elif base == WELDED:
-        free_row(march, length, 0.0, length.numbers[3] * top.flexibility)
+        free_half_space(march, stage, length, before)
+    elif base == SPRUNG:
+        free_surface(march, stage, length, start, before, after)
+    if length.numbers[3] == 0:
+        hold_welds(march, length, before)
     outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, work)
     if outcome != FOUND:
         return outcome, solves
-    if base == HALF_SPACE and len(rows.force) > 1:
-        rows.force[0] += follows * rows.force[1]
     push_modes(march, rows.force)
     end_modes(march, stage, length, before, after)
-    if base == WELDED:
-        end_on_base(march, stage, length, before, after, top)
+    if base == SPRUNG:
+        end_surface(march, stage, length, after)
     end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
     for r in range(len(rows.state)):
@@ -140,16 +152,13 @@ def make_column_stage(
     return outcome, solves
 
 
-def place_blocks(march: March, state: State) -> None:
+def place_blocks(march: March, state: AnyState) -> None:
     """Write the means from gaps, slips and stretches, above the base or the lowest block."""
     blocks = march.method
     rows = state.rows
     z = state.z
-    lowest = 0
-    below = march.room.end[1]
-    if blocks.base == ABSENT or blocks.base == HALF_SPACE:
-        lowest = 1
-        below = z[0] / blocks.root[0] + blocks.half[0] * z[1]
+    lowest = 0 if blocks.base == ROW or blocks.base == WELDED else 1
+    below = march.room.end[1] if lowest == 0 or blocks.base == CARRIED else of_top(blocks, z, 0)
     for i in range(lowest, len(rows.state)):
         half = blocks.half[i] * z[2 * i + 1]
         mean = below + (rows.opening[i] - blocks.gap[i]) + state.path[i] + half
@@ -157,54 +166,98 @@ def place_blocks(march: March, state: State) -> None:
         below = mean + half
 
 
-# ---- feet that are no contacts ---------------------------------------------------------------------------------------
+# ---- a spring above a half-space -------------------------------------------------------------------------------------
 
 
-def free_row(march: March, length: Length, force: float, of_top: float) -> None:
-    """Make the lowest row one that holds a known force; `of_top` is what it leaves of the flexibility there [m/Pa]."""
-    W = length.flexible.W
-    W[0][0] = 1.0
-    march.work.q[0] = 0.0 - force
-    if len(march.work.q) > 1:
-        body = march.body
-        W[1][0] = 0.0
-        W[0][1] = of_top
-        for e in range(2, 4):
-            W[0][1] += length.numbers[3] * body.weight[1][e] * length.inverse[e] * body.weight[1][e]
+def free_surface(
+    march: March, stage: StageRoom, length: Length, start: AnyState, before: AnyState, after: AnyState
+) -> None:
+    """Make the lowest row that of the spring above a half-space, whose surface then moves by nothing known.
 
-
-def free_dashpot(march: March, stage: StageRoom, length: Length, before: State) -> float:
-    """Write the force of the half-space where N_1 is nothing; return by how much of N_1 it changes.
-
-    Its velocity v_foot = v* + late h (phi_00 N_0 + phi_01 N_1) has the flexibilities phi of the step.
+    It leaves what is known of h times the surface's velocity in `after`.
     """
-    blocks = march.method
+    numbers = stage.numbers
+    ratio = length.numbers[0]
+    h = length.numbers[2]
+    p = length.numbers[1] * ratio * start.surface[0]
+    a = ratio * ratio * start.surface[1]
+    a_before = ratio * ratio * before.surface[1]
+    late = numbers.alpha / numbers.delta
+    after.surface[0] = velocity_corrector(numbers, p, a, a_before, 0.0)
+    moved = predictor(numbers, p, a, ratio * before.surface[0], a_before)
+    march.work.q[0] -= moved + late * (2 * h * march.room.end[VELOCITY] - after.surface[0])
+    own = length.numbers[3] * coupling(march.body, length.inverse, 0, 0)
+    length.flexible.W[0][0] = own + late * h / march.method.impedance
+
+
+def end_surface(march: March, stage: StageRoom, length: Length, after: AnyState) -> None:
+    """Write the motion of the surface that its force N_0 = zeta (2 v - V) has."""
+    ratio = length.numbers[0]
+    h = length.numbers[2]
+    p = h * (2 * march.room.end[VELOCITY] - after.rows.force[0] / march.method.impedance)
+    after.surface[1] = (p - after.surface[0]) / stage.numbers.delta / (ratio * ratio)
+    after.surface[0] = p / ratio
+
+
+# ---- feet that are no contacts, and welds ----------------------------------------------------------------------------
+
+
+def free_half_space(march: March, stage: StageRoom, length: Length, before: AnyState) -> None:
+    """Make the lowest row that of a half-space, whose force follows the velocity of the foot.
+
+    That is v* + late h B_0 s^-1 B' N, with v* its velocity without forces; the row is over `late`, as the others are.
+    """
     body = march.body
-    room = march.room
     numbers = stage.numbers
     h = length.numbers[2]
-    late = numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h
     speed = 0.0
     for i in range(2):
         speed += body.weight[0][i] * free_velocity(march, stage, length, before, i) / h
-    own = 1 + blocks.impedance * late * coupling(body, length.inverse, 0, 0)
-    force = blocks.impedance * (2 * room.end[VELOCITY] - speed) / own
-    if len(room.free) == 1:
-        free_row(march, length, force, 0.0)
-        return 0.0
-    across = coupling(body, length.inverse, 0, 1)
-    follows = float(0.0 - blocks.impedance * late * across / own)
-    of_top = 0.0
-    for e in range(2):
-        of_top += body.weight[1][e] * length.inverse[e] * body.weight[1][e]
-    free_row(march, length, force, length.numbers[3] * (of_top + follows * across))
-    march.work.q[1] += length.numbers[3] * across * force
-    return float(follows)
+    weight = weight_of_welds(length)
+    own = weight / (numbers.delta * (1 - numbers.af) / (1 - numbers.am) * h)
+    length.flexible.W[0][0] = weight * coupling(body, length.inverse, 0, 0) + own / march.method.impedance
+    march.work.q[0] = own * (speed - 2 * march.room.end[VELOCITY])
 
 
-def of_top(blocks: Blocks, x: Vector) -> float:
-    """Return what modal values make at the top of the lowest block."""
-    return float(x[0] / blocks.root[0] + blocks.half[0] * x[1])
+def weight_of_welds(length: Length) -> float:
+    """Return the weight of forces in what keeps faces together: ways, in an explicit stage h^2 accelerations [s^2]."""
+    h = length.numbers[2]
+    return float(length.numbers[3] if length.numbers[3] > 0 else h * h)
+
+
+def hold_welds(march: March, length: Length, before: AnyState) -> None:
+    """Make rigid rows of an explicit stage, whose forces move nothing before it ends, those of accelerations there.
+
+    The forces of springs are known then.
+    """
+    body = march.body
+    laws = march.laws
+    room = march.room
+    q = march.work.q
+    W = length.flexible.W
+    h2 = weight_of_welds(length)
+    for i in range(len(body.k)):
+        room.pushed[i] = h2 * (room.load[i] - body.k[i] * (before.z[i] + room.x[i]))
+    for r in range(len(q)):
+        if laws.compliance[r] == 0 and not (r == 0 and march.method.base == HALF_SPACE):
+            q[r] = moved_row(body, r, room.pushed)
+            if body.ground[r][1] != 0:
+                q[r] -= h2 * room.end[ACCELERATION]
+            W[0][r] = h2 * coupling(body, length.inverse, r, r)
+    for r in range(len(q) - 1):
+        W[1][r] = 0.0
+        beside = h2 * coupling(body, length.inverse, r, r + 1)
+        for weld, spring in ((r, r + 1), (r + 1, r)):
+            if laws.compliance[weld] == 0 and laws.compliance[spring] == 0:
+                W[1][r] = beside
+            elif laws.compliance[weld] == 0:
+                force = 0.0 - q[spring] / laws.compliance[spring]
+                q[weld] += beside * min(max(force, laws.lower[spring]), laws.upper[spring])
+
+
+def of_top(blocks: Blocks, x: Vector, i: int) -> Any:
+    """Return what modal values make at the top of a block."""
+    return x[2 * i] / blocks.root[i] + blocks.half[i] * x[2 * i + 1]
 
 
 def of_foot(blocks: Blocks, x: Vector) -> float:
@@ -212,104 +265,64 @@ def of_foot(blocks: Blocks, x: Vector) -> float:
     return float(x[0] / blocks.root[0] - blocks.half[0] * x[1])
 
 
-def force_on_top(blocks: Blocks, mean: float, stretching: float) -> float:
-    """Return the force on the top of a block by the modal forces on its mean and its stretch."""
-    return float(blocks.root[0] / 2 * (mean + stretching / math.sqrt(3)))
-
-
-def free_top(march: March, stage: StageRoom, length: Length, before: State) -> Top:
-    r"""Write the modes of a block whose foot is the base, without the contact above; return its top.
-
-    With m/3 the inertia at its top and m/6 that between foot and top, y the base and d = top - y,
-
-        (m/3 + weight K) (d1 - dg) = m/3 [ h v + ... - (y1 - yg) ] + alpha h^2 f(- m g/2 - K dg - m/6 y1'').
-    """
+def force_of_base(march: March, state: AnyState, base: Vector) -> float:
+    """Return the force on the lowest block of what is below, by what is prescribed there [Pa]."""
     blocks = march.method
-    room = march.room
-    numbers = stage.numbers
-    ratio = length.numbers[0]
-    h2 = length.numbers[2] * length.numbers[2]
-    mass = blocks.root[0] * blocks.root[0]
-    moved = room.end[1] - room.start[1]
-    p = of_top(blocks, room.p)
-    a = of_top(blocks, room.a)
-    a_before = ratio * ratio * of_top(blocks, before.a)
-    R = force_on_top(blocks, room.R[0], room.R[1]) - mass / 6 * of_foot(blocks, room.a)
-    flexibility = 0.0
-    stretch = 0.0
-    if blocks.half[0] > 0:
-        flexibility = 1 / (mass / 3 + length.numbers[3] * march.body.k[1] * mass / 12)
-        force = force_at_top(march, h2, before.z[1])
-        held = inertia_force(numbers, force, R, mass / 3 * a)
-        moving = predictor(numbers, p, a, ratio * of_top(blocks, before.p), a_before)
-        stretch = flexibility * (mass / 3 * (moving - moved) + numbers.alpha * held)
-        room.x[1] = stretch / (2 * blocks.half[0])
-    room.x[0] = blocks.root[0] * (moved + stretch / 2)
-    return Top(mass / 3, flexibility, stretch, p, a, a_before, R)
-
-
-def force_at_top(march: March, h2: float, z: float) -> float:
-    """Return h^2 times the force on the top at the end of a stage, by loads, stretch and the base's acceleration."""
-    blocks = march.method
-    force = force_on_top(blocks, march.room.load[0], march.room.load[1] - march.body.k[1] * z)
-    return float(h2 * (force - blocks.root[0] * blocks.root[0] / 6 * march.room.end[ACCELERATION]))
-
-
-def end_on_base(march: March, stage: StageRoom, length: Length, before: State, after: State, top: Top) -> None:
-    """Write the lowest block, whose foot is the base, and the force of the base on it."""
-    blocks = march.method
-    room = march.room
-    numbers = stage.numbers
-    ratio = length.numbers[0]
-    h = length.numbers[2]
-    root = blocks.root[0]
-    above = after.rows.force[1] if len(after.rows.force) > 1 else 0.0
-    foot_p = h * room.end[VELOCITY]
-    foot_a = h * h * room.end[ACCELERATION]
-    p = foot_p
-    a = foot_a
-    if blocks.half[0] > 0:
-        stretch = top.stretch - length.numbers[3] * top.flexibility * above
-        after.z[1] = before.z[1] + stretch / (2 * blocks.half[0])
-        R = force_at_top(march, h * h, after.z[1]) - h * h * above
-        a = inertia_force(numbers, R, top.R, top.inertia * top.a) / top.inertia
-        p = velocity_corrector(numbers, top.p, top.a, top.a_before, a)
-        after.p[1] = (p - foot_p) / (2 * blocks.half[0]) / ratio
-        after.a[1] = (a - foot_a) / (2 * blocks.half[0]) / (ratio * ratio)
-    after.p[0] = root * (p + foot_p) / 2 / ratio
-    after.a[0] = root * (a + foot_a) / 2 / (ratio * ratio)
-    after.rows.force[0] = above + root * (root * (a + foot_a) / 2 / (h * h) - march.room.load[0])
-    scale = march.scheme.step * march.scheme.step
-    after.R[0] = scale * (march.room.load[0] + (after.rows.force[0] - above) / root)
-    after.R[1] = scale * (march.room.load[1] - march.body.k[1] * after.z[1])
-    after.R[1] -= scale * blocks.half[0] * (after.rows.force[0] + above)
+    rows = state.rows
+    if blocks.base == CARRIED:
+        above = rows.force[1] if len(rows.force) > 1 else base[PRESSURE]
+        return float(above + blocks.mass * (blocks.gravity + base[ACCELERATION]))
+    force = rows.force[0]
+    if blocks.base == WELDED:
+        top = state.a[0] / blocks.root[0] / (march.scheme.step * march.scheme.step)
+        force += blocks.mass * (blocks.gravity / 2 + base[ACCELERATION] / 3 + top / 6)
+    return float(force)
 
 
 # ---- what is kept ----------------------------------------------------------------------------------------------------
 
 
-def account_column(march: March, state: State, after: State, course: Course, part: Part, sums: Vector) -> None:
+def account_column(march: March, state: AnyState, after: AnyState, course: Course, part: Part, sums: Vector) -> None:
     """Add what an accepted part of a step loses, and what loads, base and half-space give [J/m^2].
 
     A base that moves with a block welded to it does not move as the scheme's formulas do: its work is as accurate as
     the scheme.
     """
     account(march, state, after, course, part, sums)
-    if march.method.base == HALF_SPACE:
-        add_waves(march, state, after, course, part, sums)
+    base = march.method.base
+    if base == WELDED:
+        prescribe(march, course, march.first, part)
+        momentum = march.method.mass / 6 * march.room.start[VELOCITY] * state.p[0] / march.method.root[0]
+        sums[DAMPING] += (1 - march.scheme.gg**part.ratio) * momentum / march.scheme.step
+    if base != ROW and base != ABSENT:
+        add_feet(march, state, after, course, part, sums)
 
 
-def add_wave(
-    march: March, stage: StageRoom, before: State, after: State, course: Course, part: Part, sums: Vector
+def add_foot(
+    march: March, stage: StageRoom, before: AnyState, after: AnyState, course: Course, part: Part, sums: Vector
 ) -> None:
-    """Add work and impulse of a half-space in a stage."""
+    """Add work and impulse of what is below in a stage, but for what its row has by the base's motion."""
+    blocks = march.method
+    room = march.room
+    prescribe(march, course, stage, part)
     late = stage.numbers.delta if march.scheme.newmark else 0.5
-    force = (1 - late) * before.rows.force[0] + late * after.rows.force[0]
-    sums[GIVEN] += force * (of_foot(march.method, after.z) - of_foot(march.method, before.z))
+    force = (1 - late) * force_of_base(march, before, room.start) + late * force_of_base(march, after, room.end)
+    moved = room.end[1] - room.start[1]
+    if blocks.base == HALF_SPACE or blocks.base == SPRUNG:
+        shortened = after.rows.opening[0] - before.rows.opening[0]
+        moved = of_foot(blocks, after.z) - of_foot(blocks, before.z) - shortened
+    else:
+        row = 0 if blocks.base == WELDED else 1
+        if row < len(after.rows.force):
+            force -= (1 - late) * before.rows.force[row] + late * after.rows.force[row]
+    if blocks.base == WELDED:  # the load of the base's acceleration, which is no force on the block
+        acceleration = (1 - late) * room.start[ACCELERATION] + late * room.end[ACCELERATION]
+        sums[GIVEN] += blocks.mass / 6 * acceleration * (after.z[0] - before.z[0]) / blocks.root[0]
+    sums[GIVEN] += force * moved
     sums[IMPULSE] += force * march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
 
 
-def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool:
+def keep_observed(march: March, state: AnyState, kept: Matrix, number: int) -> bool:
     """Write what is observed, and what the energies are made of where these are kept; tell whether it is finite."""
     blocks = march.method
     observed = blocks.observed
@@ -325,12 +338,15 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
         i = observed.place[k]
         lower = observed.lower[k]
         upper = observed.upper[k]
+        on_base = i == 0 and blocks.base >= WELDED
         if kind == MODES:
-            value = lower * state.z[2 * i] + upper * state.z[2 * i + 1]
+            value = lower * state.z[2 * i] + upper * (room.end[1] if on_base else state.z[2 * i + 1])
         elif kind == RATES:
-            value = lower * (discount * state.p[2 * i] + lag * state.a[2 * i])
-            value += upper * (discount * state.p[2 * i + 1] + lag * state.a[2 * i + 1])
-            value /= march.scheme.step
+            value = lower * (discount * state.p[2 * i] + lag * state.a[2 * i]) / march.scheme.step
+            rate = (discount * state.p[2 * i + 1] + lag * state.a[2 * i + 1]) / march.scheme.step
+            value += upper * (room.end[VELOCITY] if on_base else rate)
+        elif kind == FOOT:
+            value = force_of_base(march, state, room.end)
         elif kind == FORCES:
             value = lower * rows.force[i] + upper * (rows.force[i + 1] if i + 1 < n else room.end[PRESSURE])
         elif kind == GAP:
@@ -347,7 +363,7 @@ def keep_observed(march: March, state: State, kept: Matrix, number: int) -> bool
     return math.isfinite(state.z[2 * n - 2])  # to which all others add
 
 
-def keep_record(march: March, state: State, row: Vector, columns: int) -> None:
+def keep_record(march: March, state: AnyState, row: Vector, columns: int) -> None:
     """Write stored energies [J/m^2], momentum [Pa s] and the extremes of the contacts after what is observed."""
     blocks = march.method
     laws = march.laws
@@ -361,11 +377,24 @@ def keep_record(march: March, state: State, row: Vector, columns: int) -> None:
     furthest = 0.0
     contacts = 0
     opened = 0
+    moving = half_square(march.room.p) / (step * step)
+    if blocks.base >= WELDED:
+        foot = march.room.end[VELOCITY]
+        top = foot if blocks.base == CARRIED else march.room.p[0] / blocks.root[0] / step
+        momentum = step * blocks.mass * (foot / 2 + top / 6)
+        moving += blocks.mass / 6 * foot * (foot + top)
+        if blocks.base == CARRIED:
+            momentum += step * blocks.mass * foot / 3
+            moving += blocks.mass / 6 * foot * foot
     for i in range(len(rows.state)):
         stretch = state.z[2 * i + 1]
         strained += march.body.k[2 * i + 1] * stretch * stretch
         momentum += blocks.root[i] * march.room.p[2 * i]
-        springs += laws.compliance[i] * rows.force[i] * rows.force[i]
+        energy = laws.compliance[i] * rows.force[i] * rows.force[i]
+        if i == 0 and blocks.base == WELDED:
+            strained += energy
+        else:
+            springs += energy
         if laws.opens[i] == 1:
             contacts += 1
             widest = max(widest, rows.opening[i])
@@ -374,7 +403,7 @@ def keep_record(march: March, state: State, row: Vector, columns: int) -> None:
                 opened += 1
         else:
             furthest = max(furthest, abs(state.path[i]))
-    row[columns + KINETIC] = half_square(march.room.p) / (step * step)
+    row[columns + KINETIC] = moving
     row[columns + STRAINED] = strained / 2
     row[columns + SPRINGS] = springs / 2
     row[columns + MOMENTUM] = momentum / step
@@ -384,12 +413,12 @@ def keep_record(march: March, state: State, row: Vector, columns: int) -> None:
     row[columns + FURTHEST] = furthest
 
 
-def keep_states(march: March, state: State, history: History, number: int) -> None:
+def keep_states(march: March, state: AnyState, history: History, number: int) -> None:
     """Write the states of the contacts where they are asked for."""
     if len(history.state) > 0:
         for r in range(len(state.rows.state)):
             history.state[number, r] = state.rows.state[r]
 
 
-add_waves = over_stages(add_wave)
+add_feet = over_stages(add_foot)
 make_column_steps = steps_by(make_column_stage, account_column, keep_observed, keep_states)

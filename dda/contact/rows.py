@@ -252,7 +252,7 @@ def update(laws: Laws, flexible: Flexibility, after: Rows, work: Work, most: int
                 if rows > n:
                     tried[n + i] = INSIDE  # what opens or closes begins anew
         elif friction and state == INSIDE:
-            way = along(laws, after, work, i, work.z[n + i])
+            way = along(laws, after, work, i, work.z[n + i], 0.0)
             if way != tried[n + i]:
                 wrong += 1
                 if wrong <= most:
@@ -305,22 +305,25 @@ def next_state(
     return LOWER if alone < lower else UPPER if alone > upper else INSIDE
 
 
-def along(laws: Laws, after: Rows, work: Work, i: int, slipped: float) -> int:
+def along(laws: Laws, after: Rows, work: Work, i: int, slipped: float, slack: float) -> int:
     """Return the state that friction makes of the way of a closed contact along the base.
 
     Parameters
     ----------
     slipped
         How far it slipped: against its direction, it sticks [m].
+    slack
+        Way by which one that disagrees does so at least [m].
     """
     r = laws.contacts + i
     state = work.tried[r]
     force = after.force[r]
     if state == INSIDE:
-        if abs(force) <= shear_limit(laws, i, after.force[i]) * (1 + ROUNDING):
+        more = abs(force) - shear_limit(laws, i, after.force[i]) * (1 + ROUNDING)
+        if more <= 0 or more * laws.compliance[r] < slack:
             return INSIDE
         return UPPER if force > 0 else LOWER
-    return int(state) if state * slipped <= 0 else INSIDE
+    return int(state) if state * slipped <= slack else INSIDE
 
 
 def shear_limit(laws: Laws, i: int, N: float) -> float:
@@ -474,7 +477,7 @@ def lagged(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: W
             state = across(laws, flexible, after, work, i)
             way = INSIDE
             if state == INSIDE and work.tried[i] == INSIDE:
-                way = along(laws, after, work, i, moved)
+                way = along(laws, after, work, i, moved, 0.0)
             if state != work.tried[i]:
                 same = False
             work.tried[i] = state
@@ -531,14 +534,13 @@ def solve(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Wo
         after.slip[r] = 0.0
         after.opening[r] = 0.0 - force[r] * compliance[r]  # no sum: a closed row keeps its digits
         if tried[r] != INSIDE:
-            write_at_bound(laws, before, flexible, after, work, r)
+            write_at_bound(laws, before, after, work, r, work.q[r] + flexed(laws, flexible, r, after.force))
         if damped:
             unretarded(laws, flexible, after, work, r)
 
 
-def write_at_bound(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work, r: int) -> None:
-    """Write z of a row at a bound: its gap, or its slip."""
-    z = work.q[r] + flexed(laws, flexible, r, after.force)
+def write_at_bound(laws: Laws, before: Rows, after: Rows, work: Work, r: int, z: float) -> None:
+    """Write z of a row at a bound, which is its gap, or becomes its slip."""
     if laws.opens[r] == 1:
         after.opening[r] = z
     else:

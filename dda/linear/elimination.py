@@ -27,6 +27,8 @@ class Elimination:
         from scipy.sparse.csgraph import reverse_cuthill_mckee
 
         pattern = abs(K) + abs(M)
+        if C is not None:
+            pattern = pattern + abs(C)
         self.order = reverse_cuthill_mckee((pattern + pattern.T).tocsr(), symmetric_mode=True)
         self.K = K[self.order][:, self.order]
         self.M = M[self.order][:, self.order]

@@ -35,7 +35,7 @@ def over_stages(account_stage: Callable[..., None]) -> Callable[..., None]:
 
 def account_with(
     half_square: Callable[[Any], float], add_bulk_loss: Callable[..., None]
-) -> Callable[[March, State, State, Course, Part, Vector], None]:
+) -> Callable[[March, AnyState, AnyState, Course, Part, Vector], None]:
     """Return what adds up the losses of a part of a step.
 
     Parameters
@@ -46,7 +46,7 @@ def account_with(
         Adds what Newmark's step loses beside the contacts: (march, state, after, part, sums).
     """
 
-    def account(march: March, state: State, after: State, course: Course, part: Part, sums: Vector) -> None:
+    def account(march: March, state: AnyState, after: AnyState, course: Course, part: Part, sums: Vector) -> None:
         """Add what an accepted part of a step loses, and what loads and base give [J]."""
         scheme = march.scheme
         dt2 = scheme.step * scheme.step

@@ -18,6 +18,7 @@ replaced since, the plain functions run.
 from __future__ import annotations
 
 import functools
+import gc
 import hashlib
 import logging
 import os
@@ -128,12 +129,13 @@ def is_kept(loop: Loop, types: tuple[Any, ...]) -> bool:
     return any(kept.rglob("*.nbi"))
 
 
-def as_lists(value: Any) -> Any:
-    """Return arrays as lists, also within named tuples."""
+def as_lists(value: Any, known: dict[int, Any] | None = None) -> Any:
+    """Return arrays as lists, also within named tuples: one that stands in several places is one list."""
+    lists = {} if known is None else known
     if isinstance(value, np.ndarray):
-        return value.tolist()
+        return lists.setdefault(id(value), value.tolist())
     if isinstance(value, tuple):
-        return type(value)(*(as_lists(part) for part in value))  # a named tuple
+        return type(value)(*(as_lists(part, lists) for part in value))  # a named tuple
     return value
 
 
@@ -248,6 +250,8 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
     timer.daemon = True
     if not is_kept(loop, types_of(arguments)):
         timer.start()
+    collects = gc.isenabled()
+    gc.disable()  # a compiler makes millions of objects and few circles: looking for these takes a tenth of its time
     try:
         for place in dict.fromkeys((directory, None)):
             try:
@@ -258,6 +262,8 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
         return None
     finally:
         timer.cancel()
+        if collects:
+            gc.enable()
 
 
 def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:

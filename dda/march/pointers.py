@@ -20,6 +20,10 @@ class Pointers(types.Record):
         self.size = size
         super().__init__(fields, size, aligned=True)
 
+    def __repr__(self) -> str:
+        """Return its name, which numba asks for at every pass, and would write anew."""
+        return str(self.name)
+
     @property
     def dtype(self) -> Any:
         """What NumPy sees of it."""

@@ -489,7 +489,7 @@ def free_rows(march: March, before: AnyState) -> None:
         q[r] = opening[r] + free[r]
 
 
-def free_velocity(march: March, stage: StageRoom, length: Length, before: State, i: int) -> float:
+def free_velocity(march: March, stage: StageRoom, length: Length, before: AnyState, i: int) -> float:
     """Return h v of a mode at the end of a stage without contact forces."""
     room = march.room
     ratio = length.numbers[0]

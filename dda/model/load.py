@@ -43,6 +43,12 @@ class BaseMotion:
         times, record, requested = (np.asarray(part, float) for part in (self.time, self.displacement, instants))
         return np.column_stack([np.interp(requested, times, column) for column in record.T])
 
+    def velocity(self, instants: ArrayLike) -> Array:
+        """Return the velocity at given instants between those of the record, (len(instants), 2) [m/s]."""
+        slopes = np.diff(np.asarray(self.displacement, float), axis=0) / np.diff(self.time)[:, None]
+        rest = np.zeros((1, 2))
+        return np.concatenate([rest, slopes, rest])[np.searchsorted(self.time, instants)]
+
     def along(self, axes: Array) -> BaseMotion:
         """Return the motion along two axes, the rows of a matrix."""
         return BaseMotion(self.time, np.asarray(self.displacement, float) @ axes.T)

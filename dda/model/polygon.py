@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,21 +41,20 @@ def area_integrals(vertices: Array) -> AreaIntegrals:
     vertices : (n, 2) array [m]
         Corners in counter-clockwise order; the origin should lie near the polygon.
     """
-    corners = vertices.tolist()
-    total = [0.0] * 6
-    for (x, y), (X, Y) in zip(corners, corners[1:] + corners[:1], strict=True):
-        c = x * Y - X * y
-        moments = (
-            1.0,
+    x, y = vertices.T
+    X, Y = np.roll(vertices, -1, axis=0).T
+    moments = np.array(
+        [
+            np.ones(len(x)),
             x + X,
             y + Y,
             x * x + x * X + X * X,
             y * y + y * Y + Y * Y,
             x * Y + 2 * x * y + 2 * X * Y + X * y,
-        )
-        total = [t + c * m for t, m in zip(total, moments, strict=True)]
-    area, sx, sy, xx, yy, xy = total
-    return AreaIntegrals(area / 2, sx / 6, sy / 6, xx / 12, yy / 12, xy / 24)
+        ]
+    )
+    totals = np.sum((x * Y - X * y) * moments, axis=1) / np.array([2, 6, 6, 12, 12, 24])
+    return AreaIntegrals(*totals.tolist())
 
 
 def section(vertices: Array) -> Section:
@@ -88,24 +86,10 @@ def checked_polygon(vertices: ArrayLike) -> Array:
     if not np.all(np.isfinite(points)):
         raise ValueError(f"vertices: coordinates must be finite, got {points.tolist()}")
     local = points - points[0]
-    if not _convex(local) and (fault := _fault(local)):
+    if fault := _fault(local):
         raise ValueError(f"vertices: {fault}, got {points.tolist()}")
     points.setflags(write=False)
     return points
-
-
-def _convex(points: Array) -> bool:
-    """Tell whether every corner turns left and all of them once around: such a polygon is simple."""
-    corners = points.tolist()
-    following = corners[1:] + corners[:1]
-    edges = [(X - x, Y - y) for (x, y), (X, Y) in zip(corners, following, strict=True)]
-    turned = 0.0
-    for (x, y), (X, Y) in zip(edges, edges[1:] + edges[:1], strict=True):
-        turn = x * Y - X * y
-        if not turn > 0:
-            return False
-        turned += math.atan2(turn, x * X + y * Y)
-    return turned < 3 * math.pi  # once around is 2 pi, twice 4 pi
 
 
 def _fault(local: Array) -> str | None:

@@ -20,6 +20,8 @@ the strained block adds to the equations of the strain modes is a force, `inerti
 
 so that momentum and angular momentum are kept to rounding, and a block that spins has its exact mean strain.
 
+Points and vectors are complex numbers x + i y: a turn is a product, conj(a) b is a . b + i (a x b).
+
 A point moves by exactly B D of the increments D = (c, r, ex, ey, gxy) of a step, with the chord B of the step,
 
     B = ( I,  (Q1 - Q0)/dr U' xi,  (Q1 + Q0)/2 E_k xi ),     U' the mean of the ends.
@@ -39,6 +41,7 @@ from dda.model.block import Block
 
 STRAINS = np.array([[[1.0, 0.0], [0.0, 0.0]], [[0.0, 0.0], [0.0, 1.0]], [[0.0, 0.5], [0.5, 0.0]]])  # E of unit strains
 QUARTER_TURN = np.array([[0.0, -1.0], [1.0, 0.0]])
+Points = Any  # (n,) complex numbers x + i y [m], an array or a list
 RIGID = 3  # modes of a rigid block; a fixed one has none, a strained one three more
 
 
@@ -53,17 +56,16 @@ class Blocks(NamedTuple):
     gamma: Matrix  # (b, 3) gamma of the unstrained block
     G: Any  # (b, 3, 3)
     shapes: Any  # (b, 3, 3) strains by strain modes
-    centroid: Matrix  # (b, 2) at t = 0 [m]
+    centroid: Points  # (b,) at t = 0
     motion: Any  # (b,) column of what is prescribed that has its displacement in x, -1 of one that is not driven
     start: Any  # (b + 1,) first corner of each
-    xi: Matrix  # (corners, 2) from the centroid, unstrained [m]
+    xi: Points  # (corners,) from the centroid, unstrained
 
 
 class Poses(NamedTuple):
     """Of every block, what makes the directions in which its points move: of the chord of a step, or of its end."""
 
-    cos: Vector  # (b,) of the angle in the middle of the step, or at its end
-    sin: Vector
+    turn: Points  # (b,) exp(i r) of the angle in the middle of the step, or at its end
     spin: Vector  # (b,) |dQ/dr|: sin(dr/2) / (dr/2) of the chord, one of the end
     stretch: Vector  # (b,) cos(dr/2) of the chord, one of the end
     e: Matrix  # (b, 3) strains
@@ -110,41 +112,52 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
         gamma=gamma,
         G=G,
         shapes=shapes,
-        centroid=np.array([block.section.centroid for block in outlines]),
+        centroid=as_complex([block.section.centroid for block in outlines]),
         motion=np.array(motion, dtype=np.int64),
         start=start,
-        xi=np.vstack([block.corners - block.section.centroid for block in outlines]),
+        xi=as_complex(np.vstack([block.corners - block.section.centroid for block in outlines])),
     ), np.concatenate([*k, np.zeros(0)])
+
+
+def as_complex(points: Any) -> Points:
+    """Return points (n, 2) as complex numbers."""
+    x, y = np.asarray(points, dtype=float).reshape(-1, 2).T
+    return x + 1j * y
 
 
 def poses_of(blocks: int) -> Poses:
     """Return room for the poses of blocks."""
-    cos, sin, spin, stretch, J = np.ones((5, blocks))
-    return Poses(cos, sin, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
+    spin, stretch, J = np.ones((3, blocks))
+    return Poses(spin + 0j, spin, stretch, np.zeros((blocks, 3)), J, np.zeros((blocks, 3)))
 
 
 # ---- inertia of a strained block -------------------------------------------------------------------------------------
 
 
+def row_times(row: Vector, x: Vector, first: int, n: int) -> float:
+    """Return the sum of the first n products of a row and a part of a vector."""
+    total = 0.0
+    for e in range(n):
+        total += row[e] * x[first + e]
+    return total
+
+
 def inertia_of(blocks: Blocks, i: int, e: Vector, poses: Poses) -> None:
     """Write J and gamma of a block with strains e."""
-    root = blocks.root_inertia[i]
-    J = root * root
+    poses.J[i] = blocks.root_inertia[i] * blocks.root_inertia[i]
     for k in range(3):
-        of_strain = 0.0
-        turning = blocks.gamma[i][k]
+        poses.J[i] += (2 * blocks.j[i][k] + row_times(blocks.M[i][k], e, 0, 3)) * e[k]
+        poses.gamma[i][k] = blocks.gamma[i][k]
         for m in range(3):
-            of_strain += blocks.M[i][k][m] * e[m]
-            turning += e[m] * blocks.G[i][m][k]
-        J += (2 * blocks.j[i][k] + of_strain) * e[k]
-        poses.gamma[i][k] = turning
-    poses.J[i] = J
+            poses.gamma[i][k] += e[m] * blocks.G[i][m][k]
 
 
 def inertia_forces(
     blocks: Blocks, i: int, p: Vector, a: Vector, step: float, poses: Poses, spin: Vector, out: Vector
-) -> None:
+) -> float:
     """Write what a strained block adds to the equations of its strain modes, and (r', e') into `spin`.
+
+    Returns its kinetic energy less that of the modes alone, p' p / 2 [J].
 
     Parameters
     ----------
@@ -159,19 +172,16 @@ def inertia_forces(
     turning = 0.0  # gamma e'' less what the modes have of it
     carried = 0.0
     moving = 0.0
+    unstrained = 0.0
     for k in range(3):
-        rate = 0.0
-        faster = 0.0
-        for m in range(3):
-            shape = blocks.shapes[i][k][m]
-            rate += shape * p[first + 3 + m]
-            faster += shape * a[first + 3 + m]
-        spin[1 + k] = rate / step
-        faster /= step * step
+        spin[1 + k] = row_times(blocks.shapes[i][k], p, first + 3, 3) / step
+        faster = row_times(blocks.shapes[i][k], a, first + 3, 3) / (step * step)
         turning += poses.gamma[i][k] * faster
         carried += blocks.gamma[i][k] * faster
         moving += poses.gamma[i][k] * spin[1 + k]
-    omega = (root * p[first + 2] / step - moving) / J
+        unstrained += blocks.gamma[i][k] * spin[1 + k]
+    H = root * p[first + 2] / step
+    omega = (H - moving) / J
     spin[0] = omega
     growth = 0.0
     for k in range(3):
@@ -185,14 +195,14 @@ def inertia_forces(
             force -= 2 * omega * blocks.G[i][m][k] * spin[1 + m]
         for m in range(3):
             out[first + 3 + m] += blocks.shapes[i][k][m] * force
+    excess: float = ((H * H - moving * moving) / J - (H * H - unstrained * unstrained) / (root * root)) / 2
+    return excess
 
 
 def pull_of(blocks: Blocks, i: int, k: int, e: Vector) -> float:
     """Return j + M e, the centrifugal force on a strain over r'^2."""
-    total = blocks.j[i][k]
-    for m in range(3):
-        total += blocks.M[i][k][m] * e[m]
-    return float(total)
+    pull: float = blocks.j[i][k] + row_times(blocks.M[i][k], e, 0, 3)
+    return pull
 
 
 # ---- where a step goes -----------------------------------------------------------------------------------------------
@@ -213,15 +223,10 @@ def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix)
         if modes == RIGID:
             continue
         for k in range(3):
-            D[3 + k] = 0.0
-            for m in range(3):
-                D[3 + k] += blocks.shapes[i][k][m] * x[first + 3 + m]
+            D[3 + k] = row_times(blocks.shapes[i][k], x, first + 3, 3)
             chords.e[i][k] = q[i][3 + k] + D[3 + k] / 2
         inertia_of(blocks, i, chords.e[i], chords)
-        turning = 0.0
-        for k in range(3):
-            turning += chords.gamma[i][k] * D[3 + k]
-        D[2] = (root * x[first + 2] - turning) / chords.J[i]
+        D[2] = (root * x[first + 2] - row_times(chords.gamma[i], D, 3, 3)) / chords.J[i]
 
 
 def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) -> None:
@@ -232,12 +237,10 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
             half = math.nan
         middle = q[i][2] + half
         end = q[i][2] + D[i][2] if math.isfinite(half) else half
-        chords.cos[i] = math.cos(middle)
-        chords.sin[i] = math.sin(middle)
+        chords.turn[i] = complex(math.cos(middle), math.sin(middle))
         chords.spin[i] = math.sin(half) / half if half != 0 else 1.0
         chords.stretch[i] = math.cos(half)
-        ends.cos[i] = math.cos(end)
-        ends.sin[i] = math.sin(end)
+        ends.turn[i] = complex(math.cos(end), math.sin(end))
         ends.spin[i] = 1.0
         ends.stretch[i] = 1.0
         if blocks.first[i + 1] - blocks.first[i] > RIGID:
@@ -246,52 +249,49 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
             inertia_of(blocks, i, ends.e[i], ends)
 
 
-def stretched(e: Vector, first: int, x: float, y: float) -> tuple[float, float]:
-    """Return E (x, y) of the strains that begin at a place of a vector [m]."""
+def stretched(e: Vector, first: int, z: complex) -> complex:
+    """Return E z of the strains that begin at a place of a vector [m]."""
     half = e[first + 2] / 2
-    return e[first] * x + half * y, half * x + e[first + 1] * y
+    return complex(e[first] * z.real + half * z.imag, half * z.real + e[first + 1] * z.imag)
 
 
-def strained(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
-    """Return U (x, y) of a block, in its axes [m]."""
-    X, Y = stretched(poses.e[i], 0, x, y)
-    return x + X, y + Y
+def strained(poses: Poses, i: int, z: complex) -> complex:
+    """Return U z of a block, in its axes [m]."""
+    return z + stretched(poses.e[i], 0, z)
 
 
-def point(poses: Poses, i: int, x: float, y: float) -> tuple[float, float]:
+def point(poses: Poses, i: int, z: complex) -> complex:
     """Return where a point of a block is from its centroid, for the poses of an end [m]."""
-    X, Y = strained(poses, i, x, y)
-    c = poses.cos[i]
-    s = poses.sin[i]
-    return c * X - s * Y, s * X + c * Y
+    turned: complex = poses.turn[i] * strained(poses, i, z)
+    return turned
 
 
-def moved(poses: Poses, i: int, D: Vector, x: float, y: float) -> tuple[float, float]:
+def place_of(blocks: Blocks, q: Matrix, D: Matrix, ends: Poses, i: int, z: complex) -> complex:
+    """Return where a point of a block is after increments D, for the poses there [m]."""
+    centroid: complex = blocks.centroid[i] + complex(q[i][0] + D[i][0], q[i][1] + D[i][1])
+    return centroid + point(ends, i, z)
+
+
+def moved(poses: Poses, i: int, D: Vector, z: complex) -> complex:
     """Return how far a step by D moves a point, for the poses of its chord [m]."""
-    c = poses.cos[i]
-    s = poses.sin[i]
     turn = poses.spin[i] * D[2]
-    U, V = strained(poses, i, x, y)
-    dU, dV = stretched(D, 3, x, y)
-    X = -turn * V + poses.stretch[i] * dU
-    Y = turn * U + poses.stretch[i] * dV
-    return D[0] + (c * X - s * Y), D[1] + (s * X + c * Y)
-
-
-def direction(poses: Poses, i: int, ax: float, ay: float, x: float, y: float, out: Vector) -> None:
-    """Write a . dx/dD of a point, for a direction a in space."""
-    c = poses.cos[i]
-    s = poses.sin[i]
-    U, V = strained(poses, i, x, y)
-    across = ax * c + ay * s
-    along = ay * c - ax * s
-    out[0] = ax
-    out[1] = ay
-    out[2] = poses.spin[i] * (along * U - across * V)
     stretch = poses.stretch[i]
-    out[3] = stretch * across * x
-    out[4] = stretch * along * y
-    out[5] = stretch * (across * y + along * x) / 2
+    U = strained(poses, i, z)
+    dU = stretched(D, 3, z)
+    way: complex = poses.turn[i] * complex(stretch * dU.real - turn * U.imag, stretch * dU.imag + turn * U.real)
+    return complex(D[0], D[1]) + way
+
+
+def direction(poses: Poses, i: int, a: complex, z: complex, out: Vector) -> None:
+    """Write a . dx/dD of a point, for a direction a in space."""
+    own = poses.turn[i].conjugate() * a  # in the axes of the block
+    stretch = poses.stretch[i]
+    out[0] = a.real
+    out[1] = a.imag
+    out[2] = poses.spin[i] * (strained(poses, i, z).conjugate() * own).imag
+    out[3] = stretch * own.real * z.real
+    out[4] = stretch * own.imag * z.imag
+    out[5] = stretch * (own.real * z.imag + own.imag * z.real) / 2
 
 
 def by_modes(blocks: Blocks, i: int, poses: Poses, row: Vector, force: bool, out: Vector) -> None:

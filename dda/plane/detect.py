@@ -31,9 +31,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector
-from dda.model.arrays import Array
-from dda.model.polygon import section
+from dda.contact.dense import Vector, copy
+from dda.contact.rows import INSIDE, TOO_DEEP, TOO_MANY
+from dda.plane.bodies import Points
 from dda.plane.polygons import Corners, Parts, Sides, outlines
 
 REACH = 0.02  # of the size of the smallest block, within which contacts are kept
@@ -44,8 +44,6 @@ NEAR = 1e-3  # of that size, within which a contact inherits from one of other f
 DEEP = 0.25  # of that size: a corner that is deeper has lost its block, even if a step brought it there
 PARALLEL = -0.95  # cosine between opposite edges (18 degrees), above which one corner alone may touch
 NONE = -1
-TOO_MANY = -2  # contacts, for the records that were given
-TOO_DEEP = -3  # a corner lies deeper in a block than a step can have brought it
 
 
 class FoundContacts(NamedTuple):
@@ -54,7 +52,6 @@ class FoundContacts(NamedTuple):
     corner: Any  # numbers among all corners
     edge: Any
     gap: Vector  # at the start of the step, along the edge's outward normal [m]
-    law: Any
     origin: Any  # contact of the step before from which it goes on, -1: none
     same: Any  # 1 where that is the same corner at the same edge
     normal: Vector  # force, as the step leaves it [N]
@@ -70,9 +67,10 @@ class Detection(NamedTuple):
     sides: Sides
     parts: Parts
     moves: Any  # (b,) 0 of blocks that cannot
-    head: Any  # (b,) work: first contact of the step before of a block
+    head: Any  # (b * b,) first contact of the step before of two blocks, NONE but while contacts are looked for
+    spread: Vector  # (4,) work: where the parts that move begin, as a box
     depth: Vector  # (b,) work: how deep each is pressed into others, or these into it [m]
-    before: Matrix  # (n, 2) where the corners were when the last step that was accepted began [m]
+    before: Points  # (n,) where the corners were when the last step that was accepted began
     travel: Vector  # (b,) how far the corners of each moved in it, at most [m]
     law: Any  # (b * b,) number of the law of two blocks, -1 where no contact is looked for
     contacts: FoundContacts
@@ -81,8 +79,8 @@ class Detection(NamedTuple):
     size: float  # of the smallest block that moves [m]
 
 
-def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, most: int) -> Detection:
-    """Return what finds contacts of blocks with the corners (n, 2) [m], at most so many.
+def detection_of(polygons: Sequence[Points], moves: Any, law: Any, most: int, size: float) -> Detection:
+    """Return what finds contacts of blocks with these corners, at most so many.
 
     Parameters
     ----------
@@ -90,22 +88,21 @@ def detection_of(polygons: Sequence[Array], moves: Sequence[bool], law: Array, m
         Number of the law of two blocks, -1 where they are not looked at; blocks of which neither moves are not.
     """
     movable = np.array(moves, dtype=np.int64)
-    looked_at = np.array(law, dtype=np.int64)
-    looked_at[~np.logical_or.outer(movable, movable)] = NONE
+    looked_at = np.where(np.logical_or.outer(movable, movable), law, NONE)
     np.fill_diagonal(looked_at, NONE)
-    areas = [section(vertices).area for vertices, moving in zip(polygons, moves, strict=True) if moving]
     return Detection(
         *outlines(polygons),
         moves=movable,
-        head=np.full(len(polygons), NONE),
+        head=np.full(len(polygons) ** 2, NONE),
+        spread=np.zeros(4),
         depth=np.zeros(len(polygons)),
-        before=np.full((sum(map(len, polygons)), 2), math.inf),
+        before=np.full(sum(map(len, polygons)), complex(math.inf)),
         travel=np.zeros(len(polygons)),
         law=looked_at.ravel(),
         contacts=found_contacts(most),
         previous=found_contacts(most),
         count=np.zeros(2, np.int64),
-        size=float(np.sqrt(min(areas))),
+        size=size,
     )
 
 
@@ -115,57 +112,56 @@ def found_contacts(most: int) -> FoundContacts:
     return FoundContacts(*(np.zeros(most, float if name in numbers else np.int64) for name in FoundContacts._fields))
 
 
-def keep_contacts(detection: Detection) -> None:
-    """Take the contacts of a step that was accepted for those of the step before."""
+def keep_contacts(detection: Detection, force: Vector, state: Any, stated: int) -> None:
+    """Take the contacts of a step that was accepted for those of the step before.
+
+    Parameters
+    ----------
+    force, state
+        Of the rows after the step, those of so many stated contacts first.
+    """
     contacts = detection.contacts
     previous = detection.previous
-    corners = detection.corners
-    for corner in range(len(corners.block)):
-        for axis in range(2):
-            detection.before[corner][axis] = corners.now[corner][axis]
+    copy(detection.corners.now, detection.before)
     detection.count[1] = detection.count[0]
     for number in range(detection.count[0]):
         previous.corner[number] = contacts.corner[number]
         previous.edge[number] = contacts.edge[number]
-        previous.normal[number] = contacts.normal[number]
-        previous.closed[number] = contacts.closed[number]
+        previous.normal[number] = force[stated + number]
+        previous.closed[number] = 1 if state[stated + number] == INSIDE else 0
 
 
 def find_contacts(detection: Detection) -> int:
-    """Write the contacts of a step; return how many there are, or TOO_MANY or TOO_DEEP.
+    """Write the contacts of a step; return how many there are, or minus an outcome of `dda.contact.rows`.
 
     The corners are where the step begins, `now`, and where it would end without contact, `then`.
     """
     corners = detection.corners
     parts = detection.parts
     previous = detection.previous
-    head = detection.head
-    blocks = len(head)
+    blocks = len(detection.moves)
     along = place_parts(detection)
     for block in range(blocks):
-        head[block] = NONE
         detection.depth[block] = 0.0
         detection.travel[block] = 0.0
     for corner in range(len(corners.block)):
-        x = corners.now[corner][0] - detection.before[corner][0]
-        y = corners.now[corner][1] - detection.before[corner][1]
         block = corners.block[corner]
-        distance = math.hypot(x, y)
+        distance = abs(corners.now[corner] - detection.before[corner])
         if distance == math.inf:  # before the first step
             distance = REACH * detection.size / 2
         detection.travel[block] = max(detection.travel[block], distance)
     for number in range(detection.count[1] - 1, -1, -1):
         corner = previous.corner[number]
         start = previous.edge[number]
-        keeper = keeper_of(detection, corners.block[corner], corners.block[start])
         if previous.closed[number] != 0:
             _, _, gap = foot(corners.now, corner, start, corners.after[start])
             for block in (corners.block[corner], corners.block[start]):
                 if detection.moves[block] != 0:
                     detection.depth[block] = max(detection.depth[block], 0.0 - gap)
         previous.heir[number] = NONE
-        previous.chain[number] = head[keeper]
-        head[keeper] = number
+        pair = pair_of(detection, corner, start)
+        previous.chain[number] = detection.head[pair]
+        detection.head[pair] = number
     detection.count[0] = 0
     for place in range(len(parts.order)):
         p = parts.order[place]
@@ -184,16 +180,16 @@ def find_contacts(detection: Detection) -> int:
                 return count
             detection.count[0] = count
     inherit(detection)
+    for number in range(detection.count[1]):
+        detection.head[pair_of(detection, previous.corner[number], previous.edge[number])] = NONE
     return int(detection.count[0])
 
 
-def keeper_of(detection: Detection, i: int, j: int) -> int:
-    """Return that of two blocks whose list holds their contacts: one that moves, as a floor has very many."""
-    if detection.moves[i] == 0:
-        return j
-    if detection.moves[j] == 0:
-        return i
-    return min(i, j)
+def pair_of(detection: Detection, corner: int, other: int) -> int:
+    """Return the number of the two blocks that have these corners, in either order."""
+    i = detection.corners.block[corner]
+    j = detection.corners.block[other]
+    return int(min(i, j) * len(detection.moves) + max(i, j))
 
 
 def place_parts(detection: Detection) -> int:
@@ -207,27 +203,15 @@ def place_parts(detection: Detection) -> int:
     margin = REACH * detection.size / 2
     for number in range(len(parts.order)):
         box = parts.box[number]
-        for axis in range(2):
-            least = math.inf
-            greatest = -math.inf
-            for side in range(parts.first[number], parts.last[number]):
-                corner = sides.corner[side]
-                least = min(least, corners.now[corner][axis], corners.then[corner][axis])
-                greatest = max(greatest, corners.now[corner][axis], corners.then[corner][axis])
-            box[2 * axis] = least - margin
-            box[2 * axis + 1] = greatest + margin
-    along = 0
-    widest = -math.inf
-    for axis in range(2):
-        least = math.inf
-        greatest = -math.inf
-        for number in range(len(parts.order)):
-            if detection.moves[parts.block[number]] != 0:
-                least = min(least, parts.box[number][2 * axis])
-                greatest = max(greatest, parts.box[number][2 * axis])
-        if greatest - least > widest:
-            widest = greatest - least
-            along = axis
+        clear_box(box)
+        for side in range(parts.first[number], parts.last[number]):
+            grow_box(box, corners.now[sides.corner[side]], margin)
+            grow_box(box, corners.then[sides.corner[side]], margin)
+    clear_box(detection.spread)
+    for number in range(len(parts.order)):
+        if detection.moves[parts.block[number]] != 0:
+            grow_box(detection.spread, complex(parts.box[number][0], parts.box[number][2]), 0.0)
+    along = 1 if detection.spread[3] - detection.spread[2] > detection.spread[1] - detection.spread[0] else 0
     for number in range(1, len(parts.order)):  # nearly sorted from the step before
         p = parts.order[number]
         place = number - 1
@@ -238,8 +222,23 @@ def place_parts(detection: Detection) -> int:
     return along
 
 
+def clear_box(box: Vector) -> None:
+    """Take out all that a box holds."""
+    for axis in range(2):
+        box[2 * axis] = math.inf
+        box[2 * axis + 1] = -math.inf
+
+
+def grow_box(box: Vector, place: complex, margin: float) -> None:
+    """Let a box hold a place too."""
+    box[0] = min(box[0], place.real - margin)
+    box[1] = max(box[1], place.real + margin)
+    box[2] = min(box[2], place.imag - margin)
+    box[3] = max(box[3], place.imag + margin)
+
+
 def touch_parts(detection: Detection, p: int, r: int) -> int:
-    """Add the contacts of two convex parts; return how many contacts there are then, or TOO_MANY or TOO_DEEP."""
+    """Add the contacts of two convex parts; return how many contacts there are then, or minus an outcome."""
     corners = detection.corners
     sides = detection.sides
     parts = detection.parts
@@ -255,16 +254,12 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
     # a. the edge through which they are pressed; of several that with the greatest force
     kept = NONE
     greatest = 0.0
-    old = detection.head[keeper_of(detection, i, j)]
+    old = detection.head[pair_of(detection, sides.corner[parts.first[p]], sides.corner[parts.first[r]])]
     while old >= 0:
         number = previous.corner[old]
         start = previous.edge[old]
         on = corners.block[start]
-        if (
-            previous.closed[old] != 0
-            and min(corners.block[number], on) == min(i, j)
-            and max(corners.block[number], on) == max(i, j)
-        ):
+        if previous.closed[old] != 0:
             edge = side_from(sides, parts, p if on == i else r, start)
             if edge >= 0 and sides.real[edge] != 0 and side_from(sides, parts, r if on == i else p, number) >= 0:
                 end = sides.end[edge]
@@ -324,7 +319,7 @@ def touch_parts(detection: Detection, p: int, r: int) -> int:
 
 
 def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deepest: float) -> int:
-    """Add the contacts of two parts at an edge; return how many contacts there are then, or TOO_MANY or TOO_DEEP.
+    """Add the contacts of two parts at an edge; return how many contacts there are then, or minus an outcome.
 
     Parameters
     ----------
@@ -374,16 +369,15 @@ def add_points(detection: Detection, p: int, r: int, edge: int, point: int, deep
                     contacts.corner[0] = corner
                     contacts.edge[0] = start
                     contacts.gap[0] = gap
-                    return TOO_DEEP
+                    return -TOO_DEEP
                 continue
             if (parts.alone[p] == 0 or parts.alone[r] == 0) and is_known(detection, found, corner, start):
                 continue
             if found >= len(contacts.corner):
-                return TOO_MANY
+                return -TOO_MANY
             contacts.corner[found] = corner
             contacts.edge[found] = start
             contacts.gap[found] = gap
-            contacts.law[found] = detection.law[parts.block[p] * len(detection.head) + parts.block[r]]
             found += 1
         if found > count:
             break
@@ -404,17 +398,15 @@ def is_known(detection: Detection, found: int, corner: int, edge: int) -> bool:
     """Tell whether other parts of two blocks have that contact already, or one of the other's corners at its place."""
     corners = detection.corners
     contacts = detection.contacts
-    place = corners.now[corner]
     near = 2 * SAME * detection.size
     for number in range(found):
         known = contacts.corner[number]
         against = contacts.edge[number]
         if known == corner and against == edge:
             return True
-        if corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]:
-            other = corners.now[known]
-            if math.hypot(place[0] - other[0], place[1] - other[1]) <= near:
-                return True
+        turned = corners.block[known] == corners.block[edge] and corners.block[against] == corners.block[corner]
+        if turned and abs(corners.now[corner] - corners.now[known]) <= near:
+            return True
     return False
 
 
@@ -426,47 +418,33 @@ def side_from(sides: Sides, parts: Parts, part: int, corner: int) -> int:
     return NONE
 
 
-def front(places: Matrix, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
+def front(places: Points, sides: Sides, parts: Parts, side: int, part: int) -> tuple[float, int]:
     """Return how far a part is in front of the edge of a side [m], and from which of its sides' corners."""
-    a = places[sides.corner[side]]
-    b = places[sides.end[side]]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
+    start = places[sides.corner[side]]
+    along = (places[sides.end[side]] - start).conjugate()
     least = math.inf
     lowest = NONE
     for number in range(parts.first[part], parts.last[part]):
-        c = places[sides.corner[number]]
-        gap = ty * (c[0] - a[0]) - tx * (c[1] - a[1])
+        gap = -(along * (places[sides.corner[number]] - start)).imag
         if gap < least:
             least = gap
             lowest = number
-    return least / math.sqrt(tx * tx + ty * ty), lowest
+    return least / abs(along), lowest
 
 
-def foot(places: Matrix, corner: int, start: int, end: int) -> tuple[float, float, float]:
+def foot(places: Points, corner: int, start: int, end: int) -> tuple[float, float, float]:
     """Return the length of an edge, how far along it a corner is, and its gap [m]."""
-    a = places[start]
-    b = places[end]
-    c = places[corner]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
-    x = c[0] - a[0]
-    y = c[1] - a[1]
-    length = math.sqrt(tx * tx + ty * ty)
-    return length, (tx * x + ty * y) / length, (ty * x - tx * y) / length
+    along = places[end] - places[start]
+    apart = along.conjugate() * (places[corner] - places[start])
+    length = abs(along)
+    return length, apart.real / length, -apart.imag / length
 
 
-def cosine_between(places: Matrix, sides: Sides, first: int, second: int) -> float:
+def cosine_between(places: Points, sides: Sides, first: int, second: int) -> float:
     """Return the cosine between two sides."""
-    a = places[sides.corner[first]]
-    b = places[sides.end[first]]
-    c = places[sides.corner[second]]
-    d = places[sides.end[second]]
-    tx = b[0] - a[0]
-    ty = b[1] - a[1]
-    ux = d[0] - c[0]
-    uy = d[1] - c[1]
-    return float((tx * ux + ty * uy) / math.sqrt((tx * tx + ty * ty) * (ux * ux + uy * uy)))
+    one = places[sides.end[first]] - places[sides.corner[first]]
+    other = places[sides.end[second]] - places[sides.corner[second]]
+    return float((one.conjugate() * other).real / (abs(one) * abs(other)))
 
 
 def inherit(detection: Detection) -> None:
@@ -482,21 +460,16 @@ def inherit(detection: Detection) -> None:
             if contacts.same[number] != 0:
                 continue
             corner = contacts.corner[number]
-            i = corners.block[corner]
-            j = corners.block[contacts.edge[number]]
             nearest = NEAR * detection.size
-            old = detection.head[keeper_of(detection, i, j)]
+            old = detection.head[pair_of(detection, corner, contacts.edge[number])]
             while old >= 0:
                 if attempt == 0:
                     if previous.corner[old] == corner and previous.edge[old] == contacts.edge[number]:
                         contacts.origin[number] = old
                         contacts.same[number] = 1
                 elif previous.closed[old] != 0 and previous.heir[old] == NONE:
-                    block = corners.block[previous.corner[old]]
-                    on = corners.block[previous.edge[old]]
-                    place = corners.now[previous.corner[old]]
-                    distance = math.hypot(place[0] - corners.now[corner][0], place[1] - corners.now[corner][1])
-                    if min(block, on) == min(i, j) and max(block, on) == max(i, j) and distance < nearest:
+                    distance = abs(corners.now[previous.corner[old]] - corners.now[corner])
+                    if distance < nearest:
                         nearest = distance
                         contacts.origin[number] = old
                 old = previous.chain[old]

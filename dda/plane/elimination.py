@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dda.contact.dense import Matrix, Vector
+from dda.contact.dense import Matrix, Vector, copy
 
 MISSING = -1  # of a block that is zero, and of an order for which there is no room
 
@@ -29,8 +29,6 @@ class BlockMatrix(NamedTuple):
     later: Any  # (n, n) neighbours of each body that are eliminated after it
     count: Any  # (n,) how many these are
     degree: Any  # (n,) work: neighbours that are left
-    inverse: Matrix  # (m, m) work
-    product: Matrix  # (m, m) work
     part: Vector  # (m,) work
 
 
@@ -44,8 +42,6 @@ def block_matrix(bodies: int, m: int, most: int) -> BlockMatrix:
         later=np.zeros((n, n), np.int64),
         count=np.zeros(n, np.int64),
         degree=np.zeros(n, np.int64),
-        inverse=np.zeros((m, m)),
-        product=np.zeros((m, m)),
         part=np.zeros(m),
     )
 
@@ -122,11 +118,11 @@ def factor_blocks(matrix: BlockMatrix) -> bool:
     """Factor a matrix in place; tell whether it is regular."""
     number = matrix.number
     blocks = matrix.blocks
-    product = matrix.product
-    m = len(matrix.part)
+    part = matrix.part
+    m = len(part)
     for k in matrix.order:
         pivot = blocks[number[k][k]]
-        if not invert(pivot, matrix.inverse, m):
+        if not invert(pivot):
             return False
         later = matrix.later[k]
         for a in range(matrix.count[k]):
@@ -134,13 +130,10 @@ def factor_blocks(matrix: BlockMatrix) -> bool:
             lower = blocks[number[i][k]]
             for r in range(m):
                 for c in range(m):
-                    total = 0.0
+                    part[c] = 0.0
                     for e in range(m):
-                        total += lower[r][e] * pivot[e][c]
-                    product[r][c] = total
-            for r in range(m):
-                for c in range(m):
-                    lower[r][c] = product[r][c]
+                        part[c] += lower[r][e] * pivot[e][c]
+                copy(part, lower[r])
             for b in range(matrix.count[k]):
                 j = later[b]
                 upper = blocks[number[k][j]]
@@ -184,24 +177,21 @@ def take_product(block: Matrix, x: Vector, out: Vector, m: int) -> None:
         out[r] -= total
 
 
-def invert(A: Matrix, work: Matrix, m: int) -> bool:
+def invert(A: Matrix) -> bool:
     """Invert a small matrix in place without exchanges; tell whether no pivot is zero."""
-    for r in range(m):
-        for c in range(m):
-            work[r][c] = A[r][c]
-            A[r][c] = 1.0 if r == c else 0.0
+    m = len(A)
     for k in range(m):
-        pivot = work[k][k]
+        pivot = A[k][k]
         if not abs(pivot) > 0:
             return False
+        A[k][k] = 1.0
         for c in range(m):
-            work[k][c] /= pivot
             A[k][c] /= pivot
         for r in range(m):
-            factor = work[r][k]
+            factor = A[r][k]
             if r == k or factor == 0:
                 continue
+            A[r][k] = 0.0
             for c in range(m):
-                work[r][c] -= factor * work[k][c]
                 A[r][c] -= factor * A[k][c]
     return True

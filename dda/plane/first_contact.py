@@ -16,6 +16,7 @@ advancing by it reaches the first touch from before as Newton's method does, a g
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -23,10 +24,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dda.model.arrays import Array
 from dda.model.checks import check_finite, check_positive
 from dda.model.polygon import checked_polygon
-from dda.plane.model import PlaneModel
+from dda.plane.bodies import Points, as_complex
 from dda.plane.polygons import convex_parts, turns_of, without_straight_corners
 
 CORNER_EDGE = "corner-edge"
@@ -46,6 +46,10 @@ class UniformMotion(NamedTuple):
     vx: float  # [m/s]
     vy: float
     spin: float  # [rad/s]
+
+    def turn(self, time: float) -> complex:
+        """Return the turn of the polygon, exp(i angle)."""
+        return cmath.exp(1j * (self.angle + self.spin * time))
 
 
 class TouchingCorner(NamedTuple):
@@ -102,13 +106,13 @@ def first_contact(
     >>> contact.time, contact.touches[0].kind
     (1.0, 'edge-edge')
     """
-    polygons = checked_polygon(A), checked_polygon(B)
+    polygons = as_complex(checked_polygon(A)), as_complex(checked_polygon(B))
     motions = UniformMotion(*motion_A), UniformMotion(*motion_B)
     for motion in motions:
         check_finite(**motion._asdict())
     check_positive(until=until)
-    extents = [float(np.max(np.ptp(polygon, axis=0))) for polygon in polygons]
-    start = [placed(polygon, motion, 0.0) for polygon, motion in zip(polygons, motions, strict=True)]
+    extents = [max(float(np.ptp(polygon.real)), float(np.ptp(polygon.imag))) for polygon in polygons]
+    start = [complex(one.x, one.y) + polygon * one.turn(0.0) for polygon, one in zip(polygons, motions, strict=True)]
     rounding = ROUNDING * float(max(np.max(np.abs(place - start[1][0])) for place in start))
     near = NEAR * min(extents) + rounding
     if overlap(*start) > near:
@@ -130,42 +134,7 @@ def first_contact(
     raise RuntimeError(f"first contact: no decision after {ADVANCES} advances, at t = {time!r} s")
 
 
-def first_block_contact(model: PlaneModel, first: int, second: int, until: float) -> FirstContact | None:
-    """Return the first contact of two blocks of a model, as they move from t = 0 on without loads and other blocks.
-
-    A block turns about its centroid; a fixed one rests. Block 0 of the contact is the first one, 1 the second.
-
-    Raises
-    ------
-    ValueError
-        If a block is driven, or the two overlap at t = 0.
-    """
-    outlines = []
-    motions = []
-    for number in (first, second):
-        part = model.blocks[number]
-        if part.motion is not None:
-            raise ValueError(
-                f"motion: must be uniform for a first contact, got {model.name_of(number)}, which is driven"
-            )
-        centroid = part.block.section.centroid
-        outlines.append(part.block.corners - np.array(centroid))
-        motions.append(UniformMotion(*centroid, 0.0, *part.velocity, part.spin))
-    return first_contact(outlines[0], outlines[1], motions[0], motions[1], until)
-
-
-def rotation(angle: float) -> Array:
-    """Return R of an angle [rad]."""
-    return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-
-
-def placed(points: Array, motion: UniformMotion, time: float) -> Array:
-    """Return where points of a polygon are, (n, 2) [m]."""
-    origin = np.array([motion.x + motion.vx * time, motion.y + motion.vy * time])
-    return origin + points @ rotation(motion.angle + motion.spin * time).T
-
-
-def overlap(A: Array, B: Array) -> float:
+def overlap(A: Points, B: Points) -> float:
     """Return how deep two polygons lie in each other, negative where they are apart [m].
 
     It is that of the convex parts that lie deepest, through the edge by which they part soonest.
@@ -173,72 +142,67 @@ def overlap(A: Array, B: Array) -> float:
     depths = []
     for a in convex_parts(A):
         for b in convex_parts(B):
-            gaps = [separation(A[a], B[b]), separation(B[b], A[a])]
-            depths.append(-max(gaps))
+            depths.append(-max(separation(A[a], B[b]), separation(B[b], A[a])))
     return max(depths)
 
 
-def separation(ring: Array, points: Array) -> float:
+def separation(ring: Points, points: Points) -> float:
     """Return the greatest distance that points keep from the line of an edge of a convex ring [m]."""
-    tangents = np.roll(ring, -1, axis=0) - ring
-    normals = np.column_stack([tangents[:, 1], -tangents[:, 0]]) / np.linalg.norm(tangents, axis=1)[:, None]
-    gaps = np.einsum("ek,epk->ep", normals, points[None] - ring[:, None])
-    return float(np.max(np.min(gaps, axis=1)))
+    tangents = np.roll(ring, -1) - ring
+    gaps = ((points - ring[:, None]) * (tangents / np.abs(tangents)).conj()[:, None]).imag
+    return float(np.max(np.min(-gaps, axis=1)))
+
+
+class Place(NamedTuple):
+    """Where a corner lies on an edge, and all edges that it lies on."""
+
+    point: TouchingCorner
+    at: complex  # from the origin of B [m]
+    on_a: tuple[int, ...]
+    on_b: tuple[int, ...]
+
+    def coincides(self, other: Place, near: float) -> bool:
+        """Tell whether another place is the same one."""
+        return bool(abs(self.at - other.at) <= 4 * near)
 
 
 class Pairs:
-    """All corners of a polygon that can touch, beside all edges of another one, in the axes of the latter."""
+    """All corners of a polygon that can touch, beside all edges of another one."""
 
-    def __init__(self, outline: Array, other: Array, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
+    def __init__(self, outline: Points, other: Points, motion: UniformMotion, motion_of_edges: UniformMotion) -> None:
         """Take corners from `outline` and edges from `other`."""
-        ring = without_straight_corners(outline)
-        self.corners = [corner for corner, sine in zip(ring, turns_of(outline, ring), strict=True) if sine > 0]
-        self.ring = ring
+        self.ring = without_straight_corners(outline)
+        turns = turns_of(outline, self.ring)
+        self.corners = [corner for corner, turn in zip(self.ring, turns, strict=True) if turn > 0]
         self.edges = without_straight_corners(other)
         self.xi = outline[self.corners]
         self.starts = other[self.edges]
-        sides = np.roll(self.starts, -1, axis=0) - self.starts
-        self.lengths = np.linalg.norm(sides, axis=1)
-        self.tangents = sides / self.lengths[:, None]
-        self.normals = np.column_stack([self.tangents[:, 1], -self.tangents[:, 0]])
+        sides = np.roll(self.starts, -1) - self.starts
+        self.lengths = np.abs(sides)
+        self.tangents = sides / self.lengths
         self.motion = motion
         self.motion_of_edges = motion_of_edges
-        self.origin = np.array([motion.x - motion_of_edges.x, motion.y - motion_of_edges.y])
-        self.velocity = np.array([motion.vx - motion_of_edges.vx, motion.vy - motion_of_edges.vy])
+        self.origin = complex(motion.x - motion_of_edges.x, motion.y - motion_of_edges.y)
+        self.velocity = complex(motion.vx - motion_of_edges.vx, motion.vy - motion_of_edges.vy)
 
-    def angle_of_edges(self, time: float) -> float:
-        """Return how far the other polygon has turned [rad]."""
-        return self.motion_of_edges.angle + self.motion_of_edges.spin * time
-
-    def distances(self, time: float) -> tuple[Array, Array]:
-        """Return s and g of all corners and edges, (corners, edges) [m]."""
-        places, _ = self._in_axes_of_edges(time)
-        apart = places[:, None] - self.starts
-        return np.einsum("cek,ek->ce", apart, self.tangents), np.einsum("cek,ek->ce", apart, self.normals)
-
-    def _in_axes_of_edges(self, time: float) -> tuple[Array, Array]:
-        """Return places and velocities of the corners in the axes of the edges, (corners, 2)."""
-        spin = self.motion_of_edges.spin
-        backwards = rotation(-self.angle_of_edges(time))
-        turned = self.motion.angle + self.motion.spin * time - self.angle_of_edges(time)
-        origin = backwards @ (self.origin + self.velocity * time)
-        from_origin = self.xi @ rotation(turned).T
-        velocity = backwards @ self.velocity + spin * np.array([origin[1], -origin[0]])
-        turning = (self.motion.spin - spin) * np.column_stack([-from_origin[:, 1], from_origin[:, 0]])
-        return origin + from_origin, velocity + turning
+    def relative(self, time: float) -> tuple[Points, Points]:
+        """Return s - i g of all corners and edges, (corners, edges) [m], and its rate in the axes of the edges."""
+        from_origin = self.xi * self.motion.turn(time)
+        turn = self.motion_of_edges.turn(time)
+        places = self.origin + self.velocity * time + from_origin
+        rates = self.velocity + 1j * (self.motion.spin * from_origin - self.motion_of_edges.spin * places)
+        axes = (self.tangents * turn).conj()
+        return (places[:, None] - self.starts * turn) * axes, rates[:, None] * axes
 
     def safe_time(self, time: float, window: float, tolerance: float) -> float:
         """Return for how long no corner touches an edge, at most the window; 0 where one touches [s]."""
-        along, gap = self.distances(time)
-        _, velocities = self._in_axes_of_edges(time)
-        speed_along = velocities @ self.tangents.T
-        closing = velocities @ self.normals.T
-        apart = np.stack([gap, -gap, -along, along - self.lengths])
-        rate = np.stack([closing, -closing, -speed_along, speed_along])
+        place, rates = self.relative(time)
+        apart = np.stack([-place.imag, place.imag, -place.real, place.real - self.lengths])
+        rate = np.stack([-rates.imag, rates.imag, -rates.real, rates.real])
         spin = self.motion_of_edges.spin
-        distance = max(math.hypot(*(self.origin + self.velocity * instant)) for instant in (time, time + window))
-        bend = spin**2 * distance + 2 * abs(spin) * math.hypot(*self.velocity)
-        bends = bend + (self.motion.spin - spin) ** 2 * np.linalg.norm(self.xi, axis=1)[:, None]
+        distance = max(abs(self.origin + self.velocity * instant) for instant in (time, time + window))
+        bend = spin**2 * distance + 2 * abs(spin) * abs(self.velocity)
+        bends = bend + (self.motion.spin - spin) ** 2 * np.abs(self.xi)[:, None]
         w = np.maximum(apart, 0.0)
         root = np.sqrt(rate**2 + 2 * bends * w)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -248,43 +212,34 @@ class Pairs:
         bounds = np.where(apart > tolerance, bounds, 0.0)
         return float(min(np.min(np.max(bounds, axis=0)), window))
 
-    def touching(self, time: float, near: float) -> list[tuple[int, int]]:
-        """Return numbers of corners and edges that touch, in `corners` and `edges`."""
-        along, gap = self.distances(time)
-        on_edge = (np.abs(gap) <= near) & (along >= -near) & (along <= self.lengths + near)
-        return [(int(corner), int(edge)) for corner, edge in np.argwhere(on_edge)]
-
-    def foot(self, corner: int, edge: int, time: float) -> float:
-        """Return at which share of an edge a corner is, both by their numbers here."""
-        along, _ = self.distances(time)
-        return float(np.clip(along[corner, edge] / self.lengths[edge], 0.0, 1.0))
+    def touching(self, time: float, near: float, block: int) -> list[Place]:
+        """Return every corner that lies on an edge; the corners are those of A, block 0, or of B."""
+        places, _ = self.relative(time)
+        along = places.real
+        origin = self.origin + self.velocity * time if block == 0 else 0.0
+        on_edge = (np.abs(places.imag) <= near) & (along >= -near) & (along <= self.lengths + near)
+        touching = []
+        for corner, edge in np.argwhere(on_edge).tolist():
+            foot = float(np.clip(along[corner, edge] / self.lengths[edge], 0.0, 1.0))
+            point = TouchingCorner(block, self.corners[corner], self.edges[edge], foot)
+            at = complex(origin + self.xi[corner] * self.motion.turn(time))
+            edges = self.edges_at(point.corner), (point.edge,)
+            touching.append(Place(point, at, edges[block], edges[1 - block]))
+        return touching
 
     def direction(self, edge: int, time: float) -> float:
         """Return the direction of an edge's outward normal against x, the edge by the number of its corner [rad]."""
-        x, y = self.normals[self.edges.index(edge)]
-        return math.atan2(y, x) + self.angle_of_edges(time)
+        normal = -1j * complex(self.tangents[self.edges.index(edge)])
+        return cmath.phase(normal) + self.motion_of_edges.angle + self.motion_of_edges.spin * time
 
     def edges_at(self, corner: int) -> tuple[int, int]:
         """Return the two edges of the corners' own polygon that meet in one of its corners."""
         return self.ring[self.ring.index(corner) - 1], corner
 
 
-class Place(NamedTuple):
-    """Where a corner lies on an edge, and all edges that it lies on."""
-
-    point: TouchingCorner
-    at: Array  # (2,) from the origin of B [m]
-    on_a: tuple[int, ...]
-    on_b: tuple[int, ...]
-
-    def coincides(self, other: Place, near: float) -> bool:
-        """Tell whether another place is the same one."""
-        return bool(np.max(np.abs(self.at - other.at)) <= 4 * near)
-
-
 def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[Touch, ...]:
     """Return all places at which two polygons touch; edges that lie on each other are one touch."""
-    places = places_at(time, A_on_B, B_on_A, near)
+    places = A_on_B.touching(time, near, 0) + B_on_A.touching(time, near, 1)
     touches = []
     on_edges: list[Place] = []
     for edge_of_A, edge_of_B in sorted({(a, b) for place in places for a in place.on_a for b in place.on_b}):
@@ -307,22 +262,6 @@ def touches_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> tuple[
             direction = edges.direction(point.edge, time) + math.pi * point.block
             touches.append(Touch(CORNER_EDGE, (point,), one_normal(direction)))
     return tuple(sorted(touches, key=lambda touch: touch.points))
-
-
-def places_at(time: float, A_on_B: Pairs, B_on_A: Pairs, near: float) -> list[Place]:
-    """Return every corner that lies on an edge, those of A first."""
-    places = []
-    for block, pairs in enumerate((A_on_B, B_on_A)):
-        for corner, edge in pairs.touching(time, near):
-            foot = pairs.foot(corner, edge, time)
-            point = TouchingCorner(block, pairs.corners[corner], pairs.edges[edge], foot)
-            own_edges = pairs.edges_at(point.corner)
-            if block == 0:
-                at = pairs.starts[edge] + foot * pairs.lengths[edge] * pairs.tangents[edge]
-                places.append(Place(point, at, own_edges, (point.edge,)))
-            else:
-                places.append(Place(point, pairs.xi[corner], (point.edge,), own_edges))
-    return places
 
 
 def distinct(places: list[Place], near: float) -> list[Place]:

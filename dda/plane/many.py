@@ -26,14 +26,16 @@ from dda.contact.rows import (
     INSIDE,
     LOWER,
     NONE,
-    ROUNDING,
     UPPER,
     Laws,
     Rows,
     Work,
+    along,
     crossing_share,
     is_smooth,
+    next_state,
     shear_limit,
+    write_at_bound,
 )
 from dda.march.step import Length
 from dda.plane.bodies import Blocks
@@ -64,6 +66,9 @@ FILL = 60  # blocks of the factors for each body for which there is room
 class Many(NamedTuple):
     """The equations of the blocks that move."""
 
+    blocks: Blocks
+    places: Places
+    slack: float  # [m]
     matrix: BlockMatrix
     body: Any  # (b,) number among those that move; MISSING of a fixed one
     right: Matrix  # (moving, m) right-hand side and solution
@@ -74,127 +79,115 @@ class Many(NamedTuple):
     known: Any  # (1,) how many blocks the factors have
 
 
-def many_of(blocks: Blocks, contacts: int) -> Many:
-    """Return room for the equations of so many contacts."""
+def many_of(blocks: Blocks, places: Places, size: float) -> Many:
+    """Return room for the equations of these contacts; the smallest block has that size [m]."""
     modes = np.diff(blocks.first)
     moving = np.flatnonzero(modes)
     body = np.full(len(modes), MISSING)
     body[moving] = np.arange(len(moving))
     n = len(moving)
     m = int(modes.max())
-    total = int(blocks.first[-1])
+    x, residual = np.zeros((2, int(blocks.first[-1])))
+    kappa, normal = np.zeros((2, len(places.law)))
     return Many(
+        blocks=blocks,
+        places=places,
+        slack=SLACK * size,
         matrix=block_matrix(n, m, min(n * n, FILL * n)),
         body=body,
         right=np.zeros((n, m)),
-        x=np.zeros(total),
-        residual=np.zeros(total),
-        kappa=np.zeros(contacts),
-        normal=np.zeros(contacts),
+        x=x,
+        residual=residual,
+        kappa=kappa,
+        normal=normal,
         known=np.zeros(1, dtype=np.int64),
     )
 
 
-def set_pattern(many: Many, places: Places) -> bool:
+def set_pattern(many: Many) -> bool:
     """Order the bodies for the present contacts, where one is between two that have none; tell if there is room.
 
     Blocks of pairs that touch no more are kept until then: they cost time alone.
     """
-    number = many.matrix.number
-    known = many.known[0] > 0
-    for k in range(places.count[0]):
-        i = many.body[places.sides[k][0]]
-        j = many.body[places.sides[k][1]]
-        if i >= 0 and j >= 0 and number[i][j] == MISSING:
-            known = False
-    if known:
+    if many.known[0] > 0 and not mark_pairs(many, False):
         return True
     clear_pattern(many.matrix)
-    for k in range(places.count[0]):
-        i = many.body[places.sides[k][0]]
-        j = many.body[places.sides[k][1]]
-        if i >= 0 and j >= 0:
-            number[i][j] = 0
-            number[j][i] = 0
+    mark_pairs(many, True)
     many.known[0] = order_blocks(many.matrix)
     return bool(many.known[0] > 0)
 
 
+def mark_pairs(many: Many, marks: bool) -> bool:
+    """Tell whether two bodies that touch have no block; mark them if that is asked for."""
+    number = many.matrix.number
+    sides = many.places.sides
+    missing = False
+    for k in range(many.places.count[0]):
+        i = many.body[sides[k][0]]
+        j = many.body[sides[k][1]]
+        if i >= 0 and j >= 0 and number[i][j] == MISSING:
+            missing = True
+            if marks:
+                number[i][j] = 0
+                number[j][i] = 0
+    return missing
+
+
 def find_many(
-    many: Many,
-    blocks: Blocks,
-    places: Places,
-    laws: Laws,
-    before: Rows,
-    length: Length,
-    after: Rows,
-    work: Work,
-    size: float,
-    again: bool,
+    many: Many, laws: Laws, before: Rows, length: Length, after: Rows, work: Work, again: bool
 ) -> tuple[int, int]:
     """Find states, forces and openings, as `dda.contact.rows.find` does; return the outcome and the number of solves.
 
     Parameters
     ----------
-    size
-        Of the smallest block [m].
     again
         Whether the rows after the step are those of the round before, whose states are tried first.
     """
-    slack = SLACK * size
-    if again:
-        copy(after.state, work.tried)
-    else:
-        copy(before.state, work.tried)
+    copy(after.state if again else before.state, work.tried)
     for k in range(laws.contacts):
-        if places.over[k] == 0:  # it carries nothing, and its gap is too large to be solved with
+        if laws.compliance[k] == 0:  # a rigid contact, whose force is no function of its way
+            return NONE, 0
+    for k in range(laws.contacts):
+        if many.places.over[k] == 0:  # it carries nothing, and its gap is too large to be solved with
             work.tried[k] = LOWER
             work.tried[laws.contacts + k] = INSIDE
-    if not set_pattern(many, places):
+    if not set_pattern(many):
         return NONE, 0
     solves = 0
     for restart in range(RESTARTS + 1):
         if restart > 0:
-            sweep(many, blocks, places, laws, before, length, after, work, restart * SWEEPS)
+            sweep(many, laws, length, after, work, restart * SWEEPS)
         for _ in range(TOGETHER if restart == 0 else 2 * TOGETHER):
-            spent = solve_states(many, blocks, places, laws, before, length, after, work)
+            spent = solve_states(many, laws, before, length, after, work)
             solves += spent
             if spent == 0:
                 return NONE, solves
-            if update_all(laws, after, work, slack) == 0:
-                refine(many, blocks, places, laws, length, after, work)
+            if update_all(many, laws, after, work) == 0:
+                refine(many, laws, length, after, work)
                 return FOUND, solves
     return NONE, solves
 
 
-def update_all(laws: Laws, after: Rows, work: Work, slack: float) -> int:
-    """Set all states that disagree with forces and openings by more than a slack [m]; return how many do."""
+def update_all(many: Many, laws: Laws, after: Rows, work: Work) -> int:
+    """Set all states that disagree with forces and openings by more than the slack; return how many do."""
     n = laws.contacts
+    slack = many.slack
     wrong = 0
     for k in range(n):
         r = n + k
+        c = laws.compliance[k]
         state = work.tried[k]
         shear_state = work.tried[r]
-        if state != INSIDE:
-            if work.z[k] < -slack:
-                state = INSIDE
-                shear_state = INSIDE
-        elif laws.opens[k] == 1 and not (after.force[k] - laws.lower[k]) * laws.compliance[k] >= -slack:
-            state = LOWER
-            shear_state = INSIDE
-        elif laws.slips and not is_smooth(laws, k):
-            if shear_state != INSIDE:
-                if shear_state * work.z[r] > slack:
-                    shear_state = INSIDE
-            else:
-                limit = shear_limit(laws, k, after.force[k])
-                more = abs(after.force[r]) - limit * (1 + ROUNDING)
-                if more * laws.compliance[r] > slack:
-                    shear_state = UPPER if after.force[r] > 0 else LOWER
-        if state != work.tried[k] or shear_state != work.tried[r]:
+        lower = laws.lower[k]
+        work.tried[k] = next_state(
+            state, after.force[k], work.z[k], c, lower, laws.upper[k], laws.opens[k], 0.0, slack / c
+        )
+        if work.tried[k] != state:
+            work.tried[r] = INSIDE  # what opens or closes begins anew
+        elif state == INSIDE and laws.slips and not is_smooth(laws, k):
+            work.tried[r] = along(laws, after, work, k, work.z[r], slack)
+        if work.tried[k] != state or work.tried[r] != shear_state:
             wrong += 1
-            work.tried[k] = state
-            work.tried[r] = shear_state
     return wrong
 
 
@@ -208,16 +201,7 @@ def closes(laws: Laws, before: Rows, work: Work, k: int) -> bool:
     return bool(shut and before.state[k] != INSIDE and before.opening[k] > 0 and not is_smooth(laws, k))
 
 
-def solve_states(
-    many: Many,
-    blocks: Blocks,
-    places: Places,
-    laws: Laws,
-    before: Rows,
-    length: Length,
-    after: Rows,
-    work: Work,
-) -> int:
+def solve_states(many: Many, laws: Laws, before: Rows, length: Length, after: Rows, work: Work) -> int:
     """Write the rows in the states `work.tried`; return the number of solves, zero where they have no solution."""
     n = laws.contacts
     closing = False
@@ -225,13 +209,15 @@ def solve_states(
         work.beta[k] = 1.0
         many.kappa[k] = 0.0
         closing = closing or closes(laws, before, work, k)
-    for newton in range(CROSSINGS):
-        assemble(many, blocks, places, laws, length, work)
+    solves = 0
+    settled = False
+    while not settled and solves < CROSSINGS:
+        solves += 1
+        assemble(many, laws, length, work)
         if not factor_blocks(many.matrix):
             return 0
-        solve_blocks(many.matrix, many.right)
-        take_solution(many, blocks)
-        add_forces(many, blocks, places, laws, work, after, 1.0)
+        take_solution(many)
+        add_forces(many, laws, work, after, 1.0)
         settled = True
         for k in range(n):
             if not closing or not closes(laws, before, work, k):
@@ -240,21 +226,29 @@ def solve_states(
             share = max(crossing_share(laws, before.opening[k], k, N), LEAST_SHARE)
             if abs(share - work.beta[k]) > CROSSED * share:
                 settled = False
-            displacement = work.q[n + k] + contact_displacement(many.x, blocks, places, n + k)
+            displacement = opening_of(many, work, n + k)
             many.kappa[k] = (after.force[n + k] * laws.compliance[n + k] + displacement) / N if N > 0 else 0.0
             many.normal[k] = N
             work.beta[k] = share
-        if settled:
-            write_openings(many, blocks, places, laws, before, work, after)
-            return newton + 1
-    write_openings(many, blocks, places, laws, before, work, after)
-    return CROSSINGS
+    for r in range(2 * n):
+        after.state[r] = work.tried[r]
+        after.slip[r] = 0.0
+        after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
+        if work.tried[r] != INSIDE:
+            write_at_bound(laws, before, after, work, r, opening_of(many, work, r))
+    return solves
 
 
-def assemble(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Length, work: Work) -> None:
+def opening_of(many: Many, work: Work, r: int) -> float:
+    """Return q + B x of a row [m]."""
+    opening: float = work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
+    return opening
+
+
+def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
     """Write matrix and right-hand side for the states `work.tried`."""
     matrix = many.matrix
-    m = len(matrix.part)
+    first = many.blocks.first
     n = laws.contacts
     clear_blocks(matrix, many.known[0])
     for i in range(len(many.body)):
@@ -262,30 +256,28 @@ def assemble(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Len
         if body < 0:
             continue
         block = matrix.blocks[matrix.number[body][body]]
-        first = blocks.first[i]
-        for e in range(m):
+        modes = first[i + 1] - first[i]
+        for e in range(len(many.right[body])):
             many.right[body][e] = 0.0
-            block[e][e] = 1.0
-        for e in range(blocks.first[i + 1] - first):
-            block[e][e] = stiffness_of(length, first + e)
+            block[e][e] = stiffness_of(length, first[i] + e) if e < modes else 1.0
     for k in range(n):
         if work.tried[k] != INSIDE:
             continue
         r = n + k
         shear_state = work.tried[r]
         stiffness = 1 / laws.compliance[k]
-        add_row(many, blocks, places, k, k, k, stiffness, -stiffness * work.q[k])
+        add_row(many, k, k, k, stiffness, -stiffness * work.q[k])
         if shear_state != INSIDE:
             slope = shear_state * laws.friction[k] * stiffness
-            add_row(many, blocks, places, k, r, k, slope, shear_state * laws.upper[r] - slope * work.q[k])
+            add_row(many, k, r, k, slope, shear_state * laws.upper[r] - slope * work.q[k])
         elif not is_smooth(laws, k):
-            along = work.beta[k] / laws.compliance[r]
-            add_row(many, blocks, places, k, r, r, along, -along * work.q[r])
+            shear_stiffness = work.beta[k] / laws.compliance[r]
+            add_row(many, k, r, r, shear_stiffness, -shear_stiffness * work.q[r])
             kappa = many.kappa[k]
             if kappa != 0.0:  # N = -(q + B x) / c moves the share behind the crossing
-                slope = -along * kappa * stiffness
-                constant = along * kappa * (many.normal[k] + stiffness * work.q[k])
-                add_row(many, blocks, places, k, r, k, slope, constant)
+                slope = -shear_stiffness * kappa * stiffness
+                constant = shear_stiffness * kappa * (many.normal[k] + stiffness * work.q[k])
+                add_row(many, k, r, k, slope, constant)
 
 
 def stiffness_of(length: Length, mode: int) -> float:
@@ -294,11 +286,11 @@ def stiffness_of(length: Length, mode: int) -> float:
     return 1 / flexibility if flexibility > 0 else STIFFEST
 
 
-def add_row(
-    many: Many, blocks: Blocks, places: Places, k: int, force: int, row: int, slope: float, constant: float
-) -> None:
+def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: float) -> None:
     """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
+    first = many.blocks.first
+    places = many.places
     for side in range(2):
         i = places.sides[k][side]
         body = many.body[i]
@@ -306,7 +298,7 @@ def add_row(
             continue
         F = places.F[force][side]
         right = many.right[body]
-        modes = blocks.first[i + 1] - blocks.first[i]
+        modes = first[i + 1] - first[i]
         for e in range(modes):
             right[e] += F[e] * constant
         for opposite in range(2):
@@ -319,21 +311,20 @@ def add_row(
             for e in range(modes):
                 push = slope * F[e]
                 if push != 0.0:
-                    for f in range(blocks.first[j + 1] - blocks.first[j]):
+                    for f in range(first[j + 1] - first[j]):
                         block[e][f] += push * B[f]
 
 
-def take_solution(many: Many, blocks: Blocks) -> None:
-    """Write the solution as increments of the modes."""
+def take_solution(many: Many) -> None:
+    """Solve with the factors, and write the solution as increments of the modes."""
+    solve_blocks(many.matrix, many.right)
+    first = many.blocks.first
     for i in range(len(many.body)):
-        body = many.body[i]
-        if body >= 0:
-            first = blocks.first[i]
-            for e in range(blocks.first[i + 1] - first):
-                many.x[first + e] = many.right[body][e]
+        for e in range(first[i + 1] - first[i]):
+            many.x[first[i] + e] = many.right[many.body[i]][e]
 
 
-def add_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Work, after: Rows, whole: float) -> None:
+def add_forces(many: Many, laws: Laws, work: Work, after: Rows, whole: float) -> None:
     """Write the forces that the increments make; where `whole` is zero, add what more increments add to them."""
     n = laws.contacts
     for k in range(n):
@@ -343,107 +334,52 @@ def add_forces(many: Many, blocks: Blocks, places: Places, laws: Laws, work: Wor
             after.force[r] = 0.0
         if work.tried[k] != INSIDE:
             continue
-        N = -(whole * work.q[k] + contact_displacement(many.x, blocks, places, k)) / laws.compliance[k]
+        N = -(whole * work.q[k] + contact_displacement(many.x, many.blocks, many.places, k)) / laws.compliance[k]
         after.force[k] += N
         if work.tried[r] != INSIDE:
             after.force[r] += work.tried[r] * (laws.friction[k] * N + whole * laws.upper[r])
         elif not is_smooth(laws, k):
-            displacement = whole * work.q[r] + contact_displacement(many.x, blocks, places, r)
+            displacement = whole * work.q[r] + contact_displacement(many.x, many.blocks, many.places, r)
             if many.kappa[k] != 0.0:
                 displacement += many.kappa[k] * (N - whole * many.normal[k])
             after.force[r] -= displacement * work.beta[k] / laws.compliance[r]
 
 
-def write_openings(
-    many: Many, blocks: Blocks, places: Places, laws: Laws, before: Rows, work: Work, after: Rows
-) -> None:
-    """Write states, openings and slips of rows whose forces are there."""
-    n = laws.contacts
-    for k in range(n):
-        r = n + k
-        after.state[k] = work.tried[k]
-        after.state[r] = work.tried[r]
-        after.slip[k] = 0.0
-        after.slip[r] = 0.0
-        after.opening[k] = 0.0 - after.force[k] * laws.compliance[k]
-        after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
-        if work.tried[k] != INSIDE:
-            work.z[k] = work.q[k] + contact_displacement(many.x, blocks, places, k)
-            after.opening[k] = work.z[k]
-        elif work.tried[r] != INSIDE:
-            z = work.q[r] + contact_displacement(many.x, blocks, places, r)
-            if before.state[k] != INSIDE:
-                z *= crossing_share(laws, before.opening[k], k, after.force[k])
-            work.z[r] = z + laws.compliance[r] * after.force[r]
-            after.slip[r] = work.z[r]
-
-
-def refine(many: Many, blocks: Blocks, places: Places, laws: Laws, length: Length, after: Rows, work: Work) -> None:
+def refine(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> None:
     """Add the forces of the equilibrium that is left over, by the factors of the last solve."""
-    n = laws.contacts
+    first = many.blocks.first
     for i in range(len(many.x)):
         many.residual[i] = -many.x[i] * stiffness_of(length, i)
-    push_contacts(blocks, places, after.force, many.residual)
+    push_contacts(many.blocks, many.places, after.force, many.residual)
     for i in range(len(many.body)):
-        body = many.body[i]
-        if body >= 0:
-            first = blocks.first[i]
-            for e in range(len(many.right[body])):
-                many.right[body][e] = 0.0
-            for e in range(blocks.first[i + 1] - first):
-                many.right[body][e] = many.residual[first + e]
-    solve_blocks(many.matrix, many.right)
-    take_solution(many, blocks)
-    add_forces(many, blocks, places, laws, work, after, 0.0)
-    for r in range(2 * n):
+        modes = first[i + 1] - first[i]
+        if modes > 0:
+            right = many.right[many.body[i]]
+            for e in range(len(right)):
+                right[e] = many.residual[first[i] + e] if e < modes else 0.0
+    take_solution(many)
+    add_forces(many, laws, work, after, 0.0)
+    for r in range(2 * laws.contacts):
         if after.force[r] != 0.0:
             after.opening[r] = 0.0 - after.force[r] * laws.compliance[r]
 
 
-def sweep(
-    many: Many,
-    blocks: Blocks,
-    places: Places,
-    laws: Laws,
-    before: Rows,
-    length: Length,
-    after: Rows,
-    work: Work,
-    sweeps: int,
-) -> None:
+def sweep(many: Many, laws: Laws, length: Length, after: Rows, work: Work, sweeps: int) -> None:
     """Solve contact after contact for its own forces, from the present ones; write the states these are in."""
     n = laws.contacts
     for i in range(len(many.x)):
         many.x[i] = 0.0
     for k in range(n):
-        r = n + k
         N = after.force[k]
-        if laws.opens[k] == 1 and not laws.lower[k] <= N:
-            N = 0.0
-        limit = shear_limit(laws, k, N)
-        T = min(max(after.force[r], -limit), limit) if N != 0.0 or laws.opens[k] == 0 else 0.0
+        T = after.force[n + k]
         after.force[k] = 0.0
-        after.force[r] = 0.0
-        push(many, blocks, places, length, k, N, after)
-        push(many, blocks, places, length, r, T, after)
+        after.force[n + k] = 0.0
+        set_forces(many, laws, length, after, k, N, T)
     for number in range(sweeps):
         for step in range(n):
             k = step if number % 2 == 0 else n - 1 - step
-            r = n + k
-            gap = work.q[k] + contact_displacement(many.x, blocks, places, k)
-            flexibility = flexibility_of(blocks, places, length, k, k)
-            N = (flexibility * after.force[k] - gap) / (flexibility + laws.compliance[k])
-            if laws.opens[k] == 1 and laws.lower[k] > N:
-                N = 0.0
-            T = 0.0
-            if not is_smooth(laws, k) and (N > 0 or laws.opens[k] == 0):
-                displacement = work.q[r] + contact_displacement(many.x, blocks, places, r)
-                flexibility = flexibility_of(blocks, places, length, r, r)
-                limit = shear_limit(laws, k, N)
-                sticking = (flexibility * after.force[r] - displacement) / (flexibility + laws.compliance[r])
-                T = min(max(sticking, -limit), limit)
-            push(many, blocks, places, length, k, N, after)
-            push(many, blocks, places, length, r, T, after)
+            N = force_alone(many, laws, length, after, work, k)
+            set_forces(many, laws, length, after, k, N, force_alone(many, laws, length, after, work, n + k))
     for k in range(n):
         r = n + k
         work.tried[r] = INSIDE
@@ -456,17 +392,32 @@ def sweep(
             work.tried[r] = UPPER if after.force[r] > 0 else LOWER
 
 
-def push(many: Many, blocks: Blocks, places: Places, length: Length, r: int, force: float, after: Rows) -> None:
+def force_alone(many: Many, laws: Laws, length: Length, after: Rows, work: Work, r: int) -> float:
+    """Return the force by which a row would be closed, those of all others as they are [N]."""
+    own = flexibility_of(many.blocks, many.places, length, r, r)
+    force: float = (own * after.force[r] - opening_of(many, work, r)) / (own + laws.compliance[r])
+    return force
+
+
+def set_forces(many: Many, laws: Laws, length: Length, after: Rows, k: int, N: float, T: float) -> None:
+    """Set the forces of a contact, within their bounds, and what they move."""
+    if laws.opens[k] == 1 and not laws.lower[k] <= N:
+        N = 0.0
+    if is_smooth(laws, k) or (laws.opens[k] == 1 and not N > 0):
+        T = 0.0
+    limit = shear_limit(laws, k, N)
+    push(many, length, k, N, after)
+    push(many, length, laws.contacts + k, min(max(T, -limit), limit), after)
+
+
+def push(many: Many, length: Length, r: int, force: float, after: Rows) -> None:
     """Set the force of a row, and what it moves."""
     change = force - after.force[r]
     after.force[r] = force
-    if change == 0.0:
-        return
-    n = places.count[0]
-    k = r if r < n else r - n
+    first = many.blocks.first
+    n = many.places.count[0]
     for side in range(2):
-        i = places.sides[k][side]
-        first = blocks.first[i]
-        for e in range(blocks.first[i + 1] - first):
-            mode = first + e
-            many.x[mode] += length.numbers[3] * length.inverse[mode] * places.F[r][side][e] * change
+        i = many.places.sides[r if r < n else r - n][side]
+        for e in range(first[i + 1] - first[i]):
+            mode = first[i] + e
+            many.x[mode] += length.numbers[3] * length.inverse[mode] * many.places.F[r][side][e] * change

@@ -16,6 +16,7 @@ from dda.model.block import Block
 from dda.model.checks import check_finite, check_not_negative
 from dda.model.load import BaseMotion
 from dda.model.material import Hypothesis, Material
+from dda.plane.bodies import as_complex
 
 NEAR = 1e-6  # of an edge's length, by which points that are to lie on it may be beside it
 
@@ -203,8 +204,8 @@ class PlaneModel:
         for number, contact in enumerate(self.contacts):
             field = f"contacts[{number}]"
             self._check_pair(field, "block", contact.block, "on", contact.on)
-            self._check_corner(f"{field}.corner", contact.block, contact.corner)
-            self._check_corner(f"{field}.edge", contact.on, contact.edge)
+            check_number(f"{field}.corner", contact.corner, len(self.blocks[contact.block].block.corners))
+            check_number(f"{field}.edge", contact.edge, len(self.blocks[contact.on].block.corners))
         for number, bond in enumerate(self.bonds):
             field = f"bonds[{number}]"
             self._check_pair(field, "first", bond.first, "second", bond.second)
@@ -212,7 +213,7 @@ class PlaneModel:
                 self.edge_of(getattr(bond, name), bond.start, bond.end, f"{field}.{name}")
         for number, load in enumerate(self.loads):
             field = f"loads[{number}]"
-            self._check_block(f"{field}.block", load.block)
+            check_number(f"{field}.block", load.block, len(self.blocks))
             if self.blocks[load.block].held:
                 raise ValueError(f"{field}.block: must move, got {self.name_of(load.block)}")
             if load.edge is not None:
@@ -230,33 +231,27 @@ class PlaneModel:
         ValueError
             If there is none, naming the field.
         """
-        corners = self.blocks[block].block.corners
-        following = np.roll(corners, -1, axis=0)
-        along = following - corners
-        square = np.sum(along**2, axis=1)
-        beside = np.zeros(len(corners))
-        for place in (start, end):
-            to = np.asarray(place, dtype=float) - corners
-            share = np.clip(np.sum(to * along, axis=1) / square, 0.0, 1.0)
-            beside = np.maximum(beside, np.hypot(*(to - share[:, None] * along).T))
-        edge = int(np.argmin(beside / np.sqrt(square)))
-        if beside[edge] > NEAR * math.sqrt(square[edge]):
+        corners = as_complex(self.blocks[block].block.corners)
+        along = np.roll(corners, -1) - corners
+        beside = np.zeros(len(corners))  # of the edges' lengths
+        for place in as_complex([start, end]):
+            ahead = (place - corners) / along  # of an edge from 0 to 1
+            beside = np.maximum(beside, np.abs(ahead - np.clip(ahead.real, 0.0, 1.0)))
+        edge = int(np.argmin(beside))
+        if beside[edge] > NEAR:
             raise ValueError(f"{field}: must lie on one edge of {self.name_of(block)}, got {start!r} to {end!r}")
         return edge
 
-    def _check_block(self, field: str, block: int) -> None:
-        if not 0 <= block < len(self.blocks):
-            raise ValueError(f"{field}: must be between 0 and {len(self.blocks) - 1}, got {block!r}")
-
     def _check_pair(self, field: str, first: str, i: int, second: str, j: int) -> None:
-        self._check_block(f"{field}.{first}", i)
-        self._check_block(f"{field}.{second}", j)
+        check_number(f"{field}.{first}", i, len(self.blocks))
+        check_number(f"{field}.{second}", j, len(self.blocks))
         if i == j:
             raise ValueError(f"{field}.{second}: must be another block than {first}, got {j!r}")
         if self.blocks[i].held and self.blocks[j].held:
             raise ValueError(f"{field}.{second}: one of two blocks must move, got {self.name_of(i)}, {self.name_of(j)}")
 
-    def _check_corner(self, field: str, block: int, corner: int) -> None:
-        count = len(self.blocks[block].block.corners)
-        if not 0 <= corner < count:
-            raise ValueError(f"{field}: must be between 0 and {count - 1}, got {corner!r}")
+
+def check_number(field: str, number: int, count: int) -> None:
+    """Raise ValueError unless a number is one of so many."""
+    if not 0 <= number < count:
+        raise ValueError(f"{field}: must be between 0 and {count - 1}, got {number!r}")

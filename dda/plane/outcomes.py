@@ -9,7 +9,7 @@ import numpy as np
 
 from dda.contact.rows import FOUND, NONE, OUTCOMES, TOO_DEEP, rows_of, solve, update
 from dda.march.step import History, March
-from dda.plane.many import SLACK, solve_states, update_all
+from dda.plane.many import solve_states, update_all
 from dda.plane.model import PlaneModel
 from dda.plane.taken import laws_for
 
@@ -81,7 +81,7 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
     contacts = plane.places.count[0]
     laws = laws_for(march.laws, contacts)
     is_second = plane.made[0] > 0
-    before = (plane.second if is_second else plane.first).rows
+    before = (march.between if is_second else plane.begun).rows
     stage = march.last if is_second or march.scheme.stages == 1 else march.first
     length = stage.part if is_cut else stage.whole
     after = rows_of(np.zeros(len(before.force)), np.zeros(len(before.force)))
@@ -95,8 +95,8 @@ def flipping_contacts(march: March, is_cut: bool) -> list[int]:
         first_met[tried] = number
         states.append(tried)
         if contacts > plane.dense:
-            solve_states(plane.many, plane.blocks, plane.places, laws, before, length, after, work)
-            update_all(laws, after, work, SLACK * plane.size)
+            solve_states(plane.many, laws, before, length, after, work)
+            update_all(plane.many, laws, after, work)
         else:
             solve(laws, before, length.flexible, after, work)
             update(laws, length.flexible, after, work, 1)

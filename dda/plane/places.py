@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 from dda.contact.dense import Matrix, Vector
 from dda.contact.rows import Rows
 from dda.march.step import Length
-from dda.plane.bodies import Blocks, Poses, by_modes, direction, moved, point, strained, stretched
+from dda.plane.bodies import Blocks, Points, Poses, by_modes, direction, moved, point, row_times, strained, stretched
 
 AT_END = 1e-9  # of an edge's length, by which a corner may lie beyond its end
 
@@ -33,48 +33,36 @@ class Places(NamedTuple):
     law: Any  # (c,) number of its springs
     sides: Any  # (c, 2) blocks: that of the corner, and that of the edge
     bonded: Any  # (c,) 1 of two points that are glued
-    at: Matrix  # (c, 2) the corner, from the centroid of its block, unstrained [m]
-    edge: Matrix  # (c, 4) both ends of the edge, from the centroid of its block [m]
-    foot: Matrix  # (c, 2) point of the edge under the corner [m]
-    normal: Matrix  # (c, 2) of the edge
+    at: Points  # (c,) the corner, from the centroid of its block, unstrained
+    start: Points  # (c,) where the edge starts, from the centroid of its block
+    side: Points  # (c,) from there to its end
+    foot: Points  # (c,) point of the edge under the corner
+    normal: Points  # (c,) of the edge
+    gap: Vector  # (c,) when the stage begins, by the places of the blocks [m]
     over: Any  # (c,) whether the corner is over the edge
     B: Any  # (2c, 2, 6) what the modes of either block add to a row
     F: Any  # (2c, 2, 6) what a unit force of a row does to them
     driven: Vector  # (2c,) what driven blocks add to a row [m]
-    row: Matrix  # (4, 6) room for a row over D: of either block, of the chord and of the force
+    row: Matrix  # (2, 6) room for a row over D: of the chord and of the force
 
 
 def place_contacts(blocks: Blocks, q: Matrix, ends: Poses, places: Places) -> None:
-    """Write feet and normals of contacts for where the blocks are."""
+    """Write feet, normals and gaps of contacts for where the blocks are."""
     for k in range(places.count[0]):
         i = places.sides[k][0]
         j = places.sides[k][1]
-        edge = places.edge[k]
-        tx, ty = point(ends, j, edge[2] - edge[0], edge[3] - edge[1])
-        length = math.hypot(tx, ty)
-        places.normal[k][0] = ty / length
-        places.normal[k][1] = -tx / length
+        along = point(ends, j, places.side[k])
+        length = abs(along)
+        normal = complex(along.imag / length, -along.real / length)
+        places.normal[k] = normal
         if places.bonded[k] == 1:
             continue
-        px, py = point(ends, i, places.at[k][0], places.at[k][1])
-        sx, sy = point(ends, j, edge[0], edge[1])
-        dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
-        dy = blocks.centroid[i][1] - blocks.centroid[j][1] + (q[i][1] - q[j][1]) + (py - sy)
-        share = (dx * tx + dy * ty) / (length * length)
-        places.foot[k][0] = edge[0] + share * (edge[2] - edge[0])
-        places.foot[k][1] = edge[1] + share * (edge[3] - edge[1])
+        apart = blocks.centroid[i] - blocks.centroid[j] + complex(q[i][0] - q[j][0], q[i][1] - q[j][1])
+        apart += point(ends, i, places.at[k]) - point(ends, j, places.start[k])
+        share = (along.conjugate() * apart).real / (length * length)
+        places.foot[k] = places.start[k] + share * places.side[k]
+        places.gap[k] = (normal.conjugate() * apart).real
         places.over[k] = 1 if -AT_END <= share <= 1 + AT_END else 0
-
-
-def gap_of(blocks: Blocks, q: Matrix, ends: Poses, places: Places, k: int) -> float:
-    """Return the gap of a contact by the places of its blocks [m]."""
-    i = places.sides[k][0]
-    j = places.sides[k][1]
-    px, py = point(ends, i, places.at[k][0], places.at[k][1])
-    sx, sy = point(ends, j, places.foot[k][0], places.foot[k][1])
-    dx = blocks.centroid[i][0] - blocks.centroid[j][0] + (q[i][0] - q[j][0]) + (px - sx)
-    dy = blocks.centroid[i][1] - blocks.centroid[j][1] + (q[i][1] - q[j][1]) + (py - sy)
-    return float(places.normal[k][0] * dx + places.normal[k][1] * dy)
 
 
 def write_rows(
@@ -88,80 +76,57 @@ def write_rows(
         Weight of the directions at the end of a step in those of the forces.
     """
     n = places.count[0]
-    chord_i = places.row[0]
-    chord_j = places.row[1]
-    force_i = places.row[2]
-    force_j = places.row[3]
+    chord = places.row[0]
+    force = places.row[1]
     for k in range(n):
         i = places.sides[k][0]
         j = places.sides[k][1]
-        at = places.at[k]
-        foot = places.foot[k]
-        edge = places.edge[k]
-        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
-        fixed_i = blocks.first[i + 1] == blocks.first[i]
-        fixed_j = blocks.first[j + 1] == blocks.first[j]
+        side = places.side[k]
         # the edge as it is strained, in the axes of its block, in the middle of the step and at its end
-        tx = edge[2] - edge[0]
-        ty = edge[3] - edge[1]
-        mx, my = strained(chords, j, tx, ty)
+        middle = strained(chords, j, side)
         psi = D[j][2]
-        across = 0.0
-        if has_strains:
-            cx, cy = stretched(D[j], 3, tx, ty)
-            across = mx * mx + my * my  # |t0| |t1| but for the square of a strain's increment
-            psi += (mx * cy - my * cx) / across
+        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
+        if has_strains:  # |t0| |t1| is |middle|^2 but for the square of a strain's increment
+            crossed = middle.conjugate() * stretched(D[j], 3, side)
+            psi += crossed.imag / square(middle)
         half = psi / 2
-        cos = math.cos(half)
-        sin = math.sin(half)
-        spin = sin / half if half != 0 else 1.0
-        nx = cos * places.normal[k][0] - sin * places.normal[k][1]
-        ny = sin * places.normal[k][0] + cos * places.normal[k][1]
-        end_x = cos * nx - sin * ny
-        end_y = sin * nx + cos * ny
+        half_turn = complex(math.cos(half), math.sin(half))
+        spin = half_turn.imag / half if half != 0 else 1.0
+        normal = half_turn * places.normal[k]
+        end_normal = half_turn * normal
         # the corner from its foot
-        gap = before.opening[k]
         stretch = before.opening[n + k] if places.bonded[k] == 1 else 0.0
-        dx = gap * places.normal[k][0] + stretch * places.normal[k][1]
-        dy = gap * places.normal[k][1] - stretch * places.normal[k][0]
-        ux, uy = moved(chords, i, D[i], at[0], at[1])
-        vx, vy = moved(chords, j, D[j], foot[0], foot[1])
-        mean_x = dx + (ux - vx) / 2
-        mean_y = dy + (uy - vy) / 2
-        dx += ux - vx
-        dy += uy - vy
+        apart = places.normal[k] * complex(before.opening[k], -stretch)
+        way = moved(chords, i, D[i], places.at[k]) - moved(chords, j, D[j], places.foot[k])
+        mean = complex(apart.real + way.real / 2, apart.imag + way.imag / 2)
+        apart += way
         for axis in range(2):
             r = k if axis == 0 else n + k
-            ax = cos * nx
-            ay = cos * ny
-            turned = spin * (nx * mean_y - ny * mean_x)
-            if not fixed_i or blocks.motion[i] >= 0:
-                direction(chords, i, ax, ay, at[0], at[1], chord_i)
-            if not fixed_j or blocks.motion[j] >= 0:
-                direction(chords, j, -ax, -ay, foot[0], foot[1], chord_j)
-                turn_with(chord_j, turned, has_strains, mx, my, tx, ty, across)
             places.driven[r] = 0.0
-            if blocks.motion[i] >= 0:
-                places.driven[r] += chord_i[0] * D[i][0] + chord_i[1] * D[i][1]
-            if blocks.motion[j] >= 0:
-                places.driven[r] += chord_j[0] * D[j][0] + chord_j[1] * D[j][1]
-            if late != 0:
-                if not fixed_i:
-                    direction(ends, i, end_x, end_y, at[0], at[1], force_i)
-                if not fixed_j:
-                    ex, ey = strained(ends, j, tx, ty)
-                    turned = end_x * dy - end_y * dx
-                    direction(ends, j, -end_x, -end_y, foot[0], foot[1], force_j)
-                    turn_with(force_j, turned, has_strains, ex, ey, tx, ty, ex * ex + ey * ey)
-            for m in range(6):
-                force_i[m] = (1 - late) * chord_i[m] + (late * force_i[m] if late != 0 else 0.0)
-                force_j[m] = (1 - late) * chord_j[m] + (late * force_j[m] if late != 0 else 0.0)
-            by_modes(blocks, i, chords, chord_i, False, places.B[r][0])
-            by_modes(blocks, j, chords, chord_j, False, places.B[r][1])
-            by_modes(blocks, i, chords, force_i, True, places.F[r][0])
-            by_modes(blocks, j, chords, force_j, True, places.F[r][1])
-            nx, ny = ny, -nx  # the direction along the edge
-            end_x, end_y = end_y, -end_x
+            for own in range(2):
+                block = places.sides[k][own]
+                place = places.at[k] if own == 0 else places.foot[k]
+                sign = 1.0 if own == 0 else -1.0
+                is_driven = blocks.motion[block] >= 0
+                if not is_driven and blocks.first[block + 1] == blocks.first[block]:
+                    continue
+                scale = sign * half_turn.real
+                direction(chords, block, complex(scale * normal.real, scale * normal.imag), place, chord)
+                if own == 1:
+                    turn_with(chord, spin * (normal.conjugate() * mean).imag, has_strains, middle, side)
+                if is_driven:
+                    places.driven[r] += chord[0] * D[block][0] + chord[1] * D[block][1]
+                if late != 0:
+                    direction(ends, block, complex(sign * end_normal.real, sign * end_normal.imag), place, force)
+                    if own == 1:
+                        turned = (end_normal.conjugate() * apart).imag
+                        turn_with(force, turned, has_strains, strained(ends, j, side), side)
+                for m in range(6):
+                    force[m] = (1 - late) * chord[m] + (late * force[m] if late != 0 else 0.0)
+                by_modes(blocks, block, chords, chord, False, places.B[r][own])
+                by_modes(blocks, block, chords, force, True, places.F[r][own])
+            normal = complex(normal.imag, -normal.real)  # the direction along the edge
+            end_normal = complex(end_normal.imag, -end_normal.real)
 
 
 def contact_displacement(x: Vector, blocks: Blocks, places: Places, r: int) -> float:
@@ -172,9 +137,7 @@ def contact_displacement(x: Vector, blocks: Blocks, places: Places, r: int) -> f
     for side in range(2):
         i = places.sides[k][side]
         first = blocks.first[i]
-        B = places.B[r][side]
-        for e in range(blocks.first[i + 1] - first):
-            total += B[e] * x[first + e]
+        total += row_times(places.B[r][side], x, first, blocks.first[i + 1] - first)
     return total
 
 
@@ -216,12 +179,16 @@ def flexibility_of(blocks: Blocks, places: Places, length: Length, r: int, s: in
     return total
 
 
-def turn_with(
-    row: Vector, turned: float, strained: bool, mx: float, my: float, tx: float, ty: float, across: float
-) -> None:
+def square(z: complex) -> float:
+    """Return |z|^2."""
+    return z.real * z.real + z.imag * z.imag
+
+
+def turn_with(row: Vector, turned: float, has_strains: bool, strained_side: complex, side: complex) -> None:
     """Add what the turn of the edge, by rotation and by strain, adds to a row."""
     row[2] += turned
-    if strained:
-        row[3] -= turned * my * tx / across
-        row[4] += turned * mx * ty / across
-        row[5] += turned * (mx * tx - my * ty) / (2 * across)
+    if has_strains:
+        across = square(strained_side)
+        row[3] -= turned * strained_side.imag * side.real / across
+        row[4] += turned * strained_side.real * side.imag / across
+        row[5] += turned * (strained_side.real * side.real - strained_side.imag * side.imag) / (2 * across)

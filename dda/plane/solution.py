@@ -6,24 +6,26 @@ import math
 from collections.abc import Mapping
 from copy import deepcopy
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.contact.rows import INSIDE, LOWER, Laws, rows_of
+from dda.contact.rows import INSIDE, LOWER, laws_of, rows_of, work_for
+from dda.contact.unilateral import Unilateral
 from dda.march.compiled import ANEW, run_loop
 from dda.march.energy import SUMS, energies_of
 from dda.march.step import Body, Course, History, March, march_of
 from dda.model.arrays import Array
 from dda.model.checks import check_count
-from dda.plane.bodies import blocks_of, increments, poses_of, set_poses
+from dda.plane.bodies import Blocks, as_complex, blocks_of, increments, poses_of, set_poses
 from dda.plane.detect import detection_of
 from dda.plane.many import many_of
 from dda.plane.model import ContactSprings, PlaneModel
 from dda.plane.outcomes import PlaneContact, found_contact, sentence, stated_contacts, unsettled_contacts
-from dda.plane.places import Places, gap_of, place_contacts, push_contacts, write_rows
-from dda.plane.step import STATE, Plane, PlaneState, PointLoads, make_steps, push_loads
-from dda.plane.taken import Memory, Springs, write_laws
+from dda.plane.places import Places, place_contacts, push_contacts, write_rows
+from dda.plane.step import STATE, Plane, PointLoads, make_steps, push_loads
+from dda.plane.taken import PlaneState, Springs, write_laws
 from dda.scheme.newmark import Scheme, late_momentum
 
 TOGETHER = 6  # solves with all states updated at once
@@ -42,7 +44,7 @@ class PlaneResult:
     displacement: Array  # (k, b, 2) of the centroid since t = 0, to all digits [m]
     angle: Array  # (k, b) rotation since t = 0, counter-clockwise [rad]
     strain: Array  # (k, b, 3) ex, ey, gxy in axes that turn with the block
-    velocity: Array  # (k, b, 6) rates of all these
+    velocity: Array  # (k, b, 6) rates of all these; of a driven block in the middle of the last step
     contacts: tuple[PlaneContact, ...]
     normal: Array  # (k, c) N [N], positive in compression
     shear: Array  # (k, c) T along (n_y, -n_x), n the edge's outward normal [N]
@@ -100,7 +102,7 @@ def solve_plane(
     c = len(march.method.places.law)
     b = len(model.blocks)
     history = History(
-        motion=np.zeros((kept + 1, STATE * b + (1 + 2 * c) * march.method.finds)),  # and which contacts are found
+        motion=np.zeros((kept + 1, STATE * b + (1 + c) * march.method.finds)),  # and which contacts are found
         force=np.zeros((kept + 1, 2 * c)),
         opening=np.zeros((kept + 1, 2 * c)),
         path=np.zeros((kept + 1, c)),
@@ -111,14 +113,44 @@ def solve_plane(
         sums=np.zeros((steps + 1, SUMS)),
     )
     touching = len(model.contacts) + len(model.bonds) if model.found is None else 3 * b
-    # what compiling takes, some 20 s, is 200,000 steps of a block or a contact in plain Python
+    # 200,000 steps of a block or a contact in plain Python, some 20 s, pay for compiling
     weight = steps * (b + touching) // 10 if compiled is None else compiled * ANEW
     arguments = (march, start, deepcopy(start), course), (history, steps, cut)
     (reached, outcome), left, how = run_loop(make_steps, (), *arguments, weight)
     with np.errstate(all="ignore"):
         unsettled = unsettled_contacts(model, left[0], history, reached, outcome)
-    ended = sentence(model, reached, outcome, unsettled)
-    return result_of(model, scheme, march, history, every, reached, ended, unsettled, how)
+    kept = reached // every + 1
+    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
+    q = motion[:, :, :6]
+    centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
+    rates = Rates(march, q, motion[:, :, 6:])
+    time = scheme.step * every * np.arange(float(kept))
+    for i, part in enumerate(model.blocks):
+        if part.motion is not None:
+            rates.velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
+    columns, stored = contact_columns(model, march, history, kept)
+    parts = rates.kinetic, strain_energy(model, q), stored, load_energy(model, q), history.sums[: reached + 1 : every]
+    repeated = [np.concatenate([part[:1], part]) for part in parts]  # which returns what follows t = 0
+    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
+    total = np.sum(list(energy.values()), axis=0)
+    starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
+    return PlaneResult(
+        time=time,
+        centroid=centroid,
+        displacement=q[:, :, :2],
+        angle=q[:, :, 2],
+        strain=q[:, :, 3:],
+        velocity=rates.velocity,
+        **columns,
+        energy=energy | {"balance": total - total[0]},
+        momentum=rates.momentum(centroid),
+        outcome=sentence(model, reached, outcome, unsettled),
+        unsettled=unsettled,
+        reached=reached,
+        solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
+        cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
+        note=f"stepped, {how}",
+    )
 
 
 def check_scheme(model: PlaneModel, scheme: Scheme) -> None:
@@ -142,19 +174,17 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
     driven = [i for i, part in enumerate(parts) if part.motion is not None]
     columns = [2 + len(ramps) + 2 * driven.index(i) if i in driven else -1 for i in range(len(parts))]
     blocks, k = blocks_of([p.block for p in parts], [p.rigid for p in parts], [p.held for p in parts], columns)
-    loads, point_loads = loads_of(model, blocks.first, blocks.root_mass, ramps)
+    outlines = [as_complex(part.block.corners) for part in parts]
+    size = math.sqrt(min(part.block.section.area for part in parts if not part.held))
+    loads, point_loads = loads_of(model, blocks, len(ramps) + 2 * len(driven))
     b = len(parts)
     most = 0 if model.found is None else ROOM * b + ROOM
-    places = places_of(model, most)
+    places = places_of(model, blocks, most)
     springs, pairs = springs_of(model)
     c = len(places.law)
     m = 2 * c
     dense = c if np.any(springs.across == 0) else min(c, DENSE)  # contacts whose flexibility there is room for
-    detection = detection_of([part.block.corners for part in parts], [not p.held for p in parts], pairs, max(most, 1))
-    edge_end = np.zeros(len(blocks.xi), dtype=np.int64)
-    real = detection.sides.real == 1
-    edge_end[detection.sides.corner[real]] = detection.sides.end[real]
-    memories = [Memory(rows_of(np.zeros(m), np.zeros(m)), np.zeros(m), np.zeros(c)) for _ in range(2)]
+    detection = detection_of(outlines, [not part.held for part in parts], pairs, max(most, 1), size)
     body = Body(
         k=k,
         loads=loads,
@@ -164,13 +194,12 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         ground=np.zeros((2 * dense, 2)),
         mobility=np.ones(len(k)),
     )
-    moving = [part.block.section.area for part in parts if not part.held]
     plane = Plane(
         blocks=blocks,
         places=places,
         loads=point_loads,
         late=2 - 2 * (scheme.delta if scheme.table is None else 0.5),
-        size=math.sqrt(min(moving)),
+        size=size,
         every=every,
         chords=poses_of(b),
         ends=poses_of(b),
@@ -183,28 +212,24 @@ def plane_march(model: PlaneModel, scheme: Scheme, every: int) -> March:
         spin=np.zeros(4),
         ground=np.zeros((m, 2)),
         springs=springs,
-        first=memories[0],
-        second=memories[1],
+        begun=state_of(len(k), b, np.zeros(m)),
         made=np.zeros(1, dtype=np.int64),
         dropped=np.zeros(1),
         dense=dense,
-        many=many_of(blocks, c),
+        many=many_of(blocks, places, size),
         strained=int(np.any(k > 0)),
         finds=int(model.found is not None),
         detection=detection,
-        edge_end=edge_end,
     )
-    march = march_of(body, laws_of(springs, dense, dense), scheme, np.zeros(2 * dense), plane)
-    laws = laws_of(springs, places.count[1], c)
+    march = march_of(body, laws_of(Unilateral(1.0), dense, 2 * dense, TOGETHER), scheme, np.zeros(2 * dense), plane)
+    slips = bool(np.any(np.isfinite(springs.limit)))
+    stated = int(places.count[1])
+    laws = laws_of(Unilateral(1.0), c, m, TOGETHER)
+    laws = laws._replace(contacts=stated, rows=2 * stated, slips=slips, paired=False)
     write_laws(springs, places, laws)
-    columns_of_course = 2 + len(ramps) + 2 * len(driven)
-    room = march.room._replace(start=np.zeros(columns_of_course), end=np.zeros(columns_of_course), free=np.zeros(m))
-    work = march.work._replace(
-        **{name: np.zeros(m) for name in ("q", "late", "z", "scale", "first", "mean")},
-        **{name: np.zeros(m, dtype=np.int64) for name in ("tried", "saved", "unknown", "place")},
-        **{name: np.zeros(c) for name in ("beta", "rate", "held")},
-        closing=np.zeros(c, dtype=np.int64),
-    )
+    room = march.room._replace(free=np.zeros(m))
+    of_equations = ("A", "right", "slope", "newton", "newton_right")
+    work = work_for(c, m, banded=True)._replace(**{name: getattr(march.work, name) for name in of_equations})
     return march._replace(between=state_of(len(k), b, np.zeros(m)), room=room, laws=laws, work=work)
 
 
@@ -221,33 +246,23 @@ def ramps_of(model: PlaneModel) -> list[float]:
     return sorted({0.0, *(load.ramp for load in model.loads)})
 
 
-def loads_of(model: PlaneModel, first: Array, root_mass: Array, ramps: list[float]) -> tuple[Array, PointLoads]:
-    """Return the loads on centroids by their modes, a row a ramp, and those at other places."""
-    rows = np.zeros((len(ramps), int(first[-1])))
-    at: list[Array] = []
-    forces: list[Array] = []
-    where: list[int] = []
-    shares: list[int] = []
+def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, PointLoads]:
+    """Return the loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
+    ramps = ramps_of(model)
+    rows = np.zeros((columns, int(blocks.first[-1])))
     for i, part in enumerate(model.blocks):
         if not part.held:
-            rows[0, first[i] : first[i] + 2] = root_mass[i] * np.array(model.gravity)
+            rows[0, blocks.first[i] :][:2] = blocks.root_mass[i] * np.array(model.gravity)
+    elsewhere = []
     for load in model.loads:
         force, place = load.resultant
-        row = ramps.index(load.ramp)
+        i = load.block
         if place is None:
-            rows[row, first[load.block] : first[load.block] + 2] += force / root_mass[load.block]
-            continue
-        at.append(place - model.blocks[load.block].block.section.centroid)
-        forces.append(force)
-        where.append(load.block)
-        shares.append(2 + row)
-    points = PointLoads(
-        block=np.array(where, dtype=np.int64),
-        at=np.array(at).reshape(-1, 2),
-        force=np.array(forces).reshape(-1, 2),
-        share=np.array(shares, dtype=np.int64),
-    )
-    return rows, points
+            rows[ramps.index(load.ramp), blocks.first[i] :][:2] += force / blocks.root_mass[i]
+        else:
+            elsewhere.append((i, complex(*place) - blocks.centroid[i], complex(*force), 2 + ramps.index(load.ramp)))
+    block, at, force, share = np.array(elsewhere, dtype=complex).reshape(-1, 4).T.copy()
+    return rows, PointLoads(block.real.astype(np.int64), at, force, share.real.astype(np.int64))
 
 
 def course_of(model: PlaneModel) -> Course:
@@ -265,21 +280,16 @@ def springs_of(model: PlaneModel) -> tuple[Springs, Array]:
     """Return the laws of stated contacts, of bonds and of found contacts, and the number of the law of two blocks."""
     rows = [law_of(contact.springs) for contact in model.contacts]
     rows += [(1 / bond.stiffness, 1 / bond.shear, 0.0, math.inf, math.inf, 0.0) for bond in model.bonds]
-    blocks = len(model.blocks)
-    numbers = np.full((blocks, blocks), -1)
-    if model.found is not None:
-        known: dict[ContactSprings, int] = {}
-        stated = {(part.block, part.on) for part in model.contacts}
-        stated |= {(bond.first, bond.second) for bond in model.bonds}
-        for i in range(blocks):
-            for j in range(i):
-                springs = model.found(i, j) if callable(model.found) else model.found
-                if springs is None or (i, j) in stated or (j, i) in stated:
-                    continue
-                if springs not in known:
-                    known[springs] = len(rows)
-                    rows.append(law_of(springs))
-                numbers[i, j] = numbers[j, i] = known[springs]
+    known: dict[ContactSprings, int] = {}
+    numbers = np.full((len(model.blocks), len(model.blocks)), -1)
+    for i, j in np.argwhere(np.tri(len(numbers), k=-1)).tolist():
+        springs = model.found(i, j) if callable(model.found) else model.found
+        if springs is not None:
+            numbers[i, j] = numbers[j, i] = known.setdefault(springs, len(rows) + len(known))
+    pairs = [(part.block, part.on) for part in model.contacts] + [(part.first, part.second) for part in model.bonds]
+    for i, j in pairs:  # which have contacts of their own
+        numbers[i, j] = numbers[j, i] = -1
+    rows += [law_of(springs) for springs in known]
     across, along, friction, limit, tension, opens = np.array(rows, dtype=float).reshape(-1, 6).T.copy()
     return Springs(across, along, friction, limit, tension, opens.astype(np.int64)), numbers
 
@@ -292,68 +302,52 @@ def law_of(springs: ContactSprings) -> tuple[float, ...]:
     return 1 / springs.stiffness, softness, springs.friction or 0.0, limit, springs.tension, 1.0
 
 
-def laws_of(springs: Springs, contacts: int, capacity: int) -> Laws:
-    """Return room for the laws of the rows of so many contacts, of which some are there."""
-    return Laws(
-        contacts=contacts,
-        rows=2 * contacts,
-        compliance=np.ones(2 * capacity),
-        lower=np.zeros(2 * capacity),
-        upper=np.zeros(2 * capacity),
-        opens=np.zeros(2 * capacity, dtype=np.int64),
-        friction=np.zeros(capacity),
-        slips=bool(np.any(np.isfinite(springs.limit))),
-        lagged=False,
-        paired=False,
-        banded=False,
-        closing=0.0,
-        retardation=0.0,
-        together=TOGETHER,
-        most=0,
-    )
-
-
-def places_of(model: PlaneModel, most: int) -> Places:
+def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
     """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
-    rows: list[tuple[int, int, int, int, Array, Array, Array]] = []
-
-    def outline(block: int) -> Array:
-        shape = model.blocks[block].block
-        return shape.corners - shape.section.centroid
-
-    def ends(block: int, edge: int) -> Array:
-        corners = outline(block)
-        return np.concatenate([corners[edge], corners[(edge + 1) % len(corners)]])
-
-    for contact in model.contacts:
-        at = outline(contact.block)[contact.corner]
-        rows.append((len(rows), contact.block, contact.on, 0, at, ends(contact.on, contact.edge), np.zeros(2)))
+    stated = len(model.contacts) + 2 * len(model.bonds)
+    n = stated + most
+    at, start, side, foot, normal = np.zeros((5, n), dtype=complex)
+    law, bonded = np.zeros((2, n), dtype=np.int64)
+    sides = np.zeros((n, 2), dtype=np.int64)
+    for k, contact in enumerate(model.contacts):
+        law[k] = k
+        sides[k] = contact.block, contact.on
+        at[k] = blocks.xi[blocks.start[contact.block] + contact.corner]
+        start[k], side[k] = edge_of(blocks, contact.on, contact.edge)
+    k = len(model.contacts)
     for number, bond in enumerate(model.bonds):
-        law = len(model.contacts) + number
-        edge = ends(bond.second, model.edge_of(bond.second, bond.start, bond.end))
+        edge = model.edge_of(bond.second, bond.start, bond.end)
         for place in (bond.start, bond.end):
-            at, foot = (np.array(place) - model.blocks[i].block.section.centroid for i in (bond.first, bond.second))
-            rows.append((law, bond.first, bond.second, 1, at, edge, foot))
-    stated = len(rows)
-    rows += [(0, 0, 0, 0, np.zeros(2), np.zeros(4), np.zeros(2))] * most
-    n = len(rows)
-    law_numbers, block, on, bonded = (np.array([row[part] for row in rows], dtype=np.int64) for part in range(4))
-    at, edge, foot = (np.array([row[part] for row in rows], dtype=float) for part in range(4, 7))
+            law[k] = len(model.contacts) + number
+            sides[k] = bond.first, bond.second
+            bonded[k] = 1
+            at[k] = complex(*place) - blocks.centroid[bond.first]
+            foot[k] = complex(*place) - blocks.centroid[bond.second]
+            start[k], side[k] = edge_of(blocks, bond.second, edge)
+            k += 1
     return Places(
         count=np.array([stated, stated]),
-        law=law_numbers,
-        sides=np.column_stack([block, on]),
+        law=law,
+        sides=sides,
         bonded=bonded,
-        at=at.reshape(-1, 2),
-        edge=edge.reshape(-1, 4),
-        foot=foot.reshape(-1, 2),
-        normal=np.zeros((n, 2)),
+        at=at,
+        start=start,
+        side=side,
+        foot=foot,
+        normal=normal,
+        gap=np.zeros(n),
         over=np.ones(n, dtype=np.int64),
         B=np.zeros((2 * n, 2, 6)),
         F=np.zeros((2 * n, 2, 6)),
         driven=np.zeros(2 * n),
-        row=np.zeros((4, 6)),
+        row=np.zeros((2, 6)),
     )
+
+
+def edge_of(blocks: Blocks, block: int, edge: int) -> tuple[complex, complex]:
+    """Return where an edge of a block starts, from its centroid, and the way from there to its end [m]."""
+    corners = blocks.xi[blocks.start[block] : blocks.start[block + 1]]
+    return corners[edge], corners[(edge + 1) % len(corners)] - corners[edge]
 
 
 def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) -> PlaneState:
@@ -370,18 +364,16 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
     state = state_of(len(march.body.k), len(model.blocks), np.zeros(2 * len(places.law)))
     set_poses(blocks, state.q, plane.D, plane.chords, plane.ends)
     place_contacts(blocks, state.q, plane.ends, places)
-    for k, contact in enumerate(model.contacts):
-        gap = gap_of(blocks, state.q, plane.ends, places, k)
-        if abs(gap) <= TOUCH * plane.size or not places.over[k]:
-            gap = max(gap, 0.0) if not places.over[k] else 0.0
-        state.rows.opening[k] = gap
-        state.rows.state[k] = LOWER if gap > 0 else INSIDE
-        if gap >= 0:
-            continue
+    touching = np.where(np.abs(places.gap) <= TOUCH * plane.size, 0.0, places.gap)
+    gap = np.where(places.over == 1, touching, np.maximum(places.gap, 0.0))[: len(model.contacts)]
+    state.rows.opening[: len(gap)] = gap
+    state.rows.state[: len(gap)] = np.where(gap > 0, LOWER, INSIDE)
+    for k in np.flatnonzero(gap < 0).tolist():
+        contact = model.contacts[k]
         if math.isinf(contact.springs.stiffness):
-            where = f"{model.name_of(contact.block)}, corner {contact.corner}"
-            raise ValueError(f"contacts[{k}]: must not begin behind an edge that is rigid, got {gap!r} m of {where}")
-        state.rows.force[k] = -gap * contact.springs.stiffness
+            where = f"{gap[k]} m of {model.name_of(contact.block)}, corner {contact.corner}"
+            raise ValueError(f"contacts[{k}]: must not begin behind an edge that is rigid, got {where}")
+        state.rows.force[k] = -gap[k] * contact.springs.stiffness
     p = np.zeros(len(march.body.k))
     for i, part in enumerate(model.blocks):
         first = blocks.first[i]
@@ -407,148 +399,77 @@ def start_of(model: PlaneModel, scheme: Scheme, march: March, course: Course) ->
 # ---- what comes out --------------------------------------------------------------------------------------------------
 
 
-def result_of(
-    model: PlaneModel,
-    scheme: Scheme,
-    march: March,
-    history: History,
-    every: int,
-    reached: int,
-    outcome: str,
-    unsettled: tuple[PlaneContact, ...],
-    how: str,
-) -> PlaneResult:
-    """Return the result of so many steps."""
-    kept = reached // every + 1
-    b = len(model.blocks)
-    stated = len(model.contacts)
-    table = contacts_of(model, march, history, kept)
-    motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
-    q = motion[:, :, :6]
-    velocity = motion[:, :, 6:]
-    centroid = march.method.blocks.centroid + q[:, :, :2]
-    inertia = Inertia(march, q, velocity)
-    sums = history.sums[: reached + 1 : every]
-    stored = (
-        inertia.kinetic,
-        strain_energy(model, q),
-        (table.normal**2 @ table.across + table.shear**2 @ table.along) / 2,
-        load_energy(model, march, q),
-    )
-    repeated = [np.concatenate([part[:1], part]) for part in (*stored, sums)]  # which returns what follows t = 0
-    energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
-    total = np.sum(list(energy.values()), axis=0)
-    bonded = np.arange(len(table.contacts)) >= stated
-    bonded[stated + 2 * len(model.bonds) :] = False
-    bonds = np.stack([table.normal[:, bonded], table.shear[:, bonded]], axis=-1).reshape(kept, -1, 2, 2)
-    others = ~bonded
-    starts = np.concatenate([[0], 1 + every * np.arange(kept - 1)]).astype(int)
-    return PlaneResult(
-        time=scheme.step * every * np.arange(float(kept)),
-        centroid=centroid,
-        displacement=q[:, :, :2],
-        angle=q[:, :, 2],
-        strain=q[:, :, 3:],
-        velocity=velocity,
-        contacts=tuple(contact for contact, other in zip(table.contacts, others, strict=True) if other),
-        normal=table.normal[:, others],
-        shear=table.shear[:, others],
-        gap=table.gap[:, others],
-        slip=table.slip[:, others],
-        state=table.state[:, others],
-        bond=bonds,
-        energy=energy | {"balance": total - total[0]},
-        momentum=inertia.momentum(centroid),
-        outcome=outcome,
-        unsettled=unsettled,
-        reached=reached,
-        solves=np.add.reduceat(history.solves[: every * (kept - 1) + 1], starts),
-        cuts=np.add.reduceat(history.cuts[: every * (kept - 1) + 1], starts),
-        note=f"stepped, {how}",
-    )
+def contact_columns(model: PlaneModel, march: March, history: History, kept: int) -> tuple[dict[str, Any], Array]:
+    """Return the fields of a result that tell of contacts and glue, and the energy stored in these, (k,) [J].
 
-
-@dataclass(frozen=True, eq=False)
-class ContactTable:
-    """Histories of contacts, a column each: those that are stated, both ends of bonds, those that were found closed."""
-
-    contacts: list[PlaneContact]
-    across: Array  # (c,) 1/p [m/N]
-    along: Array  # (c,) 1/p_s
-    normal: Array  # (k, c)
-    shear: Array
-    gap: Array
-    slip: Array
-    state: NDArray[np.int8]
-
-
-def contacts_of(model: PlaneModel, march: March, history: History, kept: int) -> ContactTable:
-    """Return the histories of contacts that are stated, or were closed at an instant that is kept."""
+    Contacts are those that are stated, and those that were found and closed at an instant that is kept.
+    """
     plane = march.method
-    springs = plane.springs
     stated = int(plane.places.count[1])
     contacts = stated_contacts(model)
     laws = list(plane.places.law[:stated])
-    columns: dict[tuple[int, int], int] = {}
+    columns: dict[int, int] = {}
     places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
     present = identity[:, 0] if plane.finds else np.full(kept, stated)
     for row in range(kept):
         for k in range(stated, int(present[row])):
-            corner, edge = identity[row, 1 + 2 * (k - stated) : 3 + 2 * (k - stated)].tolist()
-            if (corner, edge) not in columns:
+            number = int(identity[row, 1 + k - stated])
+            if number not in columns:
                 if history.state[row, k] != INSIDE:
                     continue
-                columns[corner, edge] = len(contacts)
-                contact = found_contact(march, corner, edge)
+                columns[number] = len(contacts)
+                contact = found_contact(march, *divmod(number, len(plane.blocks.xi)))
                 contacts.append(contact)
                 laws.append(plane.detection.law[contact.block * len(model.blocks) + contact.on])
-            places.append((row, k, columns[corner, edge]))
-    normal, shear, slip = np.zeros((3, kept, len(contacts)))
-    gap = np.full((kept, len(contacts)), np.nan)
-    state = np.zeros((kept, len(contacts)), dtype=np.int8)
+            places.append((row, k, columns[number]))
+    table = {name: np.zeros((kept, len(contacts))) for name in ("normal", "shear", "slip")}
+    table["gap"] = np.full((kept, len(contacts)), np.nan)
+    table["state"] = np.zeros((kept, len(contacts)), dtype=np.int8)
     numbers = np.arange(stated)
     of_stated = (np.arange(kept)[:, None], numbers, numbers)
     of_found = tuple(np.array(places, dtype=np.int64).reshape(-1, 3).T)
-    for at, number, column in (of_stated, of_found):
-        along = present[at] + number
-        normal[at, column] = history.force[at, number]
-        shear[at, column] = history.force[at, along]
-        gap[at, column] = history.opening[at, number]
-        slip[at, column] = history.path[at, number]
-        shear_state = history.state[at, along]
-        state[at, column] = np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state) * (
-            history.state[at, number] == INSIDE
-        )
-    return ContactTable(contacts, springs.across[laws], springs.along[laws], normal, shear, gap, slip, state)
+    for at, one, column in (of_stated, of_found):
+        along = present[at] + one
+        table["normal"][at, column] = history.force[at, one]
+        table["shear"][at, column] = history.force[at, along]
+        table["gap"][at, column] = history.opening[at, one]
+        table["slip"][at, column] = history.path[at, one]
+        shear_state = np.where(history.state[at, along] == INSIDE, STICKS, -SLIPS * history.state[at, along])
+        table["state"][at, column] = np.where(history.state[at, one] == INSIDE, shear_state, 0)
+    stored = table["normal"] ** 2 @ plane.springs.across[laws] + table["shear"] ** 2 @ plane.springs.along[laws]
+    glued = np.array([contact.corner < 0 for contact in contacts], dtype=bool)
+    bonds = np.stack([table["normal"][:, glued], table["shear"][:, glued]], axis=-1)
+    fields: dict[str, Any] = {name: values[:, ~glued] for name, values in table.items()}
+    fields["contacts"] = tuple(contact for contact in contacts if contact.corner >= 0)
+    return fields | {"bond": bonds.reshape(kept, -1, 2, 2)}, stored / 2
 
 
-class Inertia:
-    """Kinetic energy and momentum of a history."""
+class Rates:
+    """Velocities, kinetic energy and momentum of a history."""
 
-    def __init__(self, march: March, q: Array, velocity: Array) -> None:
-        """Form m, J0, and what strains add."""
+    def __init__(self, march: March, q: Array, modes: Array) -> None:
+        """Form them from the rates of the modes, (k, b, 6)."""
         blocks = march.method.blocks
-        moving = np.diff(blocks.first) > 0
-        self.mass = np.where(moving, blocks.root_mass**2, 0.0)
-        self.velocity = velocity
         e = q[:, :, 3:]
-        rate = velocity[:, :, 3:]
-        omega = velocity[:, :, 2]
         strained = np.einsum("bij,kbj->kbi", blocks.M, e)
-        J = np.where(moving, blocks.root_inertia**2, 0.0) + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
+        J = blocks.root_inertia**2 + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
         gamma = blocks.gamma + np.einsum("kbm,bmi->kbi", e, blocks.G)
-        turning = np.einsum("kbi,kbi->kb", gamma, rate)
-        self.spin = J * omega + turning
-        moved = self.mass * np.sum(velocity[:, :, :2] ** 2, axis=2)
-        deformed = np.einsum("kbi,bij,kbj->kb", rate, blocks.M, rate)
-        self.kinetic: Array = np.sum(moved + J * omega**2 + 2 * omega * turning + deformed, axis=1) / 2
+        strain_rate = np.einsum("bij,kbj->kbi", blocks.shapes, modes[:, :, 3:])
+        turning = np.einsum("kbi,kbi->kb", gamma, strain_rate)
+        self.linear = blocks.root_mass[:, None] * modes[:, :, :2]
+        self.angular = blocks.root_inertia * modes[:, :, 2]  # about the centroid
+        omega = (self.angular - turning) / J
+        translation = modes[:, :, :2] / blocks.root_mass[:, None]
+        self.velocity: Array = np.concatenate([translation, omega[:, :, None], strain_rate], axis=2)
+        deformed = np.einsum("kbi,bij,kbj->kb", strain_rate, blocks.M, strain_rate)
+        turned = J * omega**2 + 2 * omega * turning + deformed
+        self.kinetic: Array = np.sum(np.sum(modes[:, :, :2] ** 2, axis=2) + turned, axis=1) / 2
 
     def momentum(self, centroid: Array) -> Array:
         """Return linear momentum and angular momentum about the origin, (k, 3)."""
-        linear = self.mass[:, None] * self.velocity[:, :, :2]
-        turned = centroid[:, :, 0] * linear[:, :, 1] - centroid[:, :, 1] * linear[:, :, 0]
-        return np.column_stack([linear.sum(axis=1), (turned + self.spin).sum(axis=1)])
+        turned = centroid[:, :, 0] * self.linear[:, :, 1] - centroid[:, :, 1] * self.linear[:, :, 0]
+        return np.column_stack([self.linear.sum(axis=1), (turned + self.angular).sum(axis=1)])
 
 
 def strain_energy(model: PlaneModel, q: Array) -> Array:
@@ -560,29 +481,21 @@ def strain_energy(model: PlaneModel, q: Array) -> Array:
     return total
 
 
-def load_energy(model: PlaneModel, march: March, q: Array) -> Array:
+def load_energy(model: PlaneModel, q: Array) -> Array:
     """Return minus the work that the whole loads do by the ways since t = 0, (k,) [J]."""
-    blocks = march.method.blocks
-    total = np.zeros(len(q))
-    for load in march.body.loads:
-        for i in range(len(model.blocks)):
-            if blocks.first[i + 1] > blocks.first[i]:
-                first = blocks.first[i]
-                total -= q[:, i, :2] @ (load[first : first + 2] * blocks.root_mass[i])
-    points = march.method.loads
-    for i, at, force in zip(points.block, points.at, points.force, strict=True):
-        total -= way_of(q[:, i], at) @ force
+    mass = np.array([0.0 if part.held else part.block.total_mass for part in model.blocks])
+    total: Array = -(q[:, :, :2] @ np.array(model.gravity)) @ mass
+    for load in model.loads:
+        force, place = load.resultant
+        section = model.blocks[load.block].block.section
+        at = np.zeros(2) if place is None else place - section.centroid
+        total -= (complex(*force).conjugate() * way_of(q[:, load.block], complex(*at))).real
     return total
 
 
-def way_of(q: Array, at: Array) -> Array:
-    """Return the displacement of a material point of a block from t = 0, (k, 2) [m]."""
-    x, y = at
-    cos = -2 * np.sin(q[:, 2] / 2) ** 2  # less one
-    sin = np.sin(q[:, 2])
-    ex = x * q[:, 3] + y * q[:, 5] / 2
-    ey = x * q[:, 5] / 2 + y * q[:, 4]
-    moved: Array = q[:, :2] + np.column_stack(
-        [cos * (x + ex) - sin * (y + ey) + ex, sin * (x + ex) + cos * (y + ey) + ey]
-    )
-    return moved
+def way_of(q: Array, at: complex) -> NDArray[np.complex128]:
+    """Return the displacement of a material point of a block from t = 0, (k,) [m]."""
+    shear = q[:, 5] / 2
+    stretch = q[:, 3] * at.real + shear * at.imag + 1j * (shear * at.real + q[:, 4] * at.imag)
+    turned: NDArray[np.complex128] = np.expm1(1j * q[:, 2]) * (at + stretch)
+    return q[:, 0] + 1j * q[:, 1] + stretch + turned

@@ -12,12 +12,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from dda.contact.dense import Matrix, Vector, copy
-from dda.contact.rows import FOUND, INSIDE, NONE, Rows, find
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix
+from dda.contact.rows import FOUND, INSIDE, NONE, find
 from dda.march.account import add_bulk_loss, add_contact_losses, add_damping, half_square, over_stages
 from dda.march.energy import ALGORITHMIC, GIVEN, SWITCHING
 from dda.march.step import (
-    AnyState,
     Course,
     History,
     Length,
@@ -36,6 +35,7 @@ from dda.model.arrays import Array
 from dda.plane.bodies import (
     RIGID,
     Blocks,
+    Points,
     Poses,
     by_modes,
     direction,
@@ -44,18 +44,18 @@ from dda.plane.bodies import (
     moved,
     set_poses,
 )
-from dda.plane.detect import Detection
+from dda.plane.detect import Detection, keep_contacts
 from dda.plane.many import Many, find_many
 from dda.plane.places import Places, contact_displacement, flexibility_of, place_contacts, push_contacts, write_rows
 from dda.plane.taken import (
-    Memory,
+    PlaneState,
     Springs,
     dropped_energy,
-    keep_found,
     laws_for,
     place_corners,
     take_found,
     take_memory,
+    take_row,
     write_laws,
 )
 
@@ -63,29 +63,15 @@ ROUNDS = 40  # of a stage
 SETTLED = 1e-12  # last change of an increment over the size of a block; the next would be this times the step's turn
 SETTLED_FORCE = 1e-9  # last change of the inertia forces over the largest; that of short steps moves no increment
 FAR = 1e300  # m, gap of a corner that is not over its edge
-STATE = 12  # numbers that are kept of a block: D from t = 0, and its velocities
-
-
-class PlaneState(NamedTuple):
-    """Where the blocks are: what `dda.march.step.State` has, and their places."""
-
-    z: Vector
-    p: Vector
-    a: Vector
-    R: Vector
-    path: Vector
-    rows: Rows
-    q: Matrix  # (b, 6) increments from t = 0: of the centroid [m], rotation [rad], strains in axes that turn
-    slid: Vector  # (c,) way by which contacts slipped since t = 0 [m]
-    driven: Vector  # (2c,) what driven blocks added to the rows in the stage [m]
+STATE = 12  # numbers that are kept of a block: D from t = 0, and the rates of its modes
 
 
 class PointLoads(NamedTuple):
     """Dead forces on material points."""
 
     block: Any  # (l,)
-    at: Matrix  # (l, 2) from the centroid, unstrained [m]
-    force: Matrix  # (l, 2) [N]
+    at: Points  # (l,) from the centroid, unstrained
+    force: Points  # (l,) [N]
     share: Any  # (l,) column of what is prescribed that has its share
 
 
@@ -109,8 +95,7 @@ class Plane(NamedTuple):
     spin: Vector  # (4,) r', e'
     ground: Matrix  # (2c, 2) zero: no base is common to all blocks
     springs: Springs
-    first: Memory  # of a step, or of the first of two stages
-    second: Memory
+    begun: PlaneState  # whose contacts are those with which a step begins
     made: Any  # (1,) 0, or 1 where the stage that was made last is the second
     dropped: Vector  # (1,) energy of contacts that are no more [J]
     dense: int  # contacts up to which the equations are those of their forces
@@ -118,7 +103,6 @@ class Plane(NamedTuple):
     strained: int  # whether a block has strains
     finds: int  # whether contacts are found
     detection: Detection
-    edge_end: Any  # (corners,) corner at which the edge from a corner ends
 
 
 # ---- one stage -------------------------------------------------------------------------------------------------------
@@ -132,7 +116,7 @@ def make_stage(
     blocks = plane.blocks
     room = march.room
     places = plane.places
-    memory = memory_of(plane, stage)
+    memory = memory_of(plane, stage, before)
     plane.made[0] = 0 if stage.numbers.begin == 0 else 1
     length = length_in_plane(march, stage, part.ratio)
     prescribe(march, course, stage, part)
@@ -147,8 +131,6 @@ def make_stage(
         outcome = take_contacts(march, before)
         if outcome != FOUND:
             return outcome, 0
-    else:
-        copy_memory(before, plane.second)
     laws = laws_for(march.laws, places.count[0])
     stand(plane, before.q)
     place_contacts(blocks, before.q, plane.ends, places)
@@ -160,7 +142,7 @@ def make_stage(
     increments(blocks, before.q, plane.x, plane.chords, plane.new)
     solves = 0
     for turn in range(ROUNDS):
-        take_increments(plane)
+        copy_matrix(plane.new, plane.D)
         set_poses(blocks, before.q, plane.D, plane.chords, plane.ends)
         forces_change = push_loads(march, after)
         for i in range(len(plane.x)):
@@ -169,14 +151,16 @@ def make_stage(
         if places.count[0] > 0:
             write_rows(blocks, plane.D, plane.chords, plane.ends, memory.rows, plane.late, places)
             free_contacts(march, memory)
-            if places.count[0] > plane.dense:
-                outcome, spent = find_many(
-                    plane.many, blocks, places, laws, memory.rows, length, after.rows, march.work, plane.size, turn > 0
-                )
-            else:
+            outcome = NONE
+            again = turn > 0
+            if places.count[0] <= plane.dense:
                 write_contact_flexibility(march, length)
                 outcome, spent = find(laws, memory.rows, length.flexible, after.rows, march.work)
-            solves += spent
+                solves += spent
+                again = False
+            if outcome == NONE:  # of few contacts too: some that neither press nor part, whose signs are rounding's
+                outcome, spent = find_many(plane.many, laws, memory.rows, length, after.rows, march.work, again)
+                solves += spent
             if outcome != FOUND:
                 return outcome, solves
             push_contacts(blocks, places, after.rows.force, room.pushed)
@@ -201,45 +185,32 @@ def length_in_plane(march: March, stage: StageRoom, ratio: float) -> Length:
     return stage.part
 
 
-def memory_of(plane: Plane, stage: StageRoom) -> Memory:
-    """Return what the contacts of a stage begin with."""
-    return plane.first if stage.numbers.begin == 0 else plane.second
+def memory_of(plane: Plane, stage: StageRoom, before: PlaneState) -> PlaneState:
+    """Return the state with whose contacts a stage begins."""
+    return plane.begun if stage.numbers.begin == 0 else before
 
 
-def take_contacts(march: March, before: AnyState) -> int:
+def take_contacts(march: March, before: PlaneState) -> int:
     """Find the contacts of a step and write what they begin with; return the outcome."""
     plane = march.method
     blocks = plane.blocks
     detection = plane.detection
     if plane.finds == 0:
-        copy_memory(before, plane.first)
+        for r in range(len(before.path)):
+            take_row(before, r, plane.begun, r)
+        copy(before.slid, plane.begun.slid)
         return FOUND
     stand(plane, before.q)
     place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
     increments(blocks, before.q, march.room.x, plane.chords, plane.new)
     set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
     place_corners(blocks, before.q, plane.new, plane.ends, detection.corners.then)
-    outcome = take_found(detection, blocks, plane.edge_end, plane.places)
+    outcome = take_found(detection, blocks, plane.places)
     if outcome == FOUND:
         plane.dropped[0] = dropped_energy(detection, plane.springs, plane.places, before.rows)
-        take_memory(detection, plane.places, before.rows, before.path, before.slid, plane.first)
+        take_memory(detection, plane.places, before, plane.begun)
         write_laws(plane.springs, plane.places, march.laws)
     return outcome
-
-
-def copy_memory(before: AnyState, memory: Memory) -> None:
-    """Take the contacts of a state for those that a stage begins with."""
-    copy(before.rows.state, memory.rows.state)
-    copy(before.rows.opening, memory.rows.opening)
-    copy(before.rows.force, memory.rows.force)
-    copy(before.path, memory.path)
-    copy(before.slid, memory.slid)
-
-
-def take_increments(plane: Plane) -> None:
-    """Take the increments that the last round found for those of the next one."""
-    for i in range(len(plane.D)):
-        copy(plane.new[i], plane.D[i])
 
 
 def stand(plane: Plane, q: Matrix) -> None:
@@ -263,7 +234,7 @@ def largest_change(plane: Plane) -> float:
     return largest
 
 
-def push_loads(march: March, after: AnyState) -> float:
+def push_loads(march: March, after: PlaneState) -> float:
     """Write the forces on the modes of loads at a place and of inertia, for the present end of the stage.
 
     Returns their largest change since they were written last, over the largest of them.
@@ -285,11 +256,9 @@ def push_loads(march: March, after: AnyState) -> float:
     weights = plane.row[2]
     for k in range(len(loads.block)):
         i = loads.block[k]
-        force = loads.force[k]
-        at = loads.at[k]
-        share = march.room.end[loads.share[k]]
-        direction(plane.chords, i, share * force[0], share * force[1], at[0], at[1], chord)
-        direction(plane.ends, i, share * force[0], share * force[1], at[0], at[1], end)
+        force = march.room.end[loads.share[k]] * loads.force[k]
+        direction(plane.chords, i, force, loads.at[k], chord)
+        direction(plane.ends, i, force, loads.at[k], end)
         for m in range(6):
             chord[m] = (1 - plane.late) * chord[m] + plane.late * end[m]
         by_modes(blocks, i, plane.chords, chord, True, weights)
@@ -314,7 +283,7 @@ def write_contact_flexibility(march: March, length: Length) -> None:
             W[r][s] = flexibility_of(plane.blocks, plane.places, length, r, s)
 
 
-def free_contacts(march: March, memory: Memory) -> None:
+def free_contacts(march: March, memory: PlaneState) -> None:
     """Write the openings at the end of a stage without contact forces, which end in the modes' increments `plane.x`."""
     plane = march.method
     places = plane.places
@@ -323,14 +292,20 @@ def free_contacts(march: March, memory: Memory) -> None:
     opening = memory.rows.opening
     n = places.count[0]
     for r in range(2 * n):
-        free[r] = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
+        free[r] = displacement_of(plane, r)
         q[r] = opening[r] + free[r]
     for k in range(n):
         if places.over[k] == 0:
             q[k] = FAR
 
 
-def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) -> None:
+def displacement_of(plane: Plane, r: int) -> float:
+    """Return by how much the opening of a row changes in the stage by `plane.x` and by driven blocks [m]."""
+    displacement: float = plane.places.driven[r] + contact_displacement(plane.x, plane.blocks, plane.places, r)
+    return displacement
+
+
+def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneState) -> None:
     """Write where the stage ends."""
     plane = march.method
     places = plane.places
@@ -345,11 +320,9 @@ def accept(march: March, memory: Memory, before: PlaneState, after: PlaneState) 
         after.path[k] = memory.path[k] + rows.slip[k]
         after.path[r] = memory.path[r] + rows.slip[r]
         if places.over[k] == 0:
-            displacement = places.driven[k] + contact_displacement(plane.x, plane.blocks, places, k)
-            rows.opening[k] = memory.rows.opening[k] + displacement
+            rows.opening[k] = memory.rows.opening[k] + displacement_of(plane, k)
         if rows.state[k] != INSIDE or memory.rows.state[k] != INSIDE:  # what is open takes its reference along
-            displacement = places.driven[r] + contact_displacement(plane.x, plane.blocks, places, r)
-            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement - rows.opening[r]
+            after.path[r] = memory.path[r] + memory.rows.opening[r] + displacement_of(plane, r) - rows.opening[r]
     for r in range(2 * n, len(rows.force)):
         rows.force[r] = 0.0
         rows.slip[r] = 0.0
@@ -371,18 +344,10 @@ def kinetic_excess(march: March, state: PlaneState) -> float:
         plane.x[i] = state.p[i] + lag * state.a[i]
     stand(plane, state.q)
     for i in range(len(blocks.root_mass)):
-        first = blocks.first[i]
-        if blocks.first[i + 1] - first == 2 * RIGID:
-            inertia_forces(blocks, i, plane.x, state.a, march.scheme.step, plane.ends, plane.spin, plane.loaded)
-            J = plane.ends.J[i]
-            root = blocks.root_inertia[i]
-            H = root * plane.x[first + 2] / march.scheme.step
-            turning = 0.0
-            carried = 0.0
-            for k in range(3):
-                turning += plane.ends.gamma[i][k] * plane.spin[1 + k]
-                carried += blocks.gamma[i][k] * plane.spin[1 + k]
-            total += ((H * H - turning * turning) / J - (H * H - carried * carried) / (root * root)) / 2
+        if blocks.first[i + 1] - blocks.first[i] > RIGID:
+            total += inertia_forces(
+                blocks, i, plane.x, state.a, march.scheme.step, plane.ends, plane.spin, plane.loaded
+            )
     return total
 
 
@@ -398,7 +363,8 @@ def account(march: March, state: PlaneState, after: PlaneState, course: Course, 
         sums[ALGORITHMIC] += discount * discount * excess - kinetic_excess(march, after)
     if march.method.finds != 0:
         sums[SWITCHING] += march.method.dropped[0]
-        keep_found(march.method.detection, march.method.places, after.rows)
+        stated = march.method.places.count[1]
+        keep_contacts(march.method.detection, after.rows.force, after.rows.state, stated)
 
 
 def account_stage(
@@ -416,7 +382,7 @@ def account_stage(
     prescribe(march, course, stage, part)
     late = stage.numbers.delta if march.scheme.newmark else 0.5
     length = march.scheme.step * part.ratio * (stage.numbers.end - stage.numbers.begin)
-    memory = memory_of(plane, stage)
+    memory = memory_of(plane, stage, before)
     laws = laws_for(march.laws, plane.places.count[0])
     add_contact_losses(march, laws, plane.ground, memory, after, late, length, sums)
     rows = after.rows
@@ -443,8 +409,7 @@ def account_stage(
     for k in range(len(loads.block)):
         i = loads.block[k]
         share = (1 - late) * room.start[loads.share[k]] + late * room.end[loads.share[k]]
-        x, y = moved(plane.chords, i, plane.D[i], loads.at[k][0], loads.at[k][1])
-        work = loads.force[k][0] * x + loads.force[k][1] * y
+        work = (loads.force[k].conjugate() * moved(plane.chords, i, plane.D[i], loads.at[k])).real
         own_work += share * work
         sums[GIVEN] += (share - 1) * work
     if march.scheme.newmark:
@@ -456,39 +421,25 @@ def account_stage(
 
 
 def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
-    """Write where the blocks are and how fast they move, at the steps that are kept; tell whether all is finite."""
+    """Write where the blocks are and the rates of their modes, at the steps that are kept; tell if all is finite."""
     plane = march.method
-    blocks = plane.blocks
-    scheme = march.scheme
-    discount = kept_discount(scheme, number)
+    first = plane.blocks.first
+    discount = kept_discount(march.scheme, number)
     total = 0.0
     for i in range(len(plane.x)):
-        plane.x[i] = discount * state.p[i] + scheme.lag * state.a[i]
+        plane.x[i] = (discount * state.p[i] + march.scheme.lag * state.a[i]) / march.scheme.step
         total += state.z[i] + plane.x[i]
-    if number % plane.every != 0:
-        return math.isfinite(total)
-    stand(plane, state.q)
-    for i in range(len(blocks.root_mass)):
-        first = blocks.first[i]
-        modes = blocks.first[i + 1] - first
-        place = STATE * i
-        for k in range(6):
-            rows[number // plane.every, place + k] = state.q[i][k]
-            rows[number // plane.every, place + 6 + k] = 0.0
-        if modes == 0:
-            continue
-        for axis in range(2):
-            rows[number // plane.every, place + 6 + axis] = plane.x[first + axis] / blocks.root_mass[i] / scheme.step
-        plane.spin[0] = plane.x[first + 2] / blocks.root_inertia[i] / scheme.step
-        if modes > RIGID:
-            inertia_forces(blocks, i, plane.x, state.a, scheme.step, plane.ends, plane.spin, plane.loaded)
-            for k in range(3):
-                rows[number // plane.every, place + 9 + k] = plane.spin[1 + k]
-        rows[number // plane.every, place + 8] = plane.spin[0]
+    if number % plane.every == 0:
+        for i in range(len(state.q)):
+            for k in range(6):
+                rows[number // plane.every, STATE * i + k] = state.q[i][k]
+                rows[number // plane.every, STATE * i + 6 + k] = (
+                    plane.x[first[i] + k] if k < first[i + 1] - first[i] else 0.0
+                )
     return math.isfinite(total)
 
 
-def keep_contacts(march: March, state: PlaneState, history: History, number: int) -> None:
+def keep_rows(march: March, state: PlaneState, history: History, number: int) -> None:
     """Write the rows of contact at the steps that are kept."""
     plane = march.method
     if number % plane.every != 0:
@@ -501,8 +452,8 @@ def keep_contacts(march: March, state: PlaneState, history: History, number: int
         identity = STATE * len(plane.D)
         history.motion[row, identity] = n
         for k in range(plane.detection.count[1]):
-            history.motion[row, identity + 1 + 2 * k] = plane.detection.previous.corner[k]
-            history.motion[row, identity + 2 + 2 * k] = plane.detection.previous.edge[k]
+            corner = plane.detection.previous.corner[k]
+            history.motion[row, identity + 1 + k] = corner * len(plane.blocks.xi) + plane.detection.previous.edge[k]
     for r in range(2 * n):
         history.force[row, r] = rows.force[r]
         history.opening[row, r] = rows.opening[r]
@@ -512,4 +463,4 @@ def keep_contacts(march: March, state: PlaneState, history: History, number: int
 
 
 account_stages = over_stages(account_stage)
-make_steps = steps_by(make_stage, account, keep, keep_contacts)
+make_steps = steps_by(make_stage, account, keep, keep_rows)

@@ -6,11 +6,24 @@ import math
 from typing import Any, NamedTuple
 
 from dda.contact.dense import Matrix, Vector
-from dda.contact.rows import FOUND, INSIDE, LOWER, TOO_DEEP, TOO_MANY, Laws, Rows
-from dda.plane.bodies import Blocks, Poses, point
-from dda.plane.detect import TOO_MANY as MANY
-from dda.plane.detect import Detection, find_contacts, keep_contacts
+from dda.contact.rows import FOUND, INSIDE, LOWER, Laws, Rows
+from dda.plane.bodies import Blocks, Points, Poses, place_of
+from dda.plane.detect import NONE, Detection, find_contacts, pair_of
 from dda.plane.places import Places
+
+
+class PlaneState(NamedTuple):
+    """Where the blocks are: what `dda.march.step.State` has, and their places."""
+
+    z: Vector
+    p: Vector
+    a: Vector
+    R: Vector
+    path: Vector
+    rows: Rows
+    q: Matrix  # (b, 6) increments from t = 0: of the centroid [m], rotation [rad], strains in axes that turn
+    slid: Vector  # (c,) way by which contacts slipped since t = 0 [m]
+    driven: Vector  # (2c,) what driven blocks added to the rows in the stage [m]
 
 
 class Springs(NamedTuple):
@@ -22,14 +35,6 @@ class Springs(NamedTuple):
     limit: Vector  # cohesion; infinite of what never slips [N]
     tension: Vector  # infinite of glue [N]
     opens: Any  # 0 of glue
-
-
-class Memory(NamedTuple):
-    """What the contacts of a stage begin with, in their order."""
-
-    rows: Rows
-    path: Vector  # (2c,) [m]
-    slid: Vector  # (c,) [m]
 
 
 def laws_for(laws: Laws, count: int) -> Laws:
@@ -69,22 +74,18 @@ def write_laws(springs: Springs, places: Places, laws: Laws) -> None:
         laws.opens[n + k] = 0
 
 
-def place_corners(blocks: Blocks, q: Matrix, D: Matrix, ends: Poses, out: Matrix) -> None:
-    """Write where all corners are after increments D, for the poses there [m]."""
+def place_corners(blocks: Blocks, q: Matrix, D: Matrix, ends: Poses, out: Points) -> None:
+    """Write where all corners are after increments D, for the poses there."""
     for i in range(len(blocks.root_mass)):
-        x = blocks.centroid[i][0] + (q[i][0] + D[i][0])
-        y = blocks.centroid[i][1] + (q[i][1] + D[i][1])
         for corner in range(blocks.start[i], blocks.start[i + 1]):
-            px, py = point(ends, i, blocks.xi[corner][0], blocks.xi[corner][1])
-            out[corner][0] = x + px
-            out[corner][1] = y + py
+            out[corner] = place_of(blocks, q, D, ends, i, blocks.xi[corner])
 
 
-def take_found(detection: Detection, blocks: Blocks, edge_end: Any, places: Places) -> int:
+def take_found(detection: Detection, blocks: Blocks, places: Places) -> int:
     """Find the contacts of a step and write their points after those that are stated; return the outcome."""
     found = find_contacts(detection)
     if found < 0:
-        return TOO_MANY if found == MANY else TOO_DEEP
+        return -found
     contacts = detection.contacts
     corners = detection.corners
     stated = places.count[1]
@@ -95,70 +96,65 @@ def take_found(detection: Detection, blocks: Blocks, edge_end: Any, places: Plac
         edge = contacts.edge[f]
         places.sides[k][0] = corners.block[corner]
         places.sides[k][1] = corners.block[edge]
-        places.law[k] = contacts.law[f]
-        for axis in range(2):
-            places.at[k][axis] = blocks.xi[corner][axis]
-            places.edge[k][axis] = blocks.xi[edge][axis]
-            places.edge[k][2 + axis] = blocks.xi[edge_end[edge]][axis]
+        places.law[k] = detection.law[pair_of(detection, corner, edge)]
+        places.at[k] = blocks.xi[corner]
+        places.start[k] = blocks.xi[edge]
+        places.side[k] = blocks.xi[corners.after[edge]] - blocks.xi[edge]
     return FOUND
 
 
-def take_memory(detection: Detection, places: Places, rows: Rows, path: Vector, slid: Vector, out: Memory) -> None:
-    """Write what every contact takes from the contact of the step before from which it goes on."""
+def take_memory(detection: Detection, places: Places, before: PlaneState, out: PlaneState) -> None:
+    """Write the contacts with which a step begins: each takes what is left of that from which it goes on."""
     n = places.count[0]
     stated = places.count[1]
     old = stated + detection.count[1]
+    for r in range(len(out.path)):
+        clear_row(out, r)
     for k in range(n):
-        origin = k if k < stated else detection.contacts.origin[k - stated]
-        if k >= stated and origin >= 0:
-            origin += stated
-        for axis in range(2):
-            r = k if axis == 0 else n + k
-            out.rows.slip[r] = 0.0
-            if origin < 0:
-                out.rows.state[r] = INSIDE
-                out.rows.opening[r] = 0.0
-                out.rows.force[r] = 0.0
-                out.path[r] = 0.0
-                continue
-            before = origin if axis == 0 else old + origin
-            out.rows.state[r] = rows.state[before]
-            out.rows.opening[r] = rows.opening[before]
-            out.rows.force[r] = rows.force[before]
-            out.path[r] = path[before]
-        out.slid[k] = slid[origin] if origin >= 0 else 0.0
+        origin = k
+        if k >= stated:
+            f = k - stated
+            origin = stated + detection.contacts.origin[f] if detection.contacts.origin[f] >= 0 else NONE
+        out.slid[k] = 0.0
+        if origin >= 0:
+            take_row(before, origin, out, k)
+            take_row(before, old + origin, out, n + k)
+            out.slid[k] = before.slid[origin]
         if k >= stated and (origin < 0 or detection.contacts.same[k - stated] == 0):
             gap = detection.contacts.gap[k - stated]
             out.rows.opening[k] = gap
             if origin < 0 and gap > 0:
                 out.rows.state[k] = LOWER
-    for r in range(2 * n, len(out.path)):
-        out.rows.force[r] = 0.0
-        out.rows.slip[r] = 0.0
+
+
+def clear_row(out: PlaneState, r: int) -> None:
+    """Write a row that is closed and carries nothing."""
+    out.rows.state[r] = INSIDE
+    out.rows.opening[r] = 0.0
+    out.rows.force[r] = 0.0
+    out.rows.slip[r] = 0.0
+    out.path[r] = 0.0
+
+
+def take_row(before: PlaneState, r: int, out: PlaneState, to: int) -> None:
+    """Write a row of a state as another one with which a step begins."""
+    out.rows.state[to] = before.rows.state[r]
+    out.rows.opening[to] = before.rows.opening[r]
+    out.rows.force[to] = before.rows.force[r]
+    out.path[to] = before.path[r]
 
 
 def dropped_energy(detection: Detection, springs: Springs, places: Places, rows: Rows) -> float:
     """Return what was stored in contacts of the step before from which none of this step goes on [J]."""
     previous = detection.previous
-    block = detection.corners.block
     stated = places.count[1]
     old = detection.count[1]
     total = 0.0
     for o in range(old):
         if previous.heir[o] >= 0:
             continue
-        law = detection.law[block[previous.corner[o]] * len(detection.head) + block[previous.edge[o]]]
+        law = detection.law[pair_of(detection, previous.corner[o], previous.edge[o])]
         normal = rows.force[stated + o]
         shear = rows.force[stated + old + stated + o]
         total += (springs.across[law] * normal * normal + springs.along[law] * shear * shear) / 2
     return total
-
-
-def keep_found(detection: Detection, places: Places, rows: Rows) -> None:
-    """Take the contacts of a step that was accepted for those of the step before."""
-    stated = places.count[1]
-    for f in range(detection.count[0]):
-        k = stated + f
-        detection.contacts.normal[f] = rows.force[k]
-        detection.contacts.closed[f] = 1 if rows.state[k] == INSIDE else 0
-    keep_contacts(detection)

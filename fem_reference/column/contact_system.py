@@ -28,6 +28,8 @@ from fem_reference.scheme.stage import Motion
 
 TOGETHER = 2
 """Solves for each contact, and three more, in which all states change at once."""
+AT_REST = 1e-12
+"""Of the fastest contact at t = 0: what the nodes' means leave between two bodies of one velocity."""
 
 
 def mesh_of(column: ContactColumn, elements: Sequence[int], degree: int) -> tuple[LineMesh, Model]:
@@ -126,18 +128,34 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, mesh: LineMe
     touching = np.flatnonzero((system.rows.compliance == 0) & (place == 0))
 
     def pull(mass: Any, A: Array) -> tuple[Array, Array]:
-        return _at_once(system, states, touching, mass, A, force)
+        return _at_once(system, states, touching, mass, A, V, force)
 
     return stepper.start(V, place, states, D, force, pull if len(touching) and not column.settled else None)
 
 
 def _at_once(
-    system: ContactSystem, states: States, touching: NDArray[np.intp], mass: Any, A: Array, force: Array
+    system: ContactSystem, states: States, touching: NDArray[np.intp], mass: Any, A: Array, V: Array, force: Array
 ) -> tuple[Array, Array]:
-    """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once."""
+    """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once.
+
+    A contact that slips already bears its strength against the slip, one whose faces part bears nothing; the others
+    keep their faces together.
+    """
+    rows = system.rows
+    speed = system.B @ V - system.ground[:, 0] * system.start_parts[1]
+    no_speed = AT_REST * np.max(np.abs(speed))
+    leaves = speed > no_speed
+    returns = (speed < -no_speed) & rows.slips
+    moving = np.zeros(len(speed), dtype=bool)
+    moving[touching] = (leaves | returns)[touching]
+    borne = np.where(moving, np.where(leaves, rows.lower, rows.upper), 0.0)
+    A = A + mass * (system.B.T @ borne)
+    force = force + borne
+    touching = touching[~moving[touching]]
+    if not len(touching):
+        return A, force
     B = system.B[touching] if system.to_modes is not None else system.B[touching].toarray()
     mobility = np.array([mass * row for row in B]).T
-    rows = system.rows
     count = len(touching)
     law = Law(
         W=B @ mobility,

@@ -1,210 +1,162 @@
-"""Modes of the damped bar on a spring, M D'' + c M D' + K D = F, with the fronts of its waves.
+r"""The damped bar on a spring, M D'' + c M D' + K D = F, from the waves of the undamped one.
 
-Time is in travel times and a = c / 2. With the shares of the modes (`bar_modes`) a history over its static
-value is the sum of share * (1 - x): on a soft spring all of it is small, and nothing is subtracted from one. And::
+Time is in travel times and a = c / 2. A mode of frequency w goes the way 1 - x(t), x = exp(-a t) (cos v t + a sin(v t)
+/ v) with v^2 = w^2 - a^2. Both of its parts are integrals over those of the undamped mode (of the telegraph equation,
+with xi^2 = t^2 - s^2 and the modified Bessel functions I)::
 
-    x(w, t) = exp(-a t) (cos v t + a sin(v t) / v),   v = sqrt(w^2 - a^2)
-            = exp(-a t) (cos w t + (a + a^2 t / 2) sin(w t) / w) + O(1 / w^2)
+    sin(v t) / v = integral of I_0(a xi) cos(w s) over s in [0, t],
+    cos v t      = cos w t + integral of a t I_1(a xi) / xi cos(w s),
 
-Away from the fronts the sum is cut off smoothly. Near a front its tail is that of the leading terms,
-and these are summed over all modes at once: they are the undamped history and its integral, which the waves
-give (the shares of all modes sum to one). Fronts have died once exp(-a t) is below rounding; strong damping
-leaves diffusion, a few modes.
+so that in every mode alike, and in their sum y(t) of the undamped bar, the damped history is
+
+    exp(-a t) y(t) + integral of exp(-a t) [a I_0(a xi) + a t I_1(a xi) / xi] y(s) over s in [0, t]
+
+(what stands beside y has the integral 1: a mode with w = 0 keeps x = 1). All is positive, so that no digit of a soft
+spring is lost, and the fronts are those of y, in full where exp(-a t) has not damped them away.
+
+y has a front at each arrival and is smooth between them, with rates up to kappa j after j reflections: it is sampled at
+Gauss points of cells that shrink towards a front, the same in every round trip. The kernel, which is smooth, is taken
+at few points of each trip, with moments of y; of the last trip, which ends at t, at the points of the cells.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.special import i0e, i1e
 
-from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
 from fem_reference.problem.problem import Array
 
-Undamped = Callable[[str, Array, float], Array]
-
-MODES = 2**14
-"""Modes away from the fronts."""
-FRONT_MODES = 2**18
-"""Modes near a front at a = 1 and above; in proportion to a below, as the terms beyond the leading ones are."""
-LEAST_MODES = 2**15
-"""Fewest modes near a front."""
-WORK = 2**26
-"""Modes times instants near fronts."""
-WAVE_WORK = 2**27
-"""Steps of the waves' recurrences for all instants near fronts."""
-REACH = 42.0
-"""Distance from a front times modes from which the smooth cut-off leaves less than 1e-12."""
-NOTHING = 1e-13
-"""Tail of a sum over the history's maximum that need not be looked after."""
+Waves = Callable[[Array, float], Iterator[Array]]
+"""From times since the arrivals of the waves, and kappa, to what wave j adds, j = 0, 1, ..., of the waves from j on."""
+TRIP = 2.0
+"""Time between two arrivals."""
+LONGEST = 1000.0
+"""Travel times over which the waves of a damped bar are summed: their cost grows with the square, and so does their
+rounding, to 2e-11 in a displacement after 650 without damping."""
 DEAD = 40.0
 """Exponent at which a decayed term is below rounding."""
-GAUSS = 20
-"""Points of a quadrature over an arc of one."""
-BLOCK = 2**20
+POINTS = 20
+"""Gauss points of a cell."""
+PHASE = 6.0
+"""Phase over a cell of what is sampled in it: 20 points leave (3/2)^20 / 20!, 1e-15, of a vibration."""
+DECAY = 8.0
+"""Exponent over a cell by which the kernel decays: they leave e^-4 2^20 / 20!, 1e-14, of that."""
+GAUSS, WEIGHTS = np.polynomial.legendre.leggauss(POINTS)
+_BASIS = ((np.arange(POINTS) + 0.5) * np.polynomial.legendre.legvander(GAUSS, POINTS - 1)).T * WEIGHTS
+CHUNK = 2**22
 """Entries of a work array."""
 
 
-def history(column: str, times: Array, kappa: float, a: float, undamped: Undamped) -> Array:
-    """History of a column over its static value, shape (times,).
+def history(waves: Waves, first: float, times: Array, kappa: float, a: float) -> Array:
+    """History of the damped bar, shape (times,).
 
     Parameters
     ----------
-    column
-        ``"contact_pressure"`` or ``"displacement"``.
+    waves, first
+        Those of the undamped bar, and the arrival of the first one.
     times
-        Equally spaced instants in travel times, the first one step after the load.
+        Instants in travel times.
     kappa
         Stiffness of the spring over that of the bar.
     a
         Half the damping rate per travel time.
-    undamped
-        Undamped history and its integral, as `continuum.undamped`.
 
     Raises
     ------
     ValueError
-        If too many late instants lie at fronts that have not died.
+        If the waves that count until the last instant are too many.
     """
-    first, gap = (1.0, 2.0) if column == "contact_pressure" else (0.5, 1.0)
-    # Diffusion reaches the distance `first` as exp(-a first^2 / (2 t)): before this there is nothing to sum.
-    begin = max(first, a * first**2 / (2 * DEAD))
-    result = np.zeros_like(times)
-    arrived = times > begin
-    live = arrived & (a * times < DEAD)
-    distance = np.abs((times - first + gap / 2) % gap - gap / 2)
-    b = wave_numbers(kappa, MODES)
-    tail = MODES * abs(shares(column, b, kappa)[MODES // 4])
-    size = min(1.0, float(slowest(times, b[0], a).max(initial=0.0)))
-    near = live & (distance * MODES < REACH) & (np.exp(-np.minimum(a * times, DEAD)) * tail > NOTHING * size)
-    _check_waves(times[near])
-    result[arrived] = _away(column, times, kappa, a, begin)[arrived]
-    if near.any():
-        result[near] = _near(column, times[near], kappa, a, undamped)
-    return result
-
-
-def mode_counts(a: float, begin: float) -> tuple[int, int]:
-    """How many modes are summed one by one (slow or overdamped) and how many in all, from `begin` on."""
-    if a * begin >= DEAD:  # diffusion alone
-        count = int(np.sqrt(2 * DEAD * a / begin) / np.pi) + 8
-        return count, count
-    return int(2 * a / np.pi) + 2, MODES
-
-
-def _away(column: str, times: Array, kappa: float, a: float, begin: float) -> Array:
-    """Sum of the modes, cut off smoothly."""
-    low, count = mode_counts(a, begin)
-    b = wave_numbers(kappa, MODES)
-    weights = shares(column, b, kappa) * cut_off(MODES, MODES)
-    result: Array = weights[low:].sum() + _by_blocks(times, b[:low], weights[:low], lambda t, w: gone(t, w, a))
-    if low < count:
-        last = int(np.searchsorted(times, DEAD / a, side="right"))
-        v = np.sqrt((b[low:] - a) * (b[low:] + a))
-        result[:last] -= np.exp(-a * times[:last]) * _turns(v, weights[low:] * (1 - 1j * a / v), times[:last])
-    return result
-
-
-def _turns(v: Array, amplitude: NDArray[np.complex128], times: Array) -> Array:
-    """Real part of the sum of amplitude * exp(i v t) at equally spaced times, as a product of two tables."""
-    if not len(times):
-        return np.zeros(0)
-    side = int(np.ceil(np.sqrt(len(times))))
-    rows = times[::side]
-    offsets = times[:side] - times[0]
-    total = np.zeros((len(rows), len(offsets)))
-    for part in np.array_split(np.arange(len(v)), 1 + len(v) * side // BLOCK):
-        rotated = np.exp(1j * np.outer(rows, v[part])) * amplitude[part]
-        right = np.exp(1j * np.outer(v[part], offsets))
-        total += rotated.real @ right.real - rotated.imag @ right.imag
-    return total.ravel()[: len(times)]
-
-
-def _check_waves(times: Array) -> None:
-    """Raise for instants at fronts whose waves would take too long to sum."""
-    work = float(np.sum((times / 2) ** 2))
-    if work > WAVE_WORK:
+    # The kernel falls as exp(-a s^2 / (2 t)): earlier waves have arrived by diffusion alone, and are nothing so far.
+    latest = float(np.minimum(times, np.sqrt(2 * DEAD * times / a)).max(initial=0.0))
+    if latest > LONGEST:
         raise ValueError(
-            "steps: the sum of (t / 2)^2 over instants t at undecayed wave fronts, in travel times of the wave, must "
-            f"be at most {WAVE_WORK}, got {work:.6g}; choose a time step that falls on the fronts less often"
+            f"steps: must end where undecayed waves have taken {LONGEST:g} travel times at most, got {latest:.6g}"
         )
+    trips = 1 + max(0, math.floor((latest - first) / TRIP))
+    coarse = np.linspace(0.0, TRIP, 1 + math.ceil(TRIP * min(a, math.sqrt(2 * DEAD * a)) / DECAY))
+    edges = np.union1d(_edges(kappa, trips), coarse)
+    points = _points(edges)
+    weights = np.diff(edges)[:, None] / 2 * WEIGHTS
+    y = _sampled(waves, points, trips, kappa)
+    few = _points(coarse)
+    moments = _moments(points, weights[:, :, None] * y, coarse)
+    begins = first + TRIP * np.arange(trips)
+
+    def value(t: float) -> float:
+        if t <= first:
+            return 0.0
+        trip = int((t - first) / TRIP)
+        whole = min(trip, trips)
+        total = float(kernel(t, begins[:whole, None, None] + few, a).ravel() @ moments[:whole].ravel())
+        if trip >= trips:  # all that has not arrived by diffusion is dead
+            return total
+        passed = min(t - begins[trip], TRIP)
+        cell = int(np.searchsorted(edges[1:-1], passed, side="right"))
+        in_trip = y[:, :, trip]
+        total += float((kernel(t, begins[trip] + points[:cell], a) * weights[:cell] * in_trip[:cell]).sum())
+        low, high = edges[cell : cell + 2]
+        rest = low + (passed - low) * (GAUSS + 1) / 2
+        own = lagrange(2 * (np.append(rest, passed) - low) / (high - low) - 1) @ in_trip[cell]
+        total += float(kernel(t, begins[trip] + rest, a) * WEIGHTS @ own[:-1]) * (passed - low) / 2
+        return float(total + math.exp(-a * t) * own[-1])
+
+    return np.array([value(t) for t in times.tolist()])
 
 
-def _near(column: str, times: Array, kappa: float, a: float, undamped: Undamped) -> Array:
-    """Sum of the modes less their leading terms, which the undamped waves give for all modes at once."""
-    count = max(LEAST_MODES, int(min(FRONT_MODES * min(a, 1.0), WORK // len(times))))
-    b = wave_numbers(kappa, count)
-    weights = shares(column, b, kappa) * cut_off(count, count)
-    value, integral = undamped(column, times, kappa)
-    leading = np.exp(-a * times) * (value + (a + a * a * times / 2) * integral)
-    return np.asarray(leading + _by_blocks(times, b, weights, lambda t, w: _beyond(t, w, a)))
+def kernel(t: float, s: Array, a: float) -> Array:
+    """exp(-a t) [a I_0(a xi) + a t I_1(a xi) / xi]."""
+    xi = np.sqrt(np.maximum((t - s) * (t + s), 0.0))
+    z = np.maximum(a * xi, np.finfo(float).tiny)
+    decayed = np.exp(-a * s * s / (t + xi))  # exp(a xi - a t)
+    return np.asarray(a * decayed * (i0e(z) + a * t * i1e(z) / z))
 
 
-def _beyond(t: Array, w: Array, a: float) -> Array:
-    """Way 1 - x that modes have gone less its leading terms; `t` is a column."""
-    lead = a + a * a * t / 2
-    return np.asarray(gone(t, w, a) - np.exp(-a * t) * (2 * np.sin(w * t / 2) ** 2 + lead * lag(t, w)))
+def lagrange(x: Array) -> Array:
+    """Values at places in [-1, 1] of the polynomials that are one at one Gauss point each, shape (places, points)."""
+    return np.asarray(np.polynomial.legendre.legvander(x, POINTS - 1) @ _BASIS)
 
 
-def lag(t: Array, w: Array) -> Array:
-    """T - sin(w t) / w, which is w^2 t^3 / 6 for slow modes, with all its digits."""
-    z = np.minimum(w * t, 1.0) ** 2
-    series = np.ones_like(z)
-    for divisor in (342, 272, 210, 156, 110, 72, 42, 20):
-        series = 1 - z / divisor * series
-    return np.asarray(np.where(w * t < 1, t * z / 6 * series, t - np.sin(w * t) / w))
+def _points(edges: Array) -> Array:
+    """Gauss points of cells, shape (cells, points)."""
+    return np.asarray(edges[:-1, None] + np.diff(edges)[:, None] * (GAUSS + 1) / 2)
 
 
-def gone(t: Array, w: Array, a: float) -> Array:
-    """Way 1 - x(w, t) of modes; the first one's, which is slow on a soft spring, with all its digits."""
-    y = 1 - response(t, w, a)
-    y[:, :1] = slowest(t[:, 0], w[0], a)[:, None]
-    return np.asarray(y)
+def _edges(kappa: float, trips: int) -> Array:
+    """Edges of the cells of a trip, which shrink towards its arrivals at zero and at half of it.
 
-
-def slowest(t: Array, w: float, a: float) -> Array:
-    """Way 1 - x(w, t) of one mode, which is w^2 t^2 / 2 at first and w^2 t / (2 a) where damping is strong.
-
-    It is w^2 times the integral of exp(-a u) sin(v u) / v, whose integrand does not cancel before w t or a t is one.
+    After j reflections a wave goes as J_0((8 kappa j t)^(1/2)), whose phase is at most PHASE in each cell, until about
+    t = 2 j / kappa, after which it decays as exp(-kappa t).
     """
-    y = 1 - response(t[:, None], np.array([w]), a)[:, 0]
-    early = (w * t < 1) & (a * t < 1)
-    u, weights = np.polynomial.legendre.leggauss(GAUSS)
-    s = t[early, None] * (1 + u) / 2
-    v = np.sqrt(complex(w * w - a * a))
-    y[early] = w * w * t[early] / 2 * (np.exp(-a * s) * s * np.sinc(v * s / np.pi).real @ weights)
-    if w < a / 2:
-        q = np.sqrt((a - w) * (a + w))
-        slow = w * w / (a + q)
-        fast = a + q
-        late = t[~early]
-        y[~early] = (slow * np.expm1(-fast * late) - fast * np.expm1(-slow * late)) / (2 * q)
-    return np.asarray(y)
+    fastest = kappa * trips
+    ends = np.append(0.0, 0.5 ** np.arange(max(0, math.ceil(math.log2(fastest))), -1.0, -1.0))
+    edges = []
+    for low, high in pairwise(ends.tolist()):
+        phase = math.sqrt(2 * fastest * high) if kappa * low <= 4 * trips else 0.0
+        edges.append(np.linspace(low, high, 2 + int(phase / PHASE))[:-1])
+    half = np.concatenate(edges)
+    return np.concatenate([half, TRIP / 2 + half, [TRIP]])
 
 
-def response(t: Array, w: Array, a: float | Array) -> Array:
-    """Free response x(w, t) from x = 1 at rest, also overdamped and critical; `t` is a column.
-
-    Half the damping rate a is one, or one for each mode.
-    """
-    a = np.broadcast_to(a, w.shape)
-    square = (a - w) * (a + w)
-    q = np.sqrt(np.abs(square))
-    swing = np.where(square <= 0, q, 0.0) * t
-    x = np.exp(-a * t) * (np.cos(swing) + a * t * np.sinc(swing / np.pi))
-    over = square > 0
-    if over.any():
-        v = q[over]
-        a = a[over]
-        slow = w[over] ** 2 / (a + v)
-        # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
-        fall = -np.expm1(-2 * v * t)
-        x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))
-    return np.asarray(x)
+def _sampled(waves: Waves, points: Array, trips: int, kappa: float) -> Array:
+    """The undamped history at points of each trip, shape (cells, points, trips)."""
+    since = TRIP * np.arange(trips)[::-1]
+    parts = []
+    for part in np.array_split(points.ravel(), 1 + points.size * trips // CHUNK):
+        total = np.zeros((len(part), trips))
+        for j, terms in zip(range(trips), waves(part[:, None] + since, kappa), strict=False):
+            total[:, j:] += terms[:, ::-1]  # wave j, which had arrived in trip j
+        parts.append(total)
+    return np.concatenate(parts).reshape(*points.shape, trips)
 
 
-def _by_blocks(times: Array, w: Array, weights: Array, term: Callable[[Array, Array], Array]) -> Array:
-    """Sum of weights * term(t, w) over the modes, in blocks of bounded memory."""
-    parts = np.array_split(times, 1 + len(times) * len(w) // BLOCK)
-    return np.concatenate([term(part[:, None], w) @ weights for part in parts])
+def _moments(points: Array, weighted: Array, coarse: Array) -> Array:
+    """Integrals over coarse cells of the history times their polynomials, shape (trips, cells, points)."""
+    cell = np.searchsorted(coarse, points.mean(axis=1)) - 1
+    places = 2 * (points - coarse[cell, None]) / np.diff(coarse)[cell, None] - 1
+    moments = np.zeros((len(coarse) - 1, POINTS, weighted.shape[2]))
+    np.add.at(moments, cell, np.swapaxes(lagrange(places), 1, 2) @ weighted)
+    return np.moveaxis(moments, -1, 0)

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from fem_reference.exact.bar_modes import cut_off, shares, wave_numbers
-from fem_reference.exact.damped import response
 from fem_reference.problem.problem import Array
 
 FIRST = 256
@@ -58,3 +57,24 @@ def _sum(weights: Array, ways: Array) -> Array:
     """Sum over the modes; what only rounding leaves, before a wave has come, is nothing."""
     total = weights @ ways
     return np.where(np.abs(total) <= ROUNDING * (np.abs(weights) @ np.abs(ways)), 0.0, total)
+
+
+def response(t: Array, w: Array, a: float | Array) -> Array:
+    """Free response x(w, t) from x = 1 at rest, also overdamped and critical; `t` is a column.
+
+    Half the damping rate a is one, or one for each mode.
+    """
+    a = np.broadcast_to(a, w.shape)
+    square = (a - w) * (a + w)
+    q = np.sqrt(np.abs(square))
+    swing = np.where(square <= 0, q, 0.0) * t
+    x = np.exp(-a * t) * (np.cos(swing) + a * t * np.sinc(swing / np.pi))
+    over = square > 0
+    if over.any():
+        v = q[over]
+        a = a[over]
+        slow = w[over] ** 2 / (a + v)
+        # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
+        fall = -np.expm1(-2 * v * t)
+        x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))
+    return np.asarray(x)

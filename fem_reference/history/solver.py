@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, AdaptiveDiscount
 from fem_reference.history.reduced import Reduced, reduced
 from fem_reference.mesh.fields import FieldWriter
 from fem_reference.mesh.model import Model, build
@@ -24,6 +25,7 @@ def solve(
     full: bool = False,
     fields: str | Path | None = None,
     model: Model | None = None,
+    floor: float | None = None,
 ) -> Result:
     """Integrate the block from rest under its loads.
 
@@ -34,39 +36,50 @@ def solve(
     steps
         Number of steps, at least 1.
     columns
-        Columns of the history, among `fem_reference.problem.result.COLUMNS`.
+        Columns of the history, among `fem_reference.COLUMNS`, and with a floor among `ADAPTIVE_COLUMNS`.
     full
         Solve the whole block step by step, without any saving.
     fields
         Path of an ``.xdmf`` file (time series) or a ``.vtu`` file (last step) for displacement and stress.
     model
         The model of `problem` (and `full`) where it was built before.
+    floor
+        Least discount where the kinetic damping adapts, from 0 to 1; with 1 nothing is damped.
 
     Raises
     ------
     ValueError
-        If the block cannot be meshed, or `steps`, `columns` or `fields` are not valid.
+        If the block cannot be meshed, or `steps`, `columns`, `fields` or `floor` are not valid.
     """
-    _check(problem, scheme, steps, columns)
+    adaptive = () if floor is None else ADAPTIVE_COLUMNS
+    observed = tuple(name for name in columns if name not in adaptive)
+    _check(problem, scheme, steps, observed)
     began = time.perf_counter()
     model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
+    discount = None if floor is None else AdaptiveDiscount(problem, scheme, model.M, floor)
     writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
     ready = time.perf_counter()
-    small = "all savings off" if full else _in_small_space(problem, model, stepper, steps, tuple(columns), writer)
+    small: Reduced | str = "all savings off"
+    if floor is not None:
+        small = f"adaptive discount from {floor:g} to 1"
+    elif not full:
+        small = _in_small_space(problem, model, stepper, steps, observed, writer)
     if isinstance(small, str):
         instants = scheme.stage_times(steps)
         moved = None if problem.motion is None else problem.motion(instants)
         shares = problem.load_shares(instants) if problem.ramp else None
-        history = run(stepper, model, steps, tuple(columns), writer, moved, shares)
+        history = run(stepper, model, steps, observed, writer, moved, shares, discount)
         estimate = None
     else:
         history = small.history
         estimate = small.estimate
-    history = bounded(history, problem.load_size)
+    every = dict(zip(observed, bounded(history, problem.load_size), strict=True))
+    if discount is not None:
+        every |= discount.columns(problem.load_size**2 * (2 if model.kind == "half" else 1))
     return Result(
         **just_ended(scheme.step, steps, began, ready),
-        columns=dict(zip(columns, history, strict=True)),
+        columns={name: every[name] for name in columns},
         unknowns=len(model.F),
         **vars(stepper.work),
         notes=(*model.notes, *front(problem, scheme.step), _note(small)),
@@ -112,6 +125,7 @@ def run(
     writer: FieldWriter | None,
     moved: Array | None = None,
     shares: Array | None = None,
+    discount: AdaptiveDiscount | None = None,
 ) -> Array:
     """Observe every step for a load of unit size; shape (columns, steps).
 
@@ -126,7 +140,7 @@ def run(
     stages = len(stepper.scheme.stages)
     # A scheme beyond its limit grows until it overflows; that is the caller's to name.
     with np.errstate(over="ignore", invalid="ignore"):
-        for n, state in enumerate(stepper.states(steps, forces)):
+        for n, state in enumerate(stepper.states(steps, forces, discount)):
             history[:, n] = rows @ state.D
             if writer is not None:
                 writer.record(n + 1, state.D)

@@ -149,10 +149,16 @@ class Stepper:
         end = step_change(self.scheme, gg, self.scheme.step, self.bodies, start, loads)
         return State(state.D + end.D, end.V, end.A)
 
-    def states(self, steps: int, loads: Array | None = None) -> Iterator[State]:
-        """Yield the state after each step from rest, under loads at the `stage_times`, shape (instants, unknowns)."""
+    def states(
+        self, steps: int, loads: Array | None = None, discount: Callable[[State], float] | None = None
+    ) -> Iterator[State]:
+        """Yield the state after each step from rest, under loads at the `stage_times`, shape (instants, unknowns).
+
+        The scheme's own gg is that of all steps, unless `discount` has it of the state that one begins with.
+        """
         stages = len(self.solves)
         state = self.start(None if loads is None else loads[0])
         for n in range(steps):
-            state = self.advance(state, None if loads is None else list(loads[n * stages : (n + 1) * stages + 1]))
+            of_step = None if loads is None else list(loads[n * stages : (n + 1) * stages + 1])
+            state = self.advance(state, of_step, None if discount is None else discount(state))
             yield state

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from validation import InputError, Scene, advise, damping, load_scene
+from validation import InputError, advise, damping, load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
@@ -14,12 +14,12 @@ EXAMPLES = settings(max_examples=200, deadline=None, derandomize=True, suppress_
 SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
 
 
-def decades(low: float, high: float) -> st.SearchStrategy[float]:
+def decades(low, high):
     return st.floats(low, high).map(lambda exponent: 10.0**exponent)
 
 
 @st.composite
-def scenes(draw: st.DrawFn) -> Scene:
+def scenes(draw):
     side, young = draw(st.floats(0.3, 6.0)), draw(decades(7, 10.5))
     density, alpha_delta = draw(st.floats(1500, 3500)), draw(SCHEMES)
     wave = side / math.sqrt(young / density)
@@ -45,7 +45,7 @@ def scenes(draw: st.DrawFn) -> Scene:
 @pytest.mark.long
 @EXAMPLES
 @given(scenes(), decades(-3, 0.2), st.sampled_from(["dt", "gg", "scheme"]))
-def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: str) -> None:
+def test_what_is_advised_is_what_runs(scene, target, solve_for):
     advice = advise(scene, damping=target, solve_for=solve_for)
     assert advice.reachable == bool(advice.solutions)
     for solution in advice.solutions:
@@ -56,14 +56,14 @@ def test_what_is_advised_is_what_runs(scene: Scene, target: float, solve_for: st
         assert target > advice.greatest or target < advice.least
 
 
-def test_both_sides_of_the_maximum_are_listed() -> None:
+def test_both_sides_of_the_maximum_are_listed():
     below, above = advise(BASE, damping=0.35, solve_for="dt").solutions
     assert below.value * 344.561 < 3.27 < above.value * 344.561 < 4
     assert above.contact.flips and not below.contact.flips
     assert "or dt =" in advise(BASE, damping=0.35).sentence
 
 
-def test_the_maximum_is_named_where_it_is_out_of_reach() -> None:
+def test_the_maximum_is_named_where_it_is_out_of_reach():
     advice = advise(BASE, damping=0.45)
     assert not advice.reachable and advice.solutions == ()
     assert advice.greatest == pytest.approx(0.373, abs=5e-4)
@@ -72,7 +72,7 @@ def test_the_maximum_is_named_where_it_is_out_of_reach() -> None:
     assert advise(BASE, damping=advice.greatest * (1 - 1e-9)).reachable
 
 
-def test_two_steps_solve_it_where_gg_is_below_one() -> None:
+def test_two_steps_solve_it_where_gg_is_below_one():
     scene = LIGHT.with_values({"time.alpha": 0.3025, "time.delta": 0.6})
     kinetic, algorithmic = advise(scene, damping=0.05).solutions
     low, high = (damping(scene.with_values(s.settings)).modes[0] for s in (kinetic, algorithmic))
@@ -89,7 +89,7 @@ LOADS = {
 
 
 @pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
-def test_settling_is_that_of_the_history_under_the_loads_of_the_scene(load: dict[str, float]) -> None:
+def test_settling_is_that_of_the_history_under_the_loads_of_the_scene(load):
     from validation.engine.case import Case
     from validation.engine.measure import execute
 
@@ -101,14 +101,14 @@ def test_settling_is_that_of_the_history_under_the_loads_of_the_scene(load: dict
     assert solution.settling_seconds == pytest.approx(solution.settling_steps * solution.value)
 
 
-def test_loads_without_a_static_displacement_settle_nowhere() -> None:
+def test_loads_without_a_static_displacement_settle_nowhere():
     from validation.advice.advice import NO_STATIC
 
     solution = advise(BASE.with_values({"load.pressure": 0.0, "load.traction": 1e5}), damping=0.2).solutions[0]
     assert (solution.settling_steps, solution.settling_from) == (None, NO_STATIC)
 
 
-def test_a_long_settling_is_the_envelope_of_the_history() -> None:
+def test_a_long_settling_is_the_envelope_of_the_history():
     from validation.advice import advice
 
     case = BASE.with_values({"time.step": 1e-4, "time.gg_rate": 10.0})
@@ -121,7 +121,7 @@ def test_a_long_settling_is_the_envelope_of_the_history() -> None:
     assert rough == pytest.approx(exact, rel=0.1)
 
 
-def test_a_rate_is_kept_as_a_rate() -> None:
+def test_a_rate_is_kept_as_a_rate():
     scene = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg_rate": 40.0})
     advice = advise(scene, damping=0.06)
     assert "rate" in advice.sentence
@@ -132,13 +132,13 @@ def test_a_rate_is_kept_as_a_rate() -> None:
     assert gg.gg_rate == pytest.approx(-math.log(gg.value) / scene.time.step)
 
 
-def test_the_scheme_family_is_the_boundary_of_14() -> None:
+def test_the_scheme_family_is_the_boundary_of_14():
     solution = advise(BASE, damping=0.05, solve_for="scheme").solutions[0]
     assert solution.alpha == pytest.approx((0.5 + solution.delta) ** 2 / 4, rel=1e-15)  # above it roots turn real
     assert solution.settings == {"time.alpha": solution.alpha, "time.delta": solution.value}
 
 
-def test_no_damping_wanted_of_a_scheme_that_has_none() -> None:
+def test_no_damping_wanted_of_a_scheme_that_has_none():
     undamped = LIGHT.with_values({"time.gg": 1.0})
     advice = advise(undamped, damping=0.0)
     assert advice.reachable and advice.solutions[0].settling_steps is None
@@ -146,7 +146,7 @@ def test_no_damping_wanted_of_a_scheme_that_has_none() -> None:
 
 
 @pytest.mark.parametrize(("wanted", "solve_for"), [(-0.1, "dt"), (math.nan, "dt"), (0.1, "p")])
-def test_bad_input_is_named(wanted: float, solve_for: str) -> None:
+def test_bad_input_is_named(wanted, solve_for):
     with pytest.raises(InputError, match=r"damping: must be|solve_for: must be one of"):
         advise(BASE, damping=wanted, solve_for=solve_for)
     with pytest.raises(InputError, match="one value must be picked"):

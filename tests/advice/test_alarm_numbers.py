@@ -1,10 +1,7 @@
 """The numbers in alarms and damping budgets, against histories made by hand and closed forms written apart."""
 
-from __future__ import annotations
-
 import math
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,14 +10,14 @@ from oracles.made_cases import made_row
 from validation.advice import budget
 from validation.advice.alarms import alarms, fixed_discount
 from validation.advice.block_alarms import TENSION
-from validation.runs.history import History
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
+from validation.theory.stepping import Stepping
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
 
 
-def raised(scene: Scene, rows: dict[str, dict[str, Any]], histories: dict[str, History] | None = None) -> Any:
+def raised(scene, rows, histories=None):
     """Return the alarms of made cases by kind."""
     kept = {(scene.name, solver): made_row(solver, metrics, scene.name) for solver, metrics in rows.items()}
     finished = SimpleNamespace(rows=kept, history=lambda _, solver: (histories or {}).get(solver))
@@ -30,11 +27,11 @@ def raised(scene: Scene, rows: dict[str, dict[str, Any]], histories: dict[str, H
 # ---- tension and ringing ------------------------------------------------------------------------------------------
 
 
-def pulling(least: float, when: float, duration: float) -> dict[str, float]:
+def pulling(least, when, duration):
     return {"pressure.minimum": least, "pressure.minimum_time": when, "pressure.tension_time": duration}
 
 
-def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> None:
+def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration():
     rows = {
         "dda": pulling(-0.4321e6, 0.0025, 0.0375),
         "dda-textbook": pulling(-0.5e6, 0.1, 0.2),
@@ -54,8 +51,8 @@ def test_hidden_tension_is_in_megapascals_with_its_time_and_its_duration() -> No
     }  # fmt: skip
 
 
-def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one() -> None:
-    def warned(*pairs: tuple[float, float], **more: float) -> list[tuple[str, str]]:
+def test_a_fixed_discount_is_warned_of_where_dt_varies_and_gg_is_below_one():
+    def warned(*pairs, **more):
         cases = [SCENE.with_values({"time.step": step, "time.gg": gg} | more) for step, gg in pairs]
         return [(alarm.scene, alarm.sentence[:34]) for alarm in fixed_discount(cases)]
 
@@ -78,13 +75,13 @@ OBLONG = {
 }
 
 
-def oblong(**more: Any) -> Scene:
+def oblong(**more):
     """Return a block 1 m wide and 3 m high under a scheme with damping of both kinds."""
     changes = {key.replace("__", "."): value for key, value in more.items()}
     return SCENE.with_values(OBLONG).with_values(changes)
 
 
-def frequencies(scene: Scene) -> np.ndarray:
+def frequencies(scene):
     """Return both axial frequencies [rad/s] of a block 1 m wide and 3 m high at mu = 0, from (v, ey)."""
     m, p, E, h = scene.block.density * 3.0, scene.contact.stiffness, scene.block.young, 3.0
     stiffness = np.array([[2 * p, -p * h], [-p * h, E * 3.0 + p * h * h / 2]])
@@ -92,7 +89,7 @@ def frequencies(scene: Scene) -> np.ndarray:
     return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
 
 
-def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> None:
+def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars():
     """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
     scene = oblong()
     (found,) = budget.budgets([scene])
@@ -101,3 +98,15 @@ def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars() -> Non
     b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
     assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
     assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
+
+
+def test_a_budgets_curves_are_the_ratios_of_the_scheme_with_and_without_its_discount():
+    scene = oblong()
+    (found,) = budget.budgets([scene])
+    for name, w in zip(("first axial", "contact"), frequencies(scene), strict=True):
+        curves = found["modes"][name]
+        for i in (0, 40, 70):
+            dt = found["dt"][i]
+            discounted, plain = (Stepping(dt, 0.36, 0.7, gg).damping_ratio(w * dt) for gg in (0.97, 1.0))
+            parts = [curves[part][i] for part in ("total", "algorithmic", "kinetic")]
+            assert parts == pytest.approx([discounted, plain, discounted - plain], rel=1e-3)

@@ -1,29 +1,27 @@
 """Alarms are raised where they should be, stay silent where not, and reach verdicts."""
 
-from pathlib import Path
-
 import pytest
 from conftest import beside
 
-from validation.advice.alarms import Alarm, alarms
+from validation.advice.alarms import alarms
 from validation.advice.block_alarms import RINGING
 from validation.advice.coarse import AGREEMENT, SAMPLED
 from validation.engine.run import finish
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.suite.declaration import Study
 
 STIFFNESS = load_scene("figures-5-6")
 STEPS = load_scene("model-form")
 
 
-def raised(scene: Scene, finished_cases: Path, directory: Path, *solvers: str) -> dict[str, Alarm]:
+def raised(scene, finished_cases, directory, *solvers):
     study = Study("test", "", "", [scene], solvers or ("dda", "bar", "continuum"))
     return {
         alarm.kind: alarm for alarm in alarms([scene], finish(study.cases(), study, beside(finished_cases, directory)))
     }
 
 
-def test_agreement_by_damping_is_told_beside_what_agrees(tmp_path: Path, finished_cases: Path) -> None:
+def test_agreement_by_damping_is_told_beside_what_agrees(tmp_path, finished_cases):
     coarse, *_, fine = sorted(STEPS.expand(), key=lambda scene: -scene.time.step)
     alarms_of_coarse = raised(coarse, finished_cases, tmp_path)
     assert alarms_of_coarse[AGREEMENT].values["damping"] == pytest.approx(0.3722, abs=1e-4)
@@ -33,7 +31,7 @@ def test_agreement_by_damping_is_told_beside_what_agrees(tmp_path: Path, finishe
     assert AGREEMENT not in raised(light, finished_cases, tmp_path)
 
 
-def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path: Path, finished_cases: Path) -> None:
+def test_contact_ringing_is_a_root_next_to_minus_one(tmp_path, finished_cases):
     soft, stiff, stiffest = STIFFNESS.expand()
     assert raised(stiffest, finished_cases, tmp_path)[RINGING].values["root"] == pytest.approx(-0.9733, abs=5e-5)
     assert RINGING not in raised(soft, finished_cases, tmp_path) and RINGING not in raised(

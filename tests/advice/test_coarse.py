@@ -1,11 +1,7 @@
 """A step that is too long is told from the scheme alone, for every scene that has modes, and no other one."""
 
-from __future__ import annotations
-
 import json
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,20 +15,20 @@ from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns
 
-GRANITE: dict[str, Any] = {
+GRANITE = {
     "block": {"side": 1.2, "density": 2650.0, "young": 5e10, "poisson": 0.25},
     "contact": {"stiffness": 5e11},
     "load": {"gravity": 9.81, "pressure": 1e6},
     "time": {"step": 1e-3, "steps": 200},
 }
-COLUMN: dict[str, Any] = {
+COLUMN = {
     "column": {"motion": "shear", "layer": [{"thickness": 10.0, "density": 2000.0, "young": 2e9, "blocks": 20}]},
     "input": {"shape": "ricker", "velocity": 0.1, "frequency": 2.0},
     "time": {"step": 1e-3, "steps": 200},
 }
 
 
-def scene(base: dict[str, Any] = GRANITE, **changes: Any) -> Scene:
+def scene(base=GRANITE, **changes):
     tables = {name: dict(table) for name, table in base.items()}
     for key, value in changes.items():
         table, _, field = key.partition("__")
@@ -43,7 +39,7 @@ def scene(base: dict[str, Any] = GRANITE, **changes: Any) -> Scene:
     return Scene.model_validate({"name": "granite", **tables})
 
 
-def kinds(case: Scene) -> set[str]:
+def kinds(case):
     return {alarm.kind for alarm in coarse_alarms(case)}
 
 
@@ -78,7 +74,7 @@ CH = {"scheme": "chung-hulbert", "rho_inf": 0.0, "steps": 200}
         (scene(COLUMN, time__step=1e-3, input__frequency=100.0), {AGREEMENT}),  # of the wave, not of the first mode
     ],
 )
-def test_a_step_that_is_too_long_is_told_without_a_run(case: Scene, raised: set[str]) -> None:
+def test_a_step_that_is_too_long_is_told_without_a_run(case, raised):
     assert kinds(case) == raised
 
 
@@ -93,7 +89,7 @@ def test_a_step_that_is_too_long_is_told_without_a_run(case: Scene, raised: set[
         ),  # k H / 3 G
     ],
 )
-def test_the_first_frequency_of_a_column(column: dict[str, Any], frequency: float) -> None:
+def test_the_first_frequency_of_a_column(column, frequency):
     layers = [{"thickness": 10.0, "density": 2000.0, "young": 2e9} | layer for layer in column["layer"]]
     section = scene(COLUMN, column=column | {"motion": "shear", "layer": layers}).column
     assert section is not None
@@ -101,7 +97,7 @@ def test_the_first_frequency_of_a_column(column: dict[str, Any], frequency: floa
 
 
 @pytest.mark.parametrize("blocks", [1, 3, 8])
-def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks: int) -> None:
+def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks):
     layer = {"thickness": 1.0 * blocks, "density": 2000.0, "young": math.inf, "blocks": blocks}
     tables = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": [layer]}
     section = Scene.model_validate({"name": "s", "column": tables, "time": COLUMN["time"]}).column
@@ -110,10 +106,10 @@ def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks: int) -> None:
     assert columns.first_frequency(section) == pytest.approx(expected, rel=1e-7)
 
 
-def test_run_show_and_the_report_warn(tmp_path: Path) -> None:
+def test_run_show_and_the_report_warn(tmp_path):
     """No gate is proposed that would pass by the step."""
     source = tmp_path / "granite.toml"
-    lines: list[str] = []
+    lines = []
     for name, table in GRANITE.items():
         lines += [f"[{name}]", *(f"{key} = {value}" for key, value in table.items())]
     source.write_text("\n".join(lines))

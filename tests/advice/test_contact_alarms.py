@@ -1,10 +1,6 @@
 """Alarms and advice of contact that opens: raised where they should be, silent where not, and true of runs."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,20 +8,19 @@ import pytest
 from validation import load_scene
 from validation.advice import contact
 from validation.advice import contact_alarms as kinds
-from validation.advice.alarms import Alarm, alarms
+from validation.advice.alarms import alarms
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
-from validation.scenes.scene import Scene
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 STIFF = {"contact.stiffness": 1e11}
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 
 
-def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
+def raised(scene, directory, *solvers):
     study = Study("test", "", "", [scene], solvers or ("dda",))
     found = list(alarms([scene], finish(study.cases(), study, Results(directory))))
     return {alarm.kind: alarm for alarm in found if alarm.kind in kinds.KINDS}
@@ -46,12 +41,12 @@ def raised(scene: Scene, directory: Path, *solvers: str) -> dict[str, Alarm]:
         (STIFF | AVERAGE | {"contact.rule": "implicit"}, {kinds.LARGE_STEP}),
     ],
 )
-def test_each_alarm_is_raised_where_it_should_be(values: dict[str, Any], expected: set[str], tmp_path: Path) -> None:
+def test_each_alarm_is_raised_where_it_should_be(values, expected, tmp_path):
     solvers = ("dda", "bar-events") if kinds.PENALTY in expected else ("dda",)
     assert set(raised(PAPER.with_values(values), tmp_path, *solvers)) == expected
 
 
-def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
+def test_the_numbers_of_the_alarms(tmp_path):
     large = raised(PAPER.with_values(STIFF), tmp_path)[kinds.LARGE_STEP]
     assert large.values["omega"] == pytest.approx(math.sqrt(8e11 / 10800) * 1e-3, rel=1e-2)  # 8.6, a quarter of m
     assert "by where in the step the block lands" in large.sentence
@@ -64,7 +59,7 @@ def test_the_numbers_of_the_alarms(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("gg", [0.98, 0.5, 0.0])
-def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float) -> None:
+def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg):
     """Speeds fall to 1/e in -dt / ln(gg): 28 % less than dt / (1 - gg) at gg = 0.5, and at once at gg = 0."""
     flight = {"load.pressure": 0.0, "block.velocity": 1.0, "contact.gap": 1.0, "time.gg": gg, "time.steps": 40}
     scene = PAPER.with_values(flight | {"run.columns": ["displacement"]})
@@ -76,7 +71,7 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg: float
     assert alarm.values["constant"] == pytest.approx(constant, rel=1e-9)
 
 
-def test_a_landing_is_not_known_for_every_scene() -> None:
+def test_a_landing_is_not_known_for_every_scene():
     found = contact.restitution(PAPER)
     assert found is not None and found.low < found.mean < found.high < found.own
     rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}

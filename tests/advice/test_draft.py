@@ -1,28 +1,25 @@
 """What `new` writes: a scene that loads and runs, with springs and steps by their closed forms."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import pytest
 from conftest import refused, typed
 
 from validation import load_scene, solve
-from validation.advice.draft import KINDS, MOVING, draft
+from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, draft
 from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
 
 
-def default(question: str, value: float) -> float:
+def default(question, value):
     return value
 
 
 @pytest.mark.parametrize(("kind", "rock"), [*((kind, "granite") for kind in KINDS), ("slope", "shale")])
-def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock: str, tmp_path: Path) -> None:
+def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind, rock, tmp_path):
     done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
-    following = "show" if kind in MOVING else "advise"
+    following = "show" if kind in (*MOVING, *GLUED_BODIES) else "advise"
     assert done.returncode == 0 and f"next: dda-validate {following} mine.toml" in done.stdout
     scene = load_scene(tmp_path / "mine.toml")
     assert not [*plausibility_warnings(scene)]
@@ -34,7 +31,7 @@ def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind: str, rock
     assert (tmp_path / "mine.toml").read_bytes() == before
 
 
-def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path: Path) -> None:
+def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path):
     path = tmp_path / "column.toml"
     path.write_text(draft({"kind": "column", "height": 100.0, "frequency": 200.0}, default))
     scene = load_scene(path)
@@ -46,16 +43,19 @@ def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path:
     assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
 
 
-@pytest.mark.parametrize("kind", MOVING)
-def test_a_drawn_scene_does_what_it_is_called(kind: str, tmp_path: Path) -> None:
-    """What is to stand stands on its springs, one thousandth of a block's height each under all; the others move."""
+@pytest.mark.parametrize(("kind", "blocks"), [*((kind, 3) for kind in MOVING), ("wall", 2)])
+def test_a_drawn_scene_does_what_it_is_called(kind, blocks, tmp_path):
+    """What is to stand stands on its springs, one thousandth of a block's height each under all; the others move.
+
+    The joints of the smallest wall neither press nor part: the signs of their forces are rounding's.
+    """
     path = tmp_path / "drawn.toml"
-    path.write_text(draft({"kind": kind, "blocks": 3}, default))
+    path.write_text(draft({"kind": kind, "blocks": blocks}, default))
     scene = load_scene(path).with_values({"time.steps": 100})
     run = solve(scene, "dda")
     assert run.outcome is Outcome.COMPLETED and run.history is not None
     names = [block.name for block in scene.plane.assembly.blocks if not block.held]
-    assert len(names) == {"wall": 3 * 3 + 1}.get(kind, 3)
+    assert len(names) == (blocks**2 + blocks // 2 if kind == "wall" else blocks)
     for name in names:
         x = run.history.columns[f"{name}.x"]
         y = run.history.columns[f"{name}.y"]
@@ -63,10 +63,15 @@ def test_a_drawn_scene_does_what_it_is_called(kind: str, tmp_path: Path) -> None
         assert (way < 0.01) == (kind in ("stack", "wall", "arch"))
 
 
-def test_what_no_option_says_is_asked() -> None:
-    questions: list[str] = []
+def test_numbers_that_do_not_go_together_are_refused_before_a_file_is_written(tmp_path):
+    assert "plane.plate" in refused("new", "mine.toml", "--kind", "plate", "--hole", "3", cwd=tmp_path)
+    assert not (tmp_path / "mine.toml").exists()
 
-    def answer(question: str, value: float) -> float:
+
+def test_what_no_option_says_is_asked():
+    questions = []
+
+    def answer(question, value):
         questions.append(question)
         return 2 * value
 
@@ -89,7 +94,7 @@ def test_what_no_option_says_is_asked() -> None:
         ({"pressure": math.nan}, "--pressure"),
     ],
 )
-def test_what_is_refused(options: dict[str, object], field: str) -> None:
+def test_what_is_refused(options, field):
     with pytest.raises(InputError) as error:
         draft(options, default)
     assert error.value.field == field

@@ -1,10 +1,5 @@
 """Advice and alarms of blocks with friction: true of runs, raised where they should be, silent where not."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
 import pytest
 
 from validation import load_scene
@@ -15,13 +10,12 @@ from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 
 SLIDES = load_scene("slope-drag").expand()[0]
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
 
 
-def raised(scene: Scene, directory: Path) -> set[str]:
+def raised(scene, directory):
     study = Study("test", "", "", [scene], ("dda",))
     found = alarms([scene], finish(study.cases(), study, Results(directory)))
     return {alarm.kind for alarm in found if alarm.kind in advice.KINDS}
@@ -41,13 +35,11 @@ def raised(scene: Scene, directory: Path) -> set[str]:
         (SLIDES, {"contact.law": "unilateral", "load.pressure": 1e6, "time.steps": 20}, set()),  # no formula
     ],
 )
-def test_each_alarm_is_raised_where_it_should_be(
-    scene: Scene, values: dict[str, Any], expected: set[str], tmp_path: Path
-) -> None:
+def test_each_alarm_is_raised_where_it_should_be(scene, values, expected, tmp_path):
     assert raised(scene.with_values(values), tmp_path) == expected
 
 
-def test_a_run_without_states_is_told_what_to_do() -> None:
+def test_a_run_without_states_is_told_what_to_do():
     row = Row("", "", STANDS.name, "dda", Outcome.NO_CONTACT_STATE, {})
     (alarm, *_) = advice.friction_alarms(STANDS, {"dda": row})
     assert alarm.kind == advice.STATELESS

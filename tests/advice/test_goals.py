@@ -1,7 +1,5 @@
 """What `advise` recommends, against closed forms, an elastic bar by its transform and runs made apart."""
 
-from __future__ import annotations
-
 import re
 import shlex
 
@@ -11,12 +9,12 @@ from conftest import typed
 
 from validation import damping, load_scene, solve
 from validation.advice import goals
-from validation.advice.goals import Recommendation, recommend
+from validation.advice.goals import recommend
 from validation.advice.overview import overview
 from validation.errors import InputError
 from validation.models.column.pages import recommended_cut as cut_column
 from validation.models.plane import pages
-from validation.scenes.scene import Scene, parse_assignment
+from validation.scenes.scene import parse_assignment
 from validation.solvers.registry import get_solver
 from validation.theory import landing
 
@@ -32,15 +30,15 @@ GRANITE = {
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002})
 
 
-def granite() -> Scene:
+def granite():
     return PAPER.with_values(GRANITE)
 
 
-def with_settings(scene: Scene, offer: Recommendation, **values: object) -> Scene:
+def with_settings(scene, offer, **values):
     return scene.with_values(offer.settings | values)
 
 
-def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its_steps() -> None:
+def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its_steps():
     (offer,) = recommend(granite(), "static", 0.05)
     case = with_settings(granite(), offer, **{"time.steps": offer.steps + 20})
     elements = get_solver("fem").static(case.with_values({"fem.elements": 12}))["displacement"]
@@ -53,7 +51,7 @@ def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its
 
 
 @pytest.mark.parametrize("keep_springs", [pytest.param(False, marks=pytest.mark.long), True])
-def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs: bool) -> None:
+def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs):
     plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
     assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
     assert conserving.settings["contact.rule"] == "energy-conserving"
@@ -75,7 +73,7 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_spring
 
 
 @pytest.mark.long
-def test_a_quake_is_followed_in_the_contact_force_too() -> None:
+def test_a_quake_is_followed_in_the_contact_force_too():
     (offer,) = recommend(PAPER, "quake", 0.02)
     assert offer.is_reached and offer.force_error is not None and offer.force_error <= 0.02
     assert "sideways" in offer.condition
@@ -85,7 +83,7 @@ def test_a_quake_is_followed_in_the_contact_force_too() -> None:
     ("scene", "goal"),
     [(PAPER.with_values({"load.pressure": 0.0}), "static"), (load_scene("quadrilateral"), "impact")],
 )
-def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene: Scene, goal: str) -> None:
+def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene, goal):
     with pytest.raises(InputError) as error:
         recommend(scene, goal, 0.05)
     others = ("wave",) if goal == "static" else ()
@@ -94,7 +92,7 @@ def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene: 
     assert tuple(offer.goal for offer in answer.recommendations) == others
 
 
-def test_the_present_settings_are_told_with_their_numbers() -> None:
+def test_the_present_settings_are_told_with_their_numbers():
     facts = {fact.subject: fact.sentence for fact in overview(PAPER, ()).facts}
     numbers = {name: [float(text) for text in re.findall(r"-?\d+\.?\d*(?:e[-+]?\d+)?", facts[name])] for name in facts}
     first = damping(PAPER).modes[0]
@@ -109,7 +107,7 @@ def test_the_present_settings_are_told_with_their_numbers() -> None:
 
 
 @pytest.mark.long
-def test_every_command_that_is_named_runs() -> None:
+def test_every_command_that_is_named_runs():
     words = ("slope-drag", "--set", "time.gg=0.98", "--set", "time.step=0.01", "--set", "time.steps=20")
     page = typed("advise", *words, "--goal", "static").stdout
     commands = re.findall(r"(?:more on .*|next): dda-validate (.*)$", page, re.M)
@@ -123,7 +121,7 @@ def test_every_command_that_is_named_runs() -> None:
 # ---- columns and beams ----------------------------------------------------------------------------------------------
 
 
-def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
+def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion():
     scene = load_scene("waves-base").expand()[0]
     _, offer = cut_column(scene, 0.05)
     case = with_settings(scene, offer, **{"time.steps": offer.steps, "run.columns": ["displacement"]})
@@ -134,7 +132,7 @@ def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion() -> None:
         cut_column(scene.with_values({"time.gg": 0.5}), 0.01, 50.0)
 
 
-def test_a_beam_of_squares_that_lock_is_cut_into_triangles(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_beam_of_squares_that_lock_is_cut_into_triangles(monkeypatch):
     monkeypatch.setattr(pages, "MOST_BLOCKS", 100)  # squares lock in any number
     scene = load_scene("beams-squares").expand()[0].with_values({"plane.subdivide": [1, 8]})
     sentence, offer = pages.recommended_cut(scene, 0.5)

@@ -8,16 +8,16 @@ import pytest
 
 from validation.errors import InputError
 from validation.models.plane.assembly import OVERLAP
-from validation.models.plane.blocks import PlacedBlock, second_moments
+from validation.models.plane.blocks import second_moments
 from validation.models.plane.corner_springs import fastest_contact, highest_frequency, lines, moving_advice
 from validation.models.plane.tables import PlaneSection
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers.registry import solve
 
 P, DENSITY = 1e6, 2000.0
 
 
-def falling(rectangle: list[float], young: float, velocity: float = -0.1) -> Scene:
+def falling(rectangle, young, velocity=-0.1):
     """Return a block whose lower right corner comes down on a fixed one."""
     width, height = rectangle
     floor = {"name": "floor", "rectangle": [4 * width, 1.0], "at": [0.0, -0.5], "fixed": True}
@@ -27,7 +27,7 @@ def falling(rectangle: list[float], young: float, velocity: float = -0.1) -> Sce
     return parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 10}}, "falling")
 
 
-def block_of(scene: Scene) -> PlacedBlock:
+def block_of(scene):
     return scene.table(PlaneSection).assembly.blocks[1]
 
 
@@ -36,9 +36,7 @@ def block_of(scene: Scene) -> PlacedBlock:
     [([10.0, 0.2], math.inf, 4.0), ([2.0, 2.0], 1.0, 7.0)],
     ids=["rigid rod", "soft square"],
 )
-def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(
-    rectangle: list[float], young: float, over_mass: float
-) -> None:
+def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(rectangle, young, over_mass):
     scene = falling(rectangle, young)
     frequency = highest_frequency(block_of(scene), P)
     mass = DENSITY * math.prod(rectangle)
@@ -51,7 +49,7 @@ def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(
     assert len(pressed) * step == pytest.approx(math.pi / frequency, rel=3e-3), "as dda has it"
 
 
-def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens() -> None:
+def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens():
     block = block_of(falling([2.0, 2.0], 1e9))
     large = replace(block_of(falling([4.0, 4.0], 1e9)), name="large")
     small = replace(block, name="small", density=DENSITY / 2)
@@ -61,7 +59,7 @@ def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens() -> None:
     assert math.sqrt(squares[1]) > highest_frequency(replace(block, young=1.0), P)
 
 
-def test_second_moments_are_those_about_the_centroid() -> None:
+def test_second_moments_are_those_about_the_centroid():
     block = block_of(falling([2.0, 2.0], 1e9))
     assert np.allclose(second_moments(block.vertices), np.eye(2) * 16 / 12), "a^4 / 12 about each axis"
     triangle = ((1.0, 1.0), (4.0, 1.0), (1.0, 3.0))  # b h^3 / 36, b^2 h^2 / 72
@@ -72,7 +70,7 @@ def test_second_moments_are_those_about_the_centroid() -> None:
 
 
 @pytest.mark.parametrize("scheme", [{}, {"time.alpha": 0.25, "time.delta": 0.5}], ids=["constant", "average"])
-def test_what_is_advised_keeps_thickness_and_rebound(scheme: dict[str, float]) -> None:
+def test_what_is_advised_keeps_thickness_and_rebound(scheme):
     scene = load_scene("rigid-impact").with_values(scheme)
     advice = moving_advice(scene, 0.05)
     taken = moving_advice(scene.with_values(advice.settings), 0.05)
@@ -86,7 +84,7 @@ def test_what_is_advised_keeps_thickness_and_rebound(scheme: dict[str, float]) -
     assert sum(name in " ".join(lines(scene, "rigid-impact", advice)) for name in advice.settings) == 2
 
 
-def test_weight_and_landing_are_those_of_the_softest_spring_and_the_frequency_of_the_stiffest() -> None:
+def test_weight_and_landing_are_those_of_the_softest_spring_and_the_frequency_of_the_stiffest():
     values = {"plane.contact.shear_stiffness": 4 * 1.25e6, "plane.contact.friction": 20.0}
     scene = load_scene("rigid-impact").with_values(values)
     advice = moving_advice(scene, 0.05)
@@ -98,7 +96,7 @@ def test_weight_and_landing_are_those_of_the_softest_spring_and_the_frequency_of
     assert advice.frequency == pytest.approx(math.sqrt(4 * 5e6 / mass))
 
 
-def test_where_nothing_touches_or_no_step_does_it_is_refused() -> None:
+def test_where_nothing_touches_or_no_step_does_it_is_refused():
     free = falling([1.0, 1.0], math.inf).definition()
     del free["plane"]["contact"], free["plane"]["touch"]
     with pytest.raises(InputError) as nothing:

@@ -1,9 +1,5 @@
 """What a start puts in, against the histories of the blocks and a closed form; what switching gains, by scheme."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pytest
 from oracles.made_cases import made_row
@@ -12,14 +8,14 @@ from validation.advice.columns import column_alarms
 from validation.advice.contact_alarms import GAINED, gained
 from validation.advice.overshoot import OVERSHOOT, overshoot_alarms, start_rise
 from validation.runs.contact import STORED
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
 CH = {"time.scheme": "chung-hulbert", "time.rho_inf": 0.0, "time.start": "consistent", "time.steps": 20}
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.01, "contact.law": "unilateral"})
 
 
-def measured_rise(scene: Scene) -> float:
+def measured_rise(scene):
     prepared = get_solver("dda").prepare(scene)
     prepared.keeps_contact_record = True
     prepared.run()
@@ -32,7 +28,7 @@ def measured_rise(scene: Scene) -> float:
     ("stiffness", "step", "rise"),
     [(1e9, 0.01906, 5.371), (1e9, 0.01, 1.341), (1e9, 0.002, 0.02173), (1e10, 0.01, 1.981)],
 )
-def test_a_start_raises_the_energy_as_the_modes_say(stiffness: float, step: float, rise: float) -> None:
+def test_a_start_raises_the_energy_as_the_modes_say(stiffness, step, rise):
     scene = BLOCK.with_values(CH | {"contact.stiffness": stiffness, "time.step": step})
     assert start_rise(scene) == pytest.approx(measured_rise(scene), rel=1e-9) == pytest.approx(rise, rel=1e-3)
     (alarm,) = overshoot_alarms(scene, {"dda": made_row("dda", {})})
@@ -49,7 +45,7 @@ def test_a_start_raises_the_energy_as_the_modes_say(stiffness: float, step: floa
         {"time.scheme": "composite"},
     ],
 )
-def test_no_start_is_blamed_that_adds_nothing(changes: dict[str, Any]) -> None:
+def test_no_start_is_blamed_that_adds_nothing(changes):
     assert not list(overshoot_alarms(BLOCK.with_values(CH | changes), {"dda": made_row("dda", {})}))
 
 
@@ -65,13 +61,13 @@ SPLIT = {"energy.given": 100.0, "energy.switching_gain": 0.585, "energy.lost_swi
         ({"time.alpha": 0.5625}, 70.0, None),
     ],
 )
-def test_what_switching_gains(changes: dict[str, Any], algorithmic: float, gain: float | None) -> None:
+def test_what_switching_gains(changes, algorithmic, gain):
     alarms = list(gained(BLOCK.with_values(changes), made_row("dda", SPLIT | {"energy.lost_algorithmic": algorithmic})))
     assert [alarm.values["gain"] for alarm in alarms] == pytest.approx([] if gain is None else [gain])
 
 
 @pytest.mark.parametrize(("share", "kinds"), [(-0.0116, set()), (0.2, {GAINED})])
-def test_a_column_is_blamed_for_what_it_has_gained(share: float, kinds: set[str]) -> None:
+def test_a_column_is_blamed_for_what_it_has_gained(share, kinds):
     scene = load_scene("columns-weight")
     row = made_row("dda", {"energy.given": 1.0, "energy.switching_gain": share, "switches.count": 9.0})
     assert {alarm.kind for alarm in column_alarms(scene, row)} == kinds

@@ -8,7 +8,6 @@ from validation import load_scene, solve
 from validation.advice.hooks import AdviceHooks
 from validation.advice.wave_advice import advise_wave
 from validation.errors import InputError
-from validation.scenes.scene import Scene
 from validation.theory.stepping import Stepping
 from validation.theory.waves import Column
 
@@ -19,7 +18,7 @@ AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 SPEED = (1e9 / 2700) ** 0.5
 
 
-def test_what_limits_blocks_and_step_is_named() -> None:
+def test_what_limits_blocks_and_step_is_named():
     both = advise_wave(COLUMN.with_values({"time.gg": 0.99}), 5.0, 0.1)
     assert (both.advised, both.limits_step) == (None, "gg")
     soft = advise_wave(COLUMN.with_values({"block.glue_ratio": 1e-3}), 5.0, 0.1)
@@ -36,7 +35,7 @@ LINEAR = {"time.alpha": 1 / 6, "time.delta": 0.5}
 EXPLICIT = {"time.alpha": 0.0, "time.delta": 0.5}
 
 
-def with_blocks(scene: Scene, blocks: tuple[int, ...]) -> Scene:
+def with_blocks(scene, blocks):
     """Return a scene whose column or block is cut as advised, and whose unstable steps are refused."""
     if scene.column is None:
         return scene.with_values({"block.subdivide": [1, blocks[0]], "time.allow_unstable": False})
@@ -53,9 +52,7 @@ def with_blocks(scene: Scene, blocks: tuple[int, ...]) -> Scene:
         ({"time.alpha": 0.2, "time.delta": 0.6, "time.gg_rate": 0.1}, GLUE, 20.0),
     ],
 )
-def test_a_step_limited_by_stability_is_the_largest_that_the_solver_takes(
-    scheme: dict[str, float], scene: Scene, frequency: float
-) -> None:
+def test_a_step_limited_by_stability_is_the_largest_that_the_solver_takes(scheme, scene, frequency):
     """Glue, joints and contact springs set the limit, not the blocks alone."""
     scene = scene.with_values(scheme)
     found = advise_wave(scene, frequency, 0.5)
@@ -66,14 +63,14 @@ def test_a_step_limited_by_stability_is_the_largest_that_the_solver_takes(
         solve(case.with_values({"time.step": found.advised.step * (1 + 1e-5)}), "dda")
 
 
-def test_where_only_unstable_steps_would_do_the_advice_says_so() -> None:
+def test_where_only_unstable_steps_would_do_the_advice_says_so():
     scene = COLUMN.with_values(FREE | {"time.alpha": 0.2, "time.delta": 0.6, "time.gg": 0.99})
     found = advise_wave(scene, 5.0, 0.5)
     assert (found.advised, found.limits_step) == (None, "stability")
     assert "larger steps are unstable" in found.advice
 
 
-def test_joints_stay_between_the_advised_blocks() -> None:
+def test_joints_stay_between_the_advised_blocks():
     (blocks,) = advise_wave(JOINT, 250.0, 0.5).blocks
     (layer,) = AdviceHooks.of(JOINT).layers(JOINT)
     assert layer.joints == (12.0 / JOINT.column.height,)
@@ -81,7 +78,7 @@ def test_joints_stay_between_the_advised_blocks() -> None:
     assert advise_wave(JOINT.with_values({"column.joint": []}), 250.0, 0.5).blocks[0] <= blocks
 
 
-def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
+def test_discounts_of_a_step_damp_more_the_smaller_the_step():
     scene = COLUMN.with_values(AVERAGE | {"time.gg": 0.99})
     losses = [advise_wave(scene.with_values({"time.step": dt}), 5.0, 0.1).present.loss for dt in (0.01, 0.005, 0.001)]
     assert losses == sorted(losses)
@@ -91,7 +88,7 @@ def test_discounts_of_a_step_damp_more_the_smaller_the_step() -> None:
         assert -np.log(1 - loss) == pytest.approx(a0 / 2 * 100 / SPEED, rel=(w * dt) ** 2)
 
 
-def test_a_block_that_is_no_rectangle_is_refused() -> None:
+def test_a_block_that_is_no_rectangle_is_refused():
     with pytest.raises(InputError, match="must be an upright rectangle"):
         advise_wave(load_scene("quadrilateral"), 5.0, 0.1)
 
@@ -104,7 +101,7 @@ def test_a_block_that_is_no_rectangle_is_refused() -> None:
         ("leapfrog", {"time.start": "consistent", "time.step": 0.001}),
     ],
 )
-def test_other_schemes_are_advised_by_their_own_wavenumber(scheme: str, values: dict[str, object]) -> None:
+def test_other_schemes_are_advised_by_their_own_wavenumber(scheme, values):
     scene = COLUMN.with_values({"time.scheme": scheme} | values)
     found = advise_wave(scene, 10.0, wavelengths=5.0, loss=0.2, phase_error=0.2)
     column = Column(2.0, 2700.0, 1e9)

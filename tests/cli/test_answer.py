@@ -1,11 +1,7 @@
 """The answer of `run`: failures in full, a line a study, alarms by kind, what comes next; bounded, and for machines."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Sequence
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from conftest import SCENE, typed
@@ -27,21 +23,21 @@ NOT_RUN = Verdict(GATE, None, Status.NOT_RUN, "fenicsx: needs the package dolfin
 ENDS = {"dda": Outcome.COMPLETED, "fem": Outcome.OVERFLOW, "bar": Outcome.TIMEOUT, "continuum": Outcome.NOT_APPLICABLE}
 
 
-def run_of(name: str, verdicts: Sequence[Verdict], ends: dict[str, Outcome] | None = None) -> JudgedStudy:
+def run_of(name, verdicts, ends=None):
     study = replace(get_study("core"), name=name, expects=(Outcome.OVERFLOW,))
     return JudgedStudy(study, verdicts, {(CASE.name, solver): end for solver, end in (ends or {}).items()})
 
 
-def ran(results: Results, runs: Sequence[JudgedStudy], own: frozenset[str] = frozenset()) -> RunAnswer:
+def ran(results, runs, own=frozenset()):
     return RunAnswer(runs, [1.25] * len(runs), results, ["a: no case was measured"], None, own, 1)
 
 
-def said(what: RunAnswer, width: int = 80) -> list[str]:
+def said(what, width=80):
     return [text for text, _ in answer.lines(what, width)]
 
 
 @pytest.fixture
-def made(tmp_path: Path) -> Results:
+def made(tmp_path):
     results = Results(tmp_path / "r")
     rows = [made_row(name, {}, CASE.name, outcome=end, notes=("at 3",)) for name, end in ENDS.items()]
     alarms = [{"kind": kind, "scene": name, "sentence": text} for kind, name, text in
@@ -51,7 +47,7 @@ def made(tmp_path: Path) -> Results:
     return results
 
 
-def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made: Results) -> None:
+def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made):
     runs = [run_of("made" if i == 19 else f"s{i}", [judge(GATE, 0.04 if i != 18 else 1.0)], ENDS) for i in range(25)]
     lines = [text for text, _ in answer.summary(ran(made, runs), 80)]
     assert len(lines) <= SCREEN
@@ -61,14 +57,14 @@ def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their
     assert [row.split()[0] for row in rows if row.split()[-3] == "1"] == ["s18"]
 
 
-def test_of_very_many_failures_the_rest_is_counted_by_metric(made: Results) -> None:
+def test_of_very_many_failures_the_rest_is_counted_by_metric(made):
     many = [judge(replace(GATE, until=float(i + 1)), 1.0) for i in range(FAILURES_SHOWN + 7)]
     lines = said(ran(made, [run_of("made", many)]), 200)
     assert sum(line.startswith(f"FAIL {CASE.name}") for line in lines) == FAILURES_SHOWN
     assert "FAIL and 7 more gates: displacement.l2 7; --verbose shows every one" in lines
 
 
-def test_plain_data_hold_what_the_text_says(made: Results) -> None:
+def test_plain_data_hold_what_the_text_says(made):
     change = Change("made", GATE.id, "PASS", "FAIL", 0.035, 0.0512)
     data = answer.as_data(replace(ran(made, [run_of("made", [judge(GATE, 0.0512), NOT_RUN], ENDS)]), changes=[change]))
     (study,) = data["studies"]
@@ -95,7 +91,7 @@ reason = "mine"
 """
 
 
-def test_json_and_quiet_give_the_same_status_as_the_text(scene_file: Path, tmp_path: Path) -> None:
+def test_json_and_quiet_give_the_same_status_as_the_text(scene_file, tmp_path):
     scene_file.write_text(SCENE + FAILING)
     command = "run", scene_file, "--results", tmp_path / "r", "--jobs", 1
     text, quiet, data, full = (typed(*command, *more) for more in ([], ["--quiet"], ["--json"], ["--verbose"]))

@@ -43,7 +43,7 @@ values = st.recursive(
 QUICK = settings(max_examples=50, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 
-def one_line(error: InputError) -> None:
+def one_line(error):
     text = str(error)
     assert "\n" not in text and len(text) < 2000
 

@@ -1,10 +1,5 @@
 """Every number that a command prints, with its unit: computed apart, or kept by hand in a results directory."""
 
-from __future__ import annotations
-
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
 from conftest import typed
@@ -23,9 +18,7 @@ from validation.runs.run import Outcome
 # ---- solve and run ------------------------------------------------------------------------------------------------
 
 
-def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(tmp_path, capsys):
     results, scene = Results(tmp_path), load_scene("figures-3-4").with_values({"time.step": 0.002}, label=True)
     rows = [made_row("dda", {}, scene.name, seconds={"setup": 1.25, "stepping": 2.5}),
             made_row("bar", {}, scene.name, seconds={"a": 7.0}, outcome=Outcome.OVERFLOW, notes=("at 3",))]  # fmt: skip
@@ -43,7 +36,7 @@ def test_the_table_of_a_run_shows_value_band_and_seconds_of_its_own_gate(
     assert capsys.readouterr().out == f"{scene.name} bar: overflow: {Outcome.OVERFLOW.sentence} at 3\n"
 
 
-def test_a_program_that_is_not_installed_says_so_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_program_that_is_not_installed_says_so_once(tmp_path, capsys):
     results = Results(tmp_path)
     cases = load_scene("figures-3-4").expand()[:3]
     absent = {"outcome": Outcome.NOT_APPLICABLE, "notes": ("Siconos is not installed: RECIPE",)}
@@ -67,7 +60,7 @@ def test_a_program_that_is_not_installed_says_so_once(tmp_path: Path, capsys: py
         (["PASS", "FAIL"], [], True, False, 2),
     ],
 )
-def test_the_status_of_a_run(words: list[str], required: list[str], refused: bool, worse: Any, status: int) -> None:
+def test_the_status_of_a_run(words, required, refused, worse, status):
     gate = Gate("s", ("dda", "bar"), "displacement.l2", 0.0, 1.0, "why")
     assert _status([Verdict(gate, None, Status(word)) for word in words], required, refused, worse) == status
 
@@ -75,7 +68,7 @@ def test_the_status_of_a_run(words: list[str], required: list[str], refused: boo
 # ---- verdicts side by side ----------------------------------------------------------------------------------------
 
 
-def verdict(name: str, word: str, value: object, study: str = "s") -> dict[str, Any]:
+def verdict(name, word, value, study="s"):
     return {"study": study, "id": name, "verdict": word, "value": value, "band": [0.25, 0.75], "reason": "why"}
 
 
@@ -83,7 +76,7 @@ OLD = [verdict("a", "PASS", 0.5), verdict("b", "FAIL", 0.125), verdict("c", "PAS
 NEW = [verdict("a", "FAIL", 0.875), verdict("b", "FAIL", 0.1), OLD[2], verdict("d", "NOT RUN", None, "t")]
 
 
-def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> None:
+def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to():
     lines = markdown(NEW, changes(OLD, NEW[:3])).splitlines()
     assert lines[0] == "## dda-validation: 1 PASS, 2 FAIL, 1 NOT RUN"
     assert lines[2] == "| study | PASS | FAIL | NOT RUN |"
@@ -102,7 +95,7 @@ def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to() -> N
 
 
 @pytest.fixture
-def made(tmp_path: Path) -> Results:
+def made(tmp_path):
     """Return three steps of DDA and one of the bar, with work, seconds and differences from the bar."""
     results, cases, pairs = Results(tmp_path / "results"), [], []
     for k, step in enumerate((0.01, 0.002, 0.001)):
@@ -116,7 +109,7 @@ def made(tmp_path: Path) -> Results:
     return results
 
 
-def test_rows_are_written_under_their_names(made: Results, tmp_path: Path) -> None:
+def test_rows_are_written_under_their_names(made, tmp_path):
     done = typed("rows", "made", "--csv", tmp_path / "a.csv", "--results", made.directory)
     lines = table(tmp_path / "a.csv")
     assert done.stdout == f"wrote {tmp_path / 'a.csv'}: {len(lines)} rows, {len(lines[0])} columns\n"
@@ -132,7 +125,7 @@ def test_rows_are_written_under_their_names(made: Results, tmp_path: Path) -> No
 # ---- claims -------------------------------------------------------------------------------------------------------
 
 
-def test_claims_are_listed_with_their_verdicts(tmp_path: Path) -> None:
+def test_claims_are_listed_with_their_verdicts(tmp_path):
     derived = [{"scene": "claims", "name": name, "metrics": {"verdict": verdict}} for name, verdict in
                (("C1", 2.0), ("C2", 0.0), ("C6", 1.0))]  # fmt: skip
     Results(tmp_path).write_json("studies/paper.json", {"study": "paper", "derived": derived})

@@ -1,7 +1,5 @@
 """`dda-validate contact`: one page that agrees with the runs behind it; what it does not take is answered helpfully."""
 
-from __future__ import annotations
-
 import json
 
 import pytest
@@ -18,7 +16,7 @@ from validation.runs.run import Outcome
 SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.stiffness=1e11")
 
 
-def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
+def test_an_impact_law_has_a_page_without_springs_to_choose():
     stop = ("contact.stiffness=inf", "contact.shear_stiffness=0", 'contact.rule="impact"', "contact.restitution=0.5")
     sets = [word for value in (*stop, "time.step=0.001", "time.steps=8") for word in ("--set", value)]
     done = typed("advise", "contact", "unlocked-average", *sets, "--json")
@@ -28,7 +26,7 @@ def test_an_impact_law_has_a_page_without_springs_to_choose() -> None:
     assert {"dda", "block-events"} <= set(page["runs"])
 
 
-def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch):
     ended = made_row("dda", outcome=Outcome.NO_CONTACT_STATE, notes=("at step 3",))
     monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
     done = typed("advise", "contact", "unlocked-constant", *SHORT)
@@ -36,7 +34,7 @@ def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch: pytes
     assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
 
 
-def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:
+def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none():
     scene = load_scene("unlocked-constant").expand()[0]
     for damping in ({"time.gg": 0.9}, {"time.gg_rate": 3.0}):
         run = contact_page.scenes(scene.with_values(damping))
@@ -57,9 +55,7 @@ def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none() -> None:
         (0.1, 0.0, "undefined", "undefined", ("never", "never")),
     ],
 )
-def test_when_a_block_first_opens_and_lands(
-    gap: float, velocity: float, opening: object, closing: object, words: tuple[str, str]
-) -> None:
+def test_when_a_block_first_opens_and_lands(gap, velocity, opening, closing, words):
     scene = load_scene("unlocked-constant").with_values({"contact.gap": gap, "block.velocity": velocity})
     run = {"switches.first_opening": opening, "switches.first_closing": closing}
-    assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words  # type: ignore[arg-type]
+    assert tuple(contact_page.first(scene, run, opens) for opens in (True, False)) == words

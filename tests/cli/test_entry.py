@@ -1,7 +1,5 @@
 """The entry point: no traceback and no warning for numbers out of range, the version, and a command that is none."""
 
-from __future__ import annotations
-
 import importlib.metadata
 import warnings
 
@@ -19,7 +17,6 @@ OUT_OF_RANGE = {
     "denormal step": ("advise", "response", "figures-3-4", SET, "time.step=1e-320"),
     "huge wave": ("advise", "wave", "figures-3-4", *STEP, "--fmax", "1e200"),
     "endless wave": ("advise", "wave", "figures-3-4", *STEP, "--fmax", "1e-200"),
-    "huge step": ("advise", "rayleigh", "figures-3-4", SET, "time.step=1e300"),
     "tiny step": ("advise", "damping", "figures-3-4", SET, "time.step=1e-300"),
     "huge springs": ("advise", "damping", "figures-3-4", *STEP, SET, "contact.stiffness=1e300"),
     "huge velocity": (
@@ -36,7 +33,7 @@ OUT_OF_RANGE = {
 
 
 @pytest.mark.parametrize("name", OUT_OF_RANGE)
-def test_numbers_out_of_range_are_one_line(name: str) -> None:
+def test_numbers_out_of_range_are_one_line(name):
     done = typed(*OUT_OF_RANGE[name])
     lines = [line for line in done.stderr.splitlines() if not line.startswith("warning: ")]
     assert done.returncode == 2 and len(lines) == 1 and lines[0].startswith("error: "), done.stderr
@@ -55,16 +52,16 @@ def test_numbers_out_of_range_are_one_line(name: str) -> None:
     ],
     ids=lambda error: type(error).__name__,
 )
-def test_errors_of_numbers_are_bad_input(error: Exception, monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(**options: object) -> None:
+def test_errors_of_numbers_are_bad_input(error, monkeypatch):
+    def fail(**options):
         raise error
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
     assert refused("list").startswith("error: ")
 
 
-def test_an_error_of_the_program_stays_one(monkeypatch: pytest.MonkeyPatch) -> None:
-    def fail(**options: object) -> None:
+def test_an_error_of_the_program_stays_one(monkeypatch):
+    def fail(**options):
         raise ValueError("a fault of ours")
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
@@ -72,8 +69,8 @@ def test_an_error_of_the_program_stays_one(monkeypatch: pytest.MonkeyPatch) -> N
         typed("list")
 
 
-def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def warn(**options: object) -> None:
+def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch):
+    def warn(**options):
         warnings.warn_explicit("overflow", RuntimeWarning, "scipy/linalg.py", 1, module="scipy.linalg")
 
     monkeypatch.setattr(entry, "command_line", lambda: warn)
@@ -81,12 +78,12 @@ def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch: pytest.Monkey
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_the_version_is_that_of_the_distribution() -> None:
+def test_the_version_is_that_of_the_distribution():
     done = typed("--version")
     assert (done.returncode, done.stdout) == (0, f"dda-validate {importlib.metadata.version('dda-validation')}\n")
 
 
-def test_no_command_shows_the_commands_once() -> None:
+def test_no_command_shows_the_commands_once():
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert done.stdout.count("export-pack") == 1

@@ -18,7 +18,7 @@ from validation.cli import app as command_line
 from validation.cli.entry import GROUPS, app
 from validation.errors import InputError
 
-GROUP = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+GROUP = typer.main.get_command(app).commands
 PARTS = {f"advise {name}": part for name, part in GROUP["advise"].commands.items()}
 COMMANDS = GROUP | {name: part for name, part in PARTS.items() if name != "advise everything"}
 COMMANDS["advise"] = PARTS["advise everything"]  # which is what no part by name is
@@ -27,21 +27,21 @@ FAIL = [["judge", "my_solver:solve", "locked"]]  # by the damping of the scheme 
 UNTRIED = {"record", "claims", "export-pack"}
 
 
-def examples(name: str) -> list[list[str]]:
+def examples(name):
     """Return the words of each command line that stands as an example on a help page."""
     lines = re.findall(r"\[bold\](.*?)\[/bold\]", COMMANDS[name].help, re.S)
     parts = [part for line in lines for part in " ".join(line.split()).split("&&")]
     return [shlex.split(part)[1:] for part in parts]
 
 
-def command_of(words: list[str]) -> str:
+def command_of(words):
     """Return the command, or the part of one, that a command line begins with."""
     part = " ".join(words[:2])
     return part if part in COMMANDS else words[0]
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -> None:
+def test_every_command_has_an_example_of_itself_whose_options_exist(name):
     assert "Example: " in COMMANDS[name].help
     assert name in {command_of(words) for words in examples(name)}
     for words in examples(name):
@@ -50,7 +50,7 @@ def test_every_command_has_an_example_of_itself_whose_options_exist(name: str) -
 
 
 @pytest.mark.parametrize("name", sorted({*GROUP, *COMMANDS}))
-def test_the_page_that_a_command_names_is_there(name: str) -> None:
+def test_the_page_that_a_command_names_is_there(name):
     epilog = (GROUP | COMMANDS)[name].epilog
     page = Path(epilog.removeprefix("Page: "))
     assert page.is_file() and page.is_relative_to(ROOT / "docs")
@@ -58,9 +58,7 @@ def test_the_page_that_a_command_names_is_there(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", sorted(set(COMMANDS) - UNTRIED))
-def test_examples_run_as_they_stand(
-    name: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_examples_run_as_they_stand(name, tmp_path, finished_cases, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "reports").mkdir()
     beside(finished_cases, tmp_path / "reports/results")
@@ -81,18 +79,18 @@ def test_examples_run_as_they_stand(
         assert done.returncode == (words in FAIL), f"{words}\n{done.stdout}{done.stderr}"
 
 
-def test_every_command_stands_in_one_group_of_the_help() -> None:
+def test_every_command_stands_in_one_group_of_the_help():
     assert sorted(itertools.chain.from_iterable(GROUPS.values())) == sorted(GROUP)
     page = typed("--help").stdout
     for group in GROUPS:
         assert group in page
 
 
-def test_what_takes_long_shows_a_bar(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
     """The bar starts while the first piece of work is still busy."""
     started = threading.Event()
 
-    def work(*arguments: object, **options: object) -> None:
+    def work(*arguments, **options):
         raise InputError("the bar is there" if started.wait(60) else "no bar")
 
     monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)

@@ -1,7 +1,5 @@
 """Text from outside acts on no terminal, no Markdown page and no HTML page."""
 
-from __future__ import annotations
-
 import json
 
 import pytest
@@ -12,7 +10,7 @@ EVIL = f"r {CLEAR} {SCRIPT} {OVERRIDE} a | `b`"
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+def pages(tmp_path_factory):
     """Return all that is printed and written of a scene whose title and reason are hostile."""
     place = tmp_path_factory.mktemp("evil")
     judged = '[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [0.0, 1e-9]\n'
@@ -29,11 +27,11 @@ def pages(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
 
 
 @pytest.mark.parametrize("page", ["terminal", "summary", "site"])
-def test_control_characters_and_overrides_of_direction_are_escapes(pages: dict[str, str], page: str) -> None:
+def test_control_characters_and_overrides_of_direction_are_escapes(pages, page):
     assert "\x1b" not in pages[page] and OVERRIDE not in pages[page]
     assert "alert(1)" in pages[page]
 
 
 @pytest.mark.parametrize("page", ["summary", "site"])
-def test_markup_is_text(pages: dict[str, str], page: str) -> None:
+def test_markup_is_text(pages, page):
     assert "<script>alert" not in pages[page]

@@ -1,12 +1,8 @@
 """``judge``: a solver, a table or folders of answers become verdicts, pages and badges; defects leave nothing."""
 
-from __future__ import annotations
-
 import json
 import re
 from html import unescape
-from pathlib import Path
-from typing import Any
 from xml.etree import ElementTree
 
 import numpy as np
@@ -30,22 +26,22 @@ from validation.suite import judging
 
 
 @pytest.fixture(scope="module")
-def exact() -> History:
+def exact():
     return standard(problem("locked")).exact
 
 
 @pytest.fixture
-def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+def undrawn(monkeypatch):
     """Leave out the figures and the search for causes, which take most of the time."""
     monkeypatch.setattr(judged, "figures", lambda *given: ())
     monkeypatch.setattr(judging, "cause", lambda *given: Cause("a <cause> & more", ("factor",)))
 
 
-def scaled(history: History, factor: float) -> History:
+def scaled(history, factor):
     return History(history.time, {name: factor * values for name, values in history.columns.items()})
 
 
-def table(place: Path, history: History) -> Path:
+def table(place, history):
     """Write the answer to `locked` as a table alone."""
     place.write_text(table_of(problem("locked"), history, [*history.columns]))
     return place
@@ -54,7 +50,7 @@ def table(place: Path, history: History) -> Path:
 # ---- one answer -----------------------------------------------------------------------------------------------------
 
 
-def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path: Path, exact: History) -> None:
+def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path, exact):
     answered(tmp_path / "mine", 1.0, ("locked",))
     for arguments, who in (
         ((table(tmp_path / "my.csv", exact), "locked"), "my"),
@@ -77,9 +73,7 @@ def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path: Path, 
         (Cause("it is damped", ("mass-damping",)), None),
     ],
 )
-def test_what_is_not_explained_says_what_is_right_and_what_would_tell(
-    why: Cause, said: str | None, tmp_path: Path, exact: History, undrawn: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_is_not_explained_says_what_is_right_and_what_would_tell(why, said, tmp_path, exact, undrawn, monkeypatch):
     monkeypatch.setattr(judging, "cause", lambda *given: why)
     wrong = {name: x * np.where(exact.time > 0.0501, 3.0, 1.0) for name, x in exact.columns.items()}
     place = table(tmp_path / "mine.csv", History(exact.time, wrong))
@@ -95,9 +89,7 @@ def test_what_is_not_explained_says_what_is_right_and_what_would_tell(
     assert (first["within_until_s"], first["until_s"]) == (pytest.approx(0.05), pytest.approx(0.1))
 
 
-def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
-    tmp_path: Path, exact: History, undrawn: None
-) -> None:
+def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(tmp_path, exact, undrawn):
     place = answered(tmp_path / "mine", 1.0, ("locked",), not_reported={"locked": ["contact_pressure_Pa"]})
     (place / "locked.csv").write_text(table_of(problem("locked"), exact, ["displacement"]))
     done = typed("judge", place, "--out", tmp_path / "site")
@@ -110,7 +102,7 @@ def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(
     assert (found["verdict"], found["not_reported"]) == ("PARTIAL", ["contact_pressure_Pa"])
 
 
-def test_control_characters_are_written_out(tmp_path: Path, undrawn: None) -> None:
+def test_control_characters_are_written_out(tmp_path, undrawn):
     fields = {"program": "a\x1b[31m\u202e", "settings": "one\n  two"}
     place = answered(tmp_path / "mine", 1.001, ("locked",), **fields)
     done = typed("judge", place, "--out", tmp_path / "site")
@@ -120,7 +112,7 @@ def test_control_characters_are_written_out(tmp_path: Path, undrawn: None) -> No
     assert sum("one two" in page for page in pages) == 2
 
 
-def test_a_scene_of_ones_own_is_answered(tmp_path: Path, scene_file: Path, undrawn: None) -> None:
+def test_a_scene_of_ones_own_is_answered(tmp_path, scene_file, undrawn):
     scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
     own = problem_of(load_scene(scene_file))
     (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
@@ -128,7 +120,7 @@ def test_a_scene_of_ones_own_is_answered(tmp_path: Path, scene_file: Path, undra
     assert done.returncode == 0, done.stderr
 
 
-def test_columns_of_other_names_and_signs_are_mapped(tmp_path: Path, exact: History) -> None:
+def test_columns_of_other_names_and_signs_are_mapped(tmp_path, exact):
     rows = np.column_stack([exact.time, -1e3 * exact.displacement, exact.columns["contact_pressure"]])
     np.savetxt(tmp_path / "mine.csv", rows, "%.17g", "\t", header="t\tuy\tp", comments="")
     options = ("--columns", "time=t,displacement=uy,contact_pressure=p", "--scale", "displacement=-1e-3")
@@ -141,7 +133,7 @@ def test_columns_of_other_names_and_signs_are_mapped(tmp_path: Path, exact: Hist
 # ---- solvers --------------------------------------------------------------------------------------------------------
 
 
-def test_a_solver_is_judged_on_any_scene(tmp_path: Path, undrawn: None) -> None:
+def test_a_solver_is_judged_on_any_scene(tmp_path, undrawn):
     """The step of 2 ms damps; one of 0.1 ms and average acceleration does not."""
     habit = typed("judge", "dda", "locked")
     assert habit.returncode == 1 and "dda on locked: FAIL" in habit.stdout and "wrote" not in habit.stdout
@@ -181,7 +173,7 @@ def rounded(scene):
 
 
 @pytest.fixture
-def same_or_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None) -> None:
+def same_or_not(tmp_path, monkeypatch, undrawn):
     """Write the solvers of a user, which answer in this process."""
     (tmp_path / "same_or_not.py").write_text(SAME_OR_NOT)
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -198,9 +190,7 @@ def same_or_not(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, undrawn: None) 
     ],
 )
 @pytest.mark.usefixtures("same_or_not")
-def test_an_answer_of_the_suite_and_one_that_does_not_repeat_are_told_on_the_page(
-    solver: str, said: str, tmp_path: Path
-) -> None:
+def test_an_answer_of_the_suite_and_one_that_does_not_repeat_are_told_on_the_page(solver, said, tmp_path):
     done = typed("judge", f"same_or_not:{solver}", "locked", "--out", tmp_path / "site", "--json")
     (*warnings,) = json.loads(done.stdout)["answers"][0]["warnings"]
     assert [sentence[: len(said)] for sentence in warnings] == ([said] if said else [])
@@ -209,7 +199,7 @@ def test_an_answer_of_the_suite_and_one_that_does_not_repeat_are_told_on_the_pag
 
 
 @pytest.mark.usefixtures("same_or_not")
-def test_programs_stand_beside_each_other(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_programs_stand_beside_each_other(tmp_path, monkeypatch):
     """What is not applicable, what raises and what is not there are no failures of the others, nor hidden by them."""
     brought = {"mine": "same_or_not:rounded", "broken": "same_or_not:broken", "away": "same_or_not:away"}
     monkeypatch.setattr(registry, "entry_points", lambda: brought)
@@ -232,7 +222,7 @@ def test_programs_stand_beside_each_other(tmp_path: Path, monkeypatch: pytest.Mo
     assert site.returncode == 1 and (tmp_path / "site/index.html").exists()
 
 
-def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path, monkeypatch):
     """A program is named without its folder; tables that are not asked are left alone."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").write_text("#!/bin/sh\necho a wall >&2\nexit 77\n")
@@ -245,7 +235,7 @@ def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path: Path, mon
     assert (answer["problem"], answer["verdict"]) == ("locked", "PASS")
 
 
-def test_boxes_are_judged_by_numbers(undrawn: None) -> None:
+def test_boxes_are_judged_by_numbers(undrawn):
     done = typed("judge", "dda", "impact")
     assert done.returncode == 1, done.stderr
     for number in ("speed of the rebound", "peak force by the sinking"):
@@ -259,7 +249,7 @@ def test_boxes_are_judged_by_numbers(undrawn: None) -> None:
     )
 
 
-def test_the_help_names_every_problem() -> None:
+def test_the_help_names_every_problem():
     words = re.findall(r"[\w-]+", typed("judge", "--help").stdout)
     assert {*ASKS, *boxes.ASKS} <= set(words)
 
@@ -268,7 +258,7 @@ def test_the_help_names_every_problem() -> None:
 
 
 @pytest.fixture
-def layout(tmp_path: Path) -> Path:
+def layout(tmp_path):
     """Return a layout of two programs, one at two steps."""
     place = tmp_path / "submissions"
     for name, factor, step in (("default", 1.04, 2e-3), ("fine-step", 1.01, 1e-3)):
@@ -278,7 +268,7 @@ def layout(tmp_path: Path) -> Path:
     return place
 
 
-def test_a_folder_is_judged_and_each_problem_told(tmp_path: Path, undrawn: None) -> None:
+def test_a_folder_is_judged_and_each_problem_told(tmp_path, undrawn):
     answered(tmp_path / "mine", 1.01)
     done = typed("judge", tmp_path / "mine")
     assert done.returncode == 1, done.stderr
@@ -291,7 +281,7 @@ def test_a_folder_is_judged_and_each_problem_told(tmp_path: Path, undrawn: None)
     assert typed("judge", tmp_path / "right").returncode == 0
 
 
-def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_path: Path, undrawn: None) -> None:
+def test_the_site_holds_every_answer_and_needs_nothing_else(layout, tmp_path, undrawn):
     done = typed("judge", layout, "--layout", "--out", tmp_path / "site")
     assert done.returncode == 1, done.stderr
     files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "site").iterdir()}
@@ -315,7 +305,7 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout: Path, tmp_pa
     assert "4 % of 1.5 %" in program and "fine-step" in program  # of both settings
 
 
-def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path: Path, undrawn: None) -> None:
+def test_verdicts_as_plain_data_are_those_of_the_commands(layout, tmp_path, undrawn):
     typed("judge", layout, "--out", tmp_path / "site")
     verdicts = json.loads((tmp_path / "site/verdicts.json").read_text(encoding="utf-8"))
     assert (verdicts["format"], verdicts["pack"]) == ("dda-validation verdicts", PACK)
@@ -330,9 +320,7 @@ def test_verdicts_as_plain_data_are_those_of_the_commands(layout: Path, tmp_path
     assert [column["error"] for column in row["criteria"]] == [1e-11, 1e-11]
 
 
-def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(
-    tmp_path: Path, undrawn: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(tmp_path, undrawn, monkeypatch):
     now = packs.packs()[PACK]
     earlier = {"1.9": now | {"locked": "0" * 16}, PACK: now}
     for module in ("packs", "answers"):
@@ -345,13 +333,13 @@ def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(
         assert "it answers pack 1.9" in (tmp_path / "site" / file).read_text(encoding="utf-8"), file
 
 
-def test_each_exact_motion_is_computed_once(layout: Path, undrawn: None, tmp_path: Path) -> None:
+def test_each_exact_motion_is_computed_once(layout, undrawn, tmp_path):
     bands._standard.cache_clear()
     typed("judge", layout, "--out", tmp_path / "site")
     assert bands._standard.cache_info().misses == 3
 
 
-def test_all_defects_are_printed_and_nothing_is_written(layout: Path, tmp_path: Path, undrawn: None) -> None:
+def test_all_defects_are_printed_and_nothing_is_written(layout, tmp_path, undrawn):
     folder = layout / "other/2.0/default"
     (folder / "locked.csv").write_text("time_s;displacement_m\n")
     (folder / "rokcing.csv").write_text("")
@@ -365,7 +353,7 @@ def test_all_defects_are_printed_and_nothing_is_written(layout: Path, tmp_path: 
         assert not (tmp_path / "site").exists() and not (tmp_path / "kept").exists()
 
 
-def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) -> None:
+def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
     answered(tmp_path / "mine", 1.001, ("locked",))
     done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
     assert done.returncode == 0 and "kept in " in done.stdout
@@ -385,9 +373,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path: Path, undrawn: None) 
         (("installed",), "no other package brings a solver"),
     ],
 )  # fmt: skip
-def test_bad_input_is_one_line_and_writes_nothing(
-    arguments: tuple[str, ...], said: str, tmp_path: Path, undrawn: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_bad_input_is_one_line_and_writes_nothing(arguments, said, tmp_path, undrawn, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(registry, "entry_points", dict)
     answered(tmp_path / "mine", 1.001, ("locked",))
@@ -400,13 +386,13 @@ def test_bad_input_is_one_line_and_writes_nothing(
 
 
 @pytest.mark.parametrize(("solver", "status"), [("dda", 0), ("dda-textbook", 1)])
-def test_the_gates_of_a_study_are_put_to_a_solver(solver: str, status: int) -> None:
+def test_the_gates_of_a_study_are_put_to_a_solver(solver, status):
     done = typed("judge", solver, "--study", "own-solver")
     assert done.returncode == status, done.stdout
     assert re.search(r"digits +\d+ +\d+ +0 +0 ", done.stdout) and "right:  " in done.stdout
 
 
-def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypatch):
     """Of a folder of histories the scenes that it holds are judged, the others are not run."""
     from validation.suite.own_solver.gates import START
 
@@ -420,7 +406,7 @@ def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path: Path, mo
     np.savetxt(f"mine/{scene.name}.csv", rows, "%.17g", ";", header=header, comments="")
     done = typed("judge", "mine/", "--study", "own-solver", "--json")
     assert done.returncode == 0, done.stderr
-    reports: list[dict[str, Any]] = json.loads(done.stdout)
+    reports = json.loads(done.stdout)
     assert {report["status"] for report in reports if report["scene"] == scene.name} <= {"PASS", "NOT RUN"}
     assert {report["status"] for report in reports if report["scene"] != scene.name} == {"NOT RUN"}
     np.savetxt(

@@ -78,7 +78,7 @@ def short(scene):
 """
 
 
-def history(**values: object) -> np.ndarray:
+def history(**values):
     """Return time, displacement and force of DDA on figures 3 and 4 at 2 ms, with some values of the scene changed."""
     from validation import load_scene, solve
 
@@ -89,7 +89,7 @@ def history(**values: object) -> np.ndarray:
 
 
 @cache
-def desk() -> Path:
+def desk():
     """Return a folder with what a user has there: histories by programs with one slip each, scenes, broken solvers."""
     from oracles.answers import answered
 
@@ -131,7 +131,7 @@ def desk() -> Path:
     return place
 
 
-def page(line: str) -> str:
+def page(line):
     """Return what a command line prints on output and error, and its status where that is not 0."""
     from conftest import typed
 
@@ -148,7 +148,7 @@ def page(line: str) -> str:
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_command_prints_what_it_did(command: str) -> None:
+def test_a_command_prints_what_it_did(command):
     for line in COMMANDS[command]:
         kept, files = KEPT[line], sorted(desk().iterdir())
         printed = page(line)

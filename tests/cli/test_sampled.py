@@ -1,14 +1,12 @@
 """Frequencies that the steps do not sample, ratios in per cent, and gates for a disagreement are not answered."""
 
-from __future__ import annotations
-
 import pytest
 from conftest import typed
 
 from validation.cli.printing import tables
 
 
-def test_what_the_steps_show_of_an_alias_is_no_peak() -> None:
+def test_what_the_steps_show_of_an_alias_is_no_peak():
     done = typed("advise", "response", "figures-3-4", "--set", "time.step=0.02", "--to", "200", "--points", "4000")
     peaks = [float(line.split()[2]) for line in done.stdout.splitlines() if line.startswith("as stepped")]
     assert peaks
@@ -17,7 +15,7 @@ def test_what_the_steps_show_of_an_alias_is_no_peak() -> None:
 
 
 @pytest.mark.parametrize(("value", "proposed"), [(0.034, True), (0.49, True), (1.02, False), (1.5e47, False)])
-def test_a_gate_is_proposed_for_what_agrees(value: float, proposed: bool) -> None:
+def test_a_gate_is_proposed_for_what_agrees(value, proposed):
     record = {"scene": "s", "solver": "dda", "reference": "fem", "metrics": {"displacement.l2": value}}
-    text = "\n".join(tables._next([record], [], True))  # type: ignore[list-item]
+    text = "\n".join(tables._next([record], [], True))
     assert ("[[gate]]" in text) is proposed

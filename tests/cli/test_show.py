@@ -2,8 +2,6 @@
 
 import json
 import math
-from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import thinned, typed
@@ -14,23 +12,21 @@ from validation.report.scene.numbers import numbers
 from validation.scenes.scene import load_scene, scene_names
 
 
-def shown(*arguments: object) -> dict[str, Any]:
+def shown(*arguments):
     done = typed("show", *arguments, "--json")
     assert done.returncode == 0, done.stderr
-    found: dict[str, Any] = json.loads(done.stdout)
+    found = json.loads(done.stdout)
     return found
 
 
-def single(found: dict[str, Any]) -> dict[str, float]:
+def single(found):
     """Return the numbers, each of which is the same in all cases."""
     assert all(each["low"] == each["high"] for each in found["numbers"].values())
     return {name: each["low"] for name, each in found["numbers"].items()}
 
 
 @pytest.mark.parametrize(("young", "density", "p", "dt"), [(1e9, 2700.0, 1e9, 0.002), (4e9, 2000.0, 3e10, 0.0007)])
-def test_numbers_of_a_block_are_those_of_the_formulas(
-    young: float, density: float, p: float, dt: float, scene_file: Path
-) -> None:
+def test_numbers_of_a_block_are_those_of_the_formulas(young, density, p, dt, scene_file):
     sets = (f"block.young={young}", f"block.density={density}", f"contact.stiffness={p}", f"time.step={dt}")
     found = single(shown(scene_file, *(word for each in sets for word in ("--set", each))))
     c, h, q, m = math.sqrt(young / density), 2.0, 5e6, density * 4
@@ -48,7 +44,7 @@ def test_numbers_of_a_block_are_those_of_the_formulas(
     ("name", "values"),
     [("waves-glue", {}), ("waves-joint", {}), ("figures-3-4", {"block.subdivide": [2, 2]})],
 )
-def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[str, Any]) -> None:
+def test_the_largest_stable_step_is_that_of_the_solver(name, values):
     """Glue and joints count, and all modes of sub-blocks, not the lowest that are reported."""
     explicit = {"time.alpha": 0.0, "time.delta": 0.5, "time.steps": 2, "time.allow_unstable": True}
     case = load_scene(name).expand()[0].with_values(explicit | values)
@@ -59,7 +55,7 @@ def test_the_largest_stable_step_is_that_of_the_solver(name: str, values: dict[s
         solve(strict.with_values({"time.step": 1.0001 * limit}), "dda")
 
 
-def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file: Path) -> None:
+def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scene_file):
     unlocked = ("--set", "contact.law=unilateral", "--set")
     numbers = single(shown(scene_file, *unlocked, "time.step=0.001"))
     c = math.sqrt(1e9 / 2700)
@@ -75,7 +71,7 @@ def test_contact_that_opens_shows_omega_and_the_step_that_hides_its_opening(scen
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 13))
-def test_every_built_in_scene_is_shown(name: str) -> None:
+def test_every_built_in_scene_is_shown(name):
     found = shown(name)
     assert found["numbers"] and found["cases"] == len(load_scene(name).expand())
     assert typed("show", name).stdout.startswith(f"{name}: ")

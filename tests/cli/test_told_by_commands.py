@@ -1,9 +1,6 @@
 """What commands print and how they end, from answers, rows and runs made by hand: each word with its own number."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -26,9 +23,7 @@ SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 
 
 @pytest.mark.parametrize("outcome", [Outcome.TIMEOUT, Outcome.RAISED, Outcome.OVERFLOW, Outcome.COMPLETED])
-def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
-    outcome: Outcome, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_solver_that_gives_no_answer_is_a_numerical_failure(outcome, capsys):
     status, reason = judging._ending(Run(outcome, notes=("so it was",)))
     answers = AnswerSet(Path("mine"), stated_by("mine"), (Answer("locked", None, None, status, reason),))
     with pytest.raises(typer.Exit) as ended:
@@ -42,10 +37,10 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(
 # ---- counts and colours -------------------------------------------------------------------------------------------
 
 
-def test_what_got_worse_is_red_and_what_got_better_green() -> None:
+def test_what_got_worse_is_red_and_what_got_better_green():
     records = [[{"study": "s", "id": name, "verdict": word, "value": 1.0, "band": [0.0, 1.0]}
                 for name, word in (("a", a), ("b", b))] for a, b in (("PASS", "FAIL"), ("FAIL", "PASS"))]  # fmt: skip
-    blocks = tables.change_blocks(changes(*records))  # type: ignore[arg-type]
+    blocks = tables.change_blocks(changes(*records))
     styles = {text.split()[0]: STYLES[word] for text, word in lines(blocks, 150) if word}
     assert styles == {"worse": "bold red", "better": "green"}
 
@@ -56,10 +51,8 @@ def test_what_got_worse_is_red_and_what_got_better_green() -> None:
 # ---- figures of frequencies ---------------------------------------------------------------------------------------
 
 
-def test_what_is_stepped_is_drawn_up_to_half_the_sampling_and_the_exact_answer_to_the_end(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
-    caught: list[Any] = []
+def test_what_is_stepped_is_drawn_up_to_half_the_sampling_and_the_exact_answer_to_the_end(monkeypatch, tmp_path):
+    caught = []
     monkeypatch.setattr(figures, "response_figure", lambda curves, *rest: caught.extend(curves))
     monkeypatch.setattr(figures, "save_as", lambda figure, path: path)
     frequency = np.array([100.0, 249.0, 251.0, 900.0])

@@ -26,7 +26,7 @@ RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
 
 
-def gated(band: str, pair: str = '["dda", "bar"]', solvers: str = '["dda", "bar"]') -> str:
+def gated(band, pair='["dda", "bar"]', solvers='["dda", "bar"]'):
     metric = "displacement.l2" if "," in pair else "displacement.static"
     return SCENE + RUN.format(solvers) + GATE.format(pair, metric, band)
 
@@ -35,9 +35,7 @@ WIDE, TIGHT = gated("[0.0, 1.0]"), gated("[0.0, 1e-3]")
 # ---- nothing measured -----------------------------------------------------------------------------------------------
 
 
-def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(
-    scene_file: Path, tmp_path: Path
-) -> None:
+def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_write(scene_file, tmp_path):
     text = (SCENE + RUN.format('["dda", "bar"]')).replace("step = 0.002", "step = 0.0001")  # which damps little
     scene_file.write_text(text)
     shown = typed("run", scene_file, "--results", tmp_path / "r").stdout
@@ -51,7 +49,7 @@ def test_a_scene_without_gates_shows_what_its_solvers_differ_by_and_the_gate_to_
     assert done.returncode == 0 and "1 PASS, 0 FAIL" in done.stdout and "[[gate]]" not in done.stdout
 
 
-def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp_path: Path) -> None:
+def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file, tmp_path):
     scene_file.write_text(SCENE.replace("steps = 50", "steps = 3000\nalpha = 0.0\ndelta = 0.5\nallow_unstable = true"))
     unstable = load_scene(scene_file).with_values({"time.step": 0.1})
     changed = {"scenes": [unstable], "solvers": ("dda",), "extra": (), "gates": tuple, "derived": tuple}
@@ -69,7 +67,7 @@ def test_a_study_whose_question_is_how_runs_end_expects_it(scene_file: Path, tmp
 # ---- required solvers -----------------------------------------------------------------------------------------------
 
 
-def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
+def test_a_required_solver_is_found_behind_options_and_derived_rows():
     assert covers("fenicsx", "fenicsx:2") and covers("fem", "fem:full") and covers("fem", "fem")
     assert not covers("dda", "dda-60") and not covers("fenicsx:2", "fenicsx")
     core = get_study("core")
@@ -82,9 +80,7 @@ def test_a_required_solver_is_found_behind_options_and_derived_rows() -> None:
 
 
 @pytest.mark.parametrize("where", ["r", "r/verdicts.json", "link"])
-def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
-    where: str, scene_file: Path, tmp_path: Path
-) -> None:
+def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(where, scene_file, tmp_path):
     scene_file.write_text(gated("[-1.0, 1.0]", '["dda"]'))
     (tmp_path / "link").symlink_to(tmp_path / "r")
     assert typed("run", scene_file, "--results", "r", cwd=tmp_path).returncode == 0
@@ -93,9 +89,9 @@ def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(
     assert done.returncode == 1 and "1 gate differs: 1 worse" in done.stdout
 
 
-def edited(path: Path, change: object) -> None:
+def edited(path, change):
     found = json.loads(path.read_text())
-    path.write_text(json.dumps(change(found)))  # type: ignore[operator]
+    path.write_text(json.dumps(change(found)))
 
 
 BASELINES = {
@@ -112,7 +108,7 @@ BASELINES = {
 
 
 @pytest.mark.parametrize("name", thinned(BASELINES, 3))
-def test_a_baseline_that_is_none_is_refused_before_anything_runs(name: str, scene_file: Path, tmp_path: Path) -> None:
+def test_a_baseline_that_is_none_is_refused_before_anything_runs(name, scene_file, tmp_path):
     change, words = BASELINES[name]
     scene_file.write_text(WIDE)
     assert typed("run", scene_file, "--results", tmp_path / "r").returncode == 0
@@ -129,13 +125,13 @@ def test_a_baseline_that_is_none_is_refused_before_anything_runs(name: str, scen
 # ---- files and streams ----------------------------------------------------------------------------------------------
 
 
-def command(*arguments: object) -> list[str]:
+def command(*arguments):
     return [sys.executable, "-m", "validation", *map(str, arguments)]
 
 
 @pytest.mark.parametrize("ending", thinned(["xdmf", "vtu"], 2))
 @pytest.mark.long
-def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_file: Path, tmp_path: Path) -> None:
+def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending, scene_file, tmp_path):
     out = tmp_path / f"f.{ending}"
     out.write_text("a good file")
     done = subprocess.run(  # a limit on the size of files stands for a full disk
@@ -152,7 +148,7 @@ def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending: str, scene_fi
     assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
 
 
-def test_fields_are_not_written_after_an_overflow(scene_file: Path, tmp_path: Path) -> None:
+def test_fields_are_not_written_after_an_overflow(scene_file, tmp_path):
     out = tmp_path / "f.vtu"
     out.write_text("a good file")
     done = typed("solve", scene_file, "--solver", "fem", "--fields", out, *OVERFLOW)
@@ -161,9 +157,7 @@ def test_fields_are_not_written_after_an_overflow(scene_file: Path, tmp_path: Pa
     assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
 
 
-def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
-    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(scene_file, tmp_path, monkeypatch):
     out = tmp_path / "f.vtu"
     out.write_text("a good file")
     run = get_solver("dda").solve(load_scene(scene_file))
@@ -174,9 +168,7 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(
 
 @pytest.mark.parametrize(("text", "status"), thinned([(WIDE, 0), (TIGHT, 1)], 2))
 @pytest.mark.long
-def test_a_reader_that_has_gone_does_not_change_the_status(
-    text: str, status: int, scene_file: Path, tmp_path: Path
-) -> None:
+def test_a_reader_that_has_gone_does_not_change_the_status(text, status, scene_file, tmp_path):
     scene_file.write_text(text)
     reading, writing = os.pipe()
     os.close(reading)
@@ -189,7 +181,7 @@ def test_a_reader_that_has_gone_does_not_change_the_status(
 
 @pytest.mark.parametrize(("text", "status"), thinned([(TIGHT, 1), (WIDE, 0)], 2))
 @pytest.mark.long
-def test_a_closed_output_does_not_change_the_status(text: str, status: int, scene_file: Path, tmp_path: Path) -> None:
+def test_a_closed_output_does_not_change_the_status(text, status, scene_file, tmp_path):
     scene_file.write_text(text)
     line = 'exec "$0" -m validation run "$1" --results "$2" >&-'
     words = ["bash", "-c", line, sys.executable, str(scene_file), str(tmp_path / "r")]
@@ -199,7 +191,7 @@ def test_a_closed_output_does_not_change_the_status(text: str, status: int, scen
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
 @pytest.mark.parametrize("words", thinned(["--help", "list", "run small.toml"], 3))
-def test_a_full_output_is_one_line(words: str, scene_file: Path) -> None:
+def test_a_full_output_is_one_line(words, scene_file):
     with open("/dev/full", "w") as full:
         done = subprocess.run(
             command(*words.split()), stdout=full, stderr=subprocess.PIPE, text=True, timeout=100, cwd=scene_file.parent
@@ -210,7 +202,7 @@ def test_a_full_output_is_one_line(words: str, scene_file: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("stem", ["$_{$esc\x1b[31m\u2028b", "a$_{$b", "esc\x1b[31m", "a\u2028b", "$"])
-def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> None:
+def test_odd_names_of_scenes_are_run_and_reported(stem, tmp_path):
     path = tmp_path / f"{stem}.toml"
     path.write_text(SCENE.replace("A small scene", "A $scene_{ \\u001b"))
     done = typed("run", path, "--results", tmp_path / "r")
@@ -222,9 +214,7 @@ def test_odd_names_of_scenes_are_run_and_reported(stem: str, tmp_path: Path) -> 
     assert done.returncode == 0, done.stderr
 
 
-def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(
-    scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(scene_file, tmp_path, monkeypatch):
     for name in ("small", "other"):
         scene_file.with_name(f"{name}.toml").write_text(SCENE + RUN.format('["dda"]'))
         assert typed("run", scene_file.with_name(f"{name}.toml"), "--results", tmp_path / "r").returncode == 0

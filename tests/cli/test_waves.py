@@ -1,7 +1,5 @@
 """The command `response`: its table, its figures, what it says and what it refuses."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from conftest import typed
@@ -12,14 +10,14 @@ CASE = ["figures-3-4", "--set", "time.step=0.002"]
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 
 
-def said(*arguments: str) -> str:
+def said(*arguments):
     done = typed(*arguments)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
 @pytest.mark.parametrize(("option", "exact"), [([], False), (["--exact"], True)])
-def test_the_table_of_a_response_is_that_of_the_function(tmp_path: Path, option: list[str], exact: bool) -> None:
+def test_the_table_of_a_response_is_that_of_the_function(tmp_path, option, exact):
     path = tmp_path / "r.csv"
     said(
         "advise",

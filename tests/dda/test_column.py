@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 import dda
-from dda.bodies.bonded_column import Drive, solve_column
 from dda.bodies.column import Column, Layer, Spring
+from dda.bodies.column_history import solve_column
+from dda.bodies.column_march import Drive
 
 DENSITY, YOUNG = 2000.0, 1.8e9
 

@@ -14,11 +14,11 @@ from oracles.scheme_cases import scheme_of, truth_of
 from oracles.staged import System, march
 
 from dda import highest_frequency
-from dda.bodies import contact_column as contacts
-from dda.bodies.bonded_column import Drive, solve_column
+from dda.bodies import column_history as contacts
 from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
-from dda.bodies.contact_column import ColumnOptions, solve_contact_column
+from dda.bodies.column_history import ColumnOptions, solve_column
+from dda.bodies.column_march import Drive
 from dda.contact.unilateral import OPEN
 from dda.march import compiled
 from dda.scheme.newmark import Scheme
@@ -79,7 +79,7 @@ def check_against_the_papers(problem, scheme, name, parameters, rigid=False):
     contacts_of = range(2 * n, 2 * n + len(feet))
     names = {part: [f"{part}_{k + 1}" for k in numbers.get(part, contacts_of)] for part in expected}
     middles = column.faces[:-1] + column.heights / 2
-    result = solve_contact_column(
+    result = solve_column(
         column,
         scheme,
         Drive(*motion, pressure),
@@ -106,7 +106,8 @@ def test_columns_step_as_in_the_papers(seeds):
     switches = 0
     for seed in seeds:
         problem, _ = random_column(seed)
-        rigid = seed in (2, 5)  # impacts on a rigid stop multiply rounding: of few of them only
+        # impacts on a rigid stop multiply rounding: of few of them only; 3, 19, 35, 43 and 59 begin with a slip on it
+        rigid = seed in (2, 3, 5, 19, 35, 43, 59)
         alpha, delta, start = NEWMARK[seed % 4]
         scheme = Scheme(alpha, delta, (1.0, 0.97)[seed % 2], 2e-4, start)
         switches += check_against_the_papers(problem, scheme, "newmark", {"weights": (alpha, delta)}, rigid)
@@ -115,6 +116,19 @@ def test_columns_step_as_in_the_papers(seeds):
             by_name = scheme_of(name, values, 2e-4, 0.98)
             switches += check_against_the_papers(problem, by_name, name, truth_of(values), rigid)
     assert switches > 4 * len(seeds)
+
+
+@pytest.mark.parametrize("speed", [0.3, -0.3])
+def test_a_block_that_slides_on_a_rigid_contact_has_its_friction_at_once(speed):
+    """A parabola, which average acceleration keeps if it begins with the deceleration of the friction."""
+    mass, strength, dt = 2000.0, 2e4, 1e-3
+    layer = Layer(1.0, mass, RIGID, velocity=speed)
+    column = Column([layer], "shear", joints=[Spring(0.0, RIGID, strength=strength)], law="frictional")
+    steps = 20  # it comes to rest after 30
+    result = solve_column(column, Scheme(*AVERAGE, 1.0, dt, "consistent"), still(steps), ["slip_1"], [0.0])
+    t = dt * np.arange(1, steps + 1)
+    exact = speed * t - np.sign(speed) * strength / mass * t**2 / 2
+    assert np.max(np.abs(result.columns["slip_1"] - exact)) < 1e-14 * abs(speed)
 
 
 @pytest.mark.parametrize("seed", [1, 4])
@@ -144,7 +158,7 @@ def thrown(n, young, step, alpha, limit=None):
     blocks = layers([1.0] * n, [2500.0] * n, [young] * n, [-1.0] * n)
     column = unilateral(blocks, [1e9] * n, [0.0] * n, 0.0)
     scheme = Scheme(alpha, 2 * alpha, 1.0, step)
-    return solve_contact_column(column, scheme, still(1), options=ColumnOptions(solve_limit=limit))
+    return solve_column(column, scheme, still(1), options=ColumnOptions(solve_limit=limit))
 
 
 @pytest.mark.parametrize(("n", "alpha"), thinned(itertools.product([2, 5, 10, 20, 40], [0.25, 0.5]), 3))
@@ -179,35 +193,6 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
 # ---- contacts that hold, and rigid blocks ----------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    ("base", "weights", "start"),
-    thinned(
-        itertools.product(["pulled", "welded", "spring", "half-space"], [AVERAGE, CONSTANT], ["zero", "consistent"]), 5
-    ),
-)
-def test_contacts_that_never_switch_are_the_bonded_column(base, weights, start):
-    """Without a strength to exceed, or told to hold tension where the base would open every contact."""
-    pulled = base == "pulled"
-    blocks = [Layer(4.0, 2500.0, 2e9, 0.2, 4), Layer(3.0, 2000.0, 1e9, 0.3, 3)]
-    springs = [Spring(x, 1e9) for x in (*[0.0] * (base in ("spring", "pulled")), 1.0, 2.0, 4.0, 5.0)]
-    impedance = 2e6 if base == "half-space" else None
-    bonded = Column(blocks, "pressure" if pulled else "shear", joints=springs, impedance=impedance)
-    never = replace(bonded, law="unilateral" if pulled else "frictional")
-    t = 2e-4 * np.arange(401)
-    w = 400.0
-    moved = 1e-3 * (1 - np.cos(w * t)), 1e-3 * w * np.sin(w * t), 1e-3 * w * w * np.cos(w * t)
-    drive = Drive(*moved, 0 * t if pulled else 1e5 * np.sin(w * t))
-    names = ["displacement", "contact_pressure", "displacement_1", "stress_1", "displacement_2", "stress_2"]
-    scheme = Scheme(*weights, 0.999, 2e-4, start)
-    one = solve_contact_column(never, scheme, drive, names, [2.5, 0.25], ColumnOptions(bonded=pulled))
-    other = solve_column(bonded, scheme, drive, names, [2.5, 0.25])
-    assert one.step_switches.sum() == 0
-    assert not pulled or solve_contact_column(never, scheme, drive, names, [2.5, 0.25]).step_switches.sum() > 0
-    for name in names:
-        largest = np.abs(other.columns[name]).max()
-        np.testing.assert_allclose(one.columns[name], other.columns[name], rtol=0, atol=1e-9 * largest)
-
-
 def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch):
     steps = []
 
@@ -218,7 +203,7 @@ def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch):
     monkeypatch.setattr(contacts, "run_loop", counted)
     for repeats in (1, 50):
         column = unilateral(layers([1.0], [2500.0], [1e9], [0.0]), [1e9], [0.0])
-        solve_contact_column(column, Scheme(0.5, 1.0, 1.0, 1e-3), still(1), options=ColumnOptions(repeats=repeats))
+        solve_column(column, Scheme(0.5, 1.0, 1.0, 1e-3), still(1), options=ColumnOptions(repeats=repeats))
     assert steps == [1, 50]
 
 
@@ -231,7 +216,7 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
         column = Column(blocks, "shear", law="frictional", joints=joints)
         names = ["displacement_1", "velocity_1", "contact_pressure"]
         for gg in (0.98, 1.0):  # which is not the base's
-            result = solve_contact_column(column, Scheme(0.5, 1.0, gg, 1e-4), drive, names, [0.5])
+            result = solve_column(column, Scheme(0.5, 1.0, gg, 1e-4), drive, names, [0.5])
             np.testing.assert_allclose(result.columns["displacement_1"], drive.displacement[1:], rtol=0, atol=1e-15)
             np.testing.assert_allclose(result.columns["velocity_1"], drive.velocity[1:], rtol=0, atol=1e-13)
         force = result.columns["contact_pressure"]
@@ -245,7 +230,7 @@ def test_a_column_that_starts_settled_stays_there():
     column = CASES["A3"].column
     names = [f"displacement_{k + 1}" for k in range(6)]
     scheme = Scheme(0.25, 0.5, 1.0, 1e-5, "consistent")
-    result = solve_contact_column(
+    result = solve_column(
         column, scheme, still(200), names, CASES["A3"].heights[:6], ColumnOptions(settled=True, energies=True)
     )
     for name in names:
@@ -270,7 +255,7 @@ def test_the_limit_on_a_half_space_is_that_of_a_free_foot(blocks, ratio):
         step = share * 2 / highest_frequency(equations(column))
         t = step * np.arange(1501)
         wave = Drive(0 * t, np.where(t < 20 * step, np.sin(np.pi * t / (20 * step)), 0.0), 0 * t, 0 * t)
-        result = solve_contact_column(column, Scheme(0.0, 0.5, 1.0, step), wave)
+        result = solve_column(column, Scheme(0.0, 0.5, 1.0, step), wave)
         largest.append(np.abs(result.columns["displacement"]).max())
     assert largest[0] < 10
     assert not largest[1] < 1e6
@@ -281,7 +266,7 @@ STANDING = Column([BLOCK], law="unilateral")
 
 
 def stepped(column, scheme=Scheme(0.5, 1.0, 1.0, 1e-3), **more):  # noqa: B008
-    return solve_contact_column(column, scheme, still(1), **more)
+    return solve_column(column, scheme, still(1), **more)
 
 
 @pytest.mark.parametrize(
@@ -307,8 +292,7 @@ def stepped(column, scheme=Scheme(0.5, 1.0, 1.0, 1e-3), **more):  # noqa: B008
         ("joints", lambda: Column([BLOCK], law="unilateral", impedance=1e6, joints=[Spring(0.0, 1e9)])),
         ("solve_limit", lambda: ColumnOptions(solve_limit=0)),
         ("repeats", lambda: ColumnOptions(repeats=0)),
-        ("law", lambda: stepped(Column([BLOCK]))),
-        ("stiffness", lambda: stepped(Column([BLOCK] * 2, law="unilateral"), Scheme(0.0, 0.5, 1.0, 1e-5))),
+        ("stiffness", lambda: stepped(replace(STANDING, joints=[Spring(0.0, RIGID)]), Scheme(0.0, 0.5, 1.0, 1e-5))),
         ("mass_damping, stiffness_damping", lambda: stepped(STANDING, Scheme(0.5, 1.0, 1.0, 1e-3, mass_damping=1.0))),
         ("settled", lambda: stepped(replace(STANDING, unsupported=True), options=ColumnOptions(settled=True))),
         ("columns", lambda: stepped(STANDING, columns=["gap_1"])),
@@ -324,7 +308,7 @@ def test_a_load_beyond_doubles_is_a_named_outcome():
     column = unilateral(layers([1.0], [2500.0], [RIGID], [0.0]), [1e9], [0.0])
     drive = still(5)
     drive.pressure[3:] = 1.7e308
-    result = solve_contact_column(column, Scheme(0.25, 0.5, 1.0, 10.0), drive)
+    result = solve_column(column, Scheme(0.25, 0.5, 1.0, 10.0), drive)
     assert result.outcome == "overflow"
     assert len(result.time) < 5
     assert OPEN == 0

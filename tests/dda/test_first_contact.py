@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from dda import PlaneBlock, PlaneModel
-from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_block_contact, first_contact
+from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_contact
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
@@ -187,12 +186,3 @@ def test_first_crossing_of_samples_with_brent_agrees(seed):
         return
     assert contact.time == pytest.approx(crossing[0], abs=1e-12)
     assert crossing[1:] in [point[:3] for touch in contact.touches for point in touch.points]
-
-
-def test_blocks_of_a_model_turn_about_their_centroids():
-    flying = PlaneBlock(TRIANGLE_CENTRED + np.array([2.2, 2.6]), 2000.0, velocity=(-3.0, -4.0), spin=5.0)
-    model = PlaneModel([PlaneBlock(SQUARE, 1000.0, fixed=True), flying])
-    expected = first_contact(TRIANGLE_CENTRED, SQUARE, (2.2, 2.6, 0, -3, -4, 5), AT_REST, 1.0)
-    contact = first_block_contact(model, 1, 0, 1.0)
-    assert contact.time == pytest.approx(expected.time, abs=1e-13)
-    assert contact.touches[0].points[0][:3] == expected.touches[0].points[0][:3]

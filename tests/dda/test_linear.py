@@ -7,9 +7,10 @@ import pytest
 
 import dda
 from dda import BaseMotion, Block, Contact, Load, Material, Scheme, TwoBlockModel
-from dda.bodies.bonded_column import Drive, solve_column
 from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
+from dda.bodies.column_history import solve_column
+from dda.bodies.column_march import Drive
 
 SCHEME = Scheme(0.5, 1.0, 1.0, 1e-3)
 MOVED = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.03, -0.02]])
@@ -30,7 +31,11 @@ def column(load=LOAD):
     return equations(Column(layers, "pressure", None, [Spring(0.0, 4e9), Spring(3.0, 2e9)]))
 
 
-BODIES = [block, sub_blocks, column]
+def welded_column(load=LOAD):
+    return equations(Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)]))
+
+
+BODIES = [block, sub_blocks, column, welded_column]
 PLANE = [block, sub_blocks]
 
 

@@ -95,3 +95,5 @@ def test_a_driven_block_follows_its_record():
     result = solve_plane(PlaneModel(blocks), scheme(AVERAGE, 0.05), 20, every=2)
     assert result.displacement[:, 0] == pytest.approx(motion.at(result.time), abs=1e-15)
     assert not np.any(result.displacement[:, 1:]) and len(result.time) == 11
+    steps = np.diff(motion.at(0.05 * np.arange(21)), axis=0)
+    assert result.velocity[1:, 0, :2] == pytest.approx(steps[1::2] / 0.05, abs=1e-12)

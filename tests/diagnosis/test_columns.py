@@ -122,7 +122,7 @@ def test_contacts_that_hold_are_named(scene: Scene, change: dict[str, Any], caus
 
 
 def beside(scene: Scene, foreign: Foreign) -> ColumnSearch:
-    reading = Reading(steppings(foreign, scene.time.step)[0], foreign.displacement, foreign.pressure, ())
+    reading = Reading(steppings(foreign, scene.time.step)[0], np.array([foreign.displacement, foreign.pressure]))
     return ColumnSearch(reading.scene_of(scene), reading)
 
 

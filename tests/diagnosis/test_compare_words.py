@@ -32,8 +32,7 @@ from validation.diagnosis.causes import (
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.fits.target import Target
-from validation.diagnosis.judgement import compare, rival_sentence
-from validation.diagnosis.other_solvers import Rival, RivalVerdict
+from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
 from validation.errors import InputError
@@ -118,7 +117,7 @@ def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
 def target(**changes: Any) -> Target:
     column = rectangle_of(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}))
     assert column is not None
-    return Target(column, np.full(4, 0.002), np.arange(4), -np.ones(4))
+    return Target(column, np.full(4, 0.002), np.arange(4), -np.ones((1, 4)))
 
 
 def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own() -> None:
@@ -218,14 +217,13 @@ def test_numbers_that_have_words_are_told_by_them(cause: str, fields: dict[str, 
 def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
     scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
     bar = "bar (the exact bar, which fine finite elements converge to)"
-    best = Rival("bar", 0.5, 1.0, 0.97, 0.0123, np.zeros(1))
-    found = RivalVerdict(best, ["scheme"], {}, np.zeros(1), True, 0.25)
-    assert rival_sentence(found, found.causes, Departure(7, "phase")) == (
-        f"Closest match: {bar}, a different scheme: {scheme}; departs from step 7 on, mainly in phase; "
-        "a different scheme; the remaining difference is 1.2 %."
+    where = Departure(7, "phase")
+    fault = wording.Subject(scheme, {"scheme": "a different scheme"}, where, wording.remaining(0.0123), model=bar)
+    assert wording.sentence(fault) == (
+        f"Departs from step 7 on, mainly in phase: a different scheme; the history matches {scheme} as {bar}; "
+        "the remaining difference is 1.2 %."
     )
-    text = rival_sentence(replace(found, explained=False), ["unexplained"], Departure(7, "phase"))
-    assert text.startswith("Departs, not explained: nearest is bar") and "25 % of the difference left" in text
+    assert wording.sentence(replace(fault, words={})).startswith(f"Same model as {bar}, same scheme: {scheme}; ")
 
 
 def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
@@ -343,7 +341,9 @@ def test_the_exact_continuum_is_not_the_same_scheme() -> None:
     run = solve(scene, "continuum")
     answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
     assert answer.causes == ["exact-in-time"] and answer.departs and answer.departure is not None
-    assert answer.sentence.startswith("Closest match: continuum") and "a different scheme" in answer.sentence
+    assert answer.model == "continuum" and set(answer.scheme.values()) == {None}
+    assert answer.sentence.startswith(f"Departs from step {answer.departure.step} on")
+    assert "the history matches exact in time as continuum" in answer.sentence
     assert not [stage for stage in answer.evidence if stage.agrees is False]
 
 

@@ -14,14 +14,14 @@ from oracles.sliding_dda import Motion, Slider, run
 from validation import load_scene, solve
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.reading import Foreign
-from validation.diagnosis.slopes import Agreement, SlopeReading, agreement, at_step, read, verdict_of
+from validation.diagnosis.reading import Foreign, Stepping
+from validation.diagnosis.readings import Reading
+from validation.diagnosis.slopes import SlopeSearch, habits_of, search_of
 from validation.errors import InputError
 from validation.scenes.scene import Scene
 
 SCENE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
 LOAD, WEIGHT, SLOPE = 1e6, 10800 * 9.81, math.radians(20)
-PLACE = ("horizontal_displacement", "displacement")
 
 
 def program(weight: float = 0.0, **changes: Any) -> Motion:
@@ -69,49 +69,51 @@ def test_few_digits_tell_the_law(digits: int) -> None:
 
 
 def own(scene: Scene) -> np.ndarray:
-    history = solve(scene, "dda").history
+    history = solve(scene.with_values({"run.columns": list(SlopeSearch.NAMES)}), "dda").history
     assert history is not None
-    return np.column_stack([history.columns[name] for name in PLACE])
+    return np.array([history.columns[name] for name in SlopeSearch.NAMES])
 
 
-def beside(scene: Scene, place: np.ndarray) -> Agreement:
-    return agreement(scene, SlopeReading(place, np.zeros_like(place), scene.time.step, (), ()))
+def beside(scene: Scene, place: np.ndarray) -> SlopeSearch:
+    steps = Stepping(np.full(scene.time.steps, scene.time.step), np.arange(scene.time.steps))
+    return SlopeSearch(scene, Reading(steps, place, np.zeros(place.shape)))
 
 
 def test_noise_is_no_departure_and_a_shape_is_one() -> None:
-    scene = at_step(SCENE, 2e-3, 120)
+    scene = SCENE.with_values({"time.steps": 120})
     place = own(scene)
-    noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=0)
-    assert beside(scene, place).left == 0
-    assert beside(scene, place + 1e-3 * noise).same
+    noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=1, keepdims=True)
+    exact = beside(scene, place)
+    assert exact.is_scene() and exact.left(exact.scene_run) == 0
+    assert beside(scene, place + 1e-3 * noise).is_scene()
     wrong_row = place + 1e-3 * noise
-    wrong_row[len(place) // 2] *= 1.02
-    assert not beside(scene, wrong_row).same
-    assert not beside(scene, place + 3e-2 * noise).same
-    assert not beside(scene, place * (1 + 1e-3)).same
+    wrong_row[:, 60] *= 1.02
+    assert not beside(scene, wrong_row).is_scene()
+    assert not beside(scene, place + 3e-2 * noise).is_scene()
+    assert not beside(scene, place * (1 + 1e-3)).is_scene()
 
 
 def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step() -> None:
-    values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-    scene = at_step(SCENE.with_values(values), 1e-2, 80)
+    values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "time.step": 1e-2, "time.steps": 80}
+    scene = SCENE.with_values(values)
     place = own(scene.with_values({"contact.stiffness": scene.contact.stiffness * (1 + 2e-13)}))
-    found = beside(scene, place)
+    search = beside(scene, place)
     # Rounding grows at each switch: where it takes over differs between programs, but not before the later difference.
-    assert found.same and found.until is not None and 20 < found.until < 80
-    moved = np.where(np.arange(80) < 20, 0.0, 1e-5)[:, None] * np.max(np.abs(place), axis=0)
-    assert not beside(scene, place + moved).same
+    assert search.is_scene() and 20 < search.rows < 80
+    moved = np.where(np.arange(80) < 20, 0.0, 1e-5) * np.max(np.abs(place), axis=1, keepdims=True)
+    assert not beside(scene, place + moved).is_scene()
 
 
 @pytest.mark.parametrize("along", [True, False])
 def test_weight_and_a_softer_base_are_run(along: bool) -> None:
     """The springs along the base are softer as those across it, or the scene's."""
     found = program(1.0, p=0.997e9, ps=4e8 * (0.997 if along else 1.0))
-    reading = read(SCENE, Foreign(found.time, found.v, sideways=found.u))
-    verdict = verdict_of(reading.scene_of(SCENE), reading)
-    assert verdict.run.same and not verdict.scene_run.same
-    assert math.exp(-verdict.habits.softness) == pytest.approx(0.997, rel=1e-6)
-    assert verdict.habits.along is along
-    assert 0 <= verdict.habits.error < 1e-6
+    search = search_of(SCENE, Foreign(found.time, found.v, sideways=found.u))
+    ((habits, run),) = habits_of(search)
+    assert run.explains and not search.is_scene()
+    assert math.exp(-habits.softness) == pytest.approx(0.997, rel=1e-6)
+    assert habits.along is along
+    assert 0 <= habits.error < 1e-6
 
 
 def test_a_scene_of_many_values_or_another_unit_of_time_is_refused() -> None:

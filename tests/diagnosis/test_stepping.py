@@ -121,7 +121,7 @@ def test_implicit_euler_is_newmark_s_1_and_three_halves_from_rest() -> None:
 def test_a_variant_that_grows_beyond_any_double_is_far_away_and_says_nothing() -> None:
     """Central differences at a step beyond their limit: warnings are errors here, and the other variant stays."""
     steps = np.full(400, 0.05)
-    target = Target(BLOCK, steps, np.arange(400), np.full(400, -1e-9))
+    target = Target(BLOCK, steps, np.arange(400), np.full((1, 400), -1e-9))
     found = target.responses([OWN, replace(OWN, alpha=0.0, delta=0.5)])
     assert np.all(np.abs(found) <= 1e6) and np.abs(found[-1, 1]) == 1e6
     assert np.all(np.isfinite(histories(BLOCK, [OWN], steps).displacement))

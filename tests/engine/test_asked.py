@@ -1,35 +1,30 @@
 """Rows of the metrics that gates read, and no others: gates judge them as they judge whole rows."""
 
-from collections.abc import Mapping
 from dataclasses import replace
-from pathlib import Path
 
 import pytest
 
-from validation.engine.case import Case
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived
 from validation.engine.judge import evaluate, reads
 from validation.engine.run import finish
 from validation.engine.study import Study
-from validation.gates.gate import Gate, Verdict
+from validation.gates.gate import Gate
 from validation.runs.results import Results
-from validation.runs.row import Value
-from validation.scenes.scene import Scene
 
 MEASURED = "mode1.measured_damping"
 
 
-def pencil(finished: Finished) -> Mapping[str, Value]:
+def pencil(finished):
     return {"ratio": finished.rows["small", "dda"].metrics.get(MEASURED)}
 
 
-def opening(scene: Scene, name: str = "opening", stiffness: float = 1e11) -> Scene:
+def opening(scene, name="opening", stiffness=1e11):
     """Return the scene on springs that open, on which switches amplify rounding before the last step."""
     values = {"contact.law": "unilateral", "contact.stiffness": stiffness, "time.steps": 100}
     return scene.with_values(values | {"time.alpha": 0.25, "time.delta": 0.5}).model_copy(update={"name": name})
 
 
-def study_of(scene: Scene) -> Study:
+def study_of(scene):
     """Return a study with a gate of every kind: of one run, of two, of histories, on a derived row."""
     kinds = (
         ("small", ("dda",), "mode1.damping"),
@@ -52,12 +47,12 @@ def study_of(scene: Scene) -> Study:
     )
 
 
-def judged(study: Study, gate: Gate, cases: list[Case], directory: Path) -> Verdict:
+def judged(study, gate, cases, directory):
     return evaluate(gate, finish(cases, study, Results(directory)))
 
 
 @pytest.mark.parametrize("number", range(6))
-def test_what_a_gate_reads_is_enough_to_judge_it(scene: Scene, tmp_path: Path, number: int) -> None:
+def test_what_a_gate_reads_is_enough_to_judge_it(scene, tmp_path, number):
     study = study_of(scene)
     gate = study.gates()[number]
     asked = list(reads(gate, study.recipes()))

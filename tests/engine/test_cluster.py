@@ -3,7 +3,6 @@
 import itertools
 import os
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -24,12 +23,12 @@ SCENES = [
 STUDY = Study("sweep", "Sweep", "A sweep.", SCENES, ("dda", "bar"))
 
 
-def rows(directory: Path) -> dict:
+def rows(directory):
     """Return the rows without what a clock or an address decides."""
     return {key: replace(row, seconds={}) for key, row in Results(directory).rows().items()}
 
 
-def same_histories(one: Path, other: Path) -> bool:
+def same_histories(one, other):
     keys = rows(one)
     return all(
         np.array_equal(values, Results(other).history(key).columns[name])
@@ -52,7 +51,7 @@ def test_a_dask_cluster_gives_the_same_rows_and_a_lost_worker_costs_none(tmp_pat
     lost = []
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as workers:
 
-        def lose(done: int, total: int, label: str) -> None:
+        def lose(done, total, label):
             if not lost:
                 lost.append(next(iter(workers.workers.values())).pid)
                 os.kill(lost[0], 9)

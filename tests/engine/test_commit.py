@@ -1,7 +1,5 @@
 """The commit that results are kept with is that of the suite's own sources, or none."""
 
-from __future__ import annotations
-
 import importlib.util
 import os
 import shutil
@@ -17,21 +15,21 @@ PROJECT = '[project]\nname = "{}"\n'
 pytestmark = pytest.mark.skipif(shutil.which("git") is None, reason="needs git")
 
 
-def git(directory: Path, *words: str) -> str:
+def git(directory, *words):
     names = {f"GIT_{who}_{what}": "x" for who in ("AUTHOR", "COMMITTER") for what in ("NAME", "EMAIL")}
     return subprocess.run(
         ["git", *words], cwd=directory, env=os.environ | names, check=True, capture_output=True, text=True
     ).stdout.strip()
 
 
-def sources(place: Path) -> Path:
+def sources(place):
     """Copy the module that says where results come from."""
     (place / "validation" / "runs").mkdir(parents=True)
     shutil.copy(HERE / "validation/runs/provenance.py", place / "validation/runs/provenance.py")
     return place
 
 
-def project(place: Path, name: str) -> str:
+def project(place, name):
     """Make a git project with one commit and return that."""
     place.mkdir(parents=True, exist_ok=True)
     (place / "pyproject.toml").write_text(PROJECT.format(name))
@@ -41,7 +39,7 @@ def project(place: Path, name: str) -> str:
     return git(place, "describe", "--always", "--abbrev=12")
 
 
-def said(place: Path) -> str:
+def said(place):
     """Return what the module that stands at a place says."""
     spec = importlib.util.spec_from_file_location("provenance_elsewhere", place / "validation/runs/provenance.py")
     assert spec is not None and spec.loader is not None
@@ -50,7 +48,7 @@ def said(place: Path) -> str:
     return str(module._commit())
 
 
-def test_an_own_checkout_tells_its_commit(tmp_path: Path) -> None:
+def test_an_own_checkout_tells_its_commit(tmp_path):
     commit = project(sources(tmp_path / "suite"), "dda-validation")
     assert said(tmp_path / "suite") == commit
     with (tmp_path / "suite" / "pyproject.toml").open("a") as stream:
@@ -64,13 +62,13 @@ INSIDE = ".venv/site-packages"  # as an environment in a project's directory has
 @pytest.mark.parametrize(
     ("place", "name"), [(INSIDE, "another-project"), (INSIDE, "dda-validation"), ("", "another-project")]
 )
-def test_another_project_or_another_checkout_of_this_one_has_no_commit(place: str, name: str, tmp_path: Path) -> None:
+def test_another_project_or_another_checkout_of_this_one_has_no_commit(place, name, tmp_path):
     inside = sources(tmp_path / "other" / place)
     project(tmp_path / "other", name)
     assert said(inside) == "unknown (not a git checkout)"
 
 
-def test_what_git_s_own_variables_name_is_not_taken(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_git_s_own_variables_name_is_not_taken(tmp_path, monkeypatch):
     """A hook of another repository that runs the suite sets them."""
     project(tmp_path / "hooked", "hooked")
     inside = sources(tmp_path / "suite")

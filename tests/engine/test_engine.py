@@ -3,7 +3,6 @@
 import json
 import multiprocessing
 import os
-from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -23,12 +22,11 @@ from validation.runs.numbers import measured_text
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome, Run
-from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import BUILT_IN
 
 
-def test_a_study_runs_once_and_resumes(scene: Scene, tmp_path: Path) -> None:
+def test_a_study_runs_once_and_resumes(scene, tmp_path):
     results, seen = Results(tmp_path / "r"), []
     for _ in range(2):
         verdicts = run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
@@ -38,7 +36,7 @@ def test_a_study_runs_once_and_resumes(scene: Scene, tmp_path: Path) -> None:
     assert len(results.rows()) == 2
 
 
-def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene: Scene, tmp_path: Path) -> None:
+def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene, tmp_path):
     columns = ["displacement", "contact_pressure", "rotation"]
     results = Results(tmp_path)
     run_study(study(scene.with_values({"run.columns": columns})), results)
@@ -48,7 +46,7 @@ def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene: 
     assert rows["bar"].outcome is Outcome.COMPLETED and "not reported: rotation" in rows["bar"].notes
 
 
-def test_a_study_of_timings_takes_timed_rows_again_and_no_others(scene: Scene, tmp_path: Path) -> None:
+def test_a_study_of_timings_takes_timed_rows_again_and_no_others(scene, tmp_path):
     results, seen = Results(tmp_path), []
     for timed in (False, True, True):
         run_study(study(scene, timed=timed), results, progress=lambda done, total, label: seen.append(label))
@@ -57,7 +55,7 @@ def test_a_study_of_timings_takes_timed_rows_again_and_no_others(scene: Scene, t
         *([(False, False)] * 2), *([(True, True)] * 2)]  # fmt: skip
 
 
-def test_verdict_files_are_identical_from_run_to_run(scene: Scene, tmp_path: Path) -> None:
+def test_verdict_files_are_identical_from_run_to_run(scene, tmp_path):
     for name in ("a", "b"):
         run_study(study(scene), Results(tmp_path / name))
     first, second = ((tmp_path / name / "verdicts.json").read_text() for name in ("a", "b"))
@@ -65,7 +63,7 @@ def test_verdict_files_are_identical_from_run_to_run(scene: Scene, tmp_path: Pat
     assert set(json.loads(first)[0]) >= {"id", "scene", "pair", "metric", "value", "band", "verdict", "reason"}
 
 
-def test_processes_threads_and_one_process_give_the_same_rows(scene: Scene, tmp_path: Path) -> None:
+def test_processes_threads_and_one_process_give_the_same_rows(scene, tmp_path):
     kept = []
     with ThreadPoolExecutor(2) as pool:
         for name, options in (("serial", {}), ("processes", {"jobs": 2}), ("threads", {"executor": pool})):
@@ -75,7 +73,7 @@ def test_processes_threads_and_one_process_give_the_same_rows(scene: Scene, tmp_
     assert kept[0] == kept[1] == kept[2]
 
 
-def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene: Scene) -> None:
+def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene):
     other_mesh = scene.with_values({"fem.elements": 8})
     other_step = scene.with_values({"time.step": 0.001})
     assert Case(scene, "dda").key() == Case(other_mesh, "dda").key()
@@ -90,13 +88,13 @@ class Broken(Solver):
 
     name = "broken"
 
-    def __init__(self, way: str) -> None:
+    def __init__(self, way):
         self.way = way
 
-    def applicable(self, scene: Scene) -> str | None:
+    def applicable(self, scene):
         return "it is broken" if self.way == "inapplicable" else None
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def solve(self, scene, full=False, fields=None):
         n = scene.time.steps
         if self.way == "raise":
             raise ZeroDivisionError("division by zero")
@@ -104,7 +102,7 @@ class Broken(Solver):
             raise InputError("small: time.step: no")
         values = np.zeros(n - 1 if self.way == "short" else n)
         values[3:] = {"nan": np.nan, "inf": np.inf}.get(self.way, 1.0)
-        columns: Mapping[str, np.ndarray] = dict.fromkeys(scene.run.columns, values)
+        columns = dict.fromkeys(scene.run.columns, values)
         history = History(scene.time.step * np.arange(1, n + 1), columns)
         return Run(Outcome.COMPLETED, history, estimate=float("nan"))
 
@@ -120,9 +118,7 @@ class Broken(Solver):
         ("inapplicable", Outcome.NOT_APPLICABLE, "it is broken"),
     ],
 )
-def test_a_failure_is_a_named_outcome(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, way: str, outcome: Outcome, words: str
-) -> None:
+def test_a_failure_is_a_named_outcome(scene, tmp_path, monkeypatch, way, outcome, words):
     run = completed(Broken(way), scene)
     assert run.outcome is outcome
     assert words in run.notes[-1]
@@ -137,14 +133,14 @@ def test_a_failure_is_a_named_outcome(
 class Beside(Broken):
     """A sound history; the static solution and the choice of scenes are broken."""
 
-    def static(self, scene: Scene) -> Mapping[str, float]:
+    def static(self, scene):
         raise RuntimeError("exactly singular")
 
-    def applicable(self, scene: Scene) -> str | None:
+    def applicable(self, scene):
         raise IndexError(self.way)
 
 
-def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_fails_beside_a_sound_history_is_not_reported(scene, monkeypatch):
     assert completed(Beside("x"), scene).notes == ("IndexError: x",)
     monkeypatch.setattr(Case, "make_solver", lambda self: Beside("x"))
     monkeypatch.setattr(Beside, "applicable", Broken.applicable)
@@ -158,16 +154,14 @@ def test_what_fails_beside_a_sound_history_is_not_reported(scene: Scene, monkeyp
 class Deadly(Broken):
     """A solver that takes its process down for one of the scenes, until it is mended."""
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def solve(self, scene, full=False, fields=None):
         if scene.time.step == 0.2 and not Path(self.way).exists():
             os._exit(9)
         return super().solve(scene, full, fields)
 
 
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="workers inherit the patched solver by fork")
-def test_a_case_that_kills_its_worker_is_a_row_and_is_tried_again(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_case_that_kills_its_worker_is_a_row_and_is_tried_again(scene, tmp_path, monkeypatch):
     mended = tmp_path / "mended"
     monkeypatch.setattr(Case, "make_solver", lambda self: Deadly(str(mended)))
     swept = scene.model_copy(update={"sweep": {"time.step": [0.1, 0.2, 0.3]}})
@@ -181,7 +175,7 @@ def test_a_case_that_kills_its_worker_is_a_row_and_is_tried_again(
     assert outcomes == [died, [Outcome.COMPLETED] * 3]
 
 
-def test_a_solver_compared_with_itself_fails(scene: Scene, tmp_path: Path) -> None:
+def test_a_solver_compared_with_itself_fails(scene, tmp_path):
     results = Results(tmp_path)
     done = finish(study(scene).cases(), study(scene), results)
     gate = Gate(scene.name, ("dda", "dda"), "displacement.l2", 0, 1, "r")
@@ -197,29 +191,29 @@ def test_a_solver_compared_with_itself_fails(scene: Scene, tmp_path: Path) -> No
         ({"low": float("nan"), "high": 2.0}, "low <= high"),
     ],
 )
-def test_unsound_gates_are_refused(arguments: dict[str, float], words: str) -> None:
+def test_unsound_gates_are_refused(arguments, words):
     with pytest.raises(ValueError, match=words):
         Gate("s", ("dda",), "m", **{"reason": "r"} | arguments)
 
 
 @pytest.mark.parametrize("rounding", [0.0, 3.2e-16, -3.2e-16, 1e-14, -9e-13])
-def test_what_is_rounding_reads_alike_on_every_processor(rounding: float) -> None:
+def test_what_is_rounding_reads_alike_on_every_processor(rounding):
     gate = Gate("scene", ("dda",), "mode1.damping", -1e-9, 1e-9, "none by the formula")
     assert judge(gate, rounding).record("s")["value"] == 0.0
     assert measured_text(rounding) == measured_text(judge(gate, rounding).record("s")["value"]) == "below 1e-12"
 
 
-def test_other_values_are_rounded_to_digits() -> None:
+def test_other_values_are_rounded_to_digits():
     assert [rounded(value) for value in (0.0363249, -3.2e-14, 0.0)] == [0.03632, -1e-13, 0.0]
 
 
-def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references() -> None:
+def test_every_comparison_goes_to_a_later_solver_in_the_order_of_references():
     names = {"dda", "fem", "bar", "continuum"}
     assert list(_ordered(names | {"mine"})) == ["mine", "dda", "fem", "bar", "continuum"]
     assert _ordered(BUILT_IN)[:2] == ["dda", "dda-textbook"]
 
 
-def test_a_row_survives_its_line() -> None:
+def test_a_row_survives_its_line():
     row = Row("k", "s", "x", "dda", Outcome.COMPLETED, {"a": 1.0, "b": "undefined"}, notes=("n",), estimate=1e-9)
     assert Row.parse(row.line()) == row
     assert Row.parse(row.line()[:-5]) is None

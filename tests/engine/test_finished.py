@@ -1,10 +1,5 @@
 """What is derived from finished cases."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from pathlib import Path
-
 import pytest
 from oracles.made_cases import made_row
 
@@ -12,14 +7,13 @@ from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
-from validation.runs.row import Value
 from validation.runs.run import Outcome
 
 
-def test_a_derived_row_is_computed_once_for_all_gates(tmp_path: Path) -> None:
+def test_a_derived_row_is_computed_once_for_all_gates(tmp_path):
     asked = []
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished):
         asked.append(finished)
         return {"first": 1.0, "second": 2.0}
 
@@ -35,7 +29,7 @@ def test_a_derived_row_is_computed_once_for_all_gates(tmp_path: Path) -> None:
     ("ended", "status"),
     [(Outcome.TIMEOUT, Status.FAIL), (Outcome.NOT_APPLICABLE, Status.NOT_RUN), (None, Status.NOT_RUN)],
 )
-def test_what_is_derived_ends_as_the_run_that_it_needs(ended: Outcome | None, status: Status, tmp_path: Path) -> None:
+def test_what_is_derived_ends_as_the_run_that_it_needs(ended, status, tmp_path):
     rows = {} if ended is None else {("scene", "dda"): made_row("dda", {}, "scene", outcome=ended)}
     recipe = Derived("scene", "name", (("scene", "dda"),), lambda finished: {"first": 1.0})
     finished = Finished(rows, Results(tmp_path), {("scene", "name"): recipe})

@@ -7,8 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from multiprocessing import Barrier, Process, synchronize
-from pathlib import Path
+from multiprocessing import Barrier, Process
 
 import numpy as np
 import pytest
@@ -29,24 +28,16 @@ def solve(scene):
         time.sleep(0.02)
     return {"displacement": [-1e-3] * scene.time.steps}
 """
-SWEEP = '[run]\nsolvers = ["dda-textbook", "bar"]\n[sweep]\n"time.gg" = [1.0, 0.99, 0.98, 0.97]\n'
 
 
-@pytest.fixture
-def long_scene(tmp_path: Path) -> Path:
-    path = tmp_path / "long.toml"
-    path.write_text(SCENE.replace("steps = 50", "steps = 8000") + SWEEP)
-    return path
-
-
-def start(scene: Path, results: Path, jobs: int = 2) -> subprocess.Popen[str]:
+def start(scene, results, jobs=2):
     command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(results), "--jobs", str(jobs)]
     return subprocess.Popen(
         command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
     )
 
 
-def rows_of(results: Path) -> dict[str, Row]:
+def rows_of(results):
     return Results(results).rows()
 
 
@@ -81,7 +72,7 @@ def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_p
     assert len(fresh) == 1, "only what was missing runs"
 
 
-def write_again_and_again(directory: Path, study: str, start: synchronize.Barrier) -> None:
+def write_again_and_again(directory, study, start):
     """Write verdicts, of which those before must still be there."""
     start.wait(60)
     for i in range(40):
@@ -101,7 +92,7 @@ def test_verdicts_of_two_studies_written_at_once_are_both_kept(tmp_path):
     assert {verdict["study"] for verdict in json.loads((tmp_path / "verdicts.json").read_text())} == {"a", "b"}
 
 
-def finished(name: str) -> tuple[Row, History]:
+def finished(name):
     return Row(name, "s", "x", "dda", Outcome.COMPLETED, {}), History(np.ones(3), {"displacement": np.ones(3)})
 
 

@@ -1,11 +1,8 @@
 """Rows, windows and comparisons: each number is of its own case, steps and static value."""
 
-from __future__ import annotations
-
 import sys
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,13 +18,13 @@ from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.runs import provenance
 from validation.runs.results import Results
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
 
 
-def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> None:
+def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name():
     names = ("predicted_radius", "spectral_radius", "condition_number", "scaled_residual", "largest_omega")
     told = dict(zip(names, (0.91, 0.92, 3e5, 4e-16, 5.5), strict=True))
     found = solo(Measurable(made_history(0.1, np.ones(3)), 0.1, diagnostics=told), ("stability",))
@@ -45,7 +42,7 @@ def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name() -> No
 # ---- provenance ---------------------------------------------------------------------------------------------------
 
 
-def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkeypatch):
     import platform
 
     import scipy
@@ -61,14 +58,14 @@ def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkey
 # ---- rows ---------------------------------------------------------------------------------------------------------
 
 
-def test_what_differs_between_rows_is_told_with_the_number_of_each() -> None:
+def test_what_differs_between_rows_is_told_with_the_number_of_each():
     rows = [made_row("dda", provenance={"commit": commit}) for commit in ("then", "now", "then")]
     assert origin.of_rows(rows)["commit"] == "then (2 rows); now (1 row)"
     assert origin.of_rows(rows[1:2])["commit"] == "now"
 
 
-def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    def loop(count: int) -> None:
+def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch):
+    def loop(count):
         for _ in range(count):
             pass
 
@@ -80,7 +77,7 @@ def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch: pytest.Mo
     assert measure.lines_of(run) == measure.lines_of(run)
 
 
-def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Scene, tmp_path: Path) -> None:
+def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene, tmp_path):
     """Without savings the solver dda is what is called dda:full, and its row is of the same key."""
     alike = scene.model_copy(update={"name": "alike"})
     first, second = (Study(name, "t", "p", [scene], ("dda",)) for name in ("first", "second"))
@@ -94,9 +91,7 @@ def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene: Sc
 
 
 @pytest.mark.parametrize("values", [{}, {"time.gg": 0.9}, {"time.gg_rate": 30.0}], ids=str)
-def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(
-    values: dict[str, float], tmp_path: Path
-) -> None:
+def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(values, tmp_path):
     """At 10 ms for 0.2 s the first mode turns eleven times; a discount per step must not become one per instant."""
     scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "time.steps": 20} | values)
     results = Results(tmp_path)
@@ -113,7 +108,7 @@ def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(
     assert exact.until(0.05).between.time[-1] == pytest.approx(0.05)
 
 
-def test_damage_between_the_steps_is_refused(tmp_path: Path) -> None:
+def test_damage_between_the_steps_is_refused(tmp_path):
     results = Results(tmp_path)
     history = made_history(0.1, [1.0, 2.0])
     broken = replace(history, between=made_history(0.05, [1.0, np.nan, 2.0, 3.0]))

@@ -1,7 +1,5 @@
 """The key of a kept row covers everything that enters the row: sources of every room, measures, records, versions."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys
@@ -12,7 +10,7 @@ from conftest import SCENE
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.fenicsx import FEniCSx
 
 ROOT = Path(__file__).parents[2]
@@ -38,7 +36,7 @@ for room in sys.argv[3:]:
 ROOMS = ("runs", "scenes", "metrics", "solvers", "engine")
 
 
-def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_path: Path) -> None:
+def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_path):
     for package in ("dda", "fem_reference", "validation"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
     (tmp_path / "small.toml").write_text(SCENE)
@@ -52,7 +50,7 @@ def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_pa
     assert changed["fem_reference/mesh"] == ["0", "1", "1", "0"]
 
 
-def test_two_files_that_swap_names_give_another_digest(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_two_files_that_swap_names_give_another_digest(tmp_path, monkeypatch):
     package = tmp_path / "two_files"
     package.mkdir()
     (package / "__init__.py").touch()
@@ -65,7 +63,7 @@ def test_two_files_that_swap_names_give_another_digest(tmp_path: Path, monkeypat
     assert len(digests) == 3
 
 
-def keys_of(scene: Scene, solver: str, file: Path, texts: tuple[str, str]) -> set[str]:
+def keys_of(scene, solver, file, texts):
     """Return the keys of a scene as a file that it names has one content and another."""
     keys = set()
     for text in texts:
@@ -78,16 +76,14 @@ def keys_of(scene: Scene, solver: str, file: Path, texts: tuple[str, str]) -> se
     ("name", "field", "solver", "column"),
     [("figures-3-4", "load.base_motion", "dda", "x"), ("waves-site", "input.record", "layers", "velocity")],
 )
-def test_the_content_of_a_record_enters_the_key(
-    name: str, field: str, solver: str, column: str, tmp_path: Path
-) -> None:
+def test_the_content_of_a_record_enters_the_key(name, field, solver, column, tmp_path):
     record = tmp_path / "record.csv"
     moved = load_scene(name).with_values({field: str(record)})
     texts = f"time,{column}\n0,0\n1,0.1\n", f"time,{column}\n0,0\n1,0.2\n"
     assert len(keys_of(moved, solver, record, texts)) == 2
 
 
-def test_the_content_of_a_mesh_enters_the_key_of_who_reads_it(scene: Scene, tmp_path: Path) -> None:
+def test_the_content_of_a_mesh_enters_the_key_of_who_reads_it(scene, tmp_path):
     mesh = tmp_path / "block.msh"
     meshed = scene.with_values({"fem.mesh": str(mesh)})
     assert len(keys_of(meshed, "fem", mesh, ("one", "another"))) == 2
@@ -95,7 +91,7 @@ def test_the_content_of_a_mesh_enters_the_key_of_who_reads_it(scene: Scene, tmp_
 
 
 @pytest.mark.long
-def test_versions_of_the_libraries_enter_the_key(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_versions_of_the_libraries_enter_the_key(scene, monkeypatch):
     before = {solver: Case(scene, solver).key() for solver in ("dda", "fem", "fenicsx")}
     monkeypatch.setattr(FEniCSx, "versions", lambda self: {"dolfinx": "another"})
     assert Case(scene, "fenicsx").key() != before["fenicsx"] and Case(scene, "fem").key() == before["fem"]

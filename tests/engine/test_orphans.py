@@ -1,13 +1,10 @@
 """After any end of the parent nothing of it runs two seconds later: no worker, no user's solver, nothing it started."""
 
-from __future__ import annotations
-
 import os
 import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
 from itertools import product
 from pathlib import Path
 
@@ -52,12 +49,12 @@ pytestmark = [needs_proc, pytest.mark.usefixtures("interruptible")]
 
 
 @pytest.fixture
-def mark() -> Iterator[str]:
+def mark():
     with new_mark() as name:
         yield name
 
 
-def begin(directory: Path, mark: str, solvers: str, *options: str, sweep: str = "[1.0]") -> subprocess.Popen[str]:
+def begin(directory, mark, solvers, *options, sweep="[1.0]"):
     """Start a run of a scene, with these discounts, by the named solvers of the module above."""
     (directory / "bad_solvers.py").write_text(SOLVERS)
     scene = directory / "long.toml"
@@ -75,7 +72,7 @@ def begin(directory: Path, mark: str, solvers: str, *options: str, sweep: str = 
     )
 
 
-def wait_for(mark: str, words: str, process: subprocess.Popen[str]) -> None:
+def wait_for(mark, words, process):
     """Wait until a process with these words in its command line has been there for a moment."""
     deadline = time.monotonic() + 60
     while process.poll() is None and time.monotonic() < deadline:
@@ -93,9 +90,7 @@ LEAVERS = [("with_a_child", "sleep(600)"), ("deaf", "user_worker")]  # and what 
 
 
 @pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 8))
-def test_nothing_outlives_the_parent(
-    number: signal.Signals, leaver: tuple[str, str], tmp_path: Path, mark: str
-) -> None:
+def test_nothing_outlives_the_parent(number, leaver, tmp_path, mark):
     """The signal goes to the parent alone, as from a scheduler or an out-of-memory killer."""
     solver, words = leaver
     with begin(tmp_path, mark, f'"dda", "bad_solvers:{solver}"', "--jobs", "2") as process:
@@ -111,7 +106,7 @@ def test_nothing_outlives_the_parent(
 
 @pytest.mark.long
 @pytest.mark.parametrize("number", SIGNALS)
-def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals, tmp_path: Path, mark: str) -> None:
+def test_nothing_outlives_a_parent_that_runs_cases_itself(number, tmp_path, mark):
     with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)
         process.send_signal(number)
@@ -122,7 +117,7 @@ def test_nothing_outlives_a_parent_that_runs_cases_itself(number: signal.Signals
 
 @pytest.mark.long
 @pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_child_left"])
-def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Path, mark: str) -> None:
+def test_what_a_solver_leaves_behind_ends_with_the_run(solver, tmp_path, mark):
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2", sweep="[1.0, 0.99]") as process:
         process.communicate(timeout=60)
     assert left(mark) == []
@@ -130,7 +125,7 @@ def test_what_a_solver_leaves_behind_ends_with_the_run(solver: str, tmp_path: Pa
 
 
 @pytest.mark.long
-def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
+def test_a_second_signal_does_not_wait(tmp_path, mark):
     with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)
         for _ in range(3):
@@ -140,7 +135,7 @@ def test_a_second_signal_does_not_wait(tmp_path: Path, mark: str) -> None:
 
 
 @pytest.mark.long
-def test_a_hangup_that_is_ignored_stays_ignored(tmp_path: Path, mark: str) -> None:
+def test_a_hangup_that_is_ignored_stays_ignored(tmp_path, mark):
     """As under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:

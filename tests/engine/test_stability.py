@@ -1,7 +1,5 @@
 """Outcomes by name, spectral radii, limits by bisection, and growth beyond them."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from conftest import thinned
@@ -13,7 +11,6 @@ from validation.engine.measure import execute
 from validation.metrics.growth import Stability, growth
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.scenes.scene import Scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import get_solver
 
@@ -21,11 +18,11 @@ EXPLICIT, LINEAR = {"time.alpha": 0.0, "time.delta": 0.5}, {"time.alpha": 1 / 6,
 
 
 @pytest.fixture
-def scene(scene_file: Path) -> Scene:
+def scene(scene_file):
     return load_scene(scene_file).with_values({"time.allow_unstable": True})
 
 
-def row(scene: Scene, solver: str = "dda", measures: tuple[str, ...] = ("stability",)):
+def row(scene, solver="dda", measures=("stability",)):
     return execute(Case(scene, solver, measures=measures), "k", "s")[0]
 
 

@@ -1,30 +1,23 @@
 """Runs beyond one process: one pool over all studies, killed workers, memory, a cluster."""
 
-from __future__ import annotations
-
 import json
 import multiprocessing
 import os
 import signal
 from collections import Counter
-from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from validation.engine import cluster, executor
-from validation.engine.case import Case
 from validation.engine.run import run_cases, study_cases
 from validation.engine.study import Study
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 from validation.solvers import memory
 
 
-def sweep(scene: Scene, name: str, count: int, solvers: tuple[str, ...] = ("dda",), timed: bool = False) -> Study:
+def sweep(scene, name, count, solvers=("dda",), timed=False):
     """Return a study of so many cases, which differ by their load."""
     pressures = [5e6 + 1e3 * number for number in range(count)]
     swept = scene.model_copy(update={"name": "swept", "sweep": {"load.pressure": pressures}})
@@ -37,23 +30,21 @@ def sweep(scene: Scene, name: str, count: int, solvers: tuple[str, ...] = ("dda"
 class Recorded(Executor):
     """An executor that runs a case when its result is awaited, and notes how many waited then."""
 
-    def __init__(self) -> None:
-        self.submitted: list[tuple[Future[Any], Callable[[], Any]]] = []
+    def __init__(self):
+        self.submitted = []
 
-    def submit(self, function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        future: Future[Any] = Future()
+    def submit(self, function, /, *args, **kwargs):
+        future = Future()
         self.submitted.append((future, lambda: function(*args, **kwargs)))
         return future
 
 
-def test_no_worker_waits_between_studies_and_no_case_runs_twice(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_worker_waits_between_studies_and_no_case_runs_twice(scene, tmp_path, monkeypatch):
     """Two studies that share cases are on the pool together, that of timings runs alone after them."""
     pool = Recorded()
-    waiting: list[int] = []
+    waiting = []
 
-    def completed(futures: dict[Future[Any], Any]) -> Any:
+    def completed(futures):
         waiting.append(len(futures))
         for future, task in reversed(pool.submitted):  # in another order than they were submitted
             future.set_result(task())
@@ -62,7 +53,7 @@ def test_no_worker_waits_between_studies_and_no_case_runs_twice(
     monkeypatch.setattr(executor, "as_completed", completed)
     studies = [sweep(scene, "first", 3), sweep(scene, "timings", 2, timed=True), sweep(scene, "second", 5)]
     groups = [study_cases(study) for study in studies]
-    progress: list[tuple[int, int]] = []
+    progress = []
     ended = run_cases(
         groups, Results(tmp_path), executor=pool, progress=lambda done, total, _: progress.append((done, total))
     )
@@ -74,21 +65,19 @@ def test_no_worker_waits_between_studies_and_no_case_runs_twice(
 
 
 @pytest.mark.skipif(multiprocessing.get_start_method() != "fork", reason="workers inherit the patched run by fork")
-def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(scene, tmp_path, monkeypatch):
     """The first worker dies on its first case; what no worker had begun goes to another pool."""
     parent = os.getpid()
-    alone: list[str] = []
+    alone = []
     run, in_own_process = executor.execute, executor.run_in_own_process
 
-    def deadly(case: Case, key: str, study: str) -> executor.Ending:
+    def deadly(case, key, study):
         if os.getpid() != parent and not (tmp_path / "killed").exists():
             (tmp_path / "killed").touch()
             os.kill(os.getpid(), signal.SIGKILL)
         return run(case, key, study)
 
-    def noted(task: executor.Pending) -> executor.Ending:
+    def noted(task):
         alone.append(task.key)
         return in_own_process(task)
 
@@ -99,19 +88,17 @@ def test_only_the_cases_of_a_lost_pool_s_workers_run_alone(
     assert 1 <= len(alone) <= 2
 
 
-def test_a_case_beyond_a_worker_s_share_of_the_memory_runs_after_the_others(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_case_beyond_a_worker_s_share_of_the_memory_runs_after_the_others(scene, tmp_path, monkeypatch):
     monkeypatch.setattr(
         memory, "needed", lambda scene, solver: (7.0 if scene.load.pressure == 5e6 else 5.0, "time.steps")
     )
     monkeypatch.setattr(memory, "available", lambda: 12.0)
-    pooled: list[int] = []
+    pooled = []
     on_processes = executor.run_on_processes
     monkeypatch.setattr(
         executor, "run_on_processes", lambda tasks, *more: pooled.append(len(tasks)) or on_processes(tasks, *more)
     )
-    order: list[str] = []
+    order = []
     (ended,) = run_cases(
         [study_cases(sweep(scene, "sweep", 4))],
         Results(tmp_path),
@@ -124,7 +111,7 @@ def test_a_case_beyond_a_worker_s_share_of_the_memory_runs_after_the_others(
 # ---- a cluster ------------------------------------------------------------------------------------------------------
 
 
-def test_a_user_s_sources_are_those_that_no_installation_holds(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_s_sources_are_those_that_no_installation_holds(tmp_path, monkeypatch):
     (tmp_path / "mine.py").write_text("A = 1\n")
     (tmp_path / "ours" / "deep").mkdir(parents=True)
     for name in ("ours/__init__.py", "ours/deep/part.py", "ours/notes.txt"):
@@ -136,9 +123,7 @@ def test_a_user_s_sources_are_those_that_no_installation_holds(tmp_path: Path, m
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore")  # another package's own
-def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(scene, tmp_path, monkeypatch):
     """A worker's limit of memory holds for its cases."""
     distributed = pytest.importorskip("distributed")
     study = sweep(scene, "sweep", 2, ("only_here:solve", "dda"))

@@ -5,11 +5,8 @@ import json
 import shutil
 import threading
 import zipfile
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,17 +19,16 @@ from validation.engine.case import Case
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.row import Row, Value
+from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 
 
-def ran(scene: Scene, results: Results) -> list[str]:
+def ran(scene, results):
     """Return the solvers that a run has run, not taken from the directory."""
-    seen: list[str] = []
+    seen = []
     run_study(study(scene), results, progress=lambda done, total, label: seen.append(label.split()[1]))
     return seen
 
@@ -40,9 +36,7 @@ def ran(scene: Scene, results: Results) -> list[str]:
 # ---- kept rows ------------------------------------------------------------------------------------------------------
 
 
-def test_the_manifest_says_which_versions_made_the_rows(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_manifest_says_which_versions_made_the_rows(scene, tmp_path, monkeypatch):
     results = Results(tmp_path)
     then = {"python": "3.11", "commit": "then", "packages": {"numpy": "2.0.0"}}
     seams.ORIGIN.put(monkeypatch, lambda: then)
@@ -56,15 +50,15 @@ def test_the_manifest_says_which_versions_made_the_rows(
     assert found["python"] == "3.11"
 
 
-def shorter(history: History) -> History:
+def shorter(history):
     return History(history.time[:-1], {name: values[:-1] for name, values in history.columns.items()})
 
 
-def without_pressure(history: History) -> History:
+def without_pressure(history):
     return History(history.time, {"displacement": history.displacement})
 
 
-def infinite(history: History) -> History:
+def infinite(history):
     return History(history.time, {**history.columns, "displacement": np.full(len(history.time), np.inf)})
 
 
@@ -82,9 +76,7 @@ LINES = [
 @pytest.mark.parametrize(
     ("of_history", "change"), [*((True, one) for one in HISTORIES), *((False, one) for one in LINES)]
 )
-def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(
-    of_history: bool, change: Callable[[Any], Any], scene: Scene, tmp_path: Path
-) -> None:
+def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(of_history, change, scene, tmp_path):
     results = Results(tmp_path)
     run_study(study(scene), results)
     (row,) = (row for row in results.rows().values() if row.solver == "dda")
@@ -100,7 +92,7 @@ def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(
     assert ran(scene, results) == []
 
 
-def test_histories_that_swap_places_are_run_again(scene: Scene, tmp_path: Path) -> None:
+def test_histories_that_swap_places_are_run_again(scene, tmp_path):
     results = Results(tmp_path)
     run_study(study(scene), results)
     first, second = (tmp_path / "histories").iterdir()
@@ -112,7 +104,7 @@ def test_histories_that_swap_places_are_run_again(scene: Scene, tmp_path: Path) 
     assert sorted(ran(scene, results)) == ["bar", "dda"]
 
 
-def test_a_history_without_time_is_one_line(scene: Scene, tmp_path: Path) -> None:
+def test_a_history_without_time_is_one_line(scene, tmp_path):
     results = Results(tmp_path)
     run_study(study(scene), results)
     path = next((tmp_path / "histories").iterdir())
@@ -130,7 +122,7 @@ def test_a_history_without_time_is_one_line(scene: Scene, tmp_path: Path) -> Non
 
 
 @pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])
-def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome: Outcome, scene: Scene, tmp_path: Path) -> None:
+def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome, scene, tmp_path):
     results, case = Results(tmp_path), Case(scene, "dda")
     made = origin.of_row(case.make_solver())
     results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
@@ -138,9 +130,7 @@ def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome: Outcome, s
     assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
 
 
-def test_a_worker_with_other_sources_makes_no_rows(
-    scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_worker_with_other_sources_makes_no_rows(scene, tmp_path, monkeypatch):
     here, keys = threading.get_ident(), Case.key
     monkeypatch.setattr(Case, "key", lambda case: keys(case) if threading.get_ident() == here else "another")
     with ThreadPoolExecutor(2) as pool:
@@ -156,14 +146,12 @@ MALFORMED = ["[", "[" * 100_000, "{}", "null", '[{"study": "s"}]', '[{"id": 1, "
 
 
 @pytest.mark.parametrize(("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 3), ids=itertools.count())
-def test_malformed_verdicts_are_one_line_before_anything_runs(
-    command: str, text: str, scene_file: Path, tmp_path: Path
-) -> None:
+def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, scene_file, tmp_path):
     results = tmp_path / "r"
     run_study(study(load_scene(scene_file)), Results(results))
     (results / "verdicts.json").write_text(text)
     before = (results / "rows.jsonl").read_bytes()
-    words: dict[str, list[object]] = {
+    words = {
         "run": ["run", scene_file, "--results", results],
         "report": ["report", "--results", results, "--out", tmp_path / "r.pdf"],
         "diff": ["diff", results, results],
@@ -173,7 +161,7 @@ def test_malformed_verdicts_are_one_line_before_anything_runs(
     assert (results / "rows.jsonl").read_bytes() == before and not (tmp_path / "new").exists()
 
 
-def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path, tmp_path: Path) -> None:
+def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_path):
     results = Results(tmp_path / "r")
     run_study(study(load_scene(scene_file)), results)
     shutil.copy(tmp_path / "r/studies/test.json", tmp_path / "r/studies/other.json")
@@ -192,12 +180,10 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file: Path,
 # ---- cases that end badly -------------------------------------------------------------------------------------------
 
 
-def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(
-    scene: Scene, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(scene, monkeypatch):
     sound = measure.solo
 
-    def fails_in_modes(seen: Measurable, parts: tuple[str, ...], only: frozenset[str] | None) -> dict[str, Value]:
+    def fails_in_modes(seen, parts, only):
         if "modes" in parts:
             raise np.linalg.LinAlgError("no convergence")
         return sound(seen, parts, only)
@@ -209,17 +195,17 @@ def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(
     assert isinstance(row.metrics["displacement.final"], float) and "mode1.damping" not in row.metrics
 
 
-def test_alarms_that_fail_on_one_scene_are_said_of_it_alone(scene: Scene, tmp_path: Path) -> None:
+def test_alarms_that_fail_on_one_scene_are_said_of_it_alone(scene, tmp_path):
     other = scene.model_copy(update={"name": "other"})
 
-    def annotate(scenes: object, finished: object) -> object:
-        names = [s.name for s in scenes]  # type: ignore[attr-defined]
+    def annotate(scenes, finished):
+        names = [s.name for s in scenes]
         if "other" in names:
             raise OverflowError("too large")
         told = [{"kind": "k", "scene": name, "sentence": "s", "values": {}} for name in names]
         return {"alarms": told, "budgets": []}
 
-    made = Study("test", "t", "p", [scene, other], ("dda",), annotate=annotate)  # type: ignore[arg-type]
+    made = Study("test", "t", "p", [scene, other], ("dda",), annotate=annotate)
     run_study(made, Results(tmp_path))
     told = {alarm["scene"]: alarm["sentence"] for alarm in Results(tmp_path).manifest("test")["alarms"]}
     assert told == {"small": "s", "other": "alarms and damping budget: OverflowError: too large"}

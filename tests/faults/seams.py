@@ -17,9 +17,8 @@ import fem_reference.exact.bar as exact_bar
 import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
 from dda.bodies import block_system as system
-from dda.bodies import bonded_column as column_stepping
-from dda.bodies import column_equations, gap_form, joints, subdivision
-from dda.bodies import contact_column as column_contacts
+from dda.bodies import column_history as column_contacts
+from dda.bodies import column_march, gap_form, joints, subdivision
 from dda.bodies import glued_blocks as glued
 from dda.bodies import glued_step as system_step
 from dda.bodies import locked_block as solution
@@ -177,16 +176,13 @@ EVENTS_BAR = Seam(bar_events, bar_events.solve)
 RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 
 # Columns
-COLUMN_INERTIA = Seam(column_equations, column_equations.inertia)
-COLUMN_STIFFNESS = Seam(column_equations, column_equations.stiffness)
-COLUMN_EFFECTIVE = Seam(column_stepping, column_stepping.dashpot_matrix)
-COLUMN_PREDICTOR = Seam(column_stepping, column_stepping.predictor)
-COLUMN_VELOCITY = Seam(column_stepping, column_stepping.velocity_corrector)
-COLUMN_BASE = Seam(column_equations.Equations, column_equations.Equations.dashpot)
-COLUMN_SPRINGS = Seam(column_equations, column_equations.spring_stiffness)
-COLUMN_RUN = Seam(column_stepping.Stepper, column_stepping.Stepper.run)
+COLUMN_INERTIA = Seam(column_march, column_march.inertia)
+COLUMN_STIFFNESS = Seam(column_march, column_march.stiffness)
+COLUMN_BASE = Seam(column_march, column_march.impedance)
+COLUMN_SPRINGS = Seam(column_march, column_march.springs_of)
+COLUMN_VELOCITY = Seam(march_step, march_step.velocity_corrector)
 CONTACT_BODY = Seam(column_contacts, column_contacts.body_of)
-CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_contact_column)
+CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_column)
 EVENTS_COLUMN = Seam(column_events, column_events.solve)
 EVENTS_BARS = Seam(bars_events, bars_events.solve)
 LINE_SPRINGS = Seam(line_mesh, line_mesh._springs)
@@ -200,7 +196,7 @@ DECISION_CANONICAL = Seam(search, search._canonical)
 DECISION_DETERMINED = Seam(search, search.is_determined)
 READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
-RIVAL_SLIPS = Seam(other_solvers, other_solvers.SLIPS)
+RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
 COMMIT = Seam(provenance, provenance._commit)

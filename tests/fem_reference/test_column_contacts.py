@@ -127,6 +127,27 @@ def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch:
         assert modal.columns[name] == pytest.approx(plain.columns[name], abs=1e-8 * size), name
 
 
+@pytest.mark.parametrize(
+    ("law", "speed", "force"),
+    [
+        ("frictional", 0.3, -2e4),
+        ("frictional", -0.3, 2e4),
+        ("frictional", 0.0, 0.0),
+        ("unilateral", 0.3, 0.0),
+    ],
+)
+def test_a_rigid_contact_that_moves_at_the_start_bears_what_its_slip_or_gap_says(
+    law: str, speed: float, force: float
+) -> None:
+    """Its strength against the slip, nothing where its faces part: not what would keep accelerations together."""
+    joint = ColumnContact(1.0, math.inf, *((0.0, 2e4) if law == "frictional" else ()))
+    strata = ground((1.0, 2000.0, 1e8), (1.0, 2000.0, 1e8), motion="shear" if law == "frictional" else "pressure")
+    column = ContactColumn(strata, law, (joint,), (0.0, speed), unsupported=True)  # type: ignore[arg-type]
+    pressed = still(1, pressure=np.full(2, 1e4)) if law == "unilateral" else still(1)
+    _, state = stepper_and_start(column, 4, 2, scheme(AVERAGE, 1e-4), pressed)
+    assert state.force[0] == pytest.approx(force, abs=1e-9)
+
+
 def test_contacts_that_never_slip_are_bonded_springs() -> None:
     strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
     springs = [(0.0, 3e9), (1.0, 1e9)]

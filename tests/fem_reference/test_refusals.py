@@ -28,7 +28,6 @@ from fem_reference.events.restitution import ContactScheme, restitution
 from fem_reference.exact import rocking, sliding_block
 from fem_reference.exact.layers import solve_layers
 from fem_reference.exact.opening_bar import OpeningBar
-from fem_reference.history.adaptive import solve_adaptive
 from fem_reference.history.solver import solve
 from fem_reference.history.unilateral import solve_unilateral
 from fem_reference.problem.bar import BarProblem
@@ -163,7 +162,7 @@ ASKS: dict[str, list[Callable[[], object]]] = {
         lambda: solve_line(ON_WAVES, [1, 1], 1, LEAPFROG, rest(3)),
         lambda: lines(LEAPFROG, SLIPPING),
         lambda: lines(LEAPFROG, replace(STANDING, contacts=(ColumnContact(0.0, INF),))),
-        lambda: solve_adaptive(make(), ALPHA, 3),
+        lambda: solve(make(), ALPHA, 3, floor=0.0),
     ],
     "alpha, delta": [lambda: solve_unilateral(make(elements=2), CONSTANT, 1, Unilateral(rule="implicit"))],
     "steps": [

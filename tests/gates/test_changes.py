@@ -1,7 +1,6 @@
 """What other people's CI uses: summaries, baselines, differences."""
 
 import json
-from pathlib import Path
 
 import pytest
 from conftest import SCENE, refused, typed
@@ -12,11 +11,11 @@ from validation.gates.changes import changes, markdown, read_verdicts
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 
 
-def verdict(id: str, word: str, value: object = 1.0, study: str = "s") -> dict[str, object]:
+def verdict(id, word, value=1.0, study="s"):
     return {"study": study, "id": id, "verdict": word, "value": value, "band": [0.0, 1.0], "reason": "a | b", "why": ""}
 
 
-def write(path: Path, *verdicts: dict[str, object]) -> Path:
+def write(path, *verdicts):
     path.write_text(json.dumps(verdicts))
     return path
 
@@ -37,7 +36,7 @@ def write(path: Path, *verdicts: dict[str, object]) -> Path:
         ("FAIL", None, "gone"),
     ],
 )
-def test_what_became_of_a_gate(before: str | None, after: str | None, kind: str) -> None:
+def test_what_became_of_a_gate(before, after, kind):
     old, new = ([] if word is None else [verdict("a", word)] for word in (before, after))
     assert [change.kind for change in changes(old, new)] == [kind]
 
@@ -51,12 +50,12 @@ def test_what_became_of_a_gate(before: str | None, after: str | None, kind: str)
         ([0.0, 1 + 1e-9], None),  # the last digits are the processor's
     ],
 )
-def test_a_wider_band_is_worse_at_either_edge(band: list[float], kind: str | None) -> None:
+def test_a_wider_band_is_worse_at_either_edge(band, kind):
     found = changes([verdict("a", "PASS")], [verdict("a", "PASS") | {"band": band}])
     assert [change.kind for change in found] == ([] if kind is None else [kind])
 
 
-def test_only_what_differs_is_told_and_the_worse_first() -> None:
+def test_only_what_differs_is_told_and_the_worse_first():
     old = [verdict("a", "PASS"), verdict("b", "PASS"), verdict("c", "FAIL", 3.0), verdict("d", "PASS", "undefined")]
     new = [
         verdict("a", "PASS"),
@@ -69,13 +68,13 @@ def test_only_what_differs_is_told_and_the_worse_first() -> None:
     assert [(c.kind, c.id) for c in changes(old, moved)] == [("worse", "b"), ("value", "a"), ("value", "c")]
 
 
-def test_a_summary_tells_why_a_gate_was_not_run_before_the_reason_of_its_band() -> None:
+def test_a_summary_tells_why_a_gate_was_not_run_before_the_reason_of_its_band():
     given = verdict("a", "NOT RUN", None) | {"why": "fenicsx is missing"}
     assert "| `a` | - | 0 .. 1 | fenicsx is missing |" in markdown([given])
     assert "| `a` | 2 | 0 .. 1 | a \\| b |" in markdown([verdict("a", "FAIL", 2.0)])
 
 
-def test_diff_is_a_table_and_a_status(tmp_path: Path) -> None:
+def test_diff_is_a_table_and_a_status(tmp_path):
     a = write(tmp_path / "a.json", verdict("one", "PASS"), verdict("two", "FAIL"))
     b = write(tmp_path / "b.json", verdict("one", "FAIL"), verdict("two", "PASS"))
     done = typed("diff", a, b)
@@ -88,7 +87,7 @@ def test_diff_is_a_table_and_a_status(tmp_path: Path) -> None:
     assert typed("diff", a, tmp_path / "absent.json").returncode == 2
 
 
-def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file: Path, tmp_path: Path) -> None:
+def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file, tmp_path):
     summary, base = tmp_path / "summary.md", tmp_path / "base.json"
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "too | tight"\n')
     options = ("--results", tmp_path / "r", "--summary", summary)
@@ -110,12 +109,12 @@ def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file: Pat
     assert "| worse | `small:dda-bar:displacement.l2` | PASS → FAIL |" in summary.read_text()
 
 
-def test_other_studies_of_a_baseline_do_not_count_as_lost() -> None:
+def test_other_studies_of_a_baseline_do_not_count_as_lost():
     text = markdown([verdict("a", "NOT RUN", None)], [])
     assert "### NOT RUN" in text and "### FAIL" not in text
 
 
-def test_unreadable_verdicts_are_named(tmp_path: Path) -> None:
+def test_unreadable_verdicts_are_named(tmp_path):
     (tmp_path / "verdicts.json").write_text("[")
     with pytest.raises(InputError, match="must be JSON"):
         read_verdicts(tmp_path)

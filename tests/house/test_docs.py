@@ -11,7 +11,6 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
 from conftest import SCENE, beside, script, typed
@@ -44,12 +43,12 @@ BIBLIOGRAPHY = ROOT / "validation/report/references.bib"
 NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))
 
 
-def blocks(page: Path) -> list[tuple[str, str, str]]:
+def blocks(page):
     """Return language, file and text of the code blocks of a page."""
     return BLOCK.findall(page.read_text(encoding="utf-8"))
 
 
-def run_line(line: str, directory: Path, gates: list[str] = FEW, status: int = 0) -> str:
+def run_line(line, directory, gates=FEW, status=0):
     """Run a line of a shell as a user in a directory does and return what it prints."""
     program, *words = shlex.split(line, comments=True)
     if program == "dda-validate":
@@ -66,14 +65,14 @@ def run_line(line: str, directory: Path, gates: list[str] = FEW, status: int = 0
     return done.stdout
 
 
-def missing_lines(shown: str, printed: str) -> list[str]:
+def missing_lines(shown, printed):
     """Return the lines of a page that are no part of a line that was printed, spaces aside."""
     plain = [" ".join(line.split()) for line in printed.splitlines()]
     return [line for line in shown.splitlines() if not any(" ".join(line.split()) in text for text in plain)]
 
 
 @pytest.mark.parametrize("page", [*PAGES, *(pytest.param(page, marks=pytest.mark.long) for page in LONG)])
-def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_code_blocks_run(page, tmp_path, finished_cases, monkeypatch):
     for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
         beside(finished_cases, tmp_path / name)
     if page == "judge.md" and not (shutil.which("g++") and shutil.which("gfortran")):
@@ -83,7 +82,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(validation.studies, "__path__", [*validation.studies.__path__])
-    names: dict[str, object] = {}
+    names = {}
     assert blocks(DOCS / page)
     printed = ""
     for language, file, text in blocks(DOCS / page):
@@ -102,9 +101,7 @@ def test_code_blocks_run(page: str, tmp_path: Path, finished_cases: Path, monkey
 
 @pytest.mark.long
 @pytest.mark.parametrize(("page", "outputs"), [("choose.md", 7), ("tutorial.md", 4)])
-def test_commands_print_what_the_page_shows(
-    page: str, outputs: int, tmp_path: Path, finished_cases: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_commands_print_what_the_page_shows(page, outputs, tmp_path, finished_cases, monkeypatch):
     write_my_solver(tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -130,7 +127,7 @@ def test_commands_print_what_the_page_shows(
     assert checked == outputs
 
 
-def test_the_example_of_readme_prints_what_its_comments_say(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_example_of_readme_prints_what_its_comments_say(capsys):
     (text,) = [text for language, _, text in blocks(ROOT / "README.md") if language == "python"]
     exec(compile(text, "README.md", "exec"), {})
     form, mesh, pressure = map(float, capsys.readouterr().out.split())
@@ -138,13 +135,13 @@ def test_the_example_of_readme_prints_what_its_comments_say(capsys: pytest.Captu
 
 
 @pytest.mark.parametrize("path", sorted((DOCS / "examples/numbers").glob("*.py")), ids=lambda path: path.stem)
-def test_numbers_of_pages_are_those_of_their_scripts(path: Path) -> None:
+def test_numbers_of_pages_are_those_of_their_scripts(path):
     runpy.run_path(str(path))
     assert f"(examples/numbers/{path.name})" in page_text(f"{path.stem}.md")
 
 
 @pytest.mark.parametrize("page", ["loads.md", "plane.md", "subblocks.md"])
-def test_tables_of_scenes_load(page: str, tmp_path: Path) -> None:
+def test_tables_of_scenes_load(page, tmp_path):
     (tmp_path / "record.csv").write_text("time,x\n0,0\n1,0.001\n")
     for text in [text for language, _, text in blocks(DOCS / page) if language == "toml"]:
         data = {} if "[plane]" in text else tomllib.loads(SCENE)
@@ -161,7 +158,7 @@ def test_tables_of_scenes_load(page: str, tmp_path: Path) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
-def test_notebooks_print_what_is_committed(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_notebooks_print_what_is_committed(path, monkeypatch):
     notebooks = script("notebooks", monkeypatch)
     monkeypatch.setattr(sys, "path", list(sys.path))
     committed = json.loads(path.read_text(encoding="utf-8"))
@@ -174,13 +171,13 @@ def test_notebooks_print_what_is_committed(path: Path, monkeypatch: pytest.Monke
     assert kinds[0] == kinds[1]
 
 
-def texts(drawing: Path) -> list[str]:
+def texts(drawing):
     """Return the words and numbers of a drawing."""
     return re.findall(r"<text[^>]*>([^<]+)</text>", drawing.read_text(encoding="utf-8"))
 
 
 @pytest.mark.long
-def test_drawings_are_those_that_the_solvers_give(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_drawings_are_those_that_the_solvers_give(tmp_path, monkeypatch):
     figures = script("figures", monkeypatch)
     figures.write(list(figures.FIGURES), tmp_path)
     committed = {path.name: texts(path) for path in (DOCS / "figures").glob("*.svg")}
@@ -189,12 +186,12 @@ def test_drawings_are_those_that_the_solvers_give(tmp_path: Path, monkeypatch: p
         assert f"(figures/{name}.svg)" in (DOCS / f"{name}.md").read_text(encoding="utf-8")
 
 
-def page_text(name: str) -> str:
+def page_text(name):
     """Return a page of the documentation."""
     return (DOCS / name).read_text(encoding="utf-8")
 
 
-def test_citations_lead_to_an_entry_of_the_bibliography() -> None:
+def test_citations_lead_to_an_entry_of_the_bibliography():
     anchors = re.findall(r'<a id="(\w+)">', (DOCS / "references.md").read_text(encoding="utf-8"))
     assert anchors == re.findall(r"^@\w+\{(\w+),$", BIBLIOGRAPHY.read_text(encoding="utf-8"), re.M)
     for page in DOCS.glob("*.md"):
@@ -205,7 +202,7 @@ def test_citations_lead_to_an_entry_of_the_bibliography() -> None:
     assert (DOCS / "paper/paper.bib").read_bytes() == BIBLIOGRAPHY.read_bytes()
 
 
-def test_the_numbers_of_the_paper_are_those_of_the_pages_that_it_names() -> None:
+def test_the_numbers_of_the_paper_are_those_of_the_pages_that_it_names():
     paper = " ".join((DOCS / "paper/paper.md").read_text(encoding="utf-8").split())
     verdicts = re.findall(r"^## C\d+: (confirmed(?: under a condition)?|refuted)", page_text("claims.md"), re.M)
     counts = [verdicts.count(word) for word in ("confirmed", "confirmed under a condition", "refuted")]
@@ -223,13 +220,13 @@ def test_the_numbers_of_the_paper_are_those_of_the_pages_that_it_names() -> None
     assert differences in paper and differences in " ".join(page_text("exact.md").split())
 
 
-def test_the_page_of_references_is_that_of_the_bibliography(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_of_references_is_that_of_the_bibliography(monkeypatch):
     pytest.importorskip("pybtex", reason="the page of references is NOT RUN: needs the extra docs")
     references = script("references", monkeypatch)
     assert references.PAGE.read_text(encoding="utf-8") == references.page()
 
 
-def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch):
     """The values that it keeps are those of all gates that decide, and lie within their bands."""
     verification = script("verification", monkeypatch)
     kept = verification.read()
@@ -249,9 +246,7 @@ def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch: pytest.M
 @pytest.mark.parametrize(
     "name", ["arch", *(pytest.param(n, marks=pytest.mark.long) for n in ("push each", "spins", "wedge"))]
 )
-def test_what_is_verified_today_is_what_the_page_keeps(
-    name: str, monkeypatch: pytest.MonkeyPatch, finished_cases: Path
-) -> None:
+def test_what_is_verified_today_is_what_the_page_keeps(name, monkeypatch, finished_cases):
     shown = phenomenon(name)
     verdicts, _ = verify(shown, Results(finished_cases))
     fresh = standing(shown, [verdict.record(shown.study) for verdict in verdicts])
@@ -266,7 +261,7 @@ def test_what_is_verified_today_is_what_the_page_keeps(
 # ---- docstrings -----------------------------------------------------------------------------------------------------
 
 
-def test_every_public_name_has_a_docstring() -> None:
+def test_every_public_name_has_a_docstring():
     for package in map(importlib.import_module, ("dda", "fem_reference", "validation")):
         for name in package.__all__:
             value = getattr(package, name)
@@ -283,7 +278,7 @@ EXAMPLES = [
 
 
 @pytest.mark.parametrize("path", EXAMPLES)
-def test_examples_of_docstrings_print_what_they_say(path: Path) -> None:
+def test_examples_of_docstrings_print_what_they_say(path):
     module = importlib.import_module(".".join(path.relative_to(ROOT).with_suffix("").parts))
     result = doctest.testmod(module)
     assert result.attempted > 0 and result.failed == 0

@@ -1,7 +1,5 @@
 """Who names whom: concrete solvers in the rooms that should not know them, private functions in tests."""
 
-from __future__ import annotations
-
 import ast
 import re
 from pathlib import Path
@@ -20,18 +18,16 @@ NAMED = {
     "engine/case.py": {"fem"},  # the section of a scene
     "advice/spectra.py": {"dda", "fem", "bar"},
     "advice/advice.py": {"dda", "fem", "continuum"},
-    "diagnosis/judgement.py": {"dda", "fem", "bar", "continuum"},
-    "diagnosis/other_solvers.py": {"fem", "continuum"},
-    "diagnosis/slopes.py": {"dda"},
+    "diagnosis/other_solvers.py": {"dda", "fem", "bar", "continuum"},
 }
 
 
-def strings(tree: ast.AST) -> set[str]:
+def strings(tree):
     """Return the constants of a module that are strings."""
     return {node.value for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)}
 
 
-def test_solvers_are_named_where_they_are_declared_drawn_or_told() -> None:
+def test_solvers_are_named_where_they_are_declared_drawn_or_told():
     quoted = re.compile("|".join(f"[\"']{re.escape(name)}[\"']" for name in BUILT_IN))
     for path in (ROOT / "validation").rglob("*.py"):
         module = path.relative_to(ROOT / "validation").as_posix()
@@ -48,7 +44,7 @@ ASKS_FOR_THE_KIND = re.compile(
 )
 
 
-def test_no_room_asks_for_the_kind_of_a_scene() -> None:
+def test_no_room_asks_for_the_kind_of_a_scene():
     asking = set()
     for path in (ROOT / "validation").rglob("*.py"):
         module = path.relative_to(ROOT / "validation").as_posix()
@@ -60,7 +56,7 @@ def test_no_room_asks_for_the_kind_of_a_scene() -> None:
 # ---- seams ----------------------------------------------------------------------------------------------------------
 
 
-def private_targets(text: str) -> list[str]:
+def private_targets(text):
     """Return the private names that a test patches by a string."""
     if "setattr" not in text or not re.search(r"""["']([\w.]*\.)?_\w*["']""", text):
         return []
@@ -71,7 +67,7 @@ def private_targets(text: str) -> list[str]:
     return [name for name, last in lasts if last.startswith("_") and not last.endswith("__")]
 
 
-def test_tests_patch_private_functions_by_seams_only() -> None:
+def test_tests_patch_private_functions_by_seams_only():
     for path in (ROOT / "tests").rglob("*.py"):
         assert not private_targets(path.read_text(encoding="utf-8")), path
     assert private_targets('monkeypatch.setattr("a.b._c", 1); patch.setattr(module, module._d.__name__, 2)')

@@ -4,8 +4,6 @@ import subprocess
 import sys
 import tarfile
 import zipfile
-from pathlib import Path
-from types import ModuleType
 
 import pytest
 from conftest import script
@@ -14,11 +12,11 @@ from conftest import script
 
 
 @pytest.fixture
-def portable(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+def portable(monkeypatch):
     return script("portable", monkeypatch)
 
 
-def test_the_lowest_versions_are_those_that_are_declared(portable: ModuleType) -> None:
+def test_the_lowest_versions_are_those_that_are_declared(portable):
     lowest, newest = portable.requirements(lowest=True), portable.requirements(lowest=False)
     assert len(lowest) == len(newest) > 12
     assert all("==" in text and ">=" not in text for text in lowest), "a bound that the lowest round cannot read"
@@ -26,15 +24,13 @@ def test_the_lowest_versions_are_those_that_are_declared(portable: ModuleType) -
 
 
 @pytest.mark.long
-def test_the_rounds_reach_every_kernel_version_and_the_wheel(portable: ModuleType, tmp_path: Path) -> None:
+def test_the_rounds_reach_every_kernel_version_and_the_wheel(portable, tmp_path):
     names = [one.name for one in (*portable.versions(False, tmp_path), *portable.wheel(False, tmp_path))]
     assert names[0].startswith("lowest versions") and names[1].startswith("newest versions") and "wheel" in names[-1]
     assert sys.version_info[:2] in portable.pythons()
 
 
-def test_a_red_round_is_named_logged_and_a_status(
-    portable: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_red_round_is_named_logged_and_a_status(portable, tmp_path, monkeypatch, capsys):
     good = portable.Round("good", [[sys.executable, "-c", "print('fine')"]])
     bad = portable.Round("bad", [[sys.executable, "-c", "print('ERROR why'); raise SystemExit(3)"], ["never"]])
     monkeypatch.setattr(portable, "kernels", lambda short: [good, portable.Round("same", [])])
@@ -52,7 +48,7 @@ def test_a_red_round_is_named_logged_and_a_status(
     assert "ERROR why" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
 
 
-def commit(repository: Path) -> None:
+def commit(repository):
     git = ["git", "-c", "user.name=x", "-c", "user.email=x@example.org"]
     for words in (["init", "--quiet"], ["add", "--all"], ["commit", "--quiet", "--message", "x"]):
         subprocess.run([*git, *words], cwd=repository, check=True)
@@ -62,11 +58,11 @@ def commit(repository: Path) -> None:
 
 
 @pytest.fixture
-def dist(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+def dist(monkeypatch):
     return script("dist", monkeypatch)
 
 
-def test_links_of_a_page_become_addresses_of_a_version(dist: ModuleType) -> None:
+def test_links_of_a_page_become_addresses_of_a_version(dist):
     page = "![a](docs/a.png) [b](docs/b.md#part) [c](https://example.org/) [d](#here)"
     assert dist.absolute(page, "https://example.org/r/", "1.2.3") == (
         "![a](https://example.org/r/raw/v1.2.3/docs/a.png) [b](https://example.org/r/blob/v1.2.3/docs/b.md#part) "
@@ -74,9 +70,7 @@ def test_links_of_a_page_become_addresses_of_a_version(dist: ModuleType) -> None
     )
 
 
-def test_a_release_with_placeholders_or_without_its_tag_is_refused(
-    dist: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_release_with_placeholders_or_without_its_tag_is_refused(dist, tmp_path, monkeypatch, capsys):
     assert dist.is_placeholder("https://x.invalid/docs") and not dist.is_placeholder("https://example.org/invalid")
     urls = '[project.urls]\nRepository = "https://x.invalid"\nIssues = "https://example.org"\n'
     (tmp_path / "pyproject.toml").write_text(f'[project]\nname = "x"\nversion = "3.2.1"\n{urls}')
@@ -93,7 +87,7 @@ def test_a_release_with_placeholders_or_without_its_tag_is_refused(
     assert dist.release_problems("3.2.1", []) == []
 
 
-def test_archives_that_lack_something_are_told(dist: ModuleType, tmp_path: Path) -> None:
+def test_archives_that_lack_something_are_told(dist, tmp_path):
     (tmp_path / "file").write_text("x")
     with tarfile.open(tmp_path / "x.tar.gz", "w:gz") as archive:
         for name in dist.REQUIRED[1:]:

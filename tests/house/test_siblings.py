@@ -1,12 +1,9 @@
 """A folder of the user's with the name of one of our packages is named, in one sentence, by whatever comes first."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
 
 import pytest
 
@@ -36,11 +33,11 @@ print(shadowed())
 """
 
 
-def test_our_own_packages_are_not_in_the_way() -> None:
+def test_our_own_packages_are_not_in_the_way():
     assert shadowed() is None
 
 
-def test_an_install_holds_every_module_of_the_folder_under_its_second_name() -> None:
+def test_an_install_holds_every_module_of_the_folder_under_its_second_name():
     setuptools = tomllib.loads((HOME / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["setuptools"]
     names = {path.stem for path in ENTRY.glob("*.py")} - {"__init__"}
     assert HOME / setuptools["package-dir"]["dda_validation"] == ENTRY
@@ -48,7 +45,7 @@ def test_an_install_holds_every_module_of_the_folder_under_its_second_name() -> 
 
 
 @pytest.fixture
-def installed(tmp_path: Path) -> Path:
+def installed(tmp_path):
     """Return a directory that holds the folder under its second name, as an install does."""
     (tmp_path / "installed").mkdir()
     (tmp_path / "installed/dda_validation").symlink_to(ENTRY, target_is_directory=True)
@@ -56,20 +53,20 @@ def installed(tmp_path: Path) -> Path:
 
 
 @pytest.fixture
-def place(tmp_path: Path) -> Path:
+def place(tmp_path):
     """Return a directory of the user's."""
     (tmp_path / "place").mkdir()
     return tmp_path / "place"
 
 
-def add_package(place: Path, name: str) -> Path:
+def add_package(place, name):
     """Add a package to a directory and return its folder."""
     (place / name).mkdir()
     (place / name / "__init__.py").touch()
     return place / name
 
 
-def start(words: list[str], place: Path, *path: Path) -> subprocess.CompletedProcess[str]:
+def start(words, place, *path):
     """Start Python in a directory, where the packages of a path come before ours."""
     places = [*map(str, path), str(HOME), os.environ.get("PYTHONPATH", "")]
     return subprocess.run(
@@ -83,7 +80,7 @@ def start(words: list[str], place: Path, *path: Path) -> subprocess.CompletedPro
 
 
 @pytest.mark.parametrize("name", STARTS)
-def test_the_folder_is_named_and_nothing_runs(name: str, place: Path, installed: Path) -> None:
+def test_the_folder_is_named_and_nothing_runs(name, place, installed):
     words, status, package = STARTS[name]
     folder = add_package(place, package)
     done = start(words, place, place, installed)
@@ -93,21 +90,21 @@ def test_the_folder_is_named_and_nothing_runs(name: str, place: Path, installed:
     assert "Traceback" not in output
 
 
-def test_the_first_name_from_python_finds_out(place: Path) -> None:
+def test_the_first_name_from_python_finds_out(place):
     folder = add_package(place, "fem_reference")
     done = start(["-c", "import validation\nfrom validation import solve"], place, place)
     assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
 
 
 @pytest.mark.parametrize("package", PACKAGES[:1])
-def test_a_folder_without_code_hides_an_editable_install(package: str, place: Path, installed: Path) -> None:
+def test_a_folder_without_code_hides_an_editable_install(package, place, installed):
     (place / package).mkdir()
     code = EDITABLE.format(home=str(HOME), place=str(place), entry=str(installed))
     done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, timeout=120)
     assert done.stdout.startswith(f"{place / package} is in the way of the package {package}"), done.stderr
 
 
-def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place: Path, installed: Path) -> None:
+def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place, installed):
     add_package(place, "validation").joinpath("theirs.py").write_text("VALUE = 3\n")
     place.joinpath("test_theirs.py").write_text(
         "from validation.theirs import VALUE\n\ndef test_it():\n    assert VALUE == 3\n"
@@ -117,7 +114,7 @@ def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place: Pat
 
 
 @pytest.mark.long
-def test_the_process_of_a_users_solver_takes_our_package_and_not_the_folder_beside_it(place: Path) -> None:
+def test_the_process_of_a_users_solver_takes_our_package_and_not_the_folder_beside_it(place):
     add_package(place, "validation")
     place.joinpath("my_flat_solver.py").write_text(SOLVER)
     code = "from validation.__main__ import main\nmain()"  # the command's own script has no directory on the path

@@ -5,8 +5,6 @@ import re
 import subprocess
 import sys
 import tomllib
-from pathlib import Path
-from types import ModuleType
 
 import pytest
 from oracles.pages import ROOT
@@ -17,13 +15,13 @@ REQUEST = re.compile(r"""<(?:script|link|img|iframe)[^>]*(?:src|href)=["']?(http
 MADE = ("changelog.md", "notebooks/choose-dt.md", "notebooks/judge-my-code.md")
 
 
-def test_the_navigation_has_every_page_once() -> None:
+def test_the_navigation_has_every_page_once():
     listed = re.findall(r"[ :](\S+\.md)$", (ROOT / "mkdocs.yml").read_text(encoding="utf-8"), re.M)
     assert sorted(listed) == sorted({path.name for path in DOCS.glob("*.md")} | set(MADE[1:]))
 
 
 @pytest.fixture(scope="module")
-def builder() -> ModuleType:
+def builder():
     """Return the module that builds the site."""
     pytest.importorskip("zensical", reason="the site is NOT RUN: needs the extra docs")
     spec = importlib.util.spec_from_file_location("site_pages", ROOT / ".ci/site_pages.py")
@@ -34,7 +32,7 @@ def builder() -> ModuleType:
 
 
 @pytest.fixture(scope="module")
-def site(builder: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def site(builder, tmp_path_factory):
     """Return the built site."""
     out = tmp_path_factory.mktemp("site") / "site"
     done = subprocess.run([sys.executable, builder.__file__, "--out", out], capture_output=True, text=True)
@@ -44,7 +42,7 @@ def site(builder: ModuleType, tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.mark.long
 @pytest.mark.parametrize("link", ["no-page.md", "theory.md#no-place"])
-def test_a_link_that_leads_nowhere_fails_the_build(builder: ModuleType, tmp_path: Path, link: str) -> None:
+def test_a_link_that_leads_nowhere_fails_the_build(builder, tmp_path, link):
     docs = tmp_path / "docs"
     docs.mkdir()
     (docs / "theory.md").write_text("# Theory\n", encoding="utf-8")
@@ -56,16 +54,14 @@ def test_a_link_that_leads_nowhere_fails_the_build(builder: ModuleType, tmp_path
 
 
 @pytest.mark.parametrize(("address", "run"), [("https://github.com/a/b/", True), ("https://b.invalid", False)])
-def test_a_notebook_leads_to_a_running_one_once_there_is_a_public_address(
-    builder: ModuleType, address: str, run: bool
-) -> None:
+def test_a_notebook_leads_to_a_running_one_once_there_is_a_public_address(builder, address, run):
     page = builder.notebook_page({"cells": [{"cell_type": "markdown", "source": ["# Top"]}]}, "n.ipynb", address)
     assert (f"/v2/gh/a/b/v{VERSION}?labpath=docs/notebooks/n.ipynb" in page) is run
     assert "[n.ipynb](n.ipynb)" in page and "dda-validation[notebooks]" in page
 
 
 @pytest.mark.long
-def test_the_site_has_every_page_and_asks_no_network(site: Path) -> None:
+def test_the_site_has_every_page_and_asks_no_network(site):
     pages = {path.relative_to(site).with_suffix("").as_posix(): path for path in site.rglob("*.html")}
     assert {path.stem for path in DOCS.glob("*.md")} <= set(pages)
     made = {"changelog", "notebooks/choose-dt", "notebooks/judge-my-code"}
@@ -78,12 +74,12 @@ def test_the_site_has_every_page_and_asks_no_network(site: Path) -> None:
 
 
 @pytest.mark.long
-def test_the_site_says_its_version_on_every_page(site: Path) -> None:
+def test_the_site_says_its_version_on_every_page(site):
     for name in ("theory", "notebooks/choose-dt", "reference/dda"):
         assert f"dda-validation version {VERSION}" in (site / f"{name}.html").read_text(encoding="utf-8")
 
 
-def test_a_request_is_seen() -> None:
+def test_a_request_is_seen():
     for tag in ('<script src="https://a/b.js">', "<link rel=x href='//fonts/x'>", "<img src=http://a/b>"):
         assert REQUEST.search(tag)
     assert not REQUEST.search('<a href="https://example.org">') and not REQUEST.search('<img src="figure-3.png">')

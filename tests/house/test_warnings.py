@@ -10,21 +10,21 @@ PACKAGES = sorted(path.parent.name for path in ROOT.glob("*/__init__.py"))
 OWN_TESTS = ["tests.house.test_warnings", "test_warnings", "conftest", "faults.fault", "oracles.elements"]
 
 
-def warn(module: str, kind: type[Warning]) -> None:
+def warn(module, kind):
     """Warn as Python does on behalf of a module."""
     warnings.warn_explicit("old name", kind, f"{module}.py", 1, module=module)
 
 
 @pytest.mark.parametrize("kind", [DeprecationWarning, RuntimeWarning, UserWarning])
 @pytest.mark.parametrize("module", [*PACKAGES, *(f"{name}.some.module" for name in PACKAGES), "tests.x", *OWN_TESTS])
-def test_a_warning_of_our_own_is_an_error(module: str, kind: type[Warning]) -> None:
+def test_a_warning_of_our_own_is_an_error(module, kind):
     with pytest.raises(kind, match="old name"):
         warn(module, kind)
 
 
 @pytest.mark.filterwarnings("ignore:old name:UserWarning")  # it would be in every summary
 @pytest.mark.parametrize("module", ["matplotlib._mathtext", "scipy.sparse", "ddatools", "validation_of_others"])
-def test_a_warning_between_dependencies_is_none(module: str) -> None:
+def test_a_warning_between_dependencies_is_none(module):
     with warnings.catch_warnings(record=True) as seen:
         warn(module, DeprecationWarning)
     assert len(seen) == 1

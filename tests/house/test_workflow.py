@@ -10,7 +10,6 @@ import sys
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import Any
 
 import pytest
 import typer
@@ -45,12 +44,12 @@ SOLVERS = [*(pytest.param(*case, marks=pytest.mark.long) for case in (("right", 
 
 
 @functools.cache
-def commands() -> dict[str, Any]:
+def commands():
     """Return the commands of `dda-validate` by name."""
-    return typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    return typer.main.get_command(app).commands
 
 
-def steps_of(workflow: str, job: str) -> list[dict[str, Any]]:
+def steps_of(workflow, job):
     """Return the steps of a job."""
     return yaml.safe_load((WORKFLOWS / workflow).read_text(encoding="utf-8"))["jobs"][job]["steps"]
 
@@ -58,7 +57,7 @@ def steps_of(workflow: str, job: str) -> list[dict[str, Any]]:
 # ---- workflows and hooks --------------------------------------------------------------------------------------------
 
 
-def test_the_workflow_calls_the_script_of_continuous_integration_on_every_python() -> None:
+def test_the_workflow_calls_the_script_of_continuous_integration_on_every_python():
     steps = steps_of("ci.yml", "suite")
     used = [step["uses"].partition("@")[0] for step in steps if "uses" in step]
     assert used == ["actions/checkout", "actions/setup-python"]
@@ -69,7 +68,7 @@ def test_the_workflow_calls_the_script_of_continuous_integration_on_every_python
     assert f">={job['strategy']['matrix']['python'][0]}" == PROJECT["project"]["requires-python"]
 
 
-def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before() -> None:
+def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before():
     runs = [step["run"] for step in steps_of("release.yml", "release") if "run" in step]
     order = [next(i for i, run in enumerate(runs) if word in run) for word in ("--release", ".ci/run", "gh release")]
     assert order == sorted(order)
@@ -77,7 +76,7 @@ def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before()
     assert triggers == {"push": {"tags": ["v*"]}}
 
 
-def test_hooks_are_local_and_run_the_tools_of_the_environment() -> None:
+def test_hooks_are_local_and_run_the_tools_of_the_environment():
     (repository,) = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))["repos"]
     assert repository["repo"] == "local"
     tools = ("ruff check", "ruff format", "lint-imports", "mypy")
@@ -85,12 +84,12 @@ def test_hooks_are_local_and_run_the_tools_of_the_environment() -> None:
     assert {hook["language"] for hook in repository["hooks"]} == {"system"}
 
 
-def options_of(command: str) -> set[str]:
+def options_of(command):
     """Return the options of a command of `dda-validate`."""
     return {option for parameter in commands()[command].params for option in parameter.opts}
 
 
-def test_hooks_of_other_repositories_call_commands_that_exist() -> None:
+def test_hooks_of_other_repositories_call_commands_that_exist():
     hooks = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
     for hook in hooks:
         command, *words = re.findall(r"[\w-]+", hook["entry"].partition("dda-validate ")[2])
@@ -99,7 +98,7 @@ def test_hooks_of_other_repositories_call_commands_that_exist() -> None:
 
 
 @pytest.mark.parametrize(("solver", "status"), SOLVERS)
-def test_the_action_s_last_step_judges_a_solver(tmp_path: Path, solver: str, status: int) -> None:
+def test_the_action_s_last_step_judges_a_solver(tmp_path, solver, status):
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
     step = action["runs"]["steps"][-1]
     inputs = {"solver": "mine:solve", "problems": "sliding", "study": "", "out": ""}
@@ -123,7 +122,7 @@ def test_the_action_s_last_step_judges_a_solver(tmp_path: Path, solver: str, sta
 
 
 @pytest.mark.parametrize("page", [*PAGES, ".ci/run", *(f".github/workflows/{p.name}" for p in WORKFLOWS.iterdir())])
-def test_every_make_target_that_is_named_exists(page: str) -> None:
+def test_every_make_target_that_is_named_exists(page):
     named = re.findall(r"(?:^|`|run: )make ([a-z-]+)", (ROOT / page).read_text(encoding="utf-8"), re.M)
     assert set(named) <= set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
     if page == "CONTRIBUTING.md":
@@ -131,7 +130,7 @@ def test_every_make_target_that_is_named_exists(page: str) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_every_path_that_a_page_names_exists(page: str) -> None:
+def test_every_path_that_a_page_names_exists(page):
     text = (ROOT / page).read_text(encoding="utf-8")
     rooms = r"(?:dda|fem_reference|validation|tests|docs|reports|\.ci|\.github)"
     paths = set(re.findall(rf"`({rooms}/[\w./-]*)`", text)) | set(re.findall(r"\b(?:tests|reports)/[\w/]+\.py", text))
@@ -141,7 +140,7 @@ def test_every_path_that_a_page_names_exists(page: str) -> None:
 
 
 @pytest.mark.parametrize("page", PAGES)
-def test_commands_and_options_of_a_page_exist(page: str) -> None:
+def test_commands_and_options_of_a_page_exist(page):
     blocks = BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))
     lines = [line for language, _, text in blocks if language in ("sh", "text", "yaml") for line in text.splitlines()]
     for line in lines:
@@ -157,7 +156,7 @@ def test_commands_and_options_of_a_page_exist(page: str) -> None:
                 assert {word for word in words if word.startswith("--")} <= known, line
 
 
-def test_readme_names_every_command() -> None:
+def test_readme_names_every_command():
     shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
     shown = re.findall(r"^dda-validate ([a-z-]+)", shell[1], re.M)
     others = README.partition("The other commands: ")[2].partition("\n\n")[0]
@@ -167,14 +166,14 @@ def test_readme_names_every_command() -> None:
 # ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------
 
 
-def test_every_row_of_where_a_change_goes_names_a_thing_in_its_file() -> None:
+def test_every_row_of_where_a_change_goes_names_a_thing_in_its_file():
     rows = re.findall(r"^\| (an? [\w `]+|.*?) \| `(\S+)` \| `(\w+)` \|", GUIDE, re.M)
     assert len(rows) >= 14
     for change, path, name in rows:
         assert re.search(rf"\b{name}\b", (ROOT / path).read_text(encoding="utf-8")), f"{change}: {path}: {name}"
 
 
-def test_the_map_has_every_room_in_the_order_of_its_contract() -> None:
+def test_the_map_has_every_room_in_the_order_of_its_contract():
     contracts = PROJECT["tool"]["importlinter"]["contracts"]
     layers = {contract["name"]: contract["layers"] for contract in contracts if contract["type"] == "layers"}
     rooms = [layer.removeprefix("validation.") for layer in layers["Rooms of validation, from the top floor down"][1:]]
@@ -186,7 +185,7 @@ def test_the_map_has_every_room_in_the_order_of_its_contract() -> None:
         assert [f"{package}.{name}" for name in re.findall(r"`(\w+)`", row)[1:]] == floors
 
 
-def test_versions_of_projects_citation_and_changelog_agree() -> None:
+def test_versions_of_projects_citation_and_changelog_agree():
     changelog = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     releases = re.findall(r"^## (?!Unreleased$)(.+)$", changelog, re.M)
     assert all(re.fullmatch(r"\d+\.\d+\.\d+ - \d{4}-\d{2}-\d{2}", heading) for heading in releases)
@@ -198,7 +197,7 @@ def test_versions_of_projects_citation_and_changelog_agree() -> None:
     assert str(citation["date-released"]) == date
 
 
-def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> None:
+def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel():
     declared = PROJECT["tool"]["setuptools"]["package-data"]
     count = 0
     for name in ("dda", "fem_reference", "validation"):
@@ -216,7 +215,7 @@ def test_each_data_file_of_a_package_is_declared_and_so_part_of_a_wheel() -> Non
     assert count > 100
 
 
-def test_actions_of_others_are_pinned_by_commit_and_write_nothing_by_default() -> None:
+def test_actions_of_others_are_pinned_by_commit_and_write_nothing_by_default():
     for path in (ROOT / ".github/workflows").glob("*.yml"):
         text = path.read_text(encoding="utf-8")
         pinned = re.findall(r"uses: \S+@(\S+)", text)

@@ -2,7 +2,6 @@
 
 import cmath
 import math
-from pathlib import Path
 
 import pytest
 from conftest import typed
@@ -13,15 +12,15 @@ from validation.metrics.modes import first_axial, measured
 from validation.metrics.values import ALIAS
 from validation.report.chapters.text import cell, word_notes
 from validation.runs.modes import Mode
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver, solve
 
 
-def figure(step: float, gg: float = 1.0) -> Scene:
+def figure(step, gg=1.0):
     return load_scene("figures-3-4").with_values({"time.step": step, "time.gg": gg, "time.steps": 60})
 
 
-def seen(scene: Scene, solver: str) -> Measurable:
+def seen(scene, solver):
     prepared = get_solver(solver).prepare(scene)
     history = solve(scene, solver).history
     assert history is not None
@@ -29,7 +28,7 @@ def seen(scene: Scene, solver: str) -> Measurable:
 
 
 @pytest.mark.parametrize("gg", [1.0, 0.9])
-def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_not(gg: float) -> None:
+def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_not(gg):
     m = seen(figure(0.01, gg), "continuum")
     w, c = m.modes[0].frequency, -math.log(gg) / 0.01
     assert w * m.step > math.pi
@@ -40,13 +39,13 @@ def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_
     assert m.modes[0].alias(m.step) == pytest.approx(folded, rel=1e-12)
 
 
-def test_below_nyquist_and_under_a_scheme_no_frequency_is_an_alias() -> None:
+def test_below_nyquist_and_under_a_scheme_no_frequency_is_an_alias():
     fine = seen(figure(0.002), "continuum")
     assert first_axial(fine, "numerical_frequency") == pytest.approx(fine.modes[0].frequency, rel=1e-12)
     assert isinstance(first_axial(seen(figure(0.01), "bar"), "numerical_frequency"), float)
 
 
-def test_a_motion_that_does_not_swing_has_no_alias() -> None:
+def test_a_motion_that_does_not_swing_has_no_alias():
     step, w = 1.0, 4.0
     for half in (3.9, 2.5, 5.0):  # turns of 0.9 and 3.1 a step, below pi; overdamped
         root = cmath.sqrt(half**2 - w**2)
@@ -56,7 +55,7 @@ def test_a_motion_that_does_not_swing_has_no_alias() -> None:
     assert Mode(w, 1.0, (cmath.exp(root - 1), cmath.exp(-root - 1)), None, True).alias(step) is not None
 
 
-def test_damping_and_the_reports_tables_say_so(tmp_path: Path) -> None:
+def test_damping_and_the_reports_tables_say_so(tmp_path):
     assert damping(figure(0.01)).alias is None  # nothing of references was asked for
     shown = typed("advise", "damping", "figures-3-4", "--set", "time.step=0.01", cwd=tmp_path).stdout
     assert "alias: the continuum's first mode, 327.682 rad/s, lies beyond pi / dt = 314.159 rad/s" in shown

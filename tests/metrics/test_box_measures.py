@@ -1,9 +1,5 @@
 """What is measured on positions of boxes: a toy engine with known faults gives what its faults are worth."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pytest
 
@@ -12,10 +8,9 @@ from validation.models.plane.boxes import boxes_of
 from validation.models.plane.problems import box_problems
 from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
-from validation.scenes.scene import Scene
 
 
-def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag: float = 0.0) -> History:
+def flat_engine(scene, parts=1, bounce=None, drag=0.0):
     """Step one box that stays flat by symplectic Euler: velocities, impulses at the velocities, positions."""
     ground = boxes_of(scene)
     box = ground.boxes[0]
@@ -43,25 +38,25 @@ def flat_engine(scene: Scene, parts: int = 1, bounce: float | None = None, drag:
     return History(time, {"box.x": columns[0], "box.y": columns[1], "box.angle": np.zeros(len(time))})
 
 
-def numbers(name: str, history: History, **values: Any) -> dict[str, tuple[float | None, str]]:
+def numbers(name, history, **values):
     """Return the numbers of an answer to a problem's scene, and their words, by name."""
     problem = box_problems()[name]
     scene = problem.scene().with_values(values)
     return {one.quantity.name: (one.value, one.status) for one in measured(problem.quantities(scene), history)}
 
 
-def scene_of(name: str, **values: Any) -> Scene:
+def scene_of(name, **values):
     return box_problems()[name].scene().with_values(values)
 
 
 @pytest.mark.parametrize("friction", [19.0, 22.0])
-def test_a_box_on_a_slope_stands_or_slides(friction: float) -> None:
+def test_a_box_on_a_slope_stands_or_slides(friction):
     values = {"plane.contact.friction": friction, "time.steps": 50}
     history = flat_engine(scene_of("standing", **values), parts=20)
     assert {word for _, word in numbers("standing", history, **values).values()} == {"PASS"}
 
 
-def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails() -> None:
+def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails():
     history = flat_engine(scene_of("standing"))
     for speed, word in ((0.16, "PASS"), (0.17, "FAIL")):
         creeping = History(history.time, history.columns | {"box.x": 1e-3 * speed * history.time})
@@ -71,7 +66,7 @@ def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails() -> No
 
 
 @pytest.mark.parametrize(("bounce", "word"), [(0.5, "PASS"), (0.492, "PASS"), (0.488, "FAIL"), (0.512, "FAIL")])
-def test_the_restitution_is_measured_from_positions(bounce: float, word: str) -> None:
+def test_the_restitution_is_measured_from_positions(bounce, word):
     history = flat_engine(scene_of("restitution"), bounce=bounce)
     value, got = numbers("restitution", history)["restitution"]
     assert value == pytest.approx(bounce, rel=1e-9)
@@ -79,7 +74,7 @@ def test_the_restitution_is_measured_from_positions(bounce: float, word: str) ->
 
 
 @pytest.mark.parametrize(("parts", "step_share"), [(1, 1.0), (4, 0.25)])
-def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts: int, step_share: float) -> None:
+def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts, step_share):
     """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
     scene = scene_of("bouncing", **{"time.steps": 25})
     history = flat_engine(scene, parts)
@@ -93,7 +88,7 @@ def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts: int, step_shar
     assert excess == pytest.approx(ground.gravity * dt**2 / 8, rel=1e-6)
 
 
-def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
+def test_no_row_beside_an_impact_is_one_of_a_flight():
     """The impact of the exact motion may come anywhere between two rows; the energy of a flight never knows of it."""
     from validation.solvers.registry import solve
 
@@ -107,14 +102,14 @@ def test_no_row_beside_an_impact_is_one_of_a_flight() -> None:
 
 
 @pytest.mark.parametrize(("bounce", "gain", "word"), [(1.0, 0.0, "PASS"), (1.02, 0.0404, "FAIL")])
-def test_a_gain_of_energy_is_seen(bounce: float, gain: float, word: str) -> None:
+def test_a_gain_of_energy_is_seen(bounce, gain, word):
     values = {"time.steps": 80}  # one impact
     history = flat_engine(scene_of("bouncing", **values), parts=64, bounce=bounce)
     found = numbers("bouncing", history, **values)["largest gain of energy"]
     assert found == (pytest.approx(gain, abs=3e-3), word)
 
 
-def test_a_loss_of_energy_is_seen_and_is_no_gain() -> None:
+def test_a_loss_of_energy_is_seen_and_is_no_gain():
     values = {"time.steps": 600}
     history = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.97)
     found = numbers("bouncing", history, **values)
@@ -126,7 +121,7 @@ def test_a_loss_of_energy_is_seen_and_is_no_gain() -> None:
     assert word == "FAIL" and value == pytest.approx(0.0, abs=1e-3)
 
 
-def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing() -> None:
+def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing():
     values = {"time.steps": 100}
     history = flat_engine(scene_of("bouncing", **values), parts=16, drag=0.04)
     assert np.sum(measures.in_flight(history, boxes_of(scene_of("bouncing")))) > 80
@@ -135,7 +130,7 @@ def test_a_program_whose_air_slows_the_fall_still_flies_and_gains_nothing() -> N
     assert found["largest gain of energy"] == (0.0, "PASS")
 
 
-def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
+def test_what_cannot_be_measured_fails_unless_it_is_optional():
     history = flat_engine(scene_of("impact"))
     standing = History(history.time, history.columns | {"box.y": np.full(len(history.time), 0.6)})
     found = numbers("impact", standing)
@@ -143,13 +138,13 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional() -> None:
     assert found["peak force as reported"] == (None, "not reported")
 
 
-def test_an_error_is_beside_the_part_of_the_band_on_its_side() -> None:
+def test_an_error_is_beside_the_part_of_the_band_on_its_side():
     one = JudgedNumber("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
     assert [MeasuredNumber(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
     assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
 
 
-def test_the_peak_between_rows() -> None:
+def test_the_peak_between_rows():
     x = np.linspace(0, 1, 12)
     assert measures.peak(3 - 5 * (x - 0.4321) ** 2) == pytest.approx(3, rel=1e-12)
     assert measures.peak(x) == 1.0

@@ -1,9 +1,6 @@
 """Metrics of a contact: closed forms on made records, identities on runs, and the horizon of two correct codes."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +19,6 @@ from validation.runs.modes import Switch
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 from validation.solvers import opened
 from validation.solvers.registry import get_solver
 
@@ -73,17 +69,17 @@ EXPECTED = {
 }
 
 
-def measured(record: ContactRecord | None) -> dict[str, Any]:
+def measured(record):
     return solo(Measurable(History(np.zeros(0), {}), STEP, contact=record), ("switches",))
 
 
-def test_each_metric_of_a_made_contact_is_its_closed_form() -> None:
+def test_each_metric_of_a_made_contact_is_its_closed_form():
     balanced = MADE.energies | {"springs": np.array([0.0, 12.0, 0.0, 0.0])}
     found = measured(replace(MADE, energies=balanced))
     assert {name: found[name] for name in EXPECTED} == pytest.approx(EXPECTED)
 
 
-def test_one_step_in_a_hundred_may_take_more_solves() -> None:
+def test_one_step_in_a_hundred_may_take_more_solves():
     solves = np.ones(1000)
     solves[:20] = 2.0
     solves[0] = 9.0
@@ -93,7 +89,7 @@ def test_one_step_in_a_hundred_may_take_more_solves() -> None:
     assert measured(replace(MADE, solves=solves))["contact.p99_solves"] == 1.0
 
 
-def test_slip_and_changes_of_state_are_counted() -> None:
+def test_slip_and_changes_of_state_are_counted():
     found = measured(replace(MADE, slip=np.array([0.0, 1e-3, 2e-3, 5e-3])))
     assert found["contact.slip"] == 5e-3
     assert found["contact.slip_rate"] == pytest.approx(3e-3 / STEP)  # of the last of four steps alone
@@ -104,7 +100,7 @@ def test_slip_and_changes_of_state_are_counted() -> None:
     assert measured(MADE)["contact.state_changes"] == "not reported"
 
 
-def test_what_a_slope_and_its_discount_give_by_hand() -> None:
+def test_what_a_slope_and_its_discount_give_by_hand():
     """10800 kg on 28.9 degrees: F = m g cos b, H = m g sin b; F^2 / 4p + H^2 / 4ps + F^2 h / 2Ea, with h = a."""
     scene = load_scene("slope-sliding").expand()[0].with_values({"contact.shear_stiffness": 4e8, "time.gg": 0.9})
     down, along = 10800 * 9.81 * np.cos(np.radians(28.9)), 10800 * 9.81 * np.sin(np.radians(28.9))
@@ -114,21 +110,21 @@ def test_what_a_slope_and_its_discount_give_by_hand() -> None:
     assert opened.impulse_of_momentum(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
 
 
-def test_corners_that_switch_together_open_once() -> None:
+def test_corners_that_switch_together_open_once():
     switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
     found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
     told = ("switches.count", "switches.first_opening", "switches.second_opening", "switches.second_closing")
     assert [found[name] for name in told] == [4.0, 0.5, 1.5, "undefined"]
 
 
-def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too() -> None:
+def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too():
     assert measured(replace(MADE, time=np.array([0.5, 3.5, 4.0, 4.5])))["contact.open_share"] == pytest.approx(1 / 3)
     kinetic, lost = MADE.energies["kinetic"] - ONES, MADE.energies | {"friction": ONES}
     assert measured(replace(MADE, energies=lost | {"kinetic": kinetic}))["energy.imbalance"] == pytest.approx(0.0)
     assert measured(replace(MADE, energies=lost))["energy.imbalance"] == pytest.approx(1 / 12)
 
 
-def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:
+def test_what_is_not_reported_or_has_no_meaning_says_so():
     assert {measured(None)[key] for key in EXPECTED} == {"not reported"}
     bare = replace(MADE, velocity=None, energies={}, solves=None, cuts=None)
     assert measured(bare)["contact.restitution"] == measured(bare)["energy.rise"] == "not reported"
@@ -137,7 +133,7 @@ def test_what_is_not_reported_or_has_no_meaning_says_so() -> None:
     assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == "undefined"
 
 
-def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it() -> None:
+def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it():
     gap = np.array([3.0, 1.0, -0.5, -0.2, 0.1, 0.4, 0.9, 1.0, 0.5, -0.3, 0.2, -0.1])
     (first, rebound), (_, other) = rebounds_of_steps(gap, 0.5)  # the second contact has no free step behind it
     assert (other.closing, other.opening, other.restitution) == (1.0, None, None)
@@ -148,7 +144,7 @@ def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it() -> 
 RIGID = {"block.young": 1e16, "block.velocity": -1.0, "load.pressure": 0.0, "contact.stiffness": 2e9}
 
 
-def impact(**values: Any) -> Scene:
+def impact(**values):
     """Return a rigid block of 10800 kg that comes down on 4e9 N/m with Omega = 2."""
     scene = load_scene("unlocked-constant").expand()[0].with_values(RIGID | {"time.steps": 40, **values})
     return scene.with_values({"time.step": 2 * (scene.block.mass / 4e9) ** 0.5})
@@ -156,7 +152,7 @@ def impact(**values: Any) -> Scene:
 
 @pytest.mark.parametrize(("scheme", "e"), [((0.5, 1.0), 1 / 3), ((0.25, 0.5), 1.0)])
 @pytest.mark.parametrize("gap", [0.0105, 0.013])
-def test_the_restitution_where_contact_lasts_two_steps(scheme: tuple[float, float], e: float, gap: float) -> None:
+def test_the_restitution_where_contact_lasts_two_steps(scheme, e, gap):
     scene = impact(**{"time.alpha": scheme[0], "time.delta": scheme[1], "contact.gap": gap})
     row, _ = execute(Case(scene, "dda"), "", "")
     assert row.metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)  # p over E is 2e-7
@@ -164,7 +160,7 @@ def test_the_restitution_where_contact_lasts_two_steps(scheme: tuple[float, floa
     assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
 
 
-def record_of(scene: Scene, solver: str = "dda") -> ContactRecord:
+def record_of(scene, solver="dda"):
     prepared = get_solver(solver).prepare(scene)
     prepared.run()
     return prepared.contact_record()
@@ -178,7 +174,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_impulse_and_energy_close_the_balances_of_dda(name: str) -> None:
+def test_impulse_and_energy_close_the_balances_of_dda(name):
     values = {"time.step": 4e-4, "time.steps": 100, "load.pressure": 3e6} | CASES[name]
     scene = load_scene("unlocked-constant").expand()[0].with_values(values)
     record, m, gg = record_of(scene), scene.block.mass, scene.time.discount
@@ -195,7 +191,7 @@ def test_impulse_and_energy_close_the_balances_of_dda(name: str) -> None:
     )
 
 
-def test_the_exact_motions_have_the_impulse_of_their_force() -> None:
+def test_the_exact_motions_have_the_impulse_of_their_force():
     scene = load_scene("unlocked").expand()[1].with_values({"time.step": 1e-4, "time.steps": 500})
     for solver in ("block-events", "bar-events"):
         record = record_of(scene, solver)
@@ -207,18 +203,18 @@ def test_the_exact_motions_have_the_impulse_of_their_force() -> None:
         assert record.rebounds[0].restitution
 
 
-def test_the_horizon_ends_where_switches_have_amplified_rounding() -> None:
+def test_the_horizon_ends_where_switches_have_amplified_rounding():
     """Average acceleration on a stiff contact is chaotic, constant acceleration is not."""
     stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400}
     scene = load_scene("unlocked-constant").expand()[0].with_values(stiff)
     rough = scene.with_values({"time.alpha": 0.25, "time.delta": 0.5})
     calm, wild = (execute(Case(s, "dda"), "", "")[0].metrics for s in (scene, rough))
     assert calm["horizon.time"] == pytest.approx(0.04)
-    assert 0.003 < wild["horizon.time"] < 0.035  # type: ignore[operator]
+    assert 0.003 < wild["horizon.time"] < 0.035
     assert "horizon.time" not in execute(Case(scene, "block-events"), "", "")[0].metrics
 
 
-def test_histories_are_gated_up_to_the_horizon(tmp_path: Any) -> None:
+def test_histories_are_gated_up_to_the_horizon(tmp_path):
     rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
             (("dda", 0.3), ("fem", 0.2), ("block-events", "not reported"))}  # fmt: skip
     finished = Finished(rows, Results(tmp_path))
@@ -230,7 +226,7 @@ def test_histories_are_gated_up_to_the_horizon(tmp_path: Any) -> None:
 
 
 @pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
-def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule: str) -> None:
+def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule):
     scene = impact(**{"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": rule, "contact.gap": 0.0117})
     metrics = execute(Case(scene, "dda"), "", "")[0].metrics
     e = {"newmark": 1.0, "implicit": 1 / 3, "energy-conserving": 1.0}[rule]

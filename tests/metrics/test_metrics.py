@@ -16,7 +16,7 @@ from validation.runs.history import History
 from validation.runs.modes import Mode
 
 
-def test_norms_neither_overflow_nor_vanish() -> None:
+def test_norms_neither_overflow_nor_vanish():
     x, y = np.array([3.0, 4.0]), np.array([0.0, 0.0])
     for scale in (1.0, 1e300, 1e-300):
         assert relative_l2(1.5 * x * scale, x * scale) == pytest.approx(0.5, rel=1e-15)
@@ -24,7 +24,7 @@ def test_norms_neither_overflow_nor_vanish() -> None:
     assert relative_l2(x, y) == relative_max(y, y) == "undefined"
 
 
-def test_settling_step_counts_from_one() -> None:
+def test_settling_step_counts_from_one():
     x = np.array([0.5, 1.2, 1.005, 0.98, 1.009, 1.0])
     assert settling_step(x, 1.0) == 5
     assert settling_step(x[:4], 1.0) == "undefined"
@@ -32,7 +32,7 @@ def test_settling_step_counts_from_one() -> None:
     assert settling_step(x, 0.0) == "undefined"
 
 
-def test_first_peak_is_the_top_of_the_first_excursion_beyond_static() -> None:
+def test_first_peak_is_the_top_of_the_first_excursion_beyond_static():
     x = -np.array([0.2, 0.9, 1.4, 1.6, 1.5, 1.7, 0.8, 1.9])
     assert first_peak(x, -1.0) == 5
     assert first_peak(x[:4], -1.0) is None
@@ -40,7 +40,7 @@ def test_first_peak_is_the_top_of_the_first_excursion_beyond_static() -> None:
 
 
 @pytest.mark.parametrize(("decay", "turn", "step"), [(0.02, 0.3, 1e-3), (0.1, 1.1, 0.5), (0.0, 0.7, 2.0)])
-def test_pencil_finds_the_poles_of_a_signal(decay: float, turn: float, step: float) -> None:
+def test_pencil_finds_the_poles_of_a_signal(decay, turn, step):
     n = np.arange(1, 120)
     strong = np.exp(-decay * n) * np.cos(turn * n)
     weak = 0.2 * np.exp(-0.04 * n) * np.sin(2.2 * n + 0.3)
@@ -51,13 +51,13 @@ def test_pencil_finds_the_poles_of_a_signal(decay: float, turn: float, step: flo
     assert found[1].amplitude == pytest.approx(0.2 * math.exp(-0.04), rel=1e-9)  # at the first sample, n = 1
 
 
-def test_pencil_of_nothing_is_nothing() -> None:
+def test_pencil_of_nothing_is_nothing():
     assert pencil.poles(np.zeros(50), 1.0) == []
     assert pencil.poles(0.5 ** np.arange(50), 1.0) == []
     assert pencil.poles(np.ones(3), 1.0) == []
 
 
-def test_a_swing_needs_twice_as_many_samples_as_powers() -> None:
+def test_a_swing_needs_twice_as_many_samples_as_powers():
     n = np.arange(40)
     signal = 2.0 + np.cos(0.3 * n)
     found = pencil.swing(signal[:16], 0.5)
@@ -65,7 +65,7 @@ def test_a_swing_needs_twice_as_many_samples_as_powers() -> None:
     assert pencil.swing(signal[:15], 0.5) == pencil.swing(np.zeros(40), 0.5) == pencil.Swing(None, None)
 
 
-def test_damping_of_an_operator_by_kind_of_roots() -> None:
+def test_damping_of_an_operator_by_kind_of_roots():
     xi, w = 0.2, 0.5
     root = np.exp((-xi + 1j * math.sqrt(1 - xi * xi)) * w)
     assert operator_damping((root, root.conjugate())) == pytest.approx(xi, rel=1e-14)
@@ -76,7 +76,7 @@ def test_damping_of_an_operator_by_kind_of_roots() -> None:
     assert operator_frequency((-0.5, 0.2), 1.0) == "undefined"
 
 
-def test_absent_and_undefined_are_different_things() -> None:
+def test_absent_and_undefined_are_different_things():
     flat = Measurable(History(np.arange(1.0, 9.0), {"displacement": np.zeros(8)}), 1.0, {"displacement": 0.0}, ())
     found = solo(flat)
     assert found["displacement.settling_step"] == found["displacement.peak"] == "undefined"
@@ -86,7 +86,7 @@ def test_absent_and_undefined_are_different_things() -> None:
     assert ratio("undefined", 1.0) == "undefined"
 
 
-def test_no_metric_is_ever_nan() -> None:
+def test_no_metric_is_ever_nan():
     broken = History(np.arange(1.0, 9.0), {"displacement": np.full(8, np.inf), "contact_pressure": np.full(8, -np.inf)})
     for static in (1.0, 0.0, math.inf):
         modes = (Mode(1.0, 1.0, (0.5 + 0.1j, 0.5 - 0.1j)),)
@@ -94,7 +94,7 @@ def test_no_metric_is_ever_nan() -> None:
         assert not [key for key, value in values.items() if isinstance(value, float) and not math.isfinite(value)]
 
 
-def test_the_worst_of_two_needs_no_further_column() -> None:
+def test_the_worst_of_two_needs_no_further_column():
     time = np.array([1.0, 2.0])
     exact = History(time, {"displacement": np.array([1.0, 2.0]), "contact_pressure": np.array([4.0, 8.0])})
     found = History(time, {"displacement": np.array([1.0, 2.5]), "contact_pressure": np.array([4.0, 4.0])})
@@ -103,7 +103,7 @@ def test_the_worst_of_two_needs_no_further_column() -> None:
 
 
 @pytest.mark.parametrize("steps", [300, 1500, 4000, 10_000])
-def test_a_long_history_is_measured_without_aliases(steps: int) -> None:
+def test_a_long_history_is_measured_without_aliases(steps):
     """A mode that turns by 0.66 rad a step: every tenth sample alone would show it as a slow one, badly damped."""
     frequency, damping, dt = 331.8, 7.5e-4, 0.002
     decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
@@ -112,7 +112,7 @@ def test_a_long_history_is_measured_without_aliases(steps: int) -> None:
     assert found.damping == pytest.approx(damping, rel=1e-6)
 
 
-def test_a_slow_history_is_measured_over_more_than_its_first_samples() -> None:
+def test_a_slow_history_is_measured_over_more_than_its_first_samples():
     """400 of 9000 samples hold a fifteenth of a period."""
     frequency, damping, dt = 100.0, 0.01, 1e-5
     decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
@@ -120,14 +120,14 @@ def test_a_slow_history_is_measured_over_more_than_its_first_samples() -> None:
     assert found.frequency == pytest.approx(frequency, rel=1e-6)
 
 
-def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read() -> None:
+def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read():
     """It turns by 2.9 rad a step, and ten of them look like a mode of 0.26 rad in ten steps."""
     n, frequency, dt = np.arange(6000), 200.0, 1e-4
     found = pencil.poles(np.cos(frequency * dt * n) + 0.5 * np.cos(2.9 * n), dt)
     assert [pole.frequency for pole in found] == pytest.approx([frequency], rel=1e-6)
 
 
-def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps() -> None:
+def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps():
     growth, n = 1 + 1e-6, np.arange(10_000)
     root = np.exp(0.5j)
     history = History(n + 1.0, {"displacement": 1 + 0.1 * growth**n * np.cos(0.5 * n)})
@@ -135,7 +135,7 @@ def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps() 
     assert solo(m, ("energy",))["energy.drift"] == pytest.approx(2 * 6000e-6, rel=1e-2)  # 6000 steps between the two
 
 
-def test_the_horizon_is_the_last_step_that_two_codes_agree_at() -> None:
+def test_the_horizon_is_the_last_step_that_two_codes_agree_at():
     time, x = np.arange(1.0, 6.0), np.array([1.0, -2.0, 2.0, 1.0, 0.0])
     apart = {0.0: 0, 3.0: 3, 5.0: 5}  # horizon to steps that agree
     for horizon, agreed in apart.items():

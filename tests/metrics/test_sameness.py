@@ -11,11 +11,11 @@ from validation.runs.history import History
 TIME = 0.1 * np.arange(1, 31)
 
 
-def history(**columns: np.ndarray) -> History:
+def history(**columns):
     return History(TIME, columns)
 
 
-def test_every_bit_counts() -> None:
+def test_every_bit_counts():
     x = np.sin(TIME)
     last = x.copy()
     last[-1] = np.nextafter(last[-1], 2.0)
@@ -26,7 +26,7 @@ def test_every_bit_counts() -> None:
     assert not is_identical(history(a=x), history(b=x))
 
 
-def test_few_values_are_alike_by_chance() -> None:
+def test_few_values_are_alike_by_chance():
     few = np.minimum(TIME, TIME[FEWEST_VALUES - 2])
     enough = np.minimum(TIME, TIME[FEWEST_VALUES - 1])
     assert not is_identical(history(a=few), history(a=few))
@@ -34,13 +34,13 @@ def test_few_values_are_alike_by_chance() -> None:
 
 
 @pytest.mark.parametrize(("factor", "column"), [(0.5, ""), (2.0, "b")])
-def test_two_runs_differ_by_more_than_rounding(factor: float, column: str) -> None:
+def test_two_runs_differ_by_more_than_rounding(factor, column):
     x = np.sin(TIME)
     name, size = largest_difference(history(a=x, b=x), history(a=x, b=x * (1 + factor * ROUNDING)))
     assert name == column and size == pytest.approx(factor * ROUNDING if column else 0.0, rel=1e-3)
 
 
-def test_the_worst_column_is_named_and_what_cannot_be_compared_is_infinite() -> None:
+def test_the_worst_column_is_named_and_what_cannot_be_compared_is_infinite():
     x = np.sin(TIME)
     assert largest_difference(history(a=x, b=x), history(a=1.1 * x, b=1.2 * x)) == ("b", pytest.approx(0.2))
     assert largest_difference(history(a=x, b=x), history(a=x)) == ("b", math.inf)

@@ -1,8 +1,6 @@
 """Folders of answers: exact motions, scaled, as tables beside one file of metadata."""
 
 import json
-from pathlib import Path
-from typing import Any
 
 from validation.problems.answers import FILE
 from validation.problems.bands import standard
@@ -28,7 +26,7 @@ STATED = {
 QUICK = ("locked", "rocking", "column")  # problems whose exact motions take no time
 
 
-def stated(place: Path, **fields: Any) -> Path:
+def stated(place, **fields):
     """Write the metadata of a folder of answers, and return it; a field that is ... is left out."""
     place.mkdir(parents=True, exist_ok=True)
     content = {key: value for key, value in (STATED | fields).items() if value is not ...}
@@ -36,7 +34,7 @@ def stated(place: Path, **fields: Any) -> Path:
     return place
 
 
-def answered(place: Path, factor: float = 1.01, names: tuple[str, ...] = QUICK, **fields: Any) -> Path:
+def answered(place, factor=1.01, names=QUICK, **fields):
     """Write a folder of answers, the exact motions times a factor, and return it."""
     stated(place, **fields)
     for name in names:

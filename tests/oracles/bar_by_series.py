@@ -17,19 +17,13 @@ With x = exp(-theta / 2) for the hyperbolic functions these are power series in 
 as many digits as prove sixty of the histories.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
-from typing import Any
-
 from flint import arb, arb_series
 
 from fem_reference.exact.bar import Bar
-from validation.scenes.scene import Scene
 from validation.solvers.sixty_digits.block import DIGITS, digits
 
 
-def history(scene: Scene, names: tuple[str, ...]) -> dict[str, list[arb]]:
+def history(scene, names):
     """Return the columns of a scene at step 1 to the last, each proven to sixty digits of its largest value."""
     (_, _), (width, _), (_, height), _ = scene.block.outline
     block, stiffness = scene.block, 2 * scene.contact.stiffness
@@ -37,12 +31,12 @@ def history(scene: Scene, names: tuple[str, ...]) -> dict[str, list[arb]]:
     return _proven(bar, scene.time, scene.time.discount, names, range(1, scene.time.steps + 1))
 
 
-def at_steps(bar: Bar, scheme: Any, names: Sequence[str], steps: Sequence[int]) -> dict[str, list[arb]]:
+def at_steps(bar, scheme, names, steps):
     """Return the columns of a bar at some steps, each proven to sixty digits of the largest of them."""
     return _proven(bar, scheme, scheme.gg, names, steps)
 
 
-def _proven(bar: Bar, scheme: Any, gg: float, names: Sequence[str], steps: Sequence[int]) -> dict[str, list[arb]]:
+def _proven(bar, scheme, gg, names, steps):
     count = 2 * DIGITS
     while True:
         with digits(count, terms=max(steps) + 1):
@@ -53,12 +47,12 @@ def _proven(bar: Bar, scheme: Any, gg: float, names: Sequence[str], steps: Seque
         count *= 2
 
 
-def _is_proven(values: list[arb]) -> bool:
+def _is_proven(values):
     largest = max(abs(value).lower() for value in values)
     return all(value.rad() <= largest * arb(10) ** -DIGITS for value in values)
 
 
-def _series(bar: Bar, scheme: Any, gg: arb) -> dict[str, arb_series]:
+def _series(bar, scheme, gg):
     """Return the generating functions of displacement and contact pressure."""
     z = arb_series([0, 1])
     half = arb(1) / 2 - scheme.alpha

@@ -10,16 +10,12 @@ since at the base D' = kappa D, at the top D' = -1 / s, and D is a sum of e^(g y
 on a contour of its own, scaled by the time since its arrival (Abate and Valko, Int. J. Numer. Meth. Eng. 60, 2004).
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
-
 from mpmath import mp, mpc, mpf
 
 DIGITS, NODES = 50, 60
 
 
-def inverted(transform: Callable[[mpc], mpc], since: mpf) -> mpf:
+def inverted(transform, since):
     """Return the original at a time after its front, of a transform that carries no more delay."""
     r = mpf(2 * NODES) / (5 * since)
     total = mp.exp(r * since) * transform(mpc(r)).real / 2
@@ -32,13 +28,13 @@ def inverted(transform: Callable[[mpc], mpc], since: mpf) -> mpf:
     return total * r / NODES
 
 
-def history(column: str, t: float, kappa: float, rate: float) -> mpf:
+def history(column, t, kappa, rate):
     """Return a column over its static value at a time, for a damping rate c per travel time (0 for none)."""
     with mp.workdps(DIGITS):
         t, k, c = mpf(t), mpf(kappa), mpf(rate)
 
-        def wave(power: int, arrival: mpf, pressure: bool) -> mpf:
-            def transform(s: mpc) -> mpc:
+        def wave(power, arrival, pressure):
+            def transform(s):
                 g = mp.sqrt(s) * mp.sqrt(s + c)
                 front = mp.exp(-arrival * (g - s))  # the delay itself is taken out: it shifts the time
                 amplitude = 2 * k / (s * (g + k)) if pressure else 1 / (s * g)

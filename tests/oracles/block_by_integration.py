@@ -7,17 +7,15 @@ import math
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.problem.motion import Motion
 
 OPEN, STICKS, RIGHT, LEFT, RELEASED = 0, 1, 2, -2, 3
-Array = NDArray[np.float64]
 
 
-def random_problem(seed: int) -> BlockProblem:
+def random_problem(seed):
     rng = np.random.default_rng(seed)
     young = 1e9 * 10 ** rng.uniform(-1, 1)
     width = rng.uniform(0.5, 3.0)
@@ -41,7 +39,7 @@ def random_problem(seed: int) -> BlockProblem:
     )
 
 
-def slipping_problem(seed: int, moved: bool = False) -> BlockProblem:
+def slipping_problem(seed, moved=False):
     """A random block with friction; where `moved`, its base follows a random record."""
     rng = np.random.default_rng(1000 + seed)
     problem = random_problem(seed)
@@ -62,7 +60,7 @@ def slipping_problem(seed: int, moved: bool = False) -> BlockProblem:
 class Integrated:
     """A block from given states of its corners; without an angle of friction they never slip."""
 
-    def __init__(self, problem: BlockProblem) -> None:
+    def __init__(self, problem):
         self.problem = q = problem
         x, weight = np.polynomial.legendre.leggauss(3)
         X, Y = (z.ravel() * side / 2 for z, side in zip(np.meshgrid(x, x), (q.width, q.height), strict=True))
@@ -85,10 +83,10 @@ class Integrated:
         self.states, self.references = [OPEN, OPEN], [0.0, 0.0]
 
     @staticmethod
-    def T(x: float, y: float) -> Array:
+    def T(x, y):
         return np.array([[1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]])
 
-    def base(self, t: float) -> tuple[Array, Array]:
+    def base(self, t):
         if self.problem.base is None:
             return np.zeros(2), np.zeros(2)
         rows = np.array([self.problem.base.time, self.problem.base.x, self.problem.base.y])
@@ -96,7 +94,7 @@ class Integrated:
         speed = (rows[1:, i + 1] - rows[1:, i]) / (rows[0, i + 1] - rows[0, i])
         return rows[1:, i] + speed * (t - rows[0, i]), speed
 
-    def corner(self, c: int, t: float, y: Array) -> dict[str, float]:
+    def corner(self, c, t, y):
         """Gap, slide, forces, reserves and the rate of dissipation of a corner; `P` is N as if it were closed."""
         q, (at, speed) = self.problem, self.base(t)
         s, w = self.corners[c] @ y[:6] - at + [0, q.gap]
@@ -112,7 +110,7 @@ class Integrated:
             here["d"] = -sign * (ds - sign * self.tan * q.stiffness * dw / q.shear_stiffness)
         return here
 
-    def run(self, states: list[int], end: float) -> tuple[list[tuple[float, str, int]], Array]:
+    def run(self, states, end):
         """Times, corners and new states of the switches, and the state vector at the end."""
         self.states = states
         y, t, found = np.zeros(12), 0.0, []
@@ -125,7 +123,7 @@ class Integrated:
                 found += switches
         return found, y
 
-    def until(self, t: float, y: Array, end: float) -> tuple[float, Array, list[tuple[float, str, int]]]:
+    def until(self, t, y, end):
         found = []
         for c in (0, 1):
             if abs(self.states[c]) == RIGHT and self.corner(c, t, y)["d"] < -1e-9:  # the base turned round
@@ -141,7 +139,7 @@ class Integrated:
                 found += [] if released else [switch]
         return t, y, found
 
-    def switch(self, c: int, state: int, t: float, y: Array) -> tuple[float, str, int]:
+    def switch(self, c, state, t, y):
         here = self.corner(c, t, y)
         q = self.problem
         self.references[c] = here["s"] + (here["T"] / q.shear_stiffness if here["T"] else 0.0)
@@ -151,7 +149,7 @@ class Integrated:
         self.states[c] = state
         return t, "MN"[c], state
 
-    def events(self, c: int):
+    def events(self, c):
         def falls(state, value):
             def event(t, y):
                 return value(self.corner(c, t, y))
@@ -174,7 +172,7 @@ class Integrated:
             falls(RIGHT, lambda here: here["limit"] + here["T"]),
         ]
 
-    def motion(self, t: float, y: Array) -> Array:
+    def motion(self, t, y):
         force = self.F - self.K0 @ y[:6]
         for c, T in enumerate(self.corners):
             here = self.corner(c, t, y)

@@ -4,12 +4,11 @@ import atexit
 import math
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.models.plane.boxes import boxes_of, reach_of
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 BOX = {"width": 1.0, "height": 1.0, "density": 1000.0}
 GROUND = {"name": "ground", "rectangle": [200.0, 1.0], "at": [0.0, -0.5], "fixed": True}
@@ -18,7 +17,7 @@ RECORDS = tempfile.TemporaryDirectory()
 atexit.register(RECORDS.cleanup)
 
 
-def blocks(*boxes: dict[str, Any], ground: dict[str, Any] | None = None) -> list[dict[str, Any]]:
+def blocks(*boxes, ground=None):
     """Return the tables of a ground and of boxes that differ from `BOX` as they say.
 
     A box is stated by width, height, density, x, lift (of its lowest corner above what is below), tilt [deg], velocity
@@ -38,16 +37,16 @@ def blocks(*boxes: dict[str, Any], ground: dict[str, Any] | None = None) -> list
 
 
 def box_scene(
-    *boxes: dict[str, Any],
-    step: float = 0.01,
-    steps: int = 100,
-    gravity: float = 9.81,
-    slope: float = 0.0,
-    stiffness: float = math.inf,
-    base: tuple[float, float] | None = None,
-    time: dict[str, Any] | None = None,
-    **contact: Any,
-) -> Scene:
+    *boxes,
+    step=0.01,
+    steps=100,
+    gravity=9.81,
+    slope=0.0,
+    stiffness=math.inf,
+    base=None,
+    time=None,
+    **contact,
+):
     """Return a scene of boxes with all columns, rows every `step` seconds.
 
     Parameters
@@ -74,7 +73,7 @@ def box_scene(
     return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
 
 
-def record(amplitude: float, frequency: float, duration: float) -> str:
+def record(amplitude, frequency, duration):
     """Return the file of a record of A (1 - cos(2 pi f t)) over a duration [s] and a second more."""
     time = np.arange(round(ROWS_A_SECOND * (duration + 1)) + 1) / ROWS_A_SECOND
     path = Path(RECORDS.name) / f"{amplitude}-{frequency}-{duration}.csv"
@@ -83,7 +82,7 @@ def record(amplitude: float, frequency: float, duration: float) -> str:
     return str(path)
 
 
-def euler(scene: Scene, own_step: float, velocity: float, acceleration: float) -> np.ndarray:
+def euler(scene, own_step, velocity, acceleration):
     """Return the displacement v n h + a h^2 n (n + 1) / 2 at the rows of a scene.
 
     That is v' = v + h a, x' = x + h v' from rest at x = 0, with n steps of length h up to the row.

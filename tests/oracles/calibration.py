@@ -59,7 +59,7 @@ class Judged:
     named: tuple[str, ...]
 
 
-def made(seed: int) -> Made:
+def made(seed):
     """Return one history."""
     rng = np.random.default_rng(seed)
     maker = ("plain", "plain", "elements", "modes")[seed % 4]
@@ -81,12 +81,12 @@ def made(seed: int) -> Made:
     return Made(meshed(base), given, causes, maker)
 
 
-def _printed(rng: np.random.Generator, values: np.ndarray, noise: float, digits: int) -> np.ndarray:
+def _printed(rng, values, noise, digits):
     noisy = values + noise * np.max(np.abs(values)) * rng.standard_normal(len(values))
     return np.array([float(f"{v:.{digits - 1}e}") for v in noisy])
 
 
-def _scene(rng: np.random.Generator) -> Plain:
+def _scene(rng):
     alpha, delta = SCHEMES[rng.integers(len(SCHEMES))]
     return Plain(
         dt=float(rng.choice([2e-3, 1e-3, 5e-4])),
@@ -102,14 +102,14 @@ def _scene(rng: np.random.Generator) -> Plain:
     )
 
 
-def _factor(rng: np.random.Generator) -> float:
+def _factor(rng):
     value = float(rng.choice([0.5, 0.8, 0.9, 1.1, 1.25, 2.0, rng.uniform(0.6, 1.6)]))
     return value
 
 
-def _singles(rng: np.random.Generator, base: Plain) -> dict[str, dict[str, object]]:
+def _singles(rng, base):
     """Return every cause of the catalogue that a scene allows, as slips."""
-    found: dict[str, dict[str, object]] = {
+    found = {
         "density-factor": {"rho": base.rho * _factor(rng)},
         "young-factor": {"E": base.E * _factor(rng)},
         "springs-factor": {"p": base.p * float(rng.choice([0.5, 2.0, 0.25, 4.0]))},
@@ -126,7 +126,7 @@ def _singles(rng: np.random.Generator, base: Plain) -> dict[str, dict[str, objec
     return found
 
 
-def _of_the_output(rng: np.random.Generator) -> dict[str, dict[str, object]]:
+def _of_the_output(rng):
     """Return what only a code of one's own has."""
     return {
         "pressure-shift": {"late": 1} if rng.random() < 0.7 else {"averaged": True},
@@ -139,9 +139,9 @@ def _of_the_output(rng: np.random.Generator) -> dict[str, dict[str, object]]:
     }
 
 
-def _outside(rng: np.random.Generator) -> dict[str, object]:
+def _outside(rng):
     """Return a cause that few programs have, or that is in no catalogue."""
-    every: list[dict[str, object]] = [
+    every = [
         {"viscous": float(rng.choice([3.0, 10.0, 30.0]))},
         {"height": 2.0 * float(rng.choice([0.9, 1.1, 1.3]))},
         {"structural": float(rng.choice([5e-5, 2e-4]))},
@@ -158,7 +158,7 @@ def _outside(rng: np.random.Generator) -> dict[str, object]:
     return every[rng.integers(len(every))]
 
 
-def _named_outside(slips: dict[str, object], base: Plain) -> tuple[str, ...]:
+def _named_outside(slips, base):
     """Return the ids of a further slip; more stiffness in a step, without more of it kept, is another scheme.
 
     With a share e of it under (1/2, 1) from A0 = 0 the step is M a1 + K ((1 + e) x1 - e x) = F, x1 = x + U + dt^2 a1/2,
@@ -177,7 +177,7 @@ def _named_outside(slips: dict[str, object], base: Plain) -> tuple[str, ...]:
     return (UNKNOWN if others else known.get(name, UNKNOWN),)
 
 
-def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str, object], tuple[str, ...]]:
+def _cause(rng, base, maker):
     """Return the slips of a history and the ids of its causes."""
     kind = rng.random()
     single = _singles(rng, base)
@@ -200,18 +200,18 @@ def _cause(rng: np.random.Generator, base: Plain, maker: str) -> tuple[dict[str,
     return single[name], (name,)
 
 
-def meshed(p: Plain) -> Scene:
+def meshed(p):
     """Return the scene of a run, with a mesh of its own."""
     return scene_of(p).with_values({"fem.elements": 12, "fem.degree": 1})
 
 
-def elements(p: Plain) -> tuple[np.ndarray, np.ndarray]:
+def elements(p):
     """Return a history of the finite elements."""
     found = solve(meshed(p), "fem")
     return found.displacement, found.contact_pressure
 
 
-def modes(p: Plain) -> tuple[np.ndarray, np.ndarray]:
+def modes(p):
     """Return a history from the modes of the block, (v, ey, ex), each stepped alone or summed in closed form."""
     m, h, a = p.rho * p.side**2, p.side, p.side
     c11 = p.E / (1 - p.mu**2)
@@ -234,7 +234,7 @@ def modes(p: Plain) -> tuple[np.ndarray, np.ndarray]:
     return v, -k * (v - h / 2 * ey) / a
 
 
-def _mode(p: Plain, w2: float, force: float) -> np.ndarray:
+def _mode(p, w2, force):
     """Return one oscillator x'' + w2 x = force from rest."""
     n = np.arange(1, p.steps + 1)
     if p.hht:
@@ -255,7 +255,7 @@ def _mode(p: Plain, w2: float, force: float) -> np.ndarray:
 # ---- what is said of them -------------------------------------------------------------------------------------------
 
 
-def judged(seed: int) -> Judged:
+def judged(seed):
     """Return what `compare` says of one history."""
     with np.errstate(all="ignore"):
         one = made(seed)
@@ -263,7 +263,7 @@ def judged(seed: int) -> Judged:
     return Judged(one.maker, one.causes, tuple(answer.causes) or (SAME,))
 
 
-def verdict(one: Judged) -> str:
+def verdict(one):
     """Return whether the answer is right, silent or wrong.
 
     A cause that noise or rounding hides leaves the history the scene's own: "same" is then no wrong cause.
@@ -277,22 +277,22 @@ def verdict(one: Judged) -> str:
     return "hidden" if named == {SAME} else "wrong"
 
 
-def table(found: list[Judged]) -> str:
+def table(found):
     """Return the paragraph of the page."""
     return summary(Counter((_kind(one.causes), verdict(one)) for one in found), WORDS)
 
 
-def _kind(causes: tuple[str, ...]) -> str:
+def _kind(causes):
     return causes[0] if len(causes) == 1 else "two causes"
 
 
-def share(found: list[Judged]) -> float:
+def share(found):
     """Return the share of the named causes that are right."""
     said = [verdict(one) for one in found if set(one.named) - {UNKNOWN, SAME}]
     return said.count("right") / max(len(said), 1)
 
 
-def judge(count: int, processes: int = 1, first: int = 0) -> list[Judged]:
+def judge(count, processes=1, first=0):
     """Judge so many histories."""
     if processes == 1:
         return [judged(seed) for seed in range(first, first + count)]

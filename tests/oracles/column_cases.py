@@ -8,10 +8,9 @@ from flint import arb
 from oracles.column_motions import COLUMNS
 
 from dda import Scheme
-from dda.bodies.bonded_column import Drive
 from dda.bodies.column import Column, Layer, Spring
-from dda.bodies.contact_column import ColumnOptions, solve_contact_column
-from fem_reference.events import column_drive as drives
+from dda.bodies.column_history import ColumnOptions, solve_column
+from dda.bodies.column_march import Drive
 from fem_reference.events.column_model import ColumnProblem
 
 # instants at which they are known [s]
@@ -28,19 +27,19 @@ class ColumnCase(NamedTuple):
     heights: list[float]
 
     @property
-    def column(self) -> Column:
+    def column(self):
         return column_of(self.problem)
 
 
-def layers(heights: list[float], density: list[float], young: list[float], velocity: list[float]) -> list[Layer]:
+def layers(heights, density, young, velocity):
     return [Layer(h, rho, E, 0.0, 1, v) for h, rho, E, v in zip(heights, density, young, velocity, strict=True)]
 
 
-def feet_of(thicknesses: list[float]) -> list[float]:
+def feet_of(thicknesses):
     return [float(x) for x in np.cumsum([0.0, *thicknesses])[:-1]]
 
 
-def unilateral(blocks: list[Layer], stiffness: list[float], gaps: list[float], gravity: float = 9.81) -> Column:
+def unilateral(blocks, stiffness, gaps, gravity=9.81):
     """Return a column on contacts from the base upwards; one contact fewer than blocks: nothing is below."""
     feet = feet_of([layer.thickness for layer in blocks])
     free = len(stiffness) < len(blocks)
@@ -48,7 +47,7 @@ def unilateral(blocks: list[Layer], stiffness: list[float], gaps: list[float], g
     return Column(blocks, law="unilateral", joints=joints, gravity=gravity, unsupported=free)
 
 
-def column_of(problem: ColumnProblem) -> Column:
+def column_of(problem):
     """Return a column of the elements' own terms; a modulus in shear is half of Young's where nothing contracts."""
     slips = problem.law == "frictional"
     blocks = [Layer(b.height, b.density, b.modulus * (1 + slips), 0.0, 1, b.velocity) for b in problem.blocks]
@@ -68,7 +67,7 @@ def column_of(problem: ColumnProblem) -> Column:
     )
 
 
-def case_of(name: str) -> ColumnCase:
+def case_of(name):
     """Return a known column with the displacements, velocities and slips that were printed at its instant."""
     problem, until = COLUMNS[name].problem, UNTIL[name]
     thicknesses = [block.height for block in problem.blocks]
@@ -85,21 +84,21 @@ def case_of(name: str) -> ColumnCase:
 CASES = {name: case_of(name) for name in UNTIL}
 
 
-def course(drive: drives.Drive, times: np.ndarray) -> np.ndarray:
+def course(drive, times):
     """Return a drive and its first two derivatives at times, shape (3, times)."""
     pieces = drive()
     series = [pieces.piece_at(t).series(arb(t), 1.0, 3) for t in times.tolist()]
     return np.array([[float(c) for c in row] for row in series]).T * [[1], [1], [2]]
 
 
-def error_of(case: ColumnCase, weights: tuple[float, float], steps: int) -> float:
+def error_of(case, weights, steps):
     """Return the largest error at the end over the largest value, of each kind of column."""
     problem = case.problem
     times = case.until / steps * np.arange(steps + 1)
     drive = Drive(*course(problem.base_motion, times), course(problem.pressure, times)[0])
     scheme = Scheme(*weights, 1.0, case.until / steps, "consistent")
     options = ColumnOptions(settled=problem.at_rest)
-    result = solve_contact_column(column_of(problem), scheme, drive, list(case.exact), case.heights, options)
+    result = solve_column(column_of(problem), scheme, drive, list(case.exact), case.heights, options)
     assert result.outcome == "completed"
     errors = []
     for part in {name.rpartition("_")[0] for name in case.exact}:

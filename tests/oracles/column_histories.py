@@ -7,7 +7,6 @@ the same rows and the made one among them, is silent, or is wrong.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,30 +18,28 @@ from validation.diagnosis.causes import UNEXPLAINED
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
-from validation.runs.history import Array
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 RIGHT, ALIKE, SILENT, WRONG = "right", "alike", "silent", "wrong"
 SAME_NUMBER = 2e-3  # relative, of a factor that was named
 KINDS = ("dropped", "weight", "spall", "shaken", "slips", "site")
-Random = np.random.Generator
 
 
-def around(random: Random, value: float, times: float = 2.0) -> float:
+def around(random, value, times=2.0):
     """Return a number around another one, up to so many times larger or smaller, with three digits."""
     return float(f"{value * times ** random.uniform(-1, 1):.3g}")
 
 
-def random_scene(kind: str, random: Random) -> Scene:
+def random_scene(kind, random):
     """Return a random column of a kind, stepped finely enough that contacts are resolved."""
     blocks = int(random.integers(2, 9))
     height = around(random, 1.0)
     density = around(random, 2500.0, 1.3)
     young = around(random, 1e9)
     stiffness = around(random, 1e9 / height)
-    layer: dict[str, Any] = {"thickness": blocks * height, "density": density, "young": young, "blocks": blocks}
-    column: dict[str, Any] = {"motion": "pressure", "law": "unilateral", "stiffness": stiffness, "layer": [layer]}
-    data: dict[str, Any] = {"title": kind, "column": column}
+    layer = {"thickness": blocks * height, "density": density, "young": young, "blocks": blocks}
+    column = {"motion": "pressure", "law": "unilateral", "stiffness": stiffness, "layer": [layer]}
+    data = {"title": kind, "column": column}
     crossing = height * math.sqrt(density / young)  # of a wave through a block [s]
     beat = crossing + 1.0 / math.sqrt(stiffness / (density * height))
     duration = beat * blocks * random.uniform(2.0, 6.0)
@@ -87,12 +84,12 @@ def random_scene(kind: str, random: Random) -> Scene:
     return parse_scene(data, kind)
 
 
-def factor(random: Random) -> float:
+def factor(random):
     """Return a factor that people would notice."""
     return float(f"{math.exp(random.choice([-1.0, 1.0]) * random.uniform(0.03, 0.8)):.3g}")
 
 
-def steeper(angle: float, times: float) -> float:
+def steeper(angle, times):
     """Return an angle whose tangent is larger."""
     return math.degrees(math.atan(times * math.tan(math.radians(angle))))
 
@@ -106,7 +103,7 @@ class Made:
     values: dict[str, Any]
 
 
-def changes(scene: Scene, random: Random) -> list[Made]:
+def changes(scene, random):
     """Return what may be changed in a scene."""
     data = scene.definition()
     column = data["column"]
@@ -156,12 +153,12 @@ def changes(scene: Scene, random: Random) -> list[Made]:
     return made
 
 
-def written(values: Array, digits: int) -> Array:
+def written(values, digits):
     """Return values as a file with so many significant digits holds them."""
     return np.array([float(f"{value:.{digits - 1}e}") for value in values])
 
 
-def history(scene: Scene, values: dict[str, Any], digits: int, every: int = 1) -> Foreign:
+def history(scene, values, digits, every=1):
     """Return the history of a scene with other values, as a file holds it."""
     run = solve(scene.with_values(values), "dda").history
     if run is None:
@@ -171,7 +168,7 @@ def history(scene: Scene, values: dict[str, Any], digits: int, every: int = 1) -
     return Foreign(run.time[rows], *columns)
 
 
-def outside(scene: Scene, random: Random, digits: int) -> tuple[str, Foreign]:
+def outside(scene, random, digits):
     """Return a history that departs by what is in no catalogue, with its name."""
     layer = scene.definition()["column"]["layer"][0]
     t = scene.time
@@ -200,17 +197,17 @@ def outside(scene: Scene, random: Random, digits: int) -> tuple[str, Foreign]:
     return "pressure by 1.1", replace(plain, pressure=written(1.1 * plain.pressure, digits))
 
 
-def noisy(foreign: Foreign, random: Random, size: float) -> Foreign:
+def noisy(foreign, random, size):
     """Return a history with noise, of a share of the largest value."""
 
-    def with_noise(values: Array) -> Array:
+    def with_noise(values):
         return written(values + size * float(np.max(np.abs(values))) * random.standard_normal(len(values)), 10)
 
     pressure = None if foreign.pressure is None else with_noise(foreign.pressure)
     return replace(foreign, displacement=with_noise(foreign.displacement), pressure=pressure)
 
 
-def verdict(answer: Answer, made: list[Made]) -> str:
+def verdict(answer, made):
     """Return what a verdict is worth, for a history in which things were changed."""
     if UNEXPLAINED in answer.causes:
         if not answer.alike:
@@ -224,13 +221,13 @@ def verdict(answer: Answer, made: list[Made]) -> str:
     return WRONG
 
 
-def _names(causes: list[str], values: dict[str, float], made: Made) -> bool:
+def _names(causes, values, made):
     if causes != [made.id]:
         return False
     return made.value is None or math.isclose(values[made.id], made.value, rel_tol=SAME_NUMBER, abs_tol=1e-6)
 
 
-def is_visible(scene: Scene, foreign: Foreign, made: Made, digits: int) -> bool:
+def is_visible(scene, foreign, made, digits):
     """Whether a change leaves the rows of a history with one thing changed, or with none, by more than digits."""
     plain = history(scene, made.values, digits, _every(scene, foreign))
     pairs = [(foreign.displacement, plain.displacement)]
@@ -239,7 +236,7 @@ def is_visible(scene: Scene, foreign: Foreign, made: Made, digits: int) -> bool:
     return any(bool(np.any(np.abs(x - y) > 2 * 10.0**-digits * np.max(np.abs(y)))) for x, y in pairs)
 
 
-def _every(scene: Scene, foreign: Foreign) -> int:
+def _every(scene, foreign):
     return max(1, round(scene.time.steps / len(foreign.time)))
 
 
@@ -255,7 +252,7 @@ class Trial:
     made: list[Made]
 
 
-def trial(seed: int, judge: Callable[[Scene, Foreign], Answer] = compare) -> Trial | None:
+def trial(seed, judge=compare):
     """Return one random history with its verdict; None where what was drawn excludes itself."""
     random = np.random.default_rng(seed)
     kind = KINDS[seed % len(KINDS)]

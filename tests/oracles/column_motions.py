@@ -29,23 +29,23 @@ class KnownColumn:
     values: tuple[tuple[float, str, str], ...] = field(default=())
 
 
-def blocks(count: int, density: float, modulus: float, velocity: float = 0.0, height: float = 1.0) -> tuple:
+def blocks(count, density, modulus, velocity=0.0, height=1.0):
     """Equal blocks."""
     return (ColumnBlock(height, density, modulus, velocity),) * count
 
 
-def kind_of(kind: str, sign: int) -> str:
+def kind_of(kind, sign):
     """The letter of a switch."""
     return {"opens": "O", "closes": "C", "sticks": "K", "slips": "+" if sign > 0 else "-"}[kind]
 
 
-def half_unit(printed: str) -> Decimal:
+def half_unit(printed):
     """Half a unit of the last printed digit."""
     number = Decimal(printed)
     return Decimal(1).scaleb(number.as_tuple().exponent) / 2
 
 
-def strengths(weights: list[float], degrees: float) -> list[float]:
+def strengths(weights, degrees):
     """Friction times the static normal stress."""
     return [math.tan(math.radians(degrees)) * weight for weight in weights]
 

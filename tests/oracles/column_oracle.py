@@ -6,7 +6,6 @@ It assembles dense matrices of faces, ties welded faces by constraints, and know
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,11 +27,11 @@ class IntegratedColumn:
     slip: np.ndarray  # reference of each joint [m]
 
 
-def value_of(drive: drives.Drive) -> Callable[[float, int], float]:
+def value_of(drive):
     """A drive and its derivatives at an instant in floats."""
     course = drive()
 
-    def value(t: float, order: int) -> float:
+    def value(t, order):
         piece = course.piece_at(t)
         return float(piece.series(arb(t), 1.0, 3)[order]) * math.factorial(order)
 
@@ -42,12 +41,12 @@ def value_of(drive: drives.Drive) -> Callable[[float, int], float]:
 class Assembly:
     """Matrices of the faces of a column's blocks, those that move alike being one unknown."""
 
-    def __init__(self, problem: ColumnProblem) -> None:
+    def __init__(self, problem):
         n = len(problem.blocks)
         M = np.zeros((2 * n, 2 * n))
         K = np.zeros((2 * n, 2 * n))
         weight = np.zeros(2 * n)
-        columns: list[list[int]] = []  # faces that move alike
+        columns = []  # faces that move alike
         for i, block in enumerate(problem.blocks):
             m = block.density * block.height
             faces = [2 * i, 2 * i + 1]
@@ -89,7 +88,7 @@ class Assembly:
         self.velocity = np.array([problem.blocks[faces[0] // 2].velocity for faces in columns])
 
 
-def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
+def integrated(problem, end):
     """Integrate a column whose lowest block stands on a spring, a half-space or nothing, from t = 0."""
     n = len(problem.blocks)
     form = Assembly(problem)
@@ -101,7 +100,7 @@ def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
     size = len(M)
     unilateral = problem.law == "unilateral"
 
-    def stretch(t: float, x: np.ndarray, order: int = 0) -> np.ndarray:
+    def stretch(t, x, order=0):
         part = B @ x[order * size : (order + 1) * size] - form.on_base * base(t, order)
         return part + gap if order == 0 else part
 
@@ -111,23 +110,23 @@ def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
     x = np.concatenate([u, form.velocity])
     states = np.where(stretch(0.0, x) <= 0, 1, 0) if unilateral else np.ones(len(joints), dtype=int)
     references = np.zeros(len(joints))
-    switches: list[tuple[str, float]] = []
+    switches = []
     fastest = math.sqrt(np.abs(np.linalg.eigvals(inverse @ (K + B.T @ (k[:, None] * B)))).max())
     breaks = {b for drive in (problem.base_motion, problem.pressure) for b in drive().breaks if 0 < b < end}
     now = 0.0
 
-    def forces(t: float, x: np.ndarray) -> np.ndarray:
+    def forces(t, x):
         sticking = -k * (stretch(t, x) - references)
         return np.where(states == 1, sticking, -np.sign(states) * np.where(states == 0, 0.0, finite))
 
-    def rates(t: float, x: np.ndarray) -> np.ndarray:
+    def rates(t, x):
         f = weight + B.T @ forces(t, x) - K @ x[:size] - C @ x[size:] - form.top * pressure(t, 0)
         if problem.base == "transmitting":
             f = f + form.bottom * 2 * problem.impedance * base(t, 1)
         return np.concatenate([x[size:], inverse @ f])
 
-    def watch(c: int, sign: int) -> Callable[[float, np.ndarray], float]:
-        def function(t: float, x: np.ndarray) -> float:
+    def watch(c, sign):
+        def function(t, x):
             if unilateral:
                 return float(stretch(t, x)[c])
             if states[c] == 1:
@@ -174,7 +173,7 @@ def integrated(problem: ColumnProblem, end: float) -> IntegratedColumn:
     return IntegratedColumn(switches, (faces[::2] + faces[1::2]) / 2, slip)
 
 
-def random_column(seed: int) -> tuple[ColumnProblem, float]:
+def random_column(seed):
     """A column of two to four blocks, rigid or elastic, some of them welded, and the end of its motion [s]."""
     random = np.random.default_rng(seed)
     count = int(random.integers(2, 5))

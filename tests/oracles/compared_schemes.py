@@ -10,17 +10,14 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from oracles.pages import page_with, summary
 from oracles.scheme_histories import Body, Run, rounded
 
 from validation import load_scene
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
@@ -28,7 +25,7 @@ from validation.scenes.scene import Scene
 PAGE = Path(__file__).parents[2] / "docs" / "compare.md"
 BEGIN, END = "<!-- schemes: made by tests/oracles/compared_schemes.py -->\n", "<!-- end of schemes -->\n"
 SCHEMES = ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6))
-SCENES: tuple[dict[str, Any], ...] = (
+SCENES = (
     {},
     {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"},
     {"time.start": "consistent"},
@@ -49,7 +46,7 @@ class Case:
     seed: int = 0
 
     @property
-    def foreign(self) -> Foreign:
+    def foreign(self):
         """What a file would hold."""
         rng = np.random.default_rng(self.seed)
         time = self.run.dt * np.arange(1, self.run.steps + 1)
@@ -60,12 +57,12 @@ class Case:
         displacement, pressure = columns
         return Foreign(time[self.every - 1 :: self.every], displacement, pressure if self.with_pressure else None)
 
-    def judged(self) -> Answer:
+    def judged(self):
         """Return the answer."""
         return compare(self.scene, self.foreign)
 
 
-def scene_of(run: Run, **more: Any) -> Scene:
+def scene_of(run, **more):
     """Return the scene of a run, stepped by DDA's scheme."""
     values = {
         "time.step": run.dt,
@@ -81,16 +78,16 @@ def scene_of(run: Run, **more: Any) -> Scene:
     return load_scene("figures-3-4").with_values(values | more)
 
 
-def dashpot_of(body: Body, ratio: float) -> float:
+def dashpot_of(body, ratio):
     """Return c of a damping ratio [N s/m]."""
     return 2 * ratio * math.sqrt(body.k * body.rho * body.a**2)
 
 
-def made(seed: int) -> Case:
+def made(seed):
     """Return one case."""
     rng = np.random.default_rng(seed)
 
-    def pick(*values: float) -> float:
+    def pick(*values):
         return float(rng.choice(values))
 
     opens = bool(rng.random() < 0.45)
@@ -111,19 +108,19 @@ def made(seed: int) -> Case:
     return Case(run, scene, digits, noise, bool(rng.random() < 0.6), int(pick(1, 1, 1, 2)), seed)
 
 
-def _method(rng: np.random.Generator, body: Body, opens: bool) -> tuple[str, dict[str, Any]]:
+def _method(rng, body, opens):
     """Return a method with its numbers."""
 
-    def pick(*values: Any) -> Any:
+    def pick(*values):
         return values[rng.integers(len(values))]
 
     zero = bool(rng.random() < 0.25)
     alpha, delta = pick(*SCHEMES)
     newmark = {"alpha": alpha, "delta": delta, "zero": zero}
-    family: dict[str, Any] = {"zero": zero, "form": pick("force", "state") if opens else "force"}
+    family = {"zero": zero, "form": pick("force", "state") if opens else "force"}
     r = pick(0.0, 0.1, 0.3, 0.5, 0.62, 0.8, 0.9, 1.0)
     c = dashpot_of(body, pick(0.02, 0.08, 0.25, 0.6, 1.2))
-    every: list[tuple[str, dict[str, Any]]] = [
+    every = [
         ("chung-hulbert", {"r": r, **family}),
         ("hht", {"e": pick(0.02, 0.05, 0.1, 0.2, 0.3), **family}),
         ("wbz", {"r": r, **family}),
@@ -153,7 +150,7 @@ def _method(rng: np.random.Generator, body: Body, opens: bool) -> tuple[str, dic
 # ---- verdicts -------------------------------------------------------------------------------------------------------
 
 
-def names_of(run: Run) -> list[tuple[str, float | None, tuple[float, float] | None]]:
+def names_of(run):
     """Return what a run may be called: a cause with its number, or ("", None, (alpha, delta)) of Newmark's."""
     n = run.numbers
     average = ("", None, (0.25, 0.5))
@@ -196,7 +193,7 @@ def names_of(run: Run) -> list[tuple[str, float | None, tuple[float, float] | No
     return []
 
 
-def verdict(case: Case, answer: Answer) -> str:
+def verdict(case, answer):
     """Return right, alike, silent, same (within digits and noise) or wrong."""
     if not answer.causes:
         return "same"
@@ -212,7 +209,7 @@ def verdict(case: Case, answer: Answer) -> str:
     return "right" if is_right else "wrong"
 
 
-def _has_split(run: Run, answer: Answer) -> bool:
+def _has_split(run, answer):
     """Whether the split of a composite scheme is the run's, or the one that is the same in locked contact."""
     if "split" not in run.numbers:
         return True
@@ -221,7 +218,7 @@ def _has_split(run: Run, answer: Answer) -> bool:
     return min(abs(answer.scheme["split"] - g), abs(answer.scheme["split"] - other)) < TOLERANCE
 
 
-def _is(name: tuple[str, float | None, tuple[float, float] | None], own: set[str], answer: Answer) -> bool:
+def _is(name, own, answer):
     cause, number, pair = name
     if own != ({cause} if cause else set()):
         return False
@@ -242,12 +239,12 @@ WORDS = {
 }
 
 
-def table(judged: Sequence[tuple[Case, Answer]]) -> str:
+def table(judged):
     """Return the paragraph of the page."""
     return summary(Counter((kind_of(case.run), verdict(case, answer)) for case, answer in judged), WORDS)
 
 
-def kind_of(run: Run) -> str:
+def kind_of(run):
     """Return a method as the table calls it."""
     if run.method in ("houbolt", "wilson", "weights", "runge-kutta") or run.numbers.get("tolerance"):
         return "in no catalogue"
@@ -255,7 +252,7 @@ def kind_of(run: Run) -> str:
     return f"{law} contact" if law else run.method
 
 
-def judge(first: int, last: int) -> list[tuple[Case, Answer]]:
+def judge(first, last):
     """Judge the cases of some seeds."""
     judged = []
     for seed in range(first, last):

@@ -8,16 +8,15 @@ tests/oracles/confusion.py`` writes the counts to docs/compare.md.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from oracles.pages import page_with, summary
-from oracles.plain_block import History, Plain, history
+from oracles.plain_block import Plain, history
 from oracles.program_scenes import scene_of
 
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
@@ -40,7 +39,7 @@ class Known:
     change: Callable[[Foreign], Foreign] = lambda foreign: foreign
     noise: float = 0.0  # standard deviation over the largest displacement
 
-    def judged(self, seed: int) -> tuple[Answer, History]:
+    def judged(self, seed):
         """Return the answer and the history it was given."""
         made = history(self.program)
         rng = np.random.default_rng(seed)
@@ -50,23 +49,23 @@ class Known:
         return compare(scene_of(self.scene), given), made
 
 
-def scaled(factor: float) -> Callable[[Foreign], Foreign]:
+def scaled(factor):
     return lambda f: replace(f, displacement=f.displacement * factor)
 
 
-def in_milliseconds(f: Foreign) -> Foreign:
+def in_milliseconds(f):
     return replace(f, time=f.time * 1e3)
 
 
-def one_row_late(f: Foreign) -> Foreign:
+def one_row_late(f):
     return replace(f, displacement=np.concatenate([[0.0], f.displacement[:-1]]))
 
 
-def one_row_early(f: Foreign) -> Foreign:
+def one_row_early(f):
     return replace(f, time=f.time[:-1], displacement=f.displacement[1:])
 
 
-def known() -> Iterator[Known]:
+def known():
     """Yield the fifty."""
     dt1, dt4, stiff = replace(PLAIN, dt=0.001), replace(PLAIN, dt=4e-4), replace(PLAIN, p=1e10)
     damped = replace(PLAIN, gg=0.97, rho=2300.0)
@@ -120,18 +119,18 @@ def known() -> Iterator[Known]:
     yield Known("gg", replace(average, gg=0.95), average, noise=1e-3)
 
 
-def told(answer: Answer) -> str:
+def told(answer):
     """Return the one cause that the answer names: the faults if there are any, else what is benign."""
     faults = [name for name in answer.causes if not CAUSES[name].benign]
     return "+".join(faults or answer.causes) or SAME
 
 
-def judge() -> list[tuple[Known, Answer, History]]:
+def judge():
     """Judge all fifty."""
     return [(one, *one.judged(seed)) for seed, one in enumerate(known())]
 
 
-def verdict(one: Known, answer: Answer) -> str:
+def verdict(one, answer):
     """Return whether what was done is what was named."""
     named = told(answer)
     if named == one.cause:
@@ -139,7 +138,7 @@ def verdict(one: Known, answer: Answer) -> str:
     return "silent" if named == "unexplained" else "wrong"
 
 
-def table(judged: list[tuple[Known, Answer, History]]) -> str:
+def table(judged):
     """Return the paragraph of the page."""
     return summary(Counter((one.cause, verdict(one, answer)) for one, answer, _ in judged), WORDS)
 

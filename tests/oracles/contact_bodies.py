@@ -5,7 +5,6 @@ laws, rules of contact and schemes. Another body is a kind and its cases.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -43,7 +42,7 @@ class Case:
     steps: int
 
     @property
-    def rule(self) -> str:
+    def rule(self):
         """Rule of contact."""
         return self.options.get("rule", "newmark")
 
@@ -267,7 +266,7 @@ def of_scheme(name, gg=0.99, **values):
 
 
 STIFF = [1e14, 1e18, 1e22, math.inf]
-CASES: dict[str, Callable[[int], Case]] = {
+CASES = {
     "frictionless": lambda seed: block_case(random_model(seed, glued=False), NEWMARK[seed % 4]),
     "bonded": lambda seed: block_case(random_model(seed, glued=True), NEWMARK[seed % 4]),
     "stiff": lambda seed: block_case(with_law(random_model(seed, glued=True), stiffness=STIFF[seed % 4]), CONSTANT),

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from validation.theory.rebound import Advance, Motion
+from validation.theory.rebound import Motion
 
 
-def impact_steps(e: float, theta_method: float = 0.5, gg: float = 1.0) -> Advance:
+def impact_steps(e, theta_method=0.5, gg=1.0):
     """Return the step of impulses with the restitution e (Moreau and Jean): v1 = -e u where x + u/2 <= 0 falls."""
 
-    def advance(start: Motion) -> Motion:
+    def advance(start):
         u = gg * start.v
         P = np.where(start.x + u / 2 <= 0, np.maximum(-(1 + e) * u, 0.0), 0.0)
         v = u + P

@@ -4,19 +4,14 @@ A piece of length d between two levels has E k / sin(kd) [[cos(kd), -1], [-1, co
 joint lies a level has two displacements.
 """
 
-from __future__ import annotations
-
 import itertools
-from collections.abc import Sequence
 
 import numpy as np
-
-from fem_reference.column.problem import Ground
 
 DIGITS = 9  # of a level [m]: what is nearer is one
 
 
-def assembled(ground: Ground, w: float, heights: Sequence[float], base: bool) -> tuple[list[complex], complex]:
+def assembled(ground, w, heights, base):
     """Return the displacements at the heights (at a joint of its lower face) and the base's pressure.
 
     The base, or the wave that comes up, has a unit velocity; else 1 Pa presses on the top.

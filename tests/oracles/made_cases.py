@@ -1,65 +1,58 @@
 """Cases, rows and histories made by hand, so that a test knows every number that a reader should meet."""
 
-from __future__ import annotations
-
-from collections.abc import Mapping
-from typing import Any
-
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 
 from validation.engine.study import Study
 from validation.gates.gate import Gate
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.runs.history import History
-from validation.runs.results import Results, Row
+from validation.runs.results import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 
 
-def made_row(solver: str, metrics: Mapping[str, Any] | None = None, scene: str = "s", **more: Any) -> Row:
+def made_row(solver, metrics=None, scene="s", **more):
     """Return a row that completed, unless it is told otherwise."""
     outcome = more.pop("outcome", Outcome.COMPLETED)
     return Row(f"{scene} {solver}", "study", scene, solver, outcome, metrics or {}, **more)
 
 
-def study(scene: Scene, *, timed: bool = False) -> Study:
+def study(scene, *, timed=False):
     """Return a study of one scene by dda and bar with one gate, which passes on the small scene."""
     gate = Gate(scene.name, ("dda",), "displacement.static", -0.011, -0.009, "a test")
     return Study("test", "A test", "Testing.", [scene], ("dda", "bar"), gates=lambda: (gate,), timed=timed)
 
 
 def made_case(
-    scene: Scene,
-    metrics: Mapping[str, Mapping[str, Any] | Row],
-    histories: Mapping[str, History] | None = None,
-    label: str = "",
-) -> CaseResults:
+    scene,
+    metrics,
+    histories=None,
+    label="",
+):
     """Return a case of a report's page from the metrics, or the rows, of its solvers."""
     rows = {s: m if isinstance(m, Row) else made_row(s, m, scene.name) for s, m in metrics.items()}
     return CaseResults(scene.name, label or scene.name, scene, rows, histories or {})
 
 
-def made_group(*cases: CaseResults, **parts: Any) -> CaseGroup:
+def made_group(*cases, **parts):
     """Return a scene of a study, with comparisons, verdicts, alarms or budgets."""
     return CaseGroup("scene", "A scene", cases, parts.pop("comparisons", ()), parts.pop("verdicts", ()), **parts)
 
 
-def between(scene: str, solver: str, reference: str, **metrics: float) -> dict[str, Any]:
+def between(scene, solver, reference, **metrics):
     """Return a comparison of two solvers; displacement_l2 stands for displacement.l2."""
     values = {name.replace("_", ".", 1): value for name, value in metrics.items()}
     return {"scene": scene, "solver": solver, "reference": reference, "window": 1.0, "metrics": values}
 
 
-def made_history(step: float, *columns: Any) -> History:
+def made_history(step, *columns):
     """Return a history of displacement [m] and, if given, contact pressure [Pa]."""
     names = ("displacement", "contact_pressure")
     values = {name: np.array(column, dtype=float) for name, column in zip(names, columns, strict=False)}
     return History(step * np.arange(1, len(values["displacement"]) + 1), values)
 
 
-def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any) -> dict[str, Any]:
+def kept_study(results, cases, comparisons=(), **parts):
     """Keep (scene, row, history) triples as a study, named "made" unless it is told otherwise; return its manifest."""
     entries = []
     for scene, row, history in cases:
@@ -82,29 +75,7 @@ def kept_study(results: Results, cases: Any, comparisons: Any = (), **parts: Any
 # ---- what a drawn axes shows --------------------------------------------------------------------------------------
 
 
-def height_of(axes: Axes, fraction: float) -> float:
-    """Return the value on the y axis at a height from 0 at the bottom to 1 at the top."""
-    low, high = axes.get_ylim()
-    if axes.get_yscale() == "log":
-        return float(low * (high / low) ** fraction)
-    return float(low + fraction * (high - low))
-
-
-def names_at(axes: Axes) -> dict[str, tuple[float, str]]:
-    """Return the names beside an axes: name -> value on the y axis at which its leader begins, and colour."""
-    leaders = [line for line in axes.lines if line.get_transform() == axes.transAxes]
-    starts = {round(float(line.get_ydata()[1]), 9): float(line.get_ydata()[0]) for line in leaders}
-    colors = {text.get_text(): to_hex(text.get_color()) for text in axes.texts}
-    return {name: (height_of(axes, starts[round(place, 9)]), colors[name]) for name, place in places_of(axes).items()}
-
-
-def places_of(axes: Axes) -> dict[str, float]:
-    """Return the names beside an axes and how high they stand, as a share of the height."""
-    beside = [text for text in axes.texts if text.get_transform() == axes.transAxes and text.get_position()[0] > 1]
-    return {text.get_text(): float(text.get_position()[1]) for text in beside}
-
-
-def rules_of(axes: Axes, color: str) -> tuple[list[float], list[float]]:
+def rules_of(axes, color):
     """Return where the rules of a colour stand that cross an axes: heights of level ones, x of upright ones."""
     rules = [line for line in axes.lines if to_hex(line.get_color()) == color]
     level = [line.get_ydata()[0] for line in rules if line.get_transform() == axes.get_yaxis_transform(which="grid")]
@@ -112,13 +83,13 @@ def rules_of(axes: Axes, color: str) -> tuple[list[float], list[float]]:
     return level, upright
 
 
-def lines_of(axes: Axes) -> list[tuple[str, Any, Any]]:
+def lines_of(axes):
     """Return the lines in data coordinates: colour, x and y."""
     drawn = [line for line in axes.lines if line.get_transform() == axes.transData]
     return [(to_hex(line.get_color()), np.array(line.get_xdata()), np.array(line.get_ydata())) for line in drawn]
 
 
-def line_in(axes: Axes, color: str) -> tuple[Any, Any]:
+def line_in(axes, color):
     """Return x and y of the one line of a colour with more than one point."""
     (found,) = [(x, y) for own, x, y in lines_of(axes) if own == color and x.size > 1]
     return found

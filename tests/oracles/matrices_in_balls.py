@@ -1,14 +1,11 @@
 """The histories of `fem` and `bar` in sixty-digit arithmetic, and how many digits the solvers keep of them."""
 
-from __future__ import annotations
-
 import numpy as np
 from flint import arb, arb_mat
 from oracles import bar_by_series
 
 from fem_reference.mesh.model import build
 from validation import solve
-from validation.scenes.scene import Scene
 from validation.solvers.fem import problem_of
 from validation.solvers.registry import get_solver
 from validation.solvers.sixty_digits.block import WORKING, Equations, digits, responses
@@ -16,7 +13,7 @@ from validation.solvers.sixty_digits.block import WORKING, Equations, digits, re
 COLUMNS = ("displacement", "contact_pressure")
 
 
-def mesh_history(scene: Scene) -> dict[str, list[arb]]:
+def mesh_history(scene):
     """Return the columns of a small mesh, the doubles of its own matrices taken as exact."""
     problem = problem_of(scene)
     model = build(problem, full=False)
@@ -27,7 +24,7 @@ def mesh_history(scene: Scene) -> dict[str, list[arb]]:
         return responses(Equations(M, K, load, rows), scene, COLUMNS)
 
 
-def lost(scene: Scene, solver: str) -> float:
+def lost(scene, solver):
     """Return the greatest error of `fem` or `bar` in its columns, over their maximum.
 
     Of the bar it is over the static value where the wave has hardly arrived.

@@ -4,13 +4,11 @@ import numpy as np
 from oracles.stepped_vibration import Rule
 
 from dda import spring_vectors
-from validation.scenes.scene import Scene
-from validation.solvers.contract import Prepared
 from validation.solvers.dda import OneBlock, SubBlocks
 from validation.solvers.fem import Mesh
 
 
-def matrices(prepared: Prepared) -> tuple[np.ndarray, ...]:
+def matrices(prepared):
     """Return M, K, F and the rows of displacement and contact pressure of a prepared scene."""
     if isinstance(prepared, Mesh):
         m, size = prepared.model, prepared.problem.load_size
@@ -37,6 +35,6 @@ def matrices(prepared: Prepared) -> tuple[np.ndarray, ...]:
     return model.mass, model.stiffness, model.force, np.array([np.eye(6)[1], pressure])
 
 
-def rule_of(scene: Scene) -> Rule:
+def rule_of(scene):
     t, d = scene.time, scene.damping
     return Rule(t.alpha, t.delta, t.discount, t.step, d.mass, d.stiffness, t.start)

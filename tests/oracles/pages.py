@@ -4,7 +4,6 @@ import csv
 import re
 import shutil
 import textwrap
-from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -12,12 +11,12 @@ BLOCK = re.compile(r"^```(\w+)(?: (?:file=|title=\")([^\s\"]+)\"?)?\n(.*?)^```$"
 FEW = ["-q", "-p", "no:cacheprovider", "-k", "figures-3-4 and settling"]  # of some hundred gates
 
 
-def write_my_solver(directory: Path) -> None:
+def write_my_solver(directory):
     """Write the solver that the documentation shows."""
     shutil.copy(ROOT / "docs/examples/judge/my_solver.py", directory)
 
 
-def summary(counts: Counter[tuple[str, str]], words: dict[str, str]) -> str:
+def summary(counts, words):
     """Return a paragraph: how many histories had each verdict, and of each kind how many were named right.
 
     ``counts`` are of (kind, verdict), ``words`` what the paragraph calls a verdict; "right" and "wrong" are among them.
@@ -32,14 +31,14 @@ def summary(counts: Counter[tuple[str, str]], words: dict[str, str]) -> str:
     return textwrap.fill(text, 120) + "\n"
 
 
-def page_with(table: str, page: str, begin: str, end: str) -> str:
+def page_with(table, page, begin, end):
     """Return a page with a table in its place between two marks."""
     return re.sub(
         re.escape(begin) + ".*?" + re.escape(end), lambda _: f"{begin}\n{table}\n{end}", page, flags=re.DOTALL
     )
 
 
-def table(path: Path) -> list[dict[str, str]]:
+def table(path):
     """Return the rows of a CSV table by the names of its columns."""
     with path.open(newline="") as stream:
         return list(csv.DictReader(stream))

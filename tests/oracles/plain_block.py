@@ -8,7 +8,6 @@ its own mass and springs may yield. It shares no line with the suite's own model
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
@@ -75,19 +74,19 @@ class History:
     open: np.ndarray  # both corners open at the end of the step
 
     @property
-    def opened(self) -> tuple[int, int] | None:
+    def opened(self):
         """The first and the last step with open corners."""
         steps = np.flatnonzero(self.open) + 1
         return (int(steps[0]), int(steps[-1])) if len(steps) else None
 
 
-def run(P: Plain) -> tuple[np.ndarray, np.ndarray]:
+def run(P):
     """Return displacement and contact pressure of every step."""
     found = history(P)
     return found.displacement, found.pressure
 
 
-def matrices(P: Plain, a: float, h: float) -> tuple[np.ndarray, ...]:
+def matrices(P, a, h):
     """Return mass, stiffness, load and weight of a rectangle, the motion of its lower corners, and its area."""
     n = 6 if P.base is None else 7
     S, s1, s2 = a * h, h * a**3 / 12, a * h**3 / 12
@@ -117,7 +116,7 @@ def matrices(P: Plain, a: float, h: float) -> tuple[np.ndarray, ...]:
     return M, elastic, load, weight, corners, S
 
 
-def history(P: Plain) -> History:
+def history(P):
     """Return the history of a run."""
     a, h = P.side, P.side if P.height is None else P.height
     M, elastic, load, weight, corners, S = matrices(P, a, h)
@@ -200,7 +199,7 @@ def history(P: Plain) -> History:
     return History(time, P.displacement_times * displacement, P.pressure_times * pressure, opened > 0)
 
 
-def write_measured_point(history: History, path: Path, dt: float) -> Path:
+def write_measured_point(history, path, dt):
     """Write the file that ntdda writes: seven digits, an unsigned displacement, step velocities."""
     steps = np.diff(history.displacement, prepend=0.0)
     lines = [

@@ -1,18 +1,12 @@
 """Processes of a test, known by a mark in their environment, and users' solvers without a process of their own."""
 
-from __future__ import annotations
-
 import json
 import os
 import signal
 import time
 import uuid
-from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
-
-import pytest
 
 from validation.solvers import user
 from validation.solvers.processes.user_worker import answering
@@ -21,7 +15,7 @@ MARK = "DDA_VALIDATE_TEST_MARK"
 AFTER = 2.0  # s that what a parent leaves may still run
 
 
-def marked(mark: str) -> dict[int, str]:
+def marked(mark):
     """Return the processes that carry a mark in their environment, with their command lines."""
     found = {}
     for place in Path("/proc").glob("[0-9]*"):
@@ -34,7 +28,7 @@ def marked(mark: str) -> dict[int, str]:
     return found
 
 
-def left(mark: str) -> list[str]:
+def left(mark):
     """Return what still runs after the time that it has."""
     deadline = time.monotonic() + AFTER
     while (found := marked(mark)) and time.monotonic() < deadline:
@@ -43,7 +37,7 @@ def left(mark: str) -> list[str]:
 
 
 @contextmanager
-def new_mark() -> Iterator[str]:
+def new_mark():
     """Yield a mark, and end whatever a red test has left under it."""
     mark = uuid.uuid4().hex
     yield mark
@@ -54,10 +48,10 @@ def new_mark() -> Iterator[str]:
             continue
 
 
-def answer_here(patch: pytest.MonkeyPatch) -> None:
+def answer_here(patch):
     """Let users' solvers answer in this process, where not theirs is the point."""
 
-    def ask(command: list[str], environment: object, request: object, limit: float) -> dict[str, Any]:
+    def ask(command, environment, request, limit):
         target = command[command.index(user.START) + 2]
         answer = answering(target)(json.loads(json.dumps(request)))
         return dict(json.loads(json.dumps(answer)))

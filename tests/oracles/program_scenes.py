@@ -1,12 +1,9 @@
 """Scenes that say what the plain program runs."""
 
-from oracles.plain_block import Plain
-
 from validation import load_scene
-from validation.scenes.scene import Scene
 
 
-def scene_of(p: Plain) -> Scene:
+def scene_of(p):
     """Return the scene of a run."""
     return load_scene("figures-3-4").with_values(
         {

@@ -5,7 +5,7 @@ import numpy as np
 from fem_reference.problem.bar import BarProblem
 
 
-def random_problem(seed: int) -> BarProblem:
+def random_problem(seed):
     rng = np.random.default_rng(seed)
     young = 1e9 * 10 ** rng.uniform(-1, 1)
     height, width = rng.uniform(0.5, 3.0, 2)

@@ -1,18 +1,19 @@
 """Histories of the two-block model by other programs' time schemes and contact methods, each as its authors write it.
 
-Two unknowns, v of the centroid and the strain ey; each scheme is the recursion of its paper with matrices and a loop,
-and shares nothing with `dda`, `fem_reference` or what `compare` steps. Contact is a spring of 2 p under both corners
+Two unknowns, v of the centroid and the strain ey. Schemes that `oracles.staged` has are stepped there, each other one
+is the recursion of its paper with matrices and a loop; nothing is shared with `dda`, `fem_reference` or what `compare`
+steps. Contact is a spring of 2 p under both corners
 that is always closed (`opens=False`) or presses only; contact methods of their own are below the schemes.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from oracles.staged import System, march, of_second_order, theta
 
 
 @dataclass(frozen=True)
@@ -27,26 +28,26 @@ class Body:
     g: float = 0.0
 
     @property
-    def M(self) -> np.ndarray:
+    def M(self):
         m = self.rho * self.a**2
         return np.diag([m, m * self.a**2 / 12])
 
     @property
-    def K(self) -> np.ndarray:
+    def K(self):
         """Of the block alone, without the springs."""
         return np.diag([0.0, self.E * self.a**2])
 
     @property
-    def B(self) -> np.ndarray:
+    def B(self):
         """Row of the gap."""
         return np.array([1.0, -self.a / 2])
 
     @property
-    def k(self) -> float:
+    def k(self):
         return 2 * self.p
 
     @property
-    def F(self) -> np.ndarray:
+    def F(self):
         load = self.q * self.a
         return np.array([-load - self.rho * self.a**2 * self.g, -load * self.a / 2])
 
@@ -63,7 +64,7 @@ class Run:
     gg: float = 1.0
     opens: bool = False
 
-    def history(self) -> tuple[np.ndarray, np.ndarray]:
+    def history(self):
         """Return displacement and contact pressure of every step."""
         rows = METHODS[self.method](self, **self.numbers)
         x = np.array([row[0] for row in rows])
@@ -71,99 +72,38 @@ class Run:
         return x[:, 0], N / self.body.a
 
 
-Rows = list[tuple[np.ndarray, float]]
-
-
-def spring_force(run: Run, w: float) -> float:
+def spring_force(run, w):
     """Return the force of the springs at a gap."""
     return -run.body.k * w if w < 0 or not run.opens else 0.0
-
-
-def is_closed(run: Run, solve: Callable[[bool], tuple[np.ndarray, float]], before: bool) -> bool:
-    """Return which state of the contact agrees with the gap that a solve with it gives, the one before first."""
-    if not run.opens:
-        return True
-    closed = before
-    for _ in range(8):
-        w = solve(closed)[1]
-        if (w < 0) == closed:
-            return closed
-        closed = not closed
-    return closed
 
 
 # ---- schemes --------------------------------------------------------------------------------------------------------
 
 
-def alpha_family(run: Run, am: float, af: float, beta: float, gamma: float, zero: bool, form: str = "force") -> Rows:
-    """(1 - am) M a1 + am M a + (1 - af) r(x1) + af r(x) = F, in the unknown x1 (Chung and Hulbert 1993)."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
-    closed = True
-    N = 0.0
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-        ahead = x + dt * u + dt * dt * (0.5 - beta) * a
-
-        def solve(on: bool, x=x, a=a, N=N, ahead=ahead) -> tuple[np.ndarray, float]:
-            springs = b.k * on * np.outer(b.B, b.B)
-            old = b.K @ x - (b.B * N if form == "force" else -springs @ x)
-            S = (1 - am) * b.M + (1 - af) * beta * dt * dt * (b.K + springs)
-            right = b.F - am * b.M @ a - af * old - (1 - af) * (b.K + springs) @ ahead
-            a1 = np.linalg.solve(S, right)
-            x1 = ahead + beta * dt * dt * a1
-            w = b.B @ ((1 - af) * x1 + af * x) if form == "state" else b.B @ x1
-            return a1, w
-
-        closed = is_closed(run, solve, closed)
-        a1, w = solve(closed)
-        x = ahead + beta * dt * dt * a1
-        v = u + dt * ((1 - gamma) * a + gamma * a1)
-        a = a1
-        N = -b.k * w * closed
-        rows.append((x, N if form == "force" else spring_force(run, b.B @ x)))
-    return rows
+def staged(run, name="", form="force", **numbers):
+    """Return the rows of a scheme of `oracles.staged`; springs that hold are part of the stiffness."""
+    b = run.body
+    springs = b.k * np.outer(b.B, b.B)
+    rows = b.B[None, :] if run.opens else None
+    system = System(b.M, b.K if run.opens else b.K + springs, lambda t: b.F, B=rows, p=b.k)
+    rest = np.zeros(2)
+    x, _, N = march(system, name, run.dt, run.steps, rest, rest, run.gg, mean=form == "state", **numbers)
+    return list(zip(x[1:], N[1:, 0] if run.opens else -b.k * x[1:] @ b.B, strict=True))
 
 
-def newmark(run: Run, alpha: float, delta: float, zero: bool = False) -> Rows:
-    return alpha_family(run, 0.0, 0.0, alpha, delta, zero)
+def newmark(run, alpha, delta, zero=False):
+    return staged(run, weights=(alpha, delta), zero=zero)
 
 
-def by_weights(run: Run, am: float, af: float, zero: bool, form: str) -> Rows:
-    return alpha_family(run, am, af, (1 - am + af) ** 2 / 4, 0.5 - am + af, zero, form)
+def by_weights(run, am, af, zero=False, form="force"):
+    return staged(run, form=form, stage=of_second_order(am, af), zero=zero)
 
 
-def chung_hulbert(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
-    return by_weights(run, (2 * r - 1) / (r + 1), r / (r + 1), zero, form)
-
-
-def hht(run: Run, e: float, zero: bool = False, form: str = "force") -> Rows:
+def hht(run, e, zero=False, form="force"):
     return by_weights(run, 0.0, e, zero, form)
 
 
-def wbz(run: Run, r: float, zero: bool = False, form: str = "force") -> Rows:
-    return by_weights(run, (r - 1) / (r + 1), 0.0, zero, form)
-
-
-def leapfrog(run: Run) -> Rows:
-    """Velocities at half steps; the first one is v_0 + dt a_0 / 2."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    half = None
-    rows = []
-    for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        half = dt * a / 2 if half is None else run.gg * half + dt * a
-        x = x + dt * half
-        rows.append((x, spring_force(run, b.B @ x)))
-    return rows
-
-
-def symplectic_euler(run: Run) -> Rows:
+def symplectic_euler(run):
     b, dt = run.body, run.dt
     x = np.zeros(2)
     v = np.zeros(2)
@@ -176,97 +116,7 @@ def symplectic_euler(run: Run) -> Rows:
     return rows
 
 
-def forward_euler(run: Run) -> Rows:
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    rows = []
-    for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        a = np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        x, v = x + dt * v, run.gg * v + dt * a
-        rows.append((x, spring_force(run, b.B @ x)))
-    return rows
-
-
-def implicit_euler(run: Run) -> Rows:
-    return theta(run, 1.0)
-
-
-def midpoint(run: Run) -> Rows:
-    """Of a constant load and springs that hold it is the trapezoidal rule in this form."""
-    return theta(run, 0.5)
-
-
-def theta(run: Run, share: float) -> Rows:
-    """v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    N = 0.0
-    closed = True
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
-
-        def solve(on: bool, x=x, u=u, N=N) -> tuple[np.ndarray, float]:
-            K = b.K + b.k * on * np.outer(b.B, b.B)
-            ahead = x + dt * (1 - share) * u
-            force = b.F - share * K @ ahead - (1 - share) * (b.K @ x - b.B * N)
-            v1 = np.linalg.solve(b.M + share**2 * dt * dt * K, b.M @ u + dt * force)
-            return v1, b.B @ (ahead + dt * share * v1)
-
-        closed = is_closed(run, solve, closed)
-        v, w = solve(closed)
-        x = x + dt * (share * v + (1 - share) * u)
-        N = -b.k * w * closed
-        rows.append((x, N))
-    return rows
-
-
-def composite(run: Run, split: float, r: float) -> Rows:
-    """The weights of Noh and Bathe 2019."""
-    q1 = (r + 1) / (2 * split * (r - 1) + 4)
-    return two_stages(run, split, (split - 1) * q1 + 0.5, q1, 0.5 - split * q1)
-
-
-def tr_bdf2(run: Run) -> Rows:
-    """The backward difference of second order as weights of slopes (Hosea and Shampine 1996)."""
-    return two_stages(run, 2 - math.sqrt(2), math.sqrt(2) / 4, math.sqrt(2) / 4, 1 - math.sqrt(2) / 2)
-
-
-def two_stages(run: Run, split: float, q0: float, q1: float, q2: float) -> Rows:
-    """Trapezoidal rule over split dt, then v1 = u + dt (q0 a + q1 ag + q2 a1), and x1 so of u, vg, v1."""
-    b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.linalg.solve(b.M, b.F)
-    closed = True
-    rows = []
-
-    def implicit(known: np.ndarray, rate: np.ndarray, h: float, before: bool) -> tuple[np.ndarray, ...]:
-        """Solve x1 = known + h v1, v1 = rate + h a1, M a1 + K x1 = F."""
-
-        def solve(on: bool) -> tuple[np.ndarray, float]:
-            K = b.K + b.k * on * np.outer(b.B, b.B)
-            x1 = np.linalg.solve(b.M + h * h * K, b.M @ (known + h * rate) + h * h * b.F)
-            return x1, b.B @ x1
-
-        on = is_closed(run, solve, before)
-        x1, w = solve(on)
-        v1 = (x1 - known) / h
-        return x1, v1, (v1 - rate) / h, on, -b.k * w * on
-
-    for _ in range(run.steps):
-        u = run.gg * v
-        h = split * dt / 2
-        _, vg, ag, closed, _ = implicit(x + h * u, u + h * a, h, closed)
-        x, v, a, closed, N = implicit(x + dt * (q0 * u + q1 * vg), u + dt * (q0 * a + q1 * ag), q2 * dt, closed)
-        rows.append((x, N))
-    return rows
-
-
-def houbolt(run: Run) -> Rows:
+def houbolt(run):
     """(2 x1 - 5 x + 4 x_-1 - x_-2) / dt^2; the first two rows by average acceleration."""
     b, dt = run.body, run.dt
     K = b.K + b.k * np.outer(b.B, b.B)
@@ -278,7 +128,7 @@ def houbolt(run: Run) -> Rows:
     return [(x, -b.k * b.B @ x) for x in past[1 : run.steps + 1]]
 
 
-def wilson(run: Run, share: float = 1.4) -> Rows:
+def wilson(run, share=1.4):
     b, dt = run.body, run.dt
     K = b.K + b.k * np.outer(b.B, b.B)
     x = np.zeros(2)
@@ -297,11 +147,11 @@ def wilson(run: Run, share: float = 1.4) -> Rows:
     return rows
 
 
-def runge_kutta(run: Run) -> Rows:
+def runge_kutta(run):
     """The classical one of order four."""
     b, dt = run.body, run.dt
 
-    def rate(y: np.ndarray) -> np.ndarray:
+    def rate(y):
         N = spring_force(run, b.B @ y[:2])
         return np.concatenate([y[2:], np.linalg.solve(b.M, b.F - b.K @ y[:2] + b.B * N)])
 
@@ -320,7 +170,7 @@ def runge_kutta(run: Run) -> Rows:
 # ---- contact methods ------------------------------------------------------------------------------------------------
 
 
-def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
+def contact_split(run, law, number=0.0):
     """A contact force beside average acceleration of the block: Kane et al. 1999, or Armero and Petocz 1998."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -347,14 +197,14 @@ def contact_split(run: Run, law: str, number: float = 0.0) -> Rows:
     return rows
 
 
-def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) -> float:
+def _energy_conserving(k, C, w0, wf, opens):
     if not opens:
         return -k * (wf + w0) / (2 + k * C)
 
-    def energy(w: float) -> float:
+    def energy(w):
         return k * min(w, 0.0) ** 2 / 2
 
-    def force(w1: float) -> float:
+    def force(w1):
         if abs(w1 - w0) < 1e-14:
             return -k * min(w0, 0.0)
         return -(energy(w1) - energy(w0)) / (w1 - w0)
@@ -368,9 +218,7 @@ def _energy_conserving(k: float, C: float, w0: float, wf: float, opens: bool) ->
     return force((low + high) / 2)
 
 
-def by_free_gap(
-    run: Run, alpha: float, delta: float, zero: bool, force: Callable[[float, float, float], float]
-) -> Rows:
+def by_free_gap(run, alpha, delta, zero, force):
     """Newmark's step with a contact force at its end of the free gap, its rate and the compliance B M_eff^(-1) B."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -393,13 +241,11 @@ def by_free_gap(
     return rows
 
 
-def dashpot(
-    run: Run, c: float, alpha: float = 0.25, delta: float = 0.5, clipped: bool = True, zero: bool = False
-) -> Rows:
+def dashpot(run, c, alpha=0.25, delta=0.5, clipped=True, zero=False):
     """Spring and dashpot at the end of the step, closed where the free gap is negative (unclipped: until w = 0)."""
     k, dt = run.body.k, run.dt
 
-    def force(wf: float, rate: float, C: float) -> float:
+    def force(wf, rate, C):
         N = -(k * wf + c * rate) / (1 + C * (alpha * dt * dt * k + delta * dt * c))
         if run.opens and wf >= 0:
             return 0.0
@@ -408,7 +254,7 @@ def dashpot(
     return by_free_gap(run, alpha, delta, zero, force)
 
 
-def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
+def moreau(run, e, theta=0.5):
     """Moreau-Jean: velocity-level contact with Newton's restitution where the forecast gap is not positive."""
     b, dt = run.body, run.dt
     x = np.zeros(2)
@@ -427,10 +273,10 @@ def moreau(run: Run, e: float, theta: float = 0.5) -> Rows:
     return rows
 
 
-def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance: float = 0.0, r: float = 0.0) -> Rows:
+def lagrange(run, alpha, delta, zero=False, tolerance=0.0, r=0.0):
     """Rigid contact in displacements: complementarity, or passes of an augmented Lagrangian down to a penetration."""
 
-    def force(wf: float, rate: float, compliance: float) -> float:
+    def force(wf, rate, compliance):
         C = alpha * run.dt**2 * compliance
         if not tolerance:
             return max(0.0, -wf / C)
@@ -445,20 +291,19 @@ def lagrange(run: Run, alpha: float, delta: float, zero: bool = False, tolerance
     return by_free_gap(run, alpha, delta, zero, force)
 
 
-METHODS: dict[str, Callable[..., Rows]] = {
+METHODS = {
     "newmark": newmark,
-    "chung-hulbert": chung_hulbert,
+    "chung-hulbert": lambda run, r, **how: staged(run, "chung-hulbert", rho=r, **how),
     "hht": hht,
-    "wbz": wbz,
+    "wbz": lambda run, r, **how: staged(run, "wbz", rho=r, **how),
     "weights": by_weights,
-    "leapfrog": leapfrog,
+    "leapfrog": lambda run: staged(run, "leapfrog"),
     "symplectic-euler": symplectic_euler,
-    "forward-euler": forward_euler,
-    "implicit-euler": implicit_euler,
-    "theta": theta,
-    "composite": composite,
-    "tr-bdf2": tr_bdf2,
-    "midpoint": midpoint,
+    "implicit-euler": lambda run: staged(run, stage=theta(1.0)),
+    "theta": lambda run, share: staged(run, stage=theta(share)),
+    "composite": lambda run, split, r: staged(run, "composite", rho=r, split=split),
+    "tr-bdf2": lambda run: staged(run, "composite", split=2 - math.sqrt(2)),
+    "midpoint": lambda run: staged(run, stage=theta(0.5)),
     "houbolt": houbolt,
     "wilson": wilson,
     "runge-kutta": runge_kutta,
@@ -469,6 +314,6 @@ METHODS: dict[str, Callable[..., Rows]] = {
 }
 
 
-def rounded(values: np.ndarray, digits: int) -> np.ndarray:
+def rounded(values, digits):
     """Return values as a file with so many significant digits gives them."""
     return np.array([float(f"{value:.{digits - 1}e}") for value in values]) if digits < 17 else values

@@ -28,7 +28,6 @@ def history(
     start=None,
     discounts=1,
     alpha=None,
-    inertia_height=None,
 ):
     """Return (displacement, contact pressure) of a scene; a keyword is what a slip has in its place."""
     if scene.block.vertices is not None or scene.contact.law != "locked" or scene.load.gravity:
@@ -49,8 +48,7 @@ def history(
     gg = t.discount**discounts
 
     mass = density * block.density * area
-    sides_of_inertia = (width, height if inertia_height is None else inertia_height(width, height))
-    ix, iy = (mass * side**2 / 12 for side in sides_of_inertia)
+    ix, iy = (mass * side**2 / 12 for side in (width, height))
     M = np.diag([mass, mass, ix + iy, ix, iy, (ix + iy) / 4])
     M[2, 5] = M[5, 2] = (ix - iy) / 2
     K = np.zeros((6, 6))

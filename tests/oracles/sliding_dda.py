@@ -65,7 +65,7 @@ class Motion:
 
 
 class _Stepper:
-    def __init__(self, s: Slider):
+    def __init__(self, s):
         self.s, w, h = s, s.width, s.height
         self.mass = s.rho * w * h
         x2, y2 = self.mass * w * w / 12, self.mass * h * h / 12
@@ -121,7 +121,7 @@ class _Stepper:
         return np.array([n @ D for n in self.n]), np.array([t @ D for t in self.t])
 
 
-def run(s: Slider) -> Motion:
+def run(s):
     k = _Stepper(s)
     D, V, r, states = np.zeros(len(k.F)), np.zeros(len(k.F)), np.zeros(2), (STICK, STICK)
     A = np.linalg.solve(k.M, k.F) if s.consistent_start else np.zeros(len(k.F))

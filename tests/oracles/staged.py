@@ -20,6 +20,22 @@ def generalised_alpha(name, rho):
     return (rho - 1) / (rho + 1), 0.0
 
 
+def newmark(alpha, delta):
+    """Return a stage: am, af, beta and gamma of its end, and what it goes ahead by: dt^2 times this share of a."""
+    return 0.0, 0.0, alpha, delta, 0.5 - alpha
+
+
+def of_second_order(am, af):
+    """Return the stage of (1 - am) M a1 + am M a + (1 - af) r(x1) + af r(x) = F (Chung and Hulbert 1993)."""
+    beta = (1 - am + af) ** 2 / 4
+    return am, af, beta, 0.5 - am + af, 0.5 - beta
+
+
+def theta(share):
+    """Return the stage of v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
+    return 0.0, 0.0, share**2, share, share * (1 - share)
+
+
 class System:
     """M x'' + C x' + K x = F(t) + B' N: the force of each row of B is N = -(B x + gap(t) - r)/c within its bounds.
 
@@ -49,8 +65,16 @@ class System:
             N = (self.reference - self.opening(t, x)) / self.compliance
         return np.clip(np.where(self.compliance > 0, N, 0.0), self.lower, self.upper)
 
-    def implicit(self, t, known_x, known_v, beta, gamma, am=0.0, af=0.0, old=0.0):
-        """Return a1, x1 and N of x1 = known_x + beta a1, v1 = known_v + gamma a1; `old` are the terms of the start."""
+    def forces_of_rates(self, N, rate):
+        """Return N with those of rigid rows that slip at the start: their strength, against the slip."""
+        held = np.where(rate > 0, self.lower, self.upper)
+        return np.where((self.compliance == 0) & (np.abs(rate) > 1e-9) & self.slips, held, N)
+
+    def implicit(self, t, known_x, known_v, beta, gamma, am=0.0, af=0.0, old=0.0, start=None):
+        """Return a1, x1 and N of x1 = known_x + beta a1, v1 = known_v + gamma a1; `old` are the terms of the start.
+
+        With the displacements of the `start`, N is that of the gap at (1 - af) x1 + af x, and acts whole.
+        """
         left = (1 - am) * self.M + (1 - af) * (gamma * self.C + beta * self.K)
         right = (1 - af) * (self.F(t) - self.C @ known_v - self.K @ known_x) + old
         kinds = (LOWER, INSIDE, UPPER) if self.slips else (LOWER, INSIDE)
@@ -60,8 +84,9 @@ class System:
             held = np.where(np.array(states) == UPPER, self.upper, self.lower)
             if not np.all(np.isfinite(held[~inside])):
                 continue
-            a, x, N = self._solved(t, known_x, beta, left, right, inside, held, 1 - af)
-            beyond = self.opening(t, x) - self.reference + self.compliance * N
+            a, x, N = self._solved(t, known_x, beta, left, right, inside, held, 1 - af, start)
+            place = x if start is None else (1 - af) * x + af * start
+            beyond = self.opening(t, place) - self.reference + self.compliance * N
             ways = np.array([1.0, 0.0, -1.0])[list(states)] if len(self.B) else np.zeros(0)
             within = np.all((N[inside] >= self.lower[inside]) & (N[inside] <= self.upper[inside]))
             if within and np.all(beyond[~inside] * ways[~inside] >= 0):
@@ -69,13 +94,19 @@ class System:
         assert fitting and all(np.allclose(one[2], fitting[0][2], rtol=1e-9, atol=1e-6) for one in fitting)
         return fitting[0]
 
-    def _solved(self, t, known_x, beta, left, right, inside, held, share):
+    def _solved(self, t, known_x, beta, left, right, inside, held, share, start):
         """Solve for accelerations and the forces of rows that are within their bounds."""
         n = len(left)
         B = self.B[inside]
         own = np.where(inside, 0.0, held)
-        matrix = np.block([[left, -share * B.T], [B, np.diag(self.compliance[inside] / beta)]])
-        short = (self.reference - self.gap(t))[inside] - B @ known_x
+        compliance = self.compliance[inside]
+        short = (self.reference - self.gap(t))[inside]
+        if start is not None:  # a share of the gap is known, and the force is no mean of two
+            short = (short - (1 - share) * B @ start) / share
+            compliance = compliance / share
+            share = 1.0
+        short = short - B @ known_x
+        matrix = np.block([[left, -share * B.T], [B, np.diag(compliance / beta)]])
         solution = np.linalg.solve(matrix, np.concatenate([right + share * self.B.T @ own, short / beta]))
         own[inside] = solution[n:]
         return solution[:n], known_x + beta * solution[:n], own
@@ -86,15 +117,18 @@ class System:
             self.reference = self.opening(t, x) + self.compliance * N
 
 
-def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False, weights=None):
+def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False, weights=None, stage=None, mean=False):
     """Return displacements, velocities at their time and contact forces, from t = 0 on.
 
-    Newmark's scheme takes its `weights` alpha and delta.
+    Newmark's scheme takes its `weights` alpha and delta, any other of one stage its row; `mean` finds contact by the
+    gap between start and end that internal forces are taken at, and tells the force of the gap at the end.
     """
     s = system
     M, C, K = s.M, s.C, s.K
     s.reference = np.zeros(len(s.B))
     N = s.forces(0.0, x)
+    if not zero:
+        N = s.forces_of_rates(N, s.B @ v)
     a = np.zeros_like(x) if zero else np.linalg.solve(M, s.F(0.0) + s.B.T @ N - C @ v - K @ x)
     rows = [(x, v, N)]
     half = v - dt / 2 * a
@@ -120,12 +154,15 @@ def march(system, name, dt, steps, x, v, gg=1.0, rho=0.0, split=None, zero=False
             a, x, N = s.implicit(t + dt, known_x, known_v, (q2 * dt) ** 2, q2 * dt)
             v = known_v + q2 * dt * a
         else:
-            am, af = (0.0, 0.0) if weights else generalised_alpha(name, rho)
-            beta, gamma = weights or ((1 - am + af) ** 2 / 4, 0.5 - am + af)
-            old = af * (s.F(t) + s.B.T @ N - C @ v - K @ x) - am * M @ a
+            if weights:
+                stage = newmark(*weights)
+            am, af, beta, gamma, ahead = stage or of_second_order(*generalised_alpha(name, rho))
+            old = af * (s.F(t) + (not mean) * s.B.T @ N - C @ v - K @ x) - am * M @ a
             known_v = u + dt * (1 - gamma) * a
-            known_x = x + dt * u + dt * dt * (0.5 - beta) * a
-            a, x, N = s.implicit(t + dt, known_x, known_v, beta * dt * dt, gamma * dt, am, af, old)
+            known_x = x + dt * u + dt * dt * ahead * a
+            start = x if mean else None
+            a, x, N = s.implicit(t + dt, known_x, known_v, beta * dt * dt, gamma * dt, am, af, old, start)
+            N = s.forces(t + dt, x) if mean else N
             v = known_v + gamma * dt * a
         s.end_stage(t + dt, x, N)
         rows.append((x, v, N))

@@ -6,11 +6,8 @@ Matrices are stepped in their natural modes, where the rounding of a slow motion
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 GONE, MOST = 1e-14, 20_000  # of the transients; steps
 
 
@@ -27,7 +24,7 @@ class Rule:
     start: str = "zero"
 
 
-def operators(rule: Rule, squares: Array) -> tuple[Array, Array]:
+def operators(rule, squares):
     """Return the maps of (D, dt V, dt^2 A) of modes, (modes, 3, 3), and of dt^2 times the load, (modes, 3).
 
     The new acceleration is that of A + C V + w^2 D = F at the end of the step, C = a0 + a1 w^2.
@@ -41,7 +38,7 @@ def operators(rule: Rule, squares: Array) -> tuple[Array, Array]:
     return T, np.array([rule.alpha, rule.delta, 1.0]) / left[:, None]
 
 
-def steady_modes(rule: Rule, squares: Array, w: float) -> Complex | None:
+def steady_modes(rule, squares, w):
     """Return the amplitudes of modes under unit loads cos(wt); None where transients last too long."""
     T, push = operators(rule, squares)
     radius = float(np.max(np.abs(np.linalg.eigvals(T))))
@@ -58,14 +55,14 @@ def steady_modes(rule: Rule, squares: Array, w: float) -> Complex | None:
     return fit(seen, w, rule.step * np.arange(steps + 1.0, steps + fitted + 1))
 
 
-def amplitudes(rule: Rule, M: Array, K: Array, F: Array, rows: Array, w: float) -> Complex | None:
+def amplitudes(rule, M, K, F, rows, w):
     """Return the amplitudes of some rows of D under F cos(wt), by steps; None where transients last too long."""
     squares, shapes = eigh(K, M)
     steady = steady_modes(rule, squares, w)
     return None if steady is None else np.asarray((rows @ shapes) @ ((shapes.T @ F) * steady))
 
 
-def fit(seen: Array, w: float, times: Array) -> Complex:
+def fit(seen, w, times):
     """Return c of Re(c e^{iwt}) + shift by least squares, one for each column: a dashpot alone holds no place."""
     wave = np.column_stack([np.cos(w * times), -np.sin(w * times), np.ones_like(times)])
     real, imaginary, _ = np.linalg.lstsq(wave, seen, rcond=None)[0]

@@ -1,60 +1,56 @@
 """What tests of the report share."""
 
 import os
-from collections.abc import Callable
 from pathlib import Path
 from pprint import pformat
 
 import pytest
-from matplotlib.figure import Figure
 from oracles import made_results as made
 from oracles.made_results import figure_text
 
-from validation.report.blocks import Blocks
 from validation.report.figures import histories
-from validation.runs.results import Results
 
 
 @pytest.fixture(scope="session")
-def core_results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+def core_results(tmp_path_factory):
     return made.core_results(tmp_path_factory.mktemp("core"))
 
 
 @pytest.fixture(scope="session")
-def made_results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+def made_results(tmp_path_factory):
     return made.made_results(tmp_path_factory.mktemp("made"))
 
 
 @pytest.fixture
-def drawn(monkeypatch: pytest.MonkeyPatch) -> dict[str, Figure]:
+def drawn(monkeypatch):
     """Catch the figures that a chapter writes, by the names of their files."""
-    caught: dict[str, Figure] = {}
+    caught = {}
     monkeypatch.setattr(histories, "save", lambda figure, path: caught.setdefault(path.name, figure))
     return caught
 
 
 @pytest.fixture
-def kept() -> Callable[[str, Blocks], None]:
+def kept():
     """Hold blocks of made rows to a page in `pages`, word by word; with ``KEEP_PAGES=1`` it is written anew."""
 
-    def check(name: str, blocks: Blocks) -> None:
+    def check(name, blocks):
         _held(name, "\n".join(pformat(block, width=120) for block in blocks) + "\n")
 
     return check
 
 
 @pytest.fixture
-def kept_figures() -> Callable[[str, dict[str, Figure]], None]:
+def kept_figures():
     """Hold figures to a page in `pages`, as `kept` holds blocks."""
 
-    def check(name: str, figures: dict[str, Figure]) -> None:
+    def check(name, figures):
         text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items())) + "\n"
         _held(name, text)
 
     return check
 
 
-def _held(name: str, text: str) -> None:
+def _held(name, text):
     page = Path(__file__).with_name("pages") / f"{name}.txt"
     if os.environ.get("KEEP_PAGES"):
         page.write_text(text, encoding="utf-8")

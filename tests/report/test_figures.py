@@ -1,7 +1,5 @@
 """Figures: nothing is lost by thinning, names never overlap, the same data give the same bytes."""
 
-from __future__ import annotations
-
 import itertools
 
 import numpy as np

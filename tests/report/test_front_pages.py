@@ -1,10 +1,6 @@
 """The pages that are read first: every number in sentence, table and chart, from closed forms or from made rows."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +20,7 @@ PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps":
 FREQUENCIES = {1.0: 344.5612, 10.0: 498.812, 100.0: 524.096}  # rad/s, of the paper's block
 
 
-def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
+def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least():
     for ratio, frequency in FREQUENCIES.items():
         scene = closed.stiffer(PAPER, ratio)
         (step,) = closed.steps_for(scene, [0.05])
@@ -36,7 +32,7 @@ def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least() -> None:
     assert closed.steps_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), [0.05]) == [None]
 
 
-def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step() -> None:
+def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step():
     for ratio in (0.1, 1.0, 10.0, 100.0):
         p, m = ratio * 1e9, 10_800.0
         K, M = np.array([[2 * p, -2 * p], [-2 * p, 4e9 + 2 * p]]), np.diag([m, m / 3])
@@ -52,7 +48,7 @@ def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step()
     ("at_rest", "least", "words"),
     [(5e6, 1e5, ("right", "none")), (5.004e6, -1e-3, ("right", "none")), (4.9e6, -2e5, ("wrong", -2e5))],
 )
-def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest: float, least: float, words: Any) -> None:
+def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest, least, words):
     dda = made_row("dda", {"pressure.static": at_rest, "pressure.minimum": least, "pressure.peak": 8.4e6})
     row = decisions.first_peak(PAPER, dda, made_row("bar", {"pressure.peak": 8e6}))
     assert row["excess"] == pytest.approx(0.05) and (row["at rest"], row["tension"]) == words
@@ -61,7 +57,7 @@ def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest: float, 
 # ---- the pages ------------------------------------------------------------------------------------------------------
 
 
-def test_the_first_pages_say_what_was_found(kept: Any, core_results: Results, drawn: Any, tmp_path: Path) -> None:
+def test_the_first_pages_say_what_was_found(kept, core_results, drawn, tmp_path):
     front = front_chapter(core_results, ["core"], tmp_path)
     kept("front", front_pages(front, {}, [])[1:])
     damping, error = drawn["first.svg"].axes
@@ -73,7 +69,7 @@ def test_the_first_pages_say_what_was_found(kept: Any, core_results: Results, dr
     assert "a/c = 3.29 ms" in [text.get_text() for text in chart.texts]
 
 
-def test_results_of_other_studies_have_no_such_pages(tmp_path: Path) -> None:
+def test_results_of_other_studies_have_no_such_pages(tmp_path):
     results = Results(tmp_path)
     kept_study(results, [(PAPER, made_row("dda", {}, PAPER.name), None)])
     assert front_chapter(results, ["made"], tmp_path) is None
@@ -88,19 +84,19 @@ def test_results_of_other_studies_have_no_such_pages(tmp_path: Path) -> None:
         ([], "No gate was judged.", "warn"),
     ],
 )
-def test_one_line_of_verdicts(words: list[str], said: str, tone: str) -> None:
-    callout = verdict_line([{"verdict": word} for word in words])  # type: ignore[misc, arg-type]
+def test_one_line_of_verdicts(words, said, tone):
+    callout = verdict_line([{"verdict": word} for word in words])
     assert (callout.text, callout.tone) == (said, tone)
 
 
 @pytest.mark.parametrize("beyond", [0, 1])
-def test_scenes_are_listed_as_long_as_a_page_has_lines_for_them(beyond: int) -> None:
+def test_scenes_are_listed_as_long_as_a_page_has_lines_for_them(beyond):
     group = made_group(made_case(PAPER, {"dda": {}}))
     blocks = front_pages(None, {f"scene-{number}": group for number in range(OVERVIEW_SCENES + beyond)}, [])
     assert [isinstance(block, Table) for block in blocks].count(True) == 1 - beyond
 
 
-def test_the_model_is_drawn_with_its_words() -> None:
+def test_the_model_is_drawn_with_its_words():
     (axes,) = model_figure("a = 2 m", "q = 5 MPa").axes
     place = {text.get_text(): text.get_position() for text in axes.texts}
     assert place["M"][0] < place["A"][0] < place["N"][0] and place["B, fixed"][1] < place["M"][1] < place["A"][1]

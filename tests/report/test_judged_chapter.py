@@ -1,12 +1,7 @@
 """The page of a judged answer: error and allowed in per cent, numbers beside, curves of the answer and of the truth."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
-from matplotlib.figure import Figure
 from oracles.made_cases import made_history
 
 from validation.gates.gate import Status
@@ -22,7 +17,7 @@ EXACT = made_history(0.1, [-1e-3, -2e-3, -3e-3], [1e6, 2e6, 3e6])
 ANSWER = made_history(0.1, [-1e-3, -1e-3, -2e-3, 9.0], [1e6, 1e6, 1e6, 9.0])  # one row longer
 
 
-def judged() -> JudgedAnswer:
+def judged():
     criteria = (
         Criterion("displacement", Status.FAIL, 0.125, 0.05, 0.3, "", 0.1, "block.young"),
         Criterion("contact_pressure", Status.PASS, 0.0125, 0.025, 0.2, "", 0.2, "load.pressure"),
@@ -33,11 +28,11 @@ def judged() -> JudgedAnswer:
     return JudgedAnswer(Answer("locked", one, ANSWER), one, ANSWER, Standard(EXACT, {}, {}), found, None)
 
 
-def test_the_page_has_errors_numbers_and_curves(kept: Any, kept_figures: Any, drawn: Any, tmp_path: Path) -> None:
+def test_the_page_has_errors_numbers_and_curves(kept, kept_figures, drawn, tmp_path):
     kept("judged", chapter.page(judged(), tmp_path))
     kept_figures("figures-judged", drawn)
 
 
-def test_an_answer_that_is_exact_lies_on_the_exact_motion(drawn: dict[str, Figure], tmp_path: Path) -> None:
+def test_an_answer_that_is_exact_lies_on_the_exact_motion(drawn, tmp_path):
     blocks = chapter.figures(replace(judged(), history=EXACT), tmp_path)
     assert all("lies on the exact motion" in block.caption for block in blocks)

@@ -1,14 +1,10 @@
 """Pages of the PDF: what belongs together stands together, whatever is above it."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 from matplotlib.figure import Figure
 from pypdf import PdfReader
 
-from validation.report.blocks import Block, Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
+from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
 from validation.report.figures.histories import save
 from validation.report.render.pdf import typeset
 
@@ -16,7 +12,7 @@ LINES = 46  # of text that fill a page
 CASES = range(2, LINES, 3)  # lines above a chapter, so that it begins at each height of a page
 
 
-def chapter(name: int) -> list[Block]:
+def chapter(name):
     """Return a chapter whose parts have names of their own."""
     rows = [(f"row {name}.{row}", "1") for row in range(8)]
     return [
@@ -30,17 +26,17 @@ def chapter(name: int) -> list[Block]:
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+def pages(tmp_path_factory):
     root = tmp_path_factory.mktemp("pdf")
     save(Figure(figsize=(4.0, 2.0)), root / "figure.svg")
-    blocks: list[Block] = []
+    blocks = []
     for lines in CASES:
         blocks += [PageBreak(), *(Paragraph(f"Above {lines}.") for _ in range(lines)), *chapter(lines)]
     (root / "made.pdf").write_bytes(typeset(root, blocks))
     return [page.extract_text() for page in PdfReader(root / "made.pdf").pages]
 
 
-def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages: list[str]) -> None:
+def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages):
     for name in CASES:
         (own,) = [text for text in pages if f"\nLead {name}." in text]
         parts = (f"Chapter {name}", f"Sources {name}.", f"Rule {name}.", f"Figure {name}.", f"Table {name}.")
@@ -49,7 +45,7 @@ def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages: li
 
 
 @pytest.mark.parametrize("cited", [False, True])
-def test_sources_have_a_title_only_where_some_are_cited(tmp_path: Path, cited: bool) -> None:
+def test_sources_have_a_title_only_where_some_are_cited(tmp_path, cited):
     text = "A scheme @newmark1959." if cited else "A scheme."
     (tmp_path / "made.pdf").write_bytes(typeset(tmp_path, [Paragraph(text), References()]))
     (page,) = PdfReader(tmp_path / "made.pdf").pages

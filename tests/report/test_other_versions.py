@@ -1,13 +1,8 @@
 """Results that another version wrote cost their own chapter, not the report and not the gallery."""
 
-from __future__ import annotations
-
 import hashlib
 import json
 import shutil
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import SCENE, typed
@@ -15,7 +10,6 @@ from conftest import SCENE, typed
 from validation.report.book import ordered_studies, unread_studies
 from validation.results import Results
 
-Change = Callable[[dict[str, Any]], object]
 GATE = """
 [run]
 solvers = ["dda", "bar"]
@@ -28,7 +22,7 @@ reason = "a test"
 
 
 @pytest.fixture(scope="module")
-def two(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def two(tmp_path_factory):
     """Return the results of two scenes."""
     place = tmp_path_factory.mktemp("two")
     for name, step in (("mine", "time.step=0.002"), ("theirs", "time.step=0.001")):
@@ -38,14 +32,14 @@ def two(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return place / "r"
 
 
-def change_manifest(results: Path, change: Change) -> None:
+def change_manifest(results, change):
     path = results / "studies" / "theirs.json"
     manifest = json.loads(path.read_text())
     change(manifest)
     path.write_text(json.dumps(manifest))
 
 
-def change_rows(results: Path, change: Change) -> None:
+def change_rows(results, change):
     path = results / "rows.jsonl"
     rows = [json.loads(line) for line in path.read_text().splitlines() if line]
     for row in rows:
@@ -56,7 +50,7 @@ def change_rows(results: Path, change: Change) -> None:
     path.write_text("\n".join(map(json.dumps, rows)) + "\n")
 
 
-def change_verdicts(results: Path, change: Change) -> None:
+def change_verdicts(results, change):
     path = results / "verdicts.json"
     verdicts = json.loads(path.read_text())
     for verdict in verdicts:
@@ -65,7 +59,7 @@ def change_verdicts(results: Path, change: Change) -> None:
     path.write_text(json.dumps(verdicts))
 
 
-def redefine(manifest: dict[str, Any]) -> None:
+def redefine(manifest):
     for case in manifest["cases"]:
         case["definition"]["future"] = {"key": 1}
 
@@ -80,7 +74,7 @@ UNREADABLE = {
 }
 
 
-def changed(name: str, two: Path, tmp_path: Path) -> Results:
+def changed(name, two, tmp_path):
     """Return a copy of the results in which one study is of another version."""
     shutil.copytree(two, tmp_path / "r")
     edit, change = UNREADABLE[name]
@@ -89,6 +83,6 @@ def changed(name: str, two: Path, tmp_path: Path) -> Results:
 
 
 @pytest.mark.parametrize("name", UNREADABLE)
-def test_a_study_of_another_version_is_named(name: str, two: Path, tmp_path: Path) -> None:
+def test_a_study_of_another_version_is_named(name, two, tmp_path):
     kept = changed(name, two, tmp_path)
     assert list(unread_studies(kept, ordered_studies(kept))) == ["theirs"]

@@ -1,15 +1,10 @@
 """A report and its figures from results made by hand, word by word: numbers, units, sentences, lines and axes."""
 
-from __future__ import annotations
-
 import re
 import tomllib
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from oracles.made_cases import made_case, made_group, made_history
 
 from validation.metrics.catalogue import CATALOGUE
@@ -26,7 +21,6 @@ from validation.report.figures.solution import solution_figure
 from validation.report.figures.space_time import SpaceTime, space_time_figure
 from validation.report.front import front_pages
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.results import Results
 from validation.scenes.scene import load_scene, scene_names
 from validation.suite.folders import study_folders
 
@@ -34,14 +28,12 @@ STUDIES = ("mine", "two", "solo")
 
 
 @pytest.mark.parametrize("study", STUDIES)
-def test_a_chapter_says_and_draws_what_its_rows_hold(
-    study: str, made_results: Results, kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
-) -> None:
+def test_a_chapter_says_and_draws_what_its_rows_hold(study, made_results, kept, kept_figures, drawn, tmp_path):
     kept(f"chapter-{study}", book.chapter_blocks(made_results, study, tmp_path))
     kept_figures(f"figures-{study}", drawn)
 
 
-def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results: Results, kept: Any) -> None:
+def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results, kept):
     groups = groups_of_studies(made_results, map(made_results.manifest, STUDIES), drawn=False)
     verdicts = made_results.verdicts()
     passed = [{**verdicts[0], "verdict": "PASS", "id": f"{number}@0.2s", "reason": "so"} for number in range(3)]
@@ -52,15 +44,13 @@ def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results: R
 
 
 @pytest.mark.parametrize("name", ["waves-blocks", "beams-squares", "rigid-standing", "slope-base"])
-def test_each_kind_of_scene_has_its_page_and_drawing(
-    name: str, kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
-) -> None:
+def test_each_kind_of_scene_has_its_page_and_drawing(name, kept, kept_figures, drawn, tmp_path):
     scene = load_scene(name).expand()[0]
     kept(f"scene-{name}", scene_page(made_group(made_case(scene, {"dda": {}})), tmp_path))
     kept_figures(f"drawing-{name}", drawn)
 
 
-def test_scenes_are_drawn_inside_their_axes() -> None:
+def test_scenes_are_drawn_inside_their_axes():
     for name in scene_names()[::12]:  # of every family some
         (axes,) = scene_figure(load_scene(name).expand()[0]).axes
         corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
@@ -86,7 +76,7 @@ PLACES = [
 
 
 @pytest.mark.parametrize(("path", "kind", "name"), PLACES)
-def test_a_metric_is_printed_in_the_unit_that_stands_beside_it(path: Path, kind: str, name: str) -> None:
+def test_a_metric_is_printed_in_the_unit_that_stands_beside_it(path, kind, name):
     described = tomllib.loads(path.read_text("utf-8"))[kind][name]
     if kind == "table":
         columns = [column for column in described.get("columns", ()) if isinstance(column, dict)]
@@ -108,7 +98,7 @@ def test_a_metric_is_printed_in_the_unit_that_stands_beside_it(path: Path, kind:
 TIME = np.linspace(0.0, 0.1, 101)
 
 
-def answers(*names: str) -> list[response.ResponseCurve]:
+def answers(*names):
     curves = []
     for number, name in enumerate(names, start=1):
         size, phase = np.array([4.0, 8.0, 2.0]) / number, np.array([0.1, -0.5 * number, 3.0])
@@ -119,11 +109,11 @@ def answers(*names: str) -> list[response.ResponseCurve]:
     return curves
 
 
-def panel(**values: Any) -> HistoryPanel:
+def panel(**values):
     return HistoryPanel("", {name: made_history(0.1, v) for name, v in values.items()}, {"displacement": 1.0}, "bar")
 
 
-def charts() -> list[ChartPanel]:
+def charts():
     x = np.array([1.0, 10.0, 20.0])
     run = ChartLine("dda", x, 2 * x, "#d55e00", shaded=(x, 3 * x), note=" (own)")
     other = ChartLine("program", x, 3 * x, "#000000", width=0, dots=3.2, hollow=True, notes=("1", "2", "3"))
@@ -136,7 +126,7 @@ def charts() -> list[ChartPanel]:
     ]
 
 
-def figures(group: Any) -> dict[str, Figure]:
+def figures(group):
     """Return figures that no chapter above draws."""
     moved, forces = np.array([0 * TIME, 1e-2 * TIME]), np.array([2e6 + 0 * TIME, 0 * TIME])
     column = SpaceTime("two blocks", TIME, np.array([0.0, 1.0, 3.0]), moved, forces)
@@ -149,7 +139,6 @@ def figures(group: Any) -> dict[str, Figure]:
     return {
         "response": response.response_figure(answers("dda", "bar"), False),
         "response per metre": response.response_figure(answers("dda", "bar"), True, per_metre=True),
-        "damping": response.ratio_figure(np.array([1.0, 2.0]), {"as stepped": np.full(2, 0.01), "b": np.full(2, 0.03)}),
         "column": space_time_figure([column, SpaceTime("weak", TIME, column.faces, 0 * moved, forces / 1e3)], 46.0),
         "blown up": motion.history_figure([blown], "displacement", apart=True),
         "fast": motion.history_figure([fast, fast], "displacement", apart=True),
@@ -163,6 +152,6 @@ def figures(group: Any) -> dict[str, Figure]:
     }
 
 
-def test_figures_hold_lines_names_and_axes(made_results: Results, kept_figures: Any) -> None:
+def test_figures_hold_lines_names_and_axes(made_results, kept_figures):
     group = groups_of_studies(made_results, [made_results.manifest("mine")])["figures-3-4"]
     kept_figures("figures", figures(group))

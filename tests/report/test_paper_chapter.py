@@ -1,35 +1,27 @@
 """The chapter of the study `paper`: the register of claims, and figures from results made by hand."""
 
-from __future__ import annotations
-
 import re
-from collections.abc import Mapping
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from oracles.made_cases import kept_study, made_history, made_row
 
 from validation.engine.finished import Finished
-from validation.report.blocks import Blocks, FigureBlock, Paragraph
+from validation.report.blocks import FigureBlock, Paragraph
 from validation.report.chapters.registry import chapter_of
-from validation.runs.history import History
 from validation.runs.results import Results
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.suite.folders import get_study
 
 BASE = load_scene("figures-3-4")
-Case = tuple[Scene, Mapping[str, Any], Mapping[str, History]]  # metrics and histories by solver
 
 
-def named(scene: str, **values: Any) -> Scene:
+def named(scene, **values):
     """Return a case of a scene; its name is that of the scene."""
     return BASE.with_values(values).model_copy(update={"name": scene})
 
 
-def page(place: Path, *cases: Case, claims: Mapping[str, Mapping[str, Any]] | None = None, **kept: Any) -> Blocks:
+def page(place, *cases, claims=None, **kept):
     """Return the chapter of a study that has these cases and claims."""
     results = Results(place)
     triples = [
@@ -46,7 +38,7 @@ def page(place: Path, *cases: Case, claims: Mapping[str, Mapping[str, Any]] | No
 # ---- the register ---------------------------------------------------------------------------------------------------
 
 
-def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept: Any, tmp_path: Path) -> None:
+def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, tmp_path):
     """Also where all hold or none, and where one or several of the refuted are misprints."""
     claims = {
         "S16": {"verdict": 0.0, "steps": 44, "none": 0, "share": "undefined"},
@@ -65,7 +57,7 @@ def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept: A
     kept("claims", blocks)
 
 
-def test_the_register_keeps_the_words_of_every_claim() -> None:
+def test_the_register_keeps_the_words_of_every_claim():
     data = get_study("paper").data()
     names = [f"C{i}" for i in range(1, 23)], [f"S{i}" for i in (13, 16, 20, 21, 25, 29, 32)]
     assert (data["statements"], data["slips"]) == names
@@ -77,9 +69,7 @@ def test_the_register_keeps_the_words_of_every_claim() -> None:
 # ---- figures 3 to 9 -------------------------------------------------------------------------------------------------
 
 
-def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(
-    kept: Any, kept_figures: Any, drawn: dict[str, Figure], tmp_path: Path
-) -> None:
+def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(kept, kept_figures, drawn, tmp_path):
     """The continuum is left out of Figures 3 and 4, where its period has too few steps."""
     metrics = {"displacement.static": -0.01, "pressure.static": 5e6, "displacement.settling_step": 12.0}
     steps = np.arange(1, 301)
@@ -96,7 +86,7 @@ def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(
     kept_figures("figures-paper", drawn)
 
 
-def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_path: Path) -> None:
+def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_path):
     """A period of 2 pi / 300 = 21 ms has ten steps of 2 ms and two of 10 ms; w dt = 0.09 lies outside the figure."""
     recipes = {(row.scene, row.name): row for row in get_study("paper").derived()}
     metrics = {"mode1.frequency": 300.0, "contact.frequency": 9000.0}

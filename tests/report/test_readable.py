@@ -1,14 +1,11 @@
 """Read as a reader does: five questions are answered on the first three pages, and the report has as many as it may."""
 
-from __future__ import annotations
-
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import beside
-from matplotlib.figure import Figure
 from pypdf import PdfReader
 
 from validation.engine.run import run_study
@@ -40,12 +37,12 @@ ANSWERS = {  # question -> what is read on which page
 }
 
 
-def words(text: str) -> str:
+def words(text):
     """Return a text with single spaces, words that were broken at a line's end whole."""
     return re.sub(r"\s+", " ", re.sub(r"-\n", "", text))
 
 
-def blank(figure: Figure, path: Path) -> Path:
+def blank(figure, path):
     """Write an empty figure of the same size: no page that is read depends on what a figure shows."""
     width, height = 72 * figure.get_size_inches()
     path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="{width:g}pt" height="{height:g}pt"/>')
@@ -53,7 +50,7 @@ def blank(figure: Figure, path: Path) -> Path:
 
 
 @pytest.fixture(scope="module")
-def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> list[str]:
+def pages(tmp_path_factory, finished_cases):
     """The first pages of a report on the scenes that they speak of, without the slow solvers."""
     directory = tmp_path_factory.mktemp("read")
     results = beside(finished_cases, directory / "results")
@@ -76,20 +73,20 @@ def pages(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> lis
 
 
 @pytest.mark.parametrize("question", ANSWERS)
-def test_a_question_is_answered_on_the_first_pages(question: str, pages: list[str]) -> None:
+def test_a_question_is_answered_on_the_first_pages(question, pages):
     assert len(pages) == 4
     for number, answer in ANSWERS[question].items():
         assert answer in pages[number - 1]
 
 
-def test_the_first_page_has_the_model_five_sentences_and_one_line_of_verdicts(pages: list[str]) -> None:
+def test_the_first_page_has_the_model_five_sentences_and_one_line_of_verdicts(pages):
     first = pages[0]
     assert "What was tested" in first and " gates: " in first
     assert all(f"{number}. " in first for number in range(1, 6)) and "6. " not in first
     assert [sorted(set(re.findall(r"Decision (\d)", page))) for page in pages] == [[], ["1"], ["2"], ["3"]]
 
 
-def made(studies: list[str], finished_cases: Path, directory: Path) -> PdfReader:
+def made(studies, finished_cases, directory):
     results = beside(finished_cases, directory / "results")
     for name in studies:
         run_study(get_study(name), results)
@@ -97,13 +94,13 @@ def made(studies: list[str], finished_cases: Path, directory: Path) -> PdfReader
     return PdfReader(build(results, directory / "report.pdf"))
 
 
-def reported() -> list[str]:
+def reported():
     """Return the studies that `make report` runs."""
     line = re.search(r"run (core [\w -]+);", (ROOT / "Makefile").read_text(encoding="utf-8"))
     return line[1].split()
 
 
-def test_make_report_has_at_most_seventeen_pages(tmp_path: Path, finished_cases: Path) -> None:
+def test_make_report_has_at_most_seventeen_pages(tmp_path, finished_cases):
     read = made(reported(), finished_cases, tmp_path)
     assert len(read.pages) <= SHORT
     outline = words(" ".join(page.extract_text() for page in read.pages))
@@ -111,5 +108,5 @@ def test_make_report_has_at_most_seventeen_pages(tmp_path: Path, finished_cases:
 
 
 @pytest.mark.fenicsx  # without it a page lists the gates that were not run
-def test_everything_has_at_most_two_pages_a_chapter(tmp_path: Path, finished_cases: Path) -> None:
+def test_everything_has_at_most_two_pages_a_chapter(tmp_path, finished_cases):
     assert len(made(judged_studies(), finished_cases, tmp_path).pages) <= WHOLE

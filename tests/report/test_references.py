@@ -1,14 +1,11 @@
 """The bibliography: sources that are cited are known, and a report that lists them sets their numbers."""
 
-from __future__ import annotations
-
 import re
-from pathlib import Path
 
 import pytest
 from pypdf import PdfReader
 
-from validation.report.blocks import Block, Paragraph, References
+from validation.report.blocks import Paragraph, References
 from validation.report.names import quoted
 from validation.report.references import PAPER, references
 from validation.report.render.html import page
@@ -19,7 +16,7 @@ PLACES = {"book": "publisher", "phdthesis": "school", "mastersthesis": "school",
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
 
 
-def test_what_is_cited_is_a_source() -> None:
+def test_what_is_cited_is_a_source():
     texts = [PAPER, *map(sources_of, study_names())]
     texts += [(folder.path / "front.toml").read_text("utf-8") for folder in [study_folders()["core"]]]
     cited = set(CITATION.findall(" ".join(texts)))
@@ -27,7 +24,7 @@ def test_what_is_cited_is_a_source() -> None:
     assert {"housner1963", "miller1978"} <= cited <= set(references())
 
 
-def test_every_source_says_who_wrote_what_when_and_where() -> None:
+def test_every_source_says_who_wrote_what_when_and_where():
     sources = references()
     for key, source in sources.items():
         assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
@@ -39,9 +36,9 @@ def test_every_source_says_who_wrote_what_when_and_where() -> None:
 
 
 @pytest.mark.parametrize("lists", [True, False])
-def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: Path) -> None:
+def test_a_key_is_a_number_where_the_sources_are_listed(lists, tmp_path):
     """A key that is none stays as it stands, as every key does in a document without a list."""
-    blocks: list[Block] = [Paragraph("As @housner1963 has it, and me@nowhere2020."), *[References()] * lists]
+    blocks = [Paragraph("As @housner1963 has it, and me@nowhere2020."), *[References()] * lists]
     (tmp_path / "r.pdf").write_bytes(typeset(tmp_path, blocks))
     (page,) = PdfReader(tmp_path / "r.pdf").pages
     text = " ".join(page.extract_text().split())
@@ -49,6 +46,6 @@ def test_a_key_is_a_number_where_the_sources_are_listed(lists: bool, tmp_path: P
     assert ("inverted pendulum" in text) == lists and ("@housner1963" in text) != lists
 
 
-def test_the_site_links_keys_and_nothing_else() -> None:
+def test_the_site_links_keys_and_nothing_else():
     text = page("t", [Paragraph("<b> @kane1999 @me2020 " + quoted("@kane1999"))])
     assert '&lt;b&gt; <a href="references.html#kane1999">Kane 1999</a> @me2020 @kane1999</p>' in text

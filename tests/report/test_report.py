@@ -1,7 +1,5 @@
 """The report is built from a results directory alone, whatever the verdicts are."""
 
-from __future__ import annotations
-
 import pytest
 from oracles.made_cases import kept_study, made_row
 from oracles.made_results import made_rows

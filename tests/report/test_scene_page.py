@@ -1,12 +1,7 @@
 """The page of a scene: its drawing, and the case and window that show what the solvers differ by."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from oracles.made_cases import made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
@@ -20,7 +15,7 @@ FREQUENCY = 345.0  # rad/s
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.001, "time.steps": 200})
 
 
-def vibrating(step: float, share: float, metrics: dict[str, float]):
+def vibrating(step, share, metrics):
     """Return a case whose DDA is so large a share off its bar at every instant."""
     time = step * np.arange(1, round(0.2 / step) + 1)
     bar = -0.01 * (1 - np.cos(FREQUENCY * time))
@@ -30,7 +25,7 @@ def vibrating(step: float, share: float, metrics: dict[str, float]):
 
 
 @pytest.mark.parametrize("known", [True, False], ids=["frequency known", "counted"])
-def test_the_case_and_the_window_that_open_a_page(known: bool, drawn: dict[str, Figure], tmp_path: Path) -> None:
+def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     """Of 0.5, 8 and 60 % the middle one, over the first periods of the slowest mode."""
     metrics = {"mode1.frequency": FREQUENCY} if known else {}
     cases = [vibrating(*numbers, metrics) for numbers in ((0.002, 0.005), (0.001, 0.08), (0.0005, 0.6))]
@@ -41,7 +36,7 @@ def test_the_case_and_the_window_that_open_a_page(known: bool, drawn: dict[str, 
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 
-def test_a_motion_that_is_driven_is_shown_whole(drawn: dict[str, Figure], tmp_path: Path) -> None:
+def test_a_motion_that_is_driven_is_shown_whole(drawn, tmp_path):
     case = vibrating(0.001, 0.08, {"mode1.frequency": FREQUENCY})
     record = tmp_path / "record.csv"
     record.write_text("time,x\n0,0\n1,0\n")
@@ -50,31 +45,31 @@ def test_a_motion_that_is_driven_is_shown_whole(drawn: dict[str, Figure], tmp_pa
     assert drawn["scene-lead.svg"].axes[0].get_xlim()[1] == pytest.approx(0.2)
 
 
-def test_what_is_rounding_decides_nothing(drawn: dict[str, Figure], tmp_path: Path) -> None:
+def test_what_is_rounding_decides_nothing(drawn, tmp_path):
     """Which of two cases is shown would depend on the processor."""
     cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
     (block,) = lead_figure(made_group(*cases), tmp_path)
     assert block.caption.startswith("dt = 0.002 s, of 2 cases the first.")
 
 
-def test_damping_is_told_by_scheme_discount_and_tables() -> None:
+def test_damping_is_told_by_scheme_discount_and_tables():
     scene = BASE.with_values({"time.step": 0.002, "time.gg": 0.98})
     parts = mode_damping(made_case(scene, {"dda": {}}), 344.561)
     assert parts["scheme"] == pytest.approx(0.1602, abs=5e-4)  # of (1/2, 1) at w dt = 0.689
-    assert parts["total"] == pytest.approx(parts["scheme"] + parts["discount"])  # type: ignore[operator]
+    assert parts["total"] == pytest.approx(parts["scheme"] + parts["discount"])
     assert parts["discount"] == pytest.approx(-0.5 * 1e-2 / 0.689 * -2, rel=0.3) and parts["tables"] is None
     viscous = BASE.with_values({"time.step": 0.002, "damping.mass": 20.0})
     damped = mode_damping(made_case(viscous, {"dda": {"mode1.damping": 0.19}}), 344.561)
     assert damped["tables"] == pytest.approx(0.19 - 0.1602, abs=5e-4)
 
 
-def test_a_count_that_is_none_is_no_small_number() -> None:
+def test_a_count_that_is_none_is_no_small_number():
     assert value_cell(0.0, "displacement.fine_settling_step") == "0" and value_cell(0.0, "displacement.l2") == "<10⁻¹²"
     numbers = (Quantity("openings", "1", 0.0, 5.0), Quantity("damping ratio", "1", 0.0, 0.1))
     assert [row[1] for row in numbers_table(numbers).rows] == ["0", "<10⁻¹²"]
 
 
-def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn: dict[str, Figure], tmp_path: Path) -> None:
+def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):
     """Ten steps of 1e-4 s end before the first of 0.02 s."""
     scenes = [BASE.with_values({"time.step": step}, label=True) for step in (0.02, 1e-4)]
     cases = [made_case(scene, {"dda": {}}, {"dda": made_history(scene.time.step, np.ones(10))}) for scene in scenes]

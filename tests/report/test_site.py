@@ -1,7 +1,5 @@
 """The site of results and its calculators; names of users on pages; every kind of block in every renderer."""
 
-from __future__ import annotations
-
 import json
 import os
 import re
@@ -10,8 +8,7 @@ import shutil
 import subprocess
 import tomllib
 from html.parser import HTMLParser
-from pathlib import Path
-from typing import Any, get_args
+from typing import get_args
 from urllib.parse import urlencode
 
 import numpy as np
@@ -40,7 +37,7 @@ browser = pytest.mark.skipif(not CHROMIUM, reason="the browser is NOT RUN: needs
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
+def results(tmp_path_factory):
     """Return the results of a small scene with a hostile title, with a gate that passes and one that fails."""
     kept = Results(tmp_path_factory.mktemp("secret-place") / "results")
     for name, low, title in (("passing", 0.0, HOSTILE), (FAILING, 0.8, "plain")):
@@ -54,25 +51,25 @@ def results(tmp_path_factory: pytest.TempPathFactory) -> Results:
 
 
 @pytest.fixture(scope="module")
-def site(results: Results, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def site(results, tmp_path_factory):
     out = tmp_path_factory.mktemp("site")
     assert pages.build(results, out, docs="..") == out / "index.html"
     return out
 
 
-def texts(place: Path) -> dict[str, str]:
+def texts(place):
     files = [path for path in sorted(place.rglob("*")) if path.is_file()]
     return {str(path.relative_to(place)): path.read_text(encoding="utf-8") for path in files}
 
 
-def check_links(files: dict[str, str]) -> None:
+def check_links(files):
     """Every address of every page, pictures included, is a file of the site or of the documentation around it."""
     for name, text in files.items():
         for address in re.findall(r'(?:href|src)="([^"#]+)', text) if name.endswith(".html") else ():
             assert address in files or address in ("data:,", "../index.html"), (name, address)
 
 
-def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site: Path) -> None:
+def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     files = texts(site)
     names = {"study-passing", "study-fail---ing", "scene-passing", "scene-fail---ing", "index", "references"}
     assert {f"{name}.html" for name in (*names, "calculators")} == {name for name in files if name.endswith(".html")}
@@ -85,7 +82,7 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site: Path) -
     assert "FAIL" in files["index.html"] and "because of h / c" in files["index.html"]
 
 
-def test_the_decisions_come_first_where_a_study_has_them(core_results: Results, drawn: Any, tmp_path: Path) -> None:
+def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path):
     pages.build(core_results, tmp_path / "site")
     files = texts(tmp_path / "site")
     index = files["index.html"]
@@ -95,7 +92,7 @@ def test_the_decisions_come_first_where_a_study_has_them(core_results: Results, 
     assert index.index(cards[-1][0]) < index.index("study-core.html")
 
 
-def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site: Path, results: Results) -> None:
+def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site, results):
     for name, text in texts(site).items():
         outside = set(re.findall(r"\w+://[^\s\"'<)]+", text)) if name.endswith((".html", ".js", ".css")) else set()
         assert not outside, name
@@ -108,8 +105,8 @@ def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(s
 
 
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
-    site: Path, results: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+    site, results, tmp_path, monkeypatch
+):
     out = tmp_path / "out"
     out.mkdir()
     (out / pages.MARK).write_text("an earlier site")
@@ -124,7 +121,7 @@ def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
-def test_bad_input_is_one_line(tmp_path: Path) -> None:
+def test_bad_input_is_one_line(tmp_path):
     (tmp_path / "file").write_text("mine")
     (tmp_path / "mine").mkdir()
     (tmp_path / "mine" / "notes.txt").write_text("mine")
@@ -138,7 +135,7 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"file", "mine"}
 
 
-def test_no_two_pages_share_a_file_whatever_the_letters_case() -> None:
+def test_no_two_pages_share_a_file_whatever_the_letters_case():
     names = pages.page_names("scene", ["Figure 7", "figure 7", "Figure/7", "..", "x" * 200])
     assert [*names.values()] == [
         "scene-Figure-7.html",
@@ -152,7 +149,7 @@ def test_no_two_pages_share_a_file_whatever_the_letters_case() -> None:
 # ---- names of users -------------------------------------------------------------------------------------------------
 
 
-def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path: Path) -> None:
+def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path):
     scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
     scene = scene.model_copy(update={"title": "After @feng2017"})
     columns = {"displacement": np.full(4, -0.01), "esc\x1b[31m": np.arange(4.0)}
@@ -167,9 +164,9 @@ def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_pa
 # ---- renderers ------------------------------------------------------------------------------------------------------
 
 
-def example(kind: type) -> Block:
+def example(kind):
     """Return a block of a kind."""
-    examples: dict[str, Any] = {
+    examples = {
         "Heading": Heading("Top word"),
         "Paragraph": Paragraph("Plain word"),
         "Table": table(("a word", "b"), [("x", "1.5"), ("of the rows",)], "The caption", ("what it means",)),
@@ -184,7 +181,7 @@ def example(kind: type) -> Block:
 
 
 @pytest.mark.parametrize("kind", get_args(Block))
-def test_every_kind_of_block_has_its_form_in_every_renderer(kind: type, tmp_path: Path) -> None:
+def test_every_kind_of_block_has_its_form_in_every_renderer(kind, tmp_path):
     block = example(kind)
     (tmp_path / "f.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9pt" height="9pt"/>')
     (tmp_path / "r.pdf").write_bytes(pdf.typeset(tmp_path, [block]))
@@ -203,26 +200,26 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kind: type, tmp_path
 class Values(HTMLParser):
     """What a page of calculators has computed, and the commands that it names."""
 
-    def __init__(self, text: str) -> None:
+    def __init__(self, text):
         super().__init__()
-        self.values: dict[str, Any] = {}
-        self.commands: list[str] = []
+        self.values = {}
+        self.commands = []
         self._in_command = False
         self.feed(text)
 
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag, attrs):
         attributes = dict(attrs)
         if stated := attributes.get("data-values"):
             self.values = json.loads(stated)
         self._in_command = attributes.get("class") == "command"
 
-    def handle_data(self, data: str) -> None:
+    def handle_data(self, data):
         if self._in_command:
             self.commands.append(data)
             self._in_command = False
 
 
-def computed(site: Path, settings: dict[str, Any]) -> Values:
+def computed(site, settings):
     """Return what the page computes of the settings in its address."""
     address = f"{(site / 'calculators.html').as_uri()}#{urlencode(settings)}"
     flags = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-background-networking", "--dump-dom")
@@ -230,7 +227,7 @@ def computed(site: Path, settings: dict[str, Any]) -> Values:
     return Values(done.stdout)
 
 
-def answer(command: str) -> Any:
+def answer(command):
     done = typed(*shlex.split(command)[1:], "--json")
     assert done.returncode == 0, done.stderr
     return json.loads(done.stdout)
@@ -249,7 +246,7 @@ SETTINGS = thinned(  # a browser takes seconds for each
 
 @browser
 @pytest.mark.parametrize("settings", SETTINGS, ids=str)
-def test_the_calculators_answer_as_the_command_line(site: Path, settings: dict[str, Any]) -> None:
+def test_the_calculators_answer_as_the_command_line(site, settings):
     shown = computed(site, settings)
     damping, advice = map(answer, shown.commands)
     for mode in damping["modes"]:

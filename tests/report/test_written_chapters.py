@@ -1,18 +1,12 @@
 """Chapters are queries of the table of a study: what is looked up, put into sentences, tables and charts, by name."""
 
-from __future__ import annotations
-
 import fnmatch
 import re
 import string
-from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from matplotlib.figure import Figure
 from oracles.made_cases import between, kept_study, made_history, made_row
 
 from validation.engine.run import run_study
@@ -25,7 +19,7 @@ from validation.results import Results
 from validation.runs.case_name import scene_of
 from validation.scenes.scene import load_scene
 from validation.studies.waves.rows import curves
-from validation.suite.folders import StudyFolder, get_study, study_folders
+from validation.suite.folders import get_study, study_folders
 
 FOLDERS = {name: folder for name, folder in study_folders().items() if (folder.path / "chapter.toml").exists()}
 DERIVED = [
@@ -37,7 +31,7 @@ DERIVED = [
 
 
 @pytest.fixture
-def table(tmp_path: Path) -> StudyTable:
+def table(tmp_path):
     """The table of a study of two cases by two solvers."""
     results = Results(tmp_path / "results")
     cases = []
@@ -89,7 +83,7 @@ COARSE = {"where": {"time.step": 0.01}}
         ({"of": "nowhere"}, "time.step", []),
     ],
 )
-def test_a_query_looks_up_what_it_names(table: StudyTable, query: Any, expression: str, values: list[Any]) -> None:
+def test_a_query_looks_up_what_it_names(table, query, expression, values):
     assert [table.value(line, expression) for line in table.lines(query)] == values
 
 
@@ -111,7 +105,7 @@ def test_a_query_looks_up_what_it_names(table: StudyTable, query: Any, expressio
         ({"of": "time.step", "pick": "count", "positive": True, "where": {"time.step": 1.0}}, None),
     ],
 )
-def test_a_column_picks_one_of_some_lines(table: StudyTable, column: Any, value: Any) -> None:
+def test_a_column_picks_one_of_some_lines(table, column, value):
     assert table.picked(table.lines({}), column) == value
 
 
@@ -238,8 +232,8 @@ name = "at {each}"
 
 
 def test_parts_become_blocks_in_their_order_and_lines_hold_what_their_queries_name(
-    kept: Any, kept_figures: Any, drawn: dict[str, Figure], table: StudyTable, tmp_path: Path
-) -> None:
+    kept, kept_figures, drawn, table, tmp_path
+):
     (tmp_path / "chapter.toml").write_text(PAGE + MAPS)
     page = Description(tmp_path / "chapter.toml")
     kept("written", WrittenChapter(page, table, tmp_path).blocks())
@@ -249,10 +243,10 @@ def test_parts_become_blocks_in_their_order_and_lines_hold_what_their_queries_na
 # ---- the chapters of the suite --------------------------------------------------------------------------------------
 
 
-def queries(folder: StudyFolder) -> Iterator[tuple[str, dict[str, Any]]]:
+def queries(folder):
     """Yield the tables of a description that hold expressions, with the query that they stand in."""
 
-    def walk(place: str, part: Any, query: dict[str, Any]) -> Iterator[tuple[str, dict[str, Any]]]:
+    def walk(place, part, query):
         if isinstance(part, dict):
             own = query | part
             yield place, own
@@ -269,7 +263,7 @@ def queries(folder: StudyFolder) -> Iterator[tuple[str, dict[str, Any]]]:
 
 
 @pytest.mark.parametrize("name", FOLDERS)
-def test_a_chapter_asks_for_what_its_study_has(name: str) -> None:
+def test_a_chapter_asks_for_what_its_study_has(name):
     folder = FOLDERS[name]
     study = get_study(name)
     page = Description(folder.path / "chapter.toml")
@@ -299,10 +293,10 @@ def test_a_chapter_asks_for_what_its_study_has(name: str) -> None:
             assert not word or word == "gates" or page.has("number", word) or page.has("list", word), word
 
 
-def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path: Path) -> None:
+def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path):
     """Of a study without its data, and of one of which no case has finished."""
     results = Results(tmp_path / "results")
-    bare: dict[str, Any] = {"gates": tuple, "derived": tuple}
+    bare = {"gates": tuple, "derived": tuple}
     response = get_study("response")
     run_study(replace(response, scenes=response.scenes[:1], solvers=("dda",), data=dict, **bare), results)
     run_study(replace(get_study("rocking"), scenes=[], **bare), results)
@@ -312,9 +306,9 @@ def test_a_chapter_without_rows_has_no_table_and_no_figure(tmp_path: Path) -> No
     assert not [block for block in blocks if isinstance(block, FigureBlock)]
 
 
-def test_closed_forms_of_the_page_of_waves_hold_the_rule_of_ten() -> None:
+def test_closed_forms_of_the_page_of_waves_hold_the_rule_of_ten():
     drawn = {(c["scheme"], c["courant"]): c for c in curves()["curves"]}
     line = drawn["(1/2, 1)", 0.5]
-    left = np.interp(np.log(10), np.log(line["blocks"]), line["left"])  # type: ignore[arg-type]
+    left = np.interp(np.log(10), np.log(line["blocks"]), line["left"])
     assert left == pytest.approx(0.008969, rel=0.03)
-    assert set(drawn["(1/4, 1/2)", 1.0]["left"]) == {1.0}  # type: ignore[call-overload]
+    assert set(drawn["(1/4, 1/2)", 1.0]["left"]) == {1.0}

@@ -1,9 +1,5 @@
 """Histories, their files and modes of a run."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 
 from validation.runs.files import read_table, write_csv
@@ -11,7 +7,7 @@ from validation.runs.history import History
 from validation.runs.modes import Mode, contact_index
 
 
-def test_a_history_is_written_to_the_last_bit(tmp_path: Path) -> None:
+def test_a_history_is_written_to_the_last_bit(tmp_path):
     rng = np.random.default_rng(0)
     history = History(
         np.arange(1.0, 9.0) / 3, {"displacement": rng.standard_normal(8) * 1e-7, "rotation": 1 / rng.random(8)}
@@ -23,12 +19,12 @@ def test_a_history_is_written_to_the_last_bit(tmp_path: Path) -> None:
     assert (tmp_path / "h.csv").read_text().startswith("time,displacement,rotation\n")
 
 
-def mode(share: float | None, *eigenvalues: complex) -> Mode:
+def mode(share, *eigenvalues):
     first, second = eigenvalues or (1.0, 0.5)
     return Mode(1.0, 1.0, (complex(first), complex(second)), share)
 
 
-def test_radius_and_contact_mode() -> None:
+def test_radius_and_contact_mode():
     assert mode(None, 0.3, -0.9).spectral_radius == 0.9 and mode(None, 0.6 + 0.8j, 0.1).spectral_radius == 1.0
     assert contact_index([mode(0.9), mode(0.1), mode(-0.4), mode(0.3)]) == 2
     assert contact_index([mode(0.9)]) is None and contact_index([mode(None), mode(0.1)]) is None

@@ -1,7 +1,5 @@
 """How numbers are written, in one place for messages, tables and pages."""
 
-from __future__ import annotations
-
 import functools
 import math
 

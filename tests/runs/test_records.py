@@ -1,15 +1,11 @@
 """Records are read where they bear themselves out: a verdict by its own value and band, a gate once."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import pytest
 
-from validation.runs.records import BaselineVerdict, sound, unique
+from validation.runs.records import sound, unique
 
 
-def judged(verdict: str, value: Any, band: tuple[float, float] = (1.0, 2.0), name: str = "g") -> BaselineVerdict:
+def judged(verdict, value, band=(1.0, 2.0), name="g"):
     return {"id": name, "study": "s", "value": value, "band": list(band), "verdict": verdict}
 
 
@@ -25,7 +21,7 @@ def judged(verdict: str, value: Any, band: tuple[float, float] = (1.0, 2.0), nam
         ("NOT RUN", None),
     ],
 )
-def test_a_verdict_that_its_value_bears_out_is_taken(verdict: str, value: Any) -> None:
+def test_a_verdict_that_its_value_bears_out_is_taken(verdict, value):
     record = judged(verdict, value)
     assert sound(record) is record
 
@@ -33,12 +29,12 @@ def test_a_verdict_that_its_value_bears_out_is_taken(verdict: str, value: Any) -
 @pytest.mark.parametrize(
     ("verdict", "value"), [("PASS", 2.01), ("PASS", 0.99), ("PASS", None), ("PASS", "undefined"), ("FAIL", 1.5)]
 )
-def test_a_verdict_that_its_value_does_not_bear_out_is_refused(verdict: str, value: Any) -> None:
+def test_a_verdict_that_its_value_does_not_bear_out_is_refused(verdict, value):
     with pytest.raises(ValueError, match=rf"g says {verdict}, got {value!r} in \[1, 2\]"):
         sound(judged(verdict, value))
 
 
-def test_two_verdicts_of_one_gate_are_refused() -> None:
+def test_two_verdicts_of_one_gate_are_refused():
     two = [judged("PASS", 1.5), judged("PASS", 1.5, name="h")]
     assert unique(two) == two
     with pytest.raises(ValueError, match="g appears twice in the study s"):

@@ -1,14 +1,11 @@
 """One BLAS thread in every process of ours and in every calculation, and nobody's settings touched beside."""
 
-from __future__ import annotations
-
 import logging
 import multiprocessing
 import os
 import subprocess
 import sys
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +19,7 @@ from validation.engine.measure import execute
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.runs.threads import VARIABLES
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.contract import Solver
 from validation.solvers.logs import errors_only, solver_logs
 from validation.solvers.registry import get_solver, solve
@@ -30,19 +27,19 @@ from validation.solvers.registry import get_solver, solve
 MANY = 3  # threads of this process, whatever the machine has
 
 
-def threads() -> set[int]:
+def threads():
     """Return the numbers of threads of the BLAS libraries of this process that are numpy's and scipy's."""
     return {info["num_threads"] for info in threadpool_info() if info["user_api"] == "blas" and is_ours(info)}
 
 
-def is_ours(info: dict[str, Any]) -> bool:
+def is_ours(info):
     """Whether a library came with numpy or scipy, or from the system: programs under test bring others of their own."""
     folder = Path(info["filepath"]).parent.name
     return not folder.endswith(".libs") or folder in ("numpy.libs", "scipy.libs")
 
 
 @pytest.fixture
-def many_threads(monkeypatch: pytest.MonkeyPatch) -> Any:
+def many_threads(monkeypatch):
     """Let this process be one in which nobody has decided, with some threads."""
     for name in VARIABLES:
         monkeypatch.delenv(name, raising=False)
@@ -57,28 +54,28 @@ class Looking(Solver):
     name = "looking"
     sources = ("validation.runs",)
 
-    def __init__(self) -> None:
-        self.seen: list[set[int]] = []
+    def __init__(self):
+        self.seen = []
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def solve(self, scene, full=False, fields=None):
         self.seen.append(threads())
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         return Run(Outcome.COMPLETED, History(time, dict.fromkeys(scene.run.columns, 0 * time)))
 
 
-def block() -> Scene:
+def block():
     """Return a scene of one block."""
     return load_scene("figures-3-4").expand()[0].with_values({"time.steps": 5})
 
 
-def test_solve_from_python_takes_one_thread_and_leaves_the_others_as_they_were(many_threads: None) -> None:
+def test_solve_from_python_takes_one_thread_and_leaves_the_others_as_they_were(many_threads):
     looking = Looking()
     assert solve(block(), looking).outcome is Outcome.COMPLETED
     assert looking.seen == [{1}]
     assert threads() == {MANY}
 
 
-def test_what_the_user_says_is_left(many_threads: None, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_the_user_says_is_left(many_threads, monkeypatch):
     monkeypatch.setenv("OPENBLAS_NUM_THREADS", str(MANY))
     looking = Looking()
     solve(block(), looking)
@@ -86,9 +83,7 @@ def test_what_the_user_says_is_left(many_threads: None, monkeypatch: pytest.Monk
     monkeypatch.delenv("OPENBLAS_NUM_THREADS")
 
 
-def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
-    many_threads: None, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(many_threads, monkeypatch):
     """A gate of the pytest plug-in and a case on a Dask worker are executed so."""
     looking = Looking()
     monkeypatch.setattr(Case, "make_solver", lambda case: looking)
@@ -98,7 +93,7 @@ def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(
 
 
 @pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
-def test_a_worker_process_has_one_thread(many_threads: None, method: str) -> None:
+def test_a_worker_process_has_one_thread(many_threads, method):
     before = multiprocessing.get_start_method()
     multiprocessing.set_start_method(method, force=True)
     try:
@@ -108,13 +103,13 @@ def test_a_worker_process_has_one_thread(many_threads: None, method: str) -> Non
         multiprocessing.set_start_method(before, force=True)
 
 
-def threads_of_worker() -> set[int]:
+def threads_of_worker():
     """Return what a worker sees; imported by a worker that is no copy of this process."""
     return threads()
 
 
 @pytest.mark.long
-def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_process_logs_what_this_one_does(monkeypatch):
     for log in solver_logs():
         monkeypatch.setattr(log, "level", logging.ERROR)
     before = multiprocessing.get_start_method()
@@ -126,7 +121,7 @@ def test_a_worker_process_logs_what_this_one_does(monkeypatch: pytest.MonkeyPatc
         multiprocessing.set_start_method(before, force=True)
 
 
-def test_errors_alone_are_logged_for_the_time_that_is_asked_for() -> None:
+def test_errors_alone_are_logged_for_the_time_that_is_asked_for():
     before = log_levels()
     with pytest.raises(KeyboardInterrupt), errors_only():
         assert log_levels() == [logging.ERROR] * 2
@@ -134,12 +129,12 @@ def test_errors_alone_are_logged_for_the_time_that_is_asked_for() -> None:
     assert log_levels() == before != [logging.ERROR] * 2
 
 
-def log_levels() -> list[int]:
+def log_levels():
     """Return from which level on a worker shows what our solvers log."""
     return [log.level for log in solver_logs()]
 
 
-def run_python(code: str, **environment: str) -> str:
+def run_python(code, **environment):
     """Run code in a process in which nobody has decided."""
     kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     done = subprocess.run(
@@ -164,23 +159,21 @@ print({info["num_threads"] for info in threadpool_info()}, os.environ.get("OMP_N
 
 
 @pytest.mark.long
-def test_a_command_has_one_thread_as_typed() -> None:
+def test_a_command_has_one_thread_as_typed():
     assert run_python(TYPED) == "{1} 1"
 
 
 @pytest.mark.long
-def test_a_command_has_as_many_as_the_user_says() -> None:
+def test_a_command_has_as_many_as_the_user_says():
     assert run_python(TYPED, OMP_NUM_THREADS="2") == "{2} 2"
 
 
-def test_the_package_dda_touches_nothing() -> None:
+def test_the_package_dda_touches_nothing():
     code = "import os; before = dict(os.environ); import dda, validation; print(dict(os.environ) == before)"
     assert run_python(code) == "True"
 
 
-def test_the_process_of_a_users_solver_has_one_thread(
-    many_threads: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_process_of_a_users_solver_has_one_thread(many_threads, tmp_path, monkeypatch):
     (tmp_path / "counting.py").write_text(
         "import os\nabout = {}\n"
         "def solve(scene):\n    raise RuntimeError('threads: ' + os.environ.get('OMP_NUM_THREADS', 'all'))\n"

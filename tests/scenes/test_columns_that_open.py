@@ -1,23 +1,18 @@
 """Scenes of columns whose contacts open or slip: what goes together, what the contacts are, what drives them."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pytest
 
 from validation.scenes.drive import motion_at
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 LAYERS = [
     {"thickness": 2.0, "density": 2000.0, "young": 1e9, "blocks": 2},
     {"thickness": 3.0, "density": 1000.0, "young": "inf", "blocks": 3, "velocity": -1.0},
 ]
-SHEAR = {"motion": "shear", "law": "frictional", "gravity": 10.0, "layer": [LAYERS[0] | {"velocity": 1.0}]}
 
 
-def scene_with(column: dict[str, Any], **tables: Any) -> Scene:
+def scene_with(column, **tables):
     whole = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": LAYERS} | column
     data = {"column": {key: value for key, value in whole.items() if value is not None}}
     return parse_scene(
@@ -35,7 +30,7 @@ def scene_with(column: dict[str, Any], **tables: Any) -> Scene:
     ],
     ids=lambda drive: drive["shape"],
 )
-def test_displacement_and_acceleration_belong_to_the_velocity_of_a_drive(drive: dict[str, Any]) -> None:
+def test_displacement_and_acceleration_belong_to_the_velocity_of_a_drive(drive):
     from scipy.integrate import quad
 
     scene = scene_with({}, input={"velocity": 2.0} | drive)

@@ -1,13 +1,9 @@
 """Bad input is one line of source, field, rule, value and advice, each of which a program can read as well."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import pytest
 
 from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 
 
 @pytest.mark.parametrize(
@@ -21,13 +17,13 @@ from validation.scenes.scene import Scene, load_scene
     ],
     ids=str,
 )
-def test_a_defect_of_a_scene_says_where_it_is(scene: Scene, values: dict[str, object], field: str, value: str) -> None:
+def test_a_defect_of_a_scene_says_where_it_is(scene, values, field, value):
     with pytest.raises(InputError) as refused:
         scene.with_values(values)
     assert (refused.value.source, refused.value.field, refused.value.value) == (scene.name, field, value)
 
 
-def test_a_decimal_comma_of_a_file_is_named(tmp_path: Path) -> None:
+def test_a_decimal_comma_of_a_file_is_named(tmp_path):
     path = tmp_path / "s.toml"
     path.write_text("[block]\ndensity = 2,650\n")
     with pytest.raises(InputError) as error:

@@ -1,7 +1,5 @@
 """A kind of scene is one folder: one that is added joins, one that is deleted leaves the rest as it is."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 import sys
@@ -108,14 +106,14 @@ command("run", "swing.toml", "--results", "results", "--jobs", "1")
 )
 
 
-def python(code: str, place: Path) -> None:
+def python(code, place):
     """Run some lines of Python in a folder, before whose path stands the folder itself."""
     command = [sys.executable, "-c", f"import sys; sys.path.insert(0, '.')\n{code}"]
     finished = subprocess.run(command, cwd=place, capture_output=True, text=True, check=False)
     assert finished.returncode == 0, finished.stderr[-3000:]
 
 
-def test_a_folder_adds_a_kind(tmp_path: Path) -> None:
+def test_a_folder_adds_a_kind(tmp_path):
     folder = tmp_path / "kinds" / "pendulum"
     folder.mkdir(parents=True)
     for name, text in PENDULUM.items():
@@ -140,12 +138,12 @@ command("list", "studies")
 )
 
 
-def states(path: Path, kind: str) -> bool:
+def states(path, kind):
     """Tell whether a scene is of a kind."""
     return f"[{kind}]" in path.read_text(encoding="utf-8")
 
 
-def test_a_deleted_folder_leaves_the_rest(tmp_path: Path) -> None:
+def test_a_deleted_folder_leaves_the_rest(tmp_path):
     kind = "plane"
     for package in ("dda", "fem_reference", "validation"):
         shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))

@@ -108,11 +108,6 @@ def test_a_scene_keeps_the_poses_of_what_moves_and_elements_take_no_contact_that
     assert "plane.touch" in (get_solver("fem").refusal(scene()) or "")
 
 
-def shared(first, second):
-    """Return the parts of edges that two outlines share."""
-    return list(shared_edges(first, second, 1e-9))
-
-
 GENERATED = {
     "stack": ({"count": 3, "rectangle": [2.0, 0.5], "offsets": [0.0, 0.3, 0.2]}, 3, 3.0),
     "wall": ({"rows": 4, "bricks": 5, "rectangle": [0.4, 0.2]}, 22, 1.6),

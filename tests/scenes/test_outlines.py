@@ -1,7 +1,5 @@
 """Outlines of blocks, records and loads as a scene reads them."""
 
-from __future__ import annotations
-
 import pytest
 
 from validation.scenes.outline import check_polygon
@@ -23,7 +21,7 @@ PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
         (((0, 0), (2, 0)), "must be three or more"),
     ],
 )
-def test_outlines_that_are_none(vertices: tuple[tuple[float, float], ...], words: str) -> None:
+def test_outlines_that_are_none(vertices, words):
     with pytest.raises(ValueError, match=words):
         check_polygon(vertices, 0, 1)
 
@@ -38,5 +36,5 @@ def test_outlines_that_are_none(vertices: tuple[tuple[float, float], ...], words
     ],
     ids=["pentagon", "notch", "C", "straight"],
 )
-def test_outlines_that_are_sound(vertices: tuple[tuple[float, float], ...]) -> None:
+def test_outlines_that_are_sound(vertices):
     check_polygon(vertices, 0, 2)

@@ -3,7 +3,6 @@
 import copy
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -14,7 +13,7 @@ TABLES = tomllib.loads(Path(__file__).with_name("refused_kinds.toml").read_text(
 ROWS = [(kind, row) for kind in TABLES["scene"] for row in TABLES[kind]]
 
 
-def holder(data: Any, field: str) -> tuple[Any, str]:
+def holder(data, field):
     """Return the table that a dotted key stands in, and what of the key is left."""
     *path, key = field.split(".")
     for name in path:
@@ -23,7 +22,7 @@ def holder(data: Any, field: str) -> tuple[Any, str]:
 
 
 @pytest.mark.parametrize(("kind", "row"), ROWS, ids=lambda value: str(value)[:60])
-def test_what_does_not_go_together_is_refused(kind: str, row: dict[str, Any]) -> None:
+def test_what_does_not_go_together_is_refused(kind, row):
     data = copy.deepcopy(TABLES["scene"][kind])
     parse_scene(copy.deepcopy(data), "x")
     for field in row.get("without", []):

@@ -1,10 +1,7 @@
 """What is no regular file is refused at once; what begins with a byte-order mark is read everywhere."""
 
-from __future__ import annotations
-
 import os
 import signal
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -28,17 +25,17 @@ TABLE = b"time,x\n0,0\n1,0.5\n2,1\n"
 
 
 @pytest.fixture
-def pipe(tmp_path: Path) -> Path:
+def pipe(tmp_path):
     path = tmp_path / "pipe.toml"
     os.mkfifo(path)
     return path
 
 
 @pytest.fixture
-def limited() -> Iterator[None]:
+def limited():
     """End what waits for a pipe."""
 
-    def ended(number: int, frame: object) -> None:
+    def ended(number, frame):
         raise TimeoutError("waited for a pipe")
 
     before = signal.signal(signal.SIGALRM, ended)
@@ -59,14 +56,12 @@ def limited() -> Iterator[None]:
         ("solve {scene} --solver fem --set fem.mesh={pipe}", "fem: mesh: "),
     ],
 )
-def test_a_pipe_is_refused_and_not_waited_for(
-    command: str, field: str, pipe: Path, scene_file: Path, limited: None
-) -> None:
+def test_a_pipe_is_refused_and_not_waited_for(command, field, pipe, scene_file, limited):
     words = [word.format(pipe=pipe, scene=scene_file) for word in command.split()]
     assert f"{field}{pipe}: must be a regular file, got a pipe" in refused(*words, cwd=pipe.parent)
 
 
-def test_devices_and_directories_are_named(tmp_path: Path) -> None:
+def test_devices_and_directories_are_named(tmp_path):
     for place, kind in ((Path("/dev/zero"), "device"), (tmp_path, "directory")):
         with pytest.raises(InputError, match=f"must be a regular file, got a {kind}"):
             regular(place)
@@ -75,14 +70,14 @@ def test_devices_and_directories_are_named(tmp_path: Path) -> None:
                 reader(place)
 
 
-def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe: Path, tmp_path: Path) -> None:
+def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe, tmp_path):
     path = tmp_path / "swept.toml"
     path.write_text(SCENE + f'[sweep]\n"load.base_motion" = ["{pipe.name}"]\n')
     with pytest.raises(InputError, match=r"base_motion: .*must be a regular file, got a pipe"):
         load_scene(path).expand()
 
 
-def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path: Path) -> None:
+def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path):
     path = tmp_path / "record.csv"
     path.write_bytes(MARK + TABLE)
     assert np.array_equal(read_record(path).x, [0, 0.5, 1])
@@ -94,7 +89,7 @@ def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path: Path) -> None:
     assert load_scene(scene).name == "marked"
 
 
-def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
+def test_a_large_file_is_refused_before_it_is_read(tmp_path):
     path = tmp_path / "large.toml"
     with path.open("wb") as stream:
         stream.truncate(10**9)
@@ -103,11 +98,11 @@ def test_a_large_file_is_refused_before_it_is_read(tmp_path: Path) -> None:
             reader(path)
 
 
-def write(path: Path, content: bytes = b"new") -> None:
+def write(path, content=b"new"):
     write_atomically(path, lambda stream: stream.write(content))
 
 
-def test_an_output_keeps_the_kind_of_what_stands_there(tmp_path: Path, limited: None) -> None:
+def test_an_output_keeps_the_kind_of_what_stands_there(tmp_path, limited):
     target, link, pipe = tmp_path / "target.csv", tmp_path / "link.csv", tmp_path / "pipe.csv"
     link.symlink_to(target)
     write(link)
@@ -126,9 +121,7 @@ def test_an_output_keeps_the_kind_of_what_stands_there(tmp_path: Path, limited: 
 
 
 @pytest.mark.parametrize("option", ["solve --csv", "solve --fields", "run --summary"])
-def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(
-    option: str, tmp_path: Path, scene_file: Path
-) -> None:
+def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(option, tmp_path, scene_file):
     command, name = option.split()
     ending = ".xdmf" if name == "--fields" else ".txt"
     folder, loop, lost = tmp_path / f"folder{ending}", tmp_path / f"loop{ending}", tmp_path / "absent" / f"a{ending}"
@@ -139,7 +132,7 @@ def test_an_output_that_cannot_be_written_is_refused_before_anything_runs(
     assert sorted(path.name for path in tmp_path.iterdir()) == sorted([folder.name, loop.name, scene_file.name])
 
 
-def kept_row(directory: Path, **changes: object) -> Results:
+def kept_row(directory, **changes):
     """Return results of one row, whose history has two steps of one column."""
     results = Results(directory)
     row = Row("k", "s", "s", "dda", Outcome.COMPLETED, {})
@@ -149,7 +142,7 @@ def kept_row(directory: Path, **changes: object) -> Results:
     return results
 
 
-def test_a_history_that_is_not_as_it_was_kept_is_refused_unread(tmp_path: Path) -> None:
+def test_a_history_that_is_not_as_it_was_kept_is_refused_unread(tmp_path):
     results = kept_row(tmp_path)
     assert results.whole("s", histories=True)["study"] == "s"
     path = tmp_path / "histories" / "k.npz"
@@ -166,7 +159,7 @@ def test_a_history_that_is_not_as_it_was_kept_is_refused_unread(tmp_path: Path) 
 
 
 @pytest.mark.parametrize("name", ["rows.jsonl", "verdicts.json", "studies/s.json", "histories/k.npz", ".lock"])
-def test_a_pipe_in_a_results_directory_is_not_waited_for(name: str, tmp_path: Path, limited: None) -> None:
+def test_a_pipe_in_a_results_directory_is_not_waited_for(name, tmp_path, limited):
     results = kept_row(tmp_path)
     (tmp_path / name).unlink(missing_ok=True)
     os.mkfifo(tmp_path / name)

@@ -5,18 +5,17 @@ import functools
 import operator
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 from conftest import SCENE
 
 from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene, parse_assignment, parse_scene, scene_names
+from validation.scenes.scene import load_scene, parse_assignment, parse_scene
 
 SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
 
 
-def changed(**changes: object) -> dict[str, Any]:
+def changed(**changes):
     """Return the small scene with ``section__key`` replaced."""
     data = copy.deepcopy(tomllib.loads(SCENE))
     for name, value in changes.items():
@@ -25,7 +24,7 @@ def changed(**changes: object) -> dict[str, Any]:
     return data
 
 
-def parse(**changes: object) -> Scene:
+def parse(**changes):
     return parse_scene(changed(**changes), "x.toml")
 
 
@@ -35,7 +34,7 @@ REFUSED = [
 ]
 
 
-def test_a_scheme_refuses_the_numbers_of_newmarks() -> None:
+def test_a_scheme_refuses_the_numbers_of_newmarks():
     time = parse(time__scheme="chung-hulbert", time__rho_inf=0.8).time
     for weight in ("alpha", "delta"):
         with pytest.raises(InputError) as caught:
@@ -45,7 +44,7 @@ def test_a_scheme_refuses_the_numbers_of_newmarks() -> None:
 
 
 @pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
-def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], words: str) -> None:
+def test_refusals_name_file_field_rule_and_value(changes, words):
     with pytest.raises(InputError) as caught:
         parse(**changes)
     text = str(caught.value)
@@ -54,14 +53,14 @@ def test_refusals_name_file_field_rule_and_value(changes: dict[str, object], wor
     assert "\n" not in text and ", got " in text
 
 
-def test_edges_of_a_polygon_are_checked() -> None:
+def test_edges_of_a_polygon_are_checked():
     data = changed(block__vertices=SQUARE, block__top=4)
     del data["block"]["side"]
     with pytest.raises(InputError, match="top must be an edge index from 0 to 3, got 4"):
         parse_scene(data, "x.toml")
 
 
-def test_a_missing_key_is_named() -> None:
+def test_a_missing_key_is_named():
     data = changed()
     del data["load"]["pressure"]
     with pytest.raises(
@@ -79,9 +78,7 @@ def test_a_missing_key_is_named() -> None:
         ("rigid-impact", "plane.block.box.spin", ("plane", "block", 1, "spin"), [1.0, 2.0]),
     ],
 )
-def test_keys_of_tables_in_tables_are_swept_by_short_names(
-    name: str, field: str, place: tuple[str | int, ...], values: list[float]
-) -> None:
+def test_keys_of_tables_in_tables_are_swept_by_short_names(name, field, place, values):
     data = load_scene(name).definition()
     cases = parse_scene(data | {"sweep": {field: values}}, "x").expand()
     assert [case.name for case in cases] == [f"{name}[{field}={value:g}]" for value in values]
@@ -91,20 +88,20 @@ def test_keys_of_tables_in_tables_are_swept_by_short_names(
 @pytest.mark.parametrize(
     "field", ["plane.block.spin", "plane.block.lid.spin", "plane.block.9.spin", "gate.0.metric", "run.columns"]
 )
-def test_what_is_no_key_of_a_table_is_not_swept(field: str) -> None:
+def test_what_is_no_key_of_a_table_is_not_swept(field):
     data = load_scene("rigid-impact").definition()
     with pytest.raises(InputError, match="sweep: must name a key of a table"):
         parse_scene(data | {"sweep": {field: [1.0]}}, "x")
 
 
-def test_a_swept_value_is_checked_like_any_other() -> None:
+def test_a_swept_value_is_checked_like_any_other():
     with pytest.raises(InputError, match=r"time.step: must be greater than 0, got -1"):
         parse(sweep={"time.step": [0.1, -1]}).expand()
     with pytest.raises(InputError, match=r"sweep.time.stop: unknown key"):
         parse(sweep={"time.stop": [0.1]}).expand()
 
 
-def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_refused() -> None:
+def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_refused():
     close = parse(sweep={"time.step": [0.1, 0.1 + 1e-9]}).expand()
     assert [case.name for case in close] == ["scene[time.step=0.1]", "scene[time.step=0.100000001]"]
     for repeated in ([0.1, 0.1], [1, 1.0]):
@@ -112,7 +109,7 @@ def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_
             parse(sweep={"time.step": repeated}).expand()
 
 
-def test_keys_that_exclude_each_other_are_not_set_or_swept_together() -> None:
+def test_keys_that_exclude_each_other_are_not_set_or_swept_together():
     for values in ({"time.gg": 0.9, "time.gg_rate": 3.0}, {"block.side": 1.0, "block.width": 2.0, "block.height": 1.0}):
         with pytest.raises(InputError, match="exclude each other, got both"):
             parse().with_values(values)
@@ -125,12 +122,12 @@ def test_keys_that_exclude_each_other_are_not_set_or_swept_together() -> None:
 
 
 @pytest.mark.parametrize("field", ["name", "sweep", "gate", 'sweep."time.step"', "gate.0.band"])
-def test_what_is_no_value_of_a_scene_is_not_set(field: str) -> None:
+def test_what_is_no_value_of_a_scene_is_not_set(field):
     with pytest.raises(InputError, match="must be a key as in"):
         parse().with_values({field: [0.1]})
 
 
-def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path: Path) -> None:
+def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path):
     text = SCENE.replace("elements = 4", 'mesh = "a.msh"')
     swept = 'a.msh", "b.msh'
     (tmp_path / "s.toml").write_text(f'\ufeff{text}\n[sweep]\n"fem.mesh" = ["{swept}"]\n', encoding="utf-8")
@@ -139,7 +136,7 @@ def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path:
     assert [case.fem.mesh for case in scene.expand()] == [str(tmp_path / "a.msh"), str(tmp_path / "b.msh")]
 
 
-def test_assignments_are_toml_or_words() -> None:
+def test_assignments_are_toml_or_words():
     assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
     assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
@@ -147,15 +144,8 @@ def test_assignments_are_toml_or_words() -> None:
         parse_assignment("time.step")
 
 
-@pytest.mark.parametrize("name", scene_names())
-def test_built_in_scenes_load_and_expand(name: str) -> None:
-    scene = load_scene(name)
-    assert scene.title
-    assert all(not case.sweep for case in scene.expand())
-
-
-def test_the_papers_figures_are_there() -> None:
-    def values(name: str, field: str) -> list[float]:
+def test_the_papers_figures_are_there():
+    def values(name, field):
         section, _, key = field.partition(".")
         return [getattr(getattr(case, section), key) for case in load_scene(name).expand()]
 

@@ -1,10 +1,7 @@
 """Unknown keys of a scene: all of them first, in one error, each with the key that was probably meant."""
 
-from __future__ import annotations
-
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -16,9 +13,9 @@ SCENE = BLOCK | {"load": {"pressure": 5e6}, "time": {"step": 0.002, "steps": 100
 MEANT = tomllib.loads(Path(__file__).with_name("meant_keys.toml").read_text(encoding="utf-8"))
 
 
-def with_key(field: str) -> dict[str, Any]:
+def with_key(field):
     """Return a scene's data with a key of the value 1 added."""
-    data: dict[str, Any] = {table: dict(keys) for table, keys in SCENE.items()}
+    data = {table: dict(keys) for table, keys in SCENE.items()}
     place, _, key = field.rpartition(".")
     if field.startswith("sweep."):
         place, _, key = field.partition(".")
@@ -27,7 +24,7 @@ def with_key(field: str) -> dict[str, Any]:
 
 
 @pytest.mark.parametrize(("field", "meant"), MEANT["blocks"].items())
-def test_the_key_that_was_meant_is_named(field: str, meant: str) -> None:
+def test_the_key_that_was_meant_is_named(field, meant):
     with pytest.raises(InputError) as refused:
         parse_scene(with_key(field), "x.toml")
     assert refused.value.rule == "unknown key" and refused.value.source == "x.toml"
@@ -35,7 +32,7 @@ def test_the_key_that_was_meant_is_named(field: str, meant: str) -> None:
     assert refused.value.advice == f"did you mean {meant}?"
 
 
-def test_all_of_them_come_in_one_error_before_any_other(tmp_path: Any) -> None:
+def test_all_of_them_come_in_one_error_before_any_other(tmp_path):
     path = tmp_path / "x.toml"
     path.write_text(
         'name = "x"\n[block]\nside = -2.0\ndt = 0.1\n[time]\nstepp = -1\n[sweep]\n"time.gama" = [1]\n'
@@ -51,7 +48,7 @@ def test_all_of_them_come_in_one_error_before_any_other(tmp_path: Any) -> None:
     )
 
 
-def test_keys_of_a_column_are_looked_for_in_the_tables_of_a_column() -> None:
+def test_keys_of_a_column_are_looked_for_in_the_tables_of_a_column():
     data = {"column": {"motion": "pressure", "layer": [{"thickness": 1.0, "E": 1e9, "nu": 0.2}], "young": 1e9}}
     with pytest.raises(InputError) as refused:
         parse_scene(data, "x.toml")
@@ -61,11 +58,11 @@ def test_keys_of_a_column_are_looked_for_in_the_tables_of_a_column() -> None:
 
 
 @pytest.mark.parametrize(("field", "meant"), MEANT["plane"].items())
-def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field: str, meant: str) -> None:
-    block: dict[str, Any] = {"name": "A", "rectangle": [1.0, 1.0], "velocity": [1.0, 0.0]}
-    contact: dict[str, Any] = {"stiffness": 1e9}
-    plane: dict[str, Any] = {"young": 1e9, "density": 2500.0, "contact": contact, "block": [block]}
-    data: dict[str, Any] = {"plane": plane, "time": {"step": 0.01, "steps": 10}}
+def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field, meant):
+    block = {"name": "A", "rectangle": [1.0, 1.0], "velocity": [1.0, 0.0]}
+    contact = {"stiffness": 1e9}
+    plane = {"young": 1e9, "density": 2500.0, "contact": contact, "block": [block]}
+    data = {"plane": plane, "time": {"step": 0.01, "steps": 10}}
     place, _, key = field.rpartition(".")
     {"plane": plane, "plane.block": block, "plane.contact": contact}[place][key] = 1.0
     with pytest.raises(InputError) as refused:

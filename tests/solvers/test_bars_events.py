@@ -1,15 +1,11 @@
 """The adapters of elastic bars and of line elements whose contacts open or slip: the elements tend to the bars."""
 
-from __future__ import annotations
-
-from typing import Any
-
 import numpy as np
 import pytest
 from conftest import thinned
 
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 from validation.solvers.columns.bars import BarsOfColumn
 from validation.solvers.registry import get_solver, solve
 
@@ -23,14 +19,14 @@ HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 PULSE = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
 
 
-def scene_of(column: dict[str, Any], columns: list[str], elements: int = 4, **tables: Any) -> Scene:
+def scene_of(column, columns, elements=4, **tables):
     time = {"step": 1e-4, "steps": 200, "alpha": 0.25, "delta": 0.5, "start": "consistent"} | tables.pop("time", {})
     run = {"solvers": ["bars-events", "fem"], "columns": columns}
     fem = {"elements": elements, "degree": 1}
     return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, "fem": fem} | tables, "made")
 
 
-def history(scene: Scene, solver: str) -> dict[str, np.ndarray]:
+def history(scene, solver):
     run = solve(scene, solver)
     assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
     return dict(run.history.columns)
@@ -39,7 +35,7 @@ def history(scene: Scene, solver: str) -> dict[str, np.ndarray]:
 SMOOTH = ("displacement", "displacement_2", "displacement_5")  # the others have fronts, about which elements ring
 
 
-def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: str) -> float:
+def distance(finer, stride, exact, *names):
     """Greatest mean distance of a column of the elements, at the exact motion's instants, over its greatest value."""
     stepped = history(finer, "fem")
     errors = []
@@ -53,7 +49,7 @@ def distance(finer: Scene, stride: int, exact: dict[str, np.ndarray], *names: st
 
 
 @pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))
-def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
+def test_every_shape_of_a_base_motion_moves_both(shape):
     size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
     layers = [layer | {"velocity": 0.0} for layer in LAYERS]
     column = WELDED | {"joint": [{"height": 2.0, "stiffness": 1e9}], "settled": True, "layer": layers}
@@ -67,7 +63,7 @@ def test_every_shape_of_a_base_motion_moves_both(shape: str) -> None:
     assert distance(fine, 16, exact) < 0.12
 
 
-def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch):
     scene = scene_of(OPENS, ["displacement"], input=PULSE)
     monkeypatch.setattr(BarsOfColumn, "most_terms", 2e4)
     run = solve(scene, "bars-events")
@@ -77,7 +73,7 @@ def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch: pytest.M
     assert "would have at least" in solve(scene, "bars-events").notes[0]
 
 
-def test_the_elements_count_their_solves_and_end_at_their_limit() -> None:
+def test_the_elements_count_their_solves_and_end_at_their_limit():
     thrown = OPENS | {"gap": 0.0, "layer": [LAYERS[0] | {"thickness": 6.0, "blocks": 6}]}
     time = {"step": 2e-3, "steps": 20, "alpha": 0.5, "delta": 1.0}
     prepared = get_solver("fem").prepare(scene_of(thrown, ["displacement"], 1, time=time))

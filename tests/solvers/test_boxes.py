@@ -1,9 +1,6 @@
 """Boxes on a ground as DDA takes them, against what is known of them without it."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +8,6 @@ from oracles.box_scenes import box_scene
 
 from validation.models.plane.boxes import boxes_of
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
 BOX = {"width": 0.8, "height": 1.5, "density": 800.0}
@@ -19,12 +15,12 @@ WEIGHT = 800 * 0.8 * 1.5 * 9.81  # N
 AVERAGE = {"alpha": 0.25, "delta": 0.5, "start": "consistent"}
 
 
-def scene_of(*boxes: dict[str, Any], seconds: float = 2.0, **values: Any) -> Scene:
+def scene_of(*boxes, seconds=2.0, **values):
     """Return a scene of boxes; every row is 1/50 s."""
     return box_scene(*boxes, step=0.02, steps=round(seconds / 0.02), **values)
 
 
-def columns_of(scene: Scene) -> dict[str, np.ndarray]:
+def columns_of(scene):
     """Return the columns that DDA gives of a scene."""
     run = get_solver("dda").solve(scene)
     assert run.outcome is Outcome.COMPLETED

@@ -1,15 +1,13 @@
 """The adapter of the exact motion of columns whose contacts open or slip."""
 
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from validation.runs.run import Outcome
 from validation.scenes.drive import motion_at
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 from validation.solvers.columns.events import ColumnEventMotion, drive_of
 from validation.solvers.registry import get_solver, solve
 
@@ -21,19 +19,19 @@ OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 
 
-def scene_of(column: dict[str, Any], columns: list[str], steps: int = 400, **tables: Any) -> Scene:
+def scene_of(column, columns, steps=400, **tables):
     time = {"step": 5e-5, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"} | tables.pop("time", {})
     run = {"solvers": ["dda", "column-events"], "columns": columns}
     return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, **tables}, "made")
 
 
-def history(scene: Scene, solver: str = "column-events") -> dict[str, np.ndarray]:
+def history(scene, solver="column-events"):
     run = solve(scene, solver)
     assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
     return dict(run.history.columns)
 
 
-def names(*parts: str, numbers: range = range(1, 6)) -> list[str]:
+def names(*parts, numbers=range(1, 6)):
     return [f"{part}_{number}" for part in parts for number in numbers]
 
 
@@ -54,7 +52,7 @@ def names(*parts: str, numbers: range = range(1, 6)) -> list[str]:
     ],
     ids=str,
 )
-def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -> None:
+def test_the_drive_is_that_of_the_scene(drive, tmp_path):
     from flint import arb
 
     if "record" in drive:
@@ -70,7 +68,7 @@ def test_the_drive_is_that_of_the_scene(drive: dict[str, Any], tmp_path: Path) -
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
 
 
-def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains() -> None:
+def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains():
     columns = ["displacement", "contact_pressure", *names("displacement", "stress"), "force_1", "force_3", "force_4"]
     columns += ["gap_1", "gap_3"]
     values = history(scene_of(OPENS, columns))
@@ -88,7 +86,7 @@ def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_st
     assert (values["gap_1"][~closed] > 0).all()
 
 
-def test_notes_name_switches_and_the_proven_radius() -> None:
+def test_notes_name_switches_and_the_proven_radius():
     run = solve(scene_of(OPENS, ["displacement"]), "column-events")
     assert run.notes[0] == "exact in time"
     assert run.notes[1].startswith("0 m closes at ")
@@ -99,7 +97,7 @@ def test_notes_name_switches_and_the_proven_radius() -> None:
     assert any(note.startswith("at zero gap") and "1, 2 m" in note for note in run.notes)
 
 
-def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch):
     from fem_reference.events import column_events
 
     monkeypatch.setattr(column_events, "MOST_DIGITS", 30)
@@ -109,9 +107,9 @@ def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch: pytest.MonkeyPatch)
     assert "exact up to" in run.notes[0]
 
 
-def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(monkeypatch):
     scene = scene_of(OPENS, ["displacement"])
-    shares: list[float] = []
+    shares = []
     for limit, predicted in ((6e3, False), (10.0, True)):
         monkeypatch.setattr(ColumnEventMotion, "most_terms", limit)
         prepared = get_solver("column-events").prepare(scene)

@@ -5,7 +5,7 @@ import pytest
 from validation import load_scene, response
 
 
-def test_a_pressure_on_the_top_has_the_scenes_size() -> None:
+def test_a_pressure_on_the_top_has_the_scenes_size():
     scene = load_scene("waves-base").expand()[0]
     drive = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.01}
     pressed = scene.with_values({"input": drive})

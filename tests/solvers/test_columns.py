@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from validation import load_scene, response, solve
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 SITE = Path(__file__).with_name("site.toml").read_text(encoding="utf-8")
 BASES = {
@@ -23,13 +23,13 @@ BASES_AND_ENDS = [
 
 
 @pytest.fixture
-def site(tmp_path: Path) -> Scene:
+def site(tmp_path):
     path = tmp_path / "site.toml"
     path.write_text(SITE)
     return load_scene(path)
 
 
-def standing(site: Scene, base: str) -> Scene:
+def standing(site, base):
     """Return the site on another base."""
     data = site.definition()
     if base in ("rigid", "springs"):
@@ -40,7 +40,7 @@ def standing(site: Scene, base: str) -> Scene:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
-def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) -> None:
+def test_welded_blocks_are_linear_elements(site, base, top):
     scene = standing(site, base).with_values({"time.alpha": 0.4, "time.delta": 0.7, "time.gg": 0.99})
     if top:
         drive = {"at": "top", "shape": "half-sine", "pressure": 1e6, "duration": 0.05}
@@ -55,7 +55,7 @@ def test_welded_blocks_are_linear_elements(site: Scene, base: str, top: bool) ->
 
 
 @pytest.mark.parametrize(("base", "top"), BASES_AND_ENDS)
-def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: bool) -> None:
+def test_fine_columns_vibrate_as_the_exact_layers(site, base, top):
     layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
     scene = standing(site, base).with_values({"column.layer": layers, "time.gg": 0.99})
     if top:
@@ -73,7 +73,7 @@ def test_fine_columns_vibrate_as_the_exact_layers(site: Scene, base: str, top: b
 
 @pytest.mark.parametrize("solver", ["dda", "fem", "layers", "column-events", "bars-events"])
 @pytest.mark.parametrize("top", [0.3, (0.1 + 0.2) * (1 + 5e-10)])
-def test_a_height_that_is_the_top_but_for_rounding_is_the_top(solver: str, top: float) -> None:
+def test_a_height_that_is_the_top_but_for_rounding_is_the_top(solver, top):
     layers = [{"thickness": 0.1, "density": 2000.0, "young": 1e8}, {"thickness": 0.2, "density": 2000.0, "young": 1e8}]
     column = {"motion": "pressure", "layer": layers, "heights": [top]}
     if solver.endswith("events"):

@@ -1,9 +1,6 @@
 """The adapter of `dda` for columns whose contacts open or slip: columns, switches, record and outcomes of a scene."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,21 +8,21 @@ from conftest import thinned
 
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers.columns.blocks import ContactColumn
 from validation.solvers.registry import get_solver
 
 LAYER = {"thickness": 5.0, "density": 2500.0, "young": math.inf, "blocks": 5, "velocity": -1.0}
 
 
-def scene_of(column: dict[str, Any], columns: list[str], step: float = 1e-4, steps: int = 400, **tables: Any) -> Scene:
+def scene_of(column, columns, step=1e-4, steps=400, **tables):
     whole = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "layer": [LAYER]} | column
     time = {"step": step, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
     data = {"column": whole, "time": time, "run": {"solvers": ["dda"], "columns": columns}}
     return parse_scene(data | tables, "column.toml")
 
 
-def dropped(**column: Any) -> Scene:
+def dropped(**column):
     """Return the five blocks of case A2, which land and leave their base."""
     joint = {"height": 0.0, "stiffness": 1e9, "gap": 0.005}
     heights = [0.5, 1.5, 2.5, 3.5, 4.5, 0.0, 3.0]
@@ -36,9 +33,7 @@ def dropped(**column: Any) -> Scene:
 
 
 @pytest.mark.parametrize(("only", "kept"), [(None, True), (frozenset({"displacement_1.peak"}), False)])
-def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
-    monkeypatch: pytest.MonkeyPatch, only: frozenset[str] | None, kept: bool
-) -> None:
+def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(monkeypatch, only, kept):
     asked = []
     sound = ContactColumn.solved
     monkeypatch.setattr(ContactColumn, "solved", lambda self, energies: asked.append(energies) or sound(self, energies))
@@ -47,7 +42,7 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(
     assert asked[0] is kept
 
 
-def test_a_settled_column_stays_where_its_weight_has_put_it() -> None:
+def test_a_settled_column_stays_where_its_weight_has_put_it():
     scene = scene_of(
         {"gravity": 9.81, "settled": True, "layer": [LAYER | {"velocity": 0.0, "young": 1e9}]},
         ["displacement", "contact_pressure"],
@@ -64,7 +59,7 @@ def test_a_settled_column_stays_where_its_weight_has_put_it() -> None:
 
 
 @pytest.mark.parametrize("solver", thinned(["dda", "fem"], 2))
-def test_a_pressure_that_is_there_at_once_acts_on_a_column_at_rest_under_its_weight(solver: str) -> None:
+def test_a_pressure_that_is_there_at_once_acts_on_a_column_at_rest_under_its_weight(solver):
     """Each of the three takes the state at rest for that of the weight alone."""
     tables = {
         "input": {"at": "top", "shape": "triangle", "pressure": 5e5, "duration": 0.01},
@@ -82,7 +77,7 @@ def test_a_pressure_that_is_there_at_once_acts_on_a_column_at_rest_under_its_wei
     ("case", "lowest", "highest"),
     thinned([(0, -23.765, -1.320), (1, -22.386, 2.107), (2, -24.06, -1.71), pytest.param(3, -17.92, -0.013)], 4),
 )
-def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int, lowest: float, highest: float) -> None:
+def test_residual_slips_of_a_site_are_those_of_an_independent_program(case, lowest, highest):
     scene = load_scene("columns-slips-steps").expand()[case]
     prepared = get_solver("dda").prepare(scene)
     history = prepared.run().history
@@ -99,7 +94,7 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case: int,
     assert {switch.slips for switch in switches} == {True, False}
 
 
-def test_an_explicit_step_of_welded_faces_is_refused() -> None:
+def test_an_explicit_step_of_welded_faces_is_refused():
     joint = {"height": 2.0, "stiffness": 1e9}
     scene = scene_of({"stiffness": None, "joint": [joint]}, ["displacement"]).with_values({"time.alpha": 0.0})
     with pytest.raises(ValueError, match="stiffness: must be finite"):

@@ -1,9 +1,5 @@
 """The contract: a solver refuses what it does not handle, and what has no meaning is not measured or judged."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 from faults import seams
@@ -18,7 +14,7 @@ from validation.results import Results
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers import registry
 from validation.solvers.contract import Role, Solver
 from validation.solvers.names import check_names
@@ -39,13 +35,13 @@ class Jointed(Solver):
     handles = features.FIRST | {JOINTS}
     sources = ("validation.solvers",)
 
-    def solve(self, scene: Scene, full: bool = False, fields: Path | None = None) -> Run:
+    def solve(self, scene, full=False, fields=None):
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         return Run(Outcome.COMPLETED, History(time, {name: np.sin(time) for name in scene.run.columns}))
 
 
 @pytest.fixture
-def jointed(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+def jointed(scene_file, monkeypatch):
     """Return a scene with a feature that is one line of the table, and register its solver by another line."""
     feature = features.Feature(JOINTS, 'block.hypothesis = "plane strain"', linear=False)
     monkeypatch.setattr(features, "FEATURES", (*features.FEATURES, feature))
@@ -56,7 +52,7 @@ def jointed(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
     return load_scene(scene_file).with_values({"block.hypothesis": "plane strain"})
 
 
-def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed: Scene, tmp_path, monkeypatch) -> None:
+def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed, tmp_path, monkeypatch):
     (tmp_path / "plain.py").write_text("def solve(scene):\n    raise RuntimeError('was run')\n")
     monkeypatch.syspath_prepend(str(tmp_path))
     answer_here(monkeypatch)
@@ -64,7 +60,7 @@ def test_a_users_function_that_does_not_name_the_feature_is_not_run(jointed: Sce
     assert run.outcome is Outcome.NOT_APPLICABLE and JOINTS in run.notes[-1]
 
 
-def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear(jointed: Scene, tmp_path) -> None:
+def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear(jointed, tmp_path):
     metrics = [name for name, metric in CATALOGUE.items() if "reference" not in metric.needs]
     gates = tuple(Gate(jointed.name, ("jointed",), metric, -1e9, 1e9, "a test") for metric in metrics)
     study = Study("jointed", "t", "p", [jointed], ("jointed", "dda"), gates=lambda: gates)
@@ -76,7 +72,7 @@ def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear
     assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == "not reported"
 
 
-def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Scene) -> None:
+def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed):
     gate = {"pair": ["jointed"], "metric": "mode1.frequency", "band": [0.0, 1e9], "reason": "a test"}
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
     with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
@@ -87,7 +83,7 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed: Sce
     check_names(swept, "mine.toml")  # one of its cases is linear
 
 
-def test_roles_and_ranks_are_the_solvers_own(jointed: Scene) -> None:
+def test_roles_and_ranks_are_the_solvers_own(jointed):
     for word in Role:
         found = by_role(word)
         assert set(found) == {name for name in registry.BUILT_IN if role(name) == word}

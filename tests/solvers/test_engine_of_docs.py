@@ -1,20 +1,14 @@
 """The engine of docs/problems.md: it runs as it stands, and the page's table of problems is the code's."""
 
-from __future__ import annotations
-
 import math
 import re
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.box_scenes import box_scene
 
 from validation.models.plane.problems import box_problems
-from validation.problems.numbered import JudgedNumber
-from validation.scenes.scene import Scene
 from validation.solvers.user import UserSolver
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -23,26 +17,26 @@ GRAVITY = 9.81
 
 
 @pytest.fixture
-def engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[Scene], dict[str, np.ndarray]]:
+def engine(tmp_path, monkeypatch):
     """Return the solve of the example of rigid boxes."""
     code = (DOCS / "examples/judge/impulses.py").read_text(encoding="utf-8")
-    names: dict[str, Any] = {}
+    names = {}
     exec(compile(code, "impulses.py", "exec"), names)
-    solve: Callable[[Scene], dict[str, np.ndarray]] = names["Impulses"]().solve
+    solve = names["Impulses"]().solve
     return solve
 
 
-def scene(box: dict[str, Any], steps: int = 50, boxes: int = 1, **values: Any) -> Scene:
+def scene(box, steps=50, boxes=1, **values):
     return box_scene(*[{"density": 2500.0} | box] * boxes, steps=steps, **values)
 
 
-def test_it_answers_without_weight_too(engine: Callable[..., Any]) -> None:
+def test_it_answers_without_weight_too(engine):
     history = engine(scene({"lift": 0.1, "velocity": [0.0, -1.0]}, restitution=0.5, gravity=0.0))
     assert np.diff(history["box_1.y"])[-1] / 0.01 == pytest.approx(0.5, abs=1e-9)
 
 
 @pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
-def test_it_bounces_as_asked(engine: Callable[..., Any], restitution: float) -> None:
+def test_it_bounces_as_asked(engine, restitution):
     """The speed of landing is that at the end of the step of 1 ms in which it lands: g dt of 1.4 m/s, 0.7 %."""
     history = engine(scene({"lift": 0.1}, restitution=restitution))
     landing = math.sqrt(2 * GRAVITY * 0.1)
@@ -51,27 +45,27 @@ def test_it_bounces_as_asked(engine: Callable[..., Any], restitution: float) -> 
     assert math.sqrt(max(0.0, height) / 0.1) == pytest.approx(restitution, abs=0.015)
 
 
-def test_it_refuses_what_it_cannot_express(engine: Callable[..., Any]) -> None:
+def test_it_refuses_what_it_cannot_express(engine):
     for other in (scene({}, boxes=2), scene({}, stiffness=1e6)):
         with pytest.raises(NotImplementedError):
             engine(other)
 
 
-def test_the_suite_takes_it_for_a_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_suite_takes_it_for_a_solver(monkeypatch):
     monkeypatch.syspath_prepend(str(DOCS / "examples/judge"))
     solver = UserSolver("impulses", "impulses:Impulses")
     assert solver.about()["program"] == "impulses"
 
 
-def numbers(text: str) -> list[float]:
+def numbers(text):
     return [float(number) for number in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?:e-?\d+)?", text)]
 
 
-def half_band(quantity: JudgedNumber) -> float:
+def half_band(quantity):
     return max(quantity.high - quantity.exact, quantity.exact - quantity.low)
 
 
-def test_the_table_of_problems_has_every_problem_with_its_bands() -> None:
+def test_the_table_of_problems_has_every_problem_with_its_bands():
     rows = dict(re.findall(r"^\| `([\w-]+)` \| [^|]* \| [^|]* \| ([^|]*) \|$", PAGE, re.MULTILINE))
     exact = dict(re.findall(r"^\| `([\w-]+)` \| [^|]* \| ([^|]*) \| [^|]* \|$", PAGE, re.MULTILINE))
     for name, problem in box_problems().items():

@@ -1,17 +1,13 @@
 """What each solver takes and refuses by name: one table of features, and one of those that do not go together."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
-from typing import Any
 
 import pytest
 
 from validation import response, solve
 from validation.errors import InputError
 from validation.scenes import features
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers.registry import BUILT_IN, get_solver
 
 LOCKED = load_scene("figures-3-4").with_values({"time.step": 1e-3, "time.steps": 3, "fem.elements": 2})
@@ -33,7 +29,7 @@ IMPACT = OPEN | AVERAGE | {"contact.stiffness": math.inf, "contact.rule": "impac
 AUGMENTED = OPEN | {"contact.rule": "augmented"}
 COMPOSITE = {"time.scheme": "composite"}
 
-SCENES: dict[str, dict[str, Any]] = {  # a scene with each feature and as few others as may be
+SCENES = {  # a scene with each feature and as few others as may be
     features.SUB_BLOCKS: SUB_BLOCKS,
     features.OFF_CENTRE: {"load.traction": 1e5},
     features.WEIGHT: {"load.gravity": 9.81},
@@ -62,16 +58,16 @@ OTHER_SCHEMES = {
     *("dda", "fem", "bar"),
     *("continuum", "layers", "block-events", "bar-events", "column-events", "bars-events", "rigid-exact"),
 }
-TAKES: dict[str, set[str]] = {
+TAKES = {
     features.SUB_BLOCKS: {"dda", "fem", "fenicsx", "bar", "continuum"},
     features.OFF_CENTRE: {"dda", "fem", "fenicsx", "block-events"},
     features.WEIGHT: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
     "ramped load": {"dda", "fem", "bar"},
     features.BASE_MOTION: {"dda", "fem", "fenicsx", "block-events"},
-    features.UNILATERAL: {"dda", "fem", "fenicsx", "bar", "block-events", "bar-events"},
+    features.UNILATERAL: {"dda", "fem", "bar", "block-events", "bar-events"},
     features.DEAD_BAND: {"dda"},
     features.RIGID: {"dda"},
-    features.FRICTION: {"dda", "fem", "fenicsx", "block-events"},
+    features.FRICTION: {"dda", "fem", "block-events"},
     features.LAGGED: {"dda"},
     features.SLOPE: {"dda", "fem", "fenicsx", "block-events"},
     features.ROTATION: {"dda"},
@@ -93,7 +89,7 @@ TAKES: dict[str, set[str]] = {
     features.LEAPFROG: OTHER_SCHEMES,
     features.COMPOSITE: OTHER_SCHEMES,
 }
-OF_CONTACTS: dict[str, dict[str, Any]] = {  # what a column of two blocks on contacts has beside them
+OF_CONTACTS = {  # what a column of two blocks on contacts has beside them
     features.UNILATERAL_COLUMN: {},
     features.FRICTIONAL_COLUMN: {"motion": "shear", "law": "frictional", "strength": 1e5},
     features.RIGID_BLOCKS: {
@@ -125,7 +121,7 @@ APART = [  # what a solver takes each by itself: solver, values, the two that ar
     *((solver, VISCOUS | KINETIC, features.DAMPING, features.ADAPTIVE) for solver in ("dda", "fem")),
 ]
 
-TWO_BLOCKS: dict[str, Any] = {
+TWO_BLOCKS = {
     "plane": {
         "young": 1e9,
         "density": 2700.0,
@@ -143,14 +139,14 @@ TWO_BLOCKS: dict[str, Any] = {
 }
 
 
-def scene_with(values: dict[str, Any], directory: Path) -> Scene:
+def scene_with(values, directory):
     """Return the locked block with other values; a record of its base stands in the directory."""
     record = directory / RECORD
     record.write_text("time,x,y\n0,0,0\n0.01,1e-3,2e-4\n0.5,0,0\n")
     return LOCKED.with_values({key: str(record) if value == RECORD else value for key, value in values.items()})
 
 
-def scene_of(feature: str, directory: Path) -> Scene:
+def scene_of(feature, directory):
     if feature == features.COLUMN:
         return load_scene("waves-base").expand()[0]
     if feature == features.PLANE:
@@ -166,7 +162,7 @@ def scene_of(feature: str, directory: Path) -> Scene:
 
 
 @pytest.mark.parametrize("feature", [feature.name for feature in features.FEATURES])
-def test_a_feature_is_refused_by_name_by_all_solvers_but_some(feature: str, tmp_path: Path) -> None:
+def test_a_feature_is_refused_by_name_by_all_solvers_but_some(feature, tmp_path):
     scene = scene_of(feature, tmp_path)
     assert feature in features.of(scene)
     for name in BUILT_IN:
@@ -179,9 +175,7 @@ def test_a_feature_is_refused_by_name_by_all_solvers_but_some(feature: str, tmp_
 
 
 @pytest.mark.parametrize(("solver", "values", "first", "second"), APART)
-def test_what_does_not_go_together_is_refused_by_both_names(
-    solver: str, values: dict[str, Any], first: str, second: str, tmp_path: Path
-) -> None:
+def test_what_does_not_go_together_is_refused_by_both_names(solver, values, first, second, tmp_path):
     scene = scene_with(values, tmp_path)
     with pytest.raises(InputError, match=rf"{first}.* together with {second}"):
         solve(scene, solver)

@@ -3,7 +3,6 @@
 import os
 import shutil
 import sys
-from collections.abc import Collection
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -26,7 +25,7 @@ from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, worker_directories
 from validation.solvers.processes import worker
@@ -34,17 +33,15 @@ from validation.solvers.registry import get_solver
 from validation.studies.two_codes.formulas import POLYGONS, SAME
 from validation.suite.folders import get_study
 
-pytestmark = pytest.mark.xdist_group("fenicsx")  # one worker process serves them all
 
-
-def error(scene: Scene, solver: str = "fenicsx") -> float:
+def error(scene, solver="fenicsx"):
     """Largest difference of the two codes over the maximum, of any column."""
     sound, other = solve(scene, "fem", full=True).history, solve(scene, solver).history
     assert sound is not None and other is not None and np.array_equal(sound.time, other.time)
     return max(np.abs(other.columns[n] - x).max() / np.abs(x).max() for n, x in sound.columns.items())
 
 
-def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_absence_is_not_run_by_name(scene_file, monkeypatch, tmp_path):
     monkeypatch.setenv(VARIABLE, "/no/such/python")
     alone = typed("solve", scene_file, "--solver", "fenicsx", cwd=tmp_path)
     assert alone.returncode == 2
@@ -60,7 +57,7 @@ def test_absence_is_not_run_by_name(scene_file: Path, monkeypatch: pytest.Monkey
     assert typed("run", scene_file, "--require", "fenicsx", cwd=tmp_path).returncode == 1
 
 
-def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_was_not_installed_is_tried_again(scene, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "/no/such/python")
     row, _ = execute(Case(scene, "fenicsx"), "key", "study")
     assert row.outcome is Outcome.NOT_RUN
@@ -70,13 +67,11 @@ def test_what_was_not_installed_is_tried_again(scene: Scene, tmp_path: Path, mon
     assert (tmp_path / "rows.jsonl").read_text().count("needs FEniCSx") == 2
 
 
-def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(tmp_path, monkeypatch):
     (tmp_path / "python3").write_text("#!/bin/sh\n")
     (tmp_path / "python3").chmod(0o755)
 
-    def listed(path: str) -> list[str]:  # root may read everything, so that no mode of a directory will do
+    def listed(path):  # root may read everything, so that no mode of a directory will do
         if path == "/locked/bin":
             raise PermissionError(13, "Permission denied", path)
         return os.listdir(path)
@@ -89,24 +84,24 @@ def test_a_directory_of_the_path_that_cannot_be_read_is_passed_over(
 
 
 @pytest.mark.parametrize("name", ["fenicsx:0", "fenicsx:two", "fenicsx:", "dda:2"])
-def test_a_wrong_number_of_ranks_is_refused(name: str) -> None:
+def test_a_wrong_number_of_ranks_is_refused(name):
     with pytest.raises(InputError, match=r"^solver: "):
         get_solver(name)
 
 
-def test_ranks_go_with_solvers_that_can_use_them(scene_file: Path) -> None:
+def test_ranks_go_with_solvers_that_can_use_them(scene_file):
     done = typed("solve", scene_file, "--solver", "dda", "--ranks", 2)
     assert (done.returncode, done.stderr.strip()) == (2, "error: --ranks: goes with fenicsx, got 'dda'")
 
 
 @pytest.mark.long
-def test_ranks_change_the_key_of_the_distributed_solver_only(scene: Scene) -> None:
+def test_ranks_change_the_key_of_the_distributed_solver_only(scene):
     assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
     assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
 
 
 @pytest.mark.fenicsx
-def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
+def test_the_interpreter_is_found_and_the_launcher_beside_it():
     python = interpreter()
     assert python is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
     assert launcher(python) is not None
@@ -126,14 +121,14 @@ def test_the_interpreter_is_found_and_the_launcher_beside_it() -> None:
     ],
     ids=["linear", "triangles", "corner", "patch", "inclined", "explicit", "stiff"],
 )
-def test_the_two_codes_agree(scene: Scene, values: dict[str, object]) -> None:
+def test_the_two_codes_agree(scene, values):
     assert 0 < error(scene.with_values(values)) <= SAME
 
 
 LOADS = {
     "eccentric": {"load.eccentricity": -0.25},
     "sideways": {"load": {"traction": 2e5}, "fem.foundation": "corner"},
-    "weight": {"load": {"gravity": 9.81}, "block.poisson": 0.2},
+    "weight": {"load": {"gravity": 9.81, "slope": 20.0}, "block.poisson": 0.2},
     "record": {"load": {"base_motion": "quake.csv"}, "time.start": "consistent"},
     "record on corners": {"load": {"base_motion": "quake.csv"}, "fem.foundation": "corner"},
     "all": {
@@ -151,7 +146,7 @@ TELLING = ("weight", "record on corners", "all")  # what they miss is in no othe
         for name, values in LOADS.items()
     ],
 )
-def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, object], tmp_path: Path) -> None:
+def test_the_two_codes_agree_on_every_load(scene, values, tmp_path):
     record = tmp_path / "quake.csv"
     record.write_text("time,x,y\n0,1e-4,0\n0.01,1e-3,2e-4\n0.03,-5e-4,1e-4\n")
     load = values.get("load")
@@ -172,7 +167,7 @@ def test_the_two_codes_agree_on_every_load(scene: Scene, values: dict[str, objec
 
 @pytest.mark.fenicsx
 @pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
-def test_what_the_worker_counts(scene: Scene, ranks: int) -> None:
+def test_what_the_worker_counts(scene, ranks):
     run = get_solver(f"fenicsx:{ranks}").solve(scene.with_values({"time.start": "consistent"}))
     assert dict(run.work) | {"nonzeros": 0} == {
         "unknowns": 2 * 9**2,
@@ -186,7 +181,7 @@ def test_what_the_worker_counts(scene: Scene, ranks: int) -> None:
 
 
 @pytest.mark.fenicsx
-def test_what_it_does_not_do_is_said(scene: Scene) -> None:
+def test_what_it_does_not_do_is_said(scene):
     inside = scene.with_values({"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.31}})
     run = solve(inside, "fenicsx")
     assert run.outcome is Outcome.NOT_APPLICABLE and "whole edges only" in run.notes[0]
@@ -196,7 +191,7 @@ def test_what_it_does_not_do_is_said(scene: Scene) -> None:
         solve(scene.with_values({"run.columns": ["rotation"]}), "fenicsx")
 
 
-def test_a_dead_worker_is_named_and_replaced() -> None:
+def test_a_dead_worker_is_named_and_replaced():
     command = [sys.executable, "-c", "import sys; sys.stderr.write('no licence\\n'); sys.exit(7)"]
     for _ in range(2):
         with pytest.raises(worker.WorkerDied, match="status 7: no licence"):
@@ -205,7 +200,7 @@ def test_a_dead_worker_is_named_and_replaced() -> None:
     assert [worker.ask(echo, {}, {"a": n}) for n in (1, 2)] == [{"a": 1}, {"a": 2}]
 
 
-def test_the_reason_is_found_under_the_launcher_s_words() -> None:
+def test_the_reason_is_found_under_the_launcher_s_words():
     rule = "-" * 74
     advice = "[host:00012] 1 more process has sent help message help-mpi-api.txt / mpi-abort"
     error = "PermissionError: [Errno 13] Permission denied: '/nonexistent'"
@@ -215,7 +210,7 @@ def test_the_reason_is_found_under_the_launcher_s_words() -> None:
     assert worker.stderr_tail("\n") == "no message"
 
 
-def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "own"))
     for _ in range(2):  # made, and there already
         assert worker_directories().keys() == {"TMPDIR"}
@@ -230,9 +225,7 @@ def test_a_worker_without_a_home_gets_a_temporary_one(tmp_path: Path, monkeypatc
 @pytest.mark.long
 @pytest.mark.fenicsx
 @pytest.mark.parametrize("solver", ["fenicsx", "fenicsx:2"])
-def test_fenicsx_runs_without_a_home_and_from_any_path(
-    scene: Scene, solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_fenicsx_runs_without_a_home_and_from_any_path(scene, solver, tmp_path, monkeypatch):
     path = tmp_path / "mit Blank und Ümläuten" / "worker"
     shutil.copytree(adapters_fenicsx.WORKER, path)
     seams.FENICSX_WORKER.put(monkeypatch, path)
@@ -269,12 +262,12 @@ EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the 
 FEW = ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent", *POLYGONS)
 
 
-def failed(finished: Finished) -> set[str]:
+def failed(finished):
     return {gate.id for gate in get_study("two-codes").gates() if evaluate(gate, finished).status is Status.FAIL}
 
 
-def module_of(line: str) -> str:
-    """Return the one module of the worker in which the line stands, once; contact that opens has its own slips."""
+def module_of(line):
+    """Return the one module of the worker in which the line stands, once."""
     modules = ("model.py", "newmark.py", "loop.py")
     counts = {name: (adapters_fenicsx.WORKER / name).read_text().count(line) for name in modules}
     (name,) = [name for name, count in counts.items() if count]
@@ -283,11 +276,11 @@ def module_of(line: str) -> str:
 
 
 @pytest.mark.parametrize("line", [line for line, _ in WORKER_FAULTS.values()], ids=WORKER_FAULTS)
-def test_the_line_of_each_fault_stands_in_the_worker(line: str) -> None:
+def test_the_line_of_each_fault_stands_in_the_worker(line):
     assert module_of(line)  # where FEniCSx is not installed nothing else would see that it moved
 
 
-def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
+def faulty_worker(directory, number, line, slip):
     """Write the worker with one fault into a directory of its own."""
     path = directory / f"worker{number}"
     shutil.copytree(adapters_fenicsx.WORKER, path)
@@ -296,9 +289,7 @@ def faulty_worker(directory: Path, number: int, line: str, slip: str) -> Path:
     return path
 
 
-def kills_of(
-    names: Collection[str], everywhere: Collection[str], directory: Path, finished_cases: Path
-) -> dict[str, set[str]]:
+def kills_of(names, everywhere, directory, finished_cases):
     """Return the gates that see each fault, on all scenes or on a few, and print how many; none fails without one."""
     sound = finish(get_study("two-codes").cases(), get_study("two-codes"), Results(finished_cases))
     assert not failed(sound)
@@ -316,7 +307,7 @@ def kills_of(
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path, finished_cases):
     ours = ("fem: load 2e-10 high", "dda: load 2e-10 high")
     bitten = set().union(*kills_of([*ours, "fenicsx: load 2e-10 high"], ours, tmp_path, finished_cases).values())
     assert bitten == {gate.id for gate in get_study("two-codes").gates()}
@@ -324,7 +315,7 @@ def test_every_gate_is_bitten_and_a_slip_of_the_worker_is_seen(tmp_path: Path, f
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, finished_cases: Path) -> None:
+def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path, finished_cases):
     names = [*WORKER_FAULTS, *(fault.name for fault in OTHER_FAULTS)]
     kills = kills_of(names, [name for name in names if EDGE in name], tmp_path, finished_cases)
     for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
@@ -335,7 +326,7 @@ def test_seeded_faults_of_either_code_are_seen_by_the_other(tmp_path: Path, fini
         assert bitten == judged, "gates that no fault of this code bites"
 
 
-def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> set[str]:
+def killed(sound, fault, directory, everywhere):
     """Return the gates that fail with a fault; only the solvers that it reaches run again."""
     reached = [
         case
@@ -353,7 +344,7 @@ def killed(sound: Finished, fault: Fault, directory: Path, everywhere: bool) -> 
 
 
 @pytest.mark.parametrize("name", ["pentagon", pytest.param("quadrilateral", marks=pytest.mark.long)])
-def test_polygons_on_files_of_gmsh(name: str, tmp_path: Path) -> None:
+def test_polygons_on_files_of_gmsh(name, tmp_path):
     scene = load_scene(name)
     assert scene.fem.mesh is not None and Path(scene.fem.mesh).read_text().startswith("$MeshFormat\n4.1")
     get_solver("fem").solve(scene, fields=tmp_path / "block.vtu")

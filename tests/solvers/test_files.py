@@ -1,7 +1,5 @@
 """Solvers that are no Python: programs that read a scene and print a table, and tables that are read."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from pathlib import Path
@@ -41,12 +39,12 @@ FAULTS = {  # of the program in C++: what is changed in it, and the group that t
 
 
 @pytest.fixture(scope="module")
-def compiled(tmp_path_factory: pytest.TempPathFactory):
+def compiled(tmp_path_factory):
     """Return what compiles the program of the page with a change in it."""
     if shutil.which("g++") is None:
         pytest.skip("NOT RUN: there is no compiler of C++")
 
-    def compile_with(old: str, new: str) -> str:
+    def compile_with(old, new):
         place = tmp_path_factory.mktemp("program")
         text = PROGRAM
         assert old in text
@@ -64,7 +62,7 @@ MARKED = [SOUND, *(pytest.param(name, marks=pytest.mark.long) for name in FAULTS
 
 
 @pytest.mark.parametrize("fault", MARKED)
-def test_a_program_in_c_goes_through_the_gates(fault: str, compiled, tmp_path: Path) -> None:
+def test_a_program_in_c_goes_through_the_gates(fault, compiled, tmp_path):
     old, new, group = FAULTS[fault]
     session = Session(compiled(old, new), Results(tmp_path))
     scenes = ("figures-5-6[contact.stiffness=1e+09]", "figure-8[time.start", "figures-3-4[time.step=0.002")
@@ -75,7 +73,7 @@ def test_a_program_in_c_goes_through_the_gates(fault: str, compiled, tmp_path: P
     assert (not failed) if group is None else group in failed
 
 
-def program(place: Path, text: str) -> str:
+def program(place, text):
     """Write a program of a shell and return its path."""
     path = place / "program"
     path.write_text(f"#!/bin/sh\n{text}\n")
@@ -100,9 +98,7 @@ SCENE = LOCKED.with_values({"time.step": 0.001, "time.steps": 3})
         ("sleep 30", Outcome.TIMEOUT, "no history within"),
     ],
 )
-def test_how_a_program_ends_is_named(
-    text: str, outcome: Outcome, said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_how_a_program_ends_is_named(text, outcome, said, tmp_path, monkeypatch):
     if outcome is Outcome.TIMEOUT:
         monkeypatch.setenv(VARIABLE, "0.2")
     run = completed(get_solver(program(tmp_path, text)), SCENE)
@@ -110,7 +106,7 @@ def test_how_a_program_ends_is_named(
     assert said in "".join(run.notes)
 
 
-def test_what_cannot_be_started_and_kinds_without_words(tmp_path: Path) -> None:
+def test_what_cannot_be_started_and_kinds_without_words(tmp_path):
     path = Path(program(tmp_path, "exit 0"))
     path.write_bytes(b"\x7fELF no such thing")
     assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
@@ -118,15 +114,15 @@ def test_what_cannot_be_started_and_kinds_without_words(tmp_path: Path) -> None:
     assert plane.outcome is Outcome.NOT_APPLICABLE and "plain data hold blocks" in plane.notes[0]
 
 
-def test_a_program_is_told_what_problems_never_have() -> None:
+def test_a_program_is_told_what_problems_never_have():
     changed = LOCKED.with_values({"damping.mass": 2.0, "load.ramp": 0.01})
     assert set(lines(changed)) - set(lines(LOCKED)) == {"also damping.mass_1_per_s 2.0", "also load.ramp_s 0.01"}
 
 
-def test_files_are_solvers(tmp_path: Path) -> None:
+def test_files_are_solvers(tmp_path):
     history = get_solver("dda").solve(LOCKED).history
     rows = np.column_stack([history.time, history.displacement, history.columns["contact_pressure"]])
-    options: dict[str, str] = {"delimiter": ",", "header": "time,displacement,contact_pressure", "comments": ""}
+    options = {"delimiter": ",", "header": "time,displacement,contact_pressure", "comments": ""}
     np.savetxt(tmp_path / "field-locked.csv", rows, **options)
     for name in (f"{tmp_path}/", str(tmp_path / "field-locked.csv")):
         assert is_solver(name)
@@ -142,7 +138,7 @@ def test_files_are_solvers(tmp_path: Path) -> None:
     assert caught.value.field == "solver"
 
 
-def test_every_line_of_a_scene_has_words() -> None:
+def test_every_line_of_a_scene_has_words():
     known = {line.split()[0] for name in ("field-locked", "field-creep") for line in lines(load_scene(name))}
     described = {name for name, _ in words()} | {name for name in known if name.startswith("time.")}
     assert known - described - {"geometry", "columns", "block.width_m", "block.height_m"} == set()

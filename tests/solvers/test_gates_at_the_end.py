@@ -1,7 +1,5 @@
 """What pytest writes at its end of a user's solver: from the gates' own reports, all of them where it is asked."""
 
-from __future__ import annotations
-
 import json
 from dataclasses import asdict
 from types import SimpleNamespace
@@ -18,9 +16,7 @@ SAID = GateReport(
 )
 
 
-def ended(
-    monkeypatch: pytest.MonkeyPatch, user: str | None, verbose: int, when: Any = "call"
-) -> tuple[list[str], list[Any]]:
+def ended(monkeypatch, user, verbose, when="call"):
     """Return the lines that pytest writes and what the block was asked."""
     lines, asked = list[str](), list[Any]()
     told = [(plugin.STATEMENT, json.dumps(asdict(SAID))), ("other", "x")]
@@ -31,23 +27,23 @@ def ended(
     plugins = SimpleNamespace(get_plugin=lambda name: reporter)
     config = SimpleNamespace(getoption=lambda name, default=None: options.get(name, default), pluginmanager=plugins)
 
-    def written(said: Any, every: bool) -> list[str]:
+    def written(said, every):
         asked.append((said, every))
         return ["first\n  second"]
 
     monkeypatch.setattr(block, "block", written)
-    steps = plugin.pytest_terminal_summary(reporter, config)  # type: ignore[arg-type]
+    steps = plugin.pytest_terminal_summary(reporter, config)
     next(steps)
     assert next(steps, "done") == "done"
     return lines, asked
 
 
 @pytest.mark.parametrize(("verbose", "every"), [(-1, False), (0, False), (1, True)])
-def test_every_gate_is_told_where_pytest_is_verbose(monkeypatch: pytest.MonkeyPatch, verbose: int, every: bool) -> None:
+def test_every_gate_is_told_where_pytest_is_verbose(monkeypatch, verbose, every):
     lines, asked = ended(monkeypatch, "mine:solve", verbose)
     assert asked == [([SAID], every)]
     assert lines == ["mine:solve: what the gates tell", "first", "  second"]
 
 
-def test_nothing_is_told_without_a_solver_or_of_what_no_gate_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_nothing_is_told_without_a_solver_or_of_what_no_gate_said(monkeypatch):
     assert ended(monkeypatch, None, 0) == ended(monkeypatch, "mine:solve", 0, "setup") == ([], [])

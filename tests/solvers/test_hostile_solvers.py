@@ -1,12 +1,9 @@
 """Users' solvers that do whatever a program can do wrong: named outcomes, in time, and nothing left of them."""
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
 import tomllib
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -18,7 +15,7 @@ from validation.engine.measure import execute
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.processes import worker
 from validation.solvers.user import VARIABLE, UserSolver
 
@@ -33,7 +30,7 @@ needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the
 
 
 @pytest.fixture
-def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def mark(monkeypatch):
     monkeypatch.setattr(worker, "workers", {})  # what other tests have started has no mark
     with new_mark() as name:
         monkeypatch.setenv(MARK, name)
@@ -41,12 +38,12 @@ def mark(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
 
 
 @pytest.fixture
-def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+def scene(scene_file, monkeypatch):
     monkeypatch.syspath_prepend(str(HERE))
     return load_scene(scene_file)
 
 
-def row_of(scene: Scene, solver: str) -> Row:
+def row_of(scene, solver):
     """Return the row of a case, and see that it can be written and read again."""
     row, _ = execute(Case(scene, solver), "key", "study")
     again = Row.parse(row.line())
@@ -55,7 +52,7 @@ def row_of(scene: Scene, solver: str) -> Row:
     return row
 
 
-def told(row: Row, outcome: Outcome, said: str) -> bool:
+def told(row, outcome, said):
     """Whether a row has an outcome and says why, in no more than a few lines."""
     return row.outcome is outcome and said in "; ".join(row.notes) and sum(map(len, row.notes)) < 1000
 
@@ -82,7 +79,7 @@ FATAL = [  # to the process
 
 
 @needs_linux
-def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str) -> None:
+def test_one_process_outlives_all_that_solvers_do_in_it(scene, mark):
     """Each is a row with a name, and what it has left disturbs neither the next scene nor the end."""
     used = set()
     for target, outcome, said in SURVIVED:
@@ -95,7 +92,7 @@ def test_one_process_outlives_all_that_solvers_do_in_it(scene: Scene, mark: str)
 
 
 @pytest.fixture
-def at_once(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def at_once(scene, monkeypatch):
     """Start workers that know no scenes, and wait shortly for those that have closed their output."""
     monkeypatch.setattr(UserSolver, "command", lambda self: [sys.executable, str(HERE / "bare.py"), self.target])
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join([str(HERE), *sys.path]))
@@ -104,9 +101,7 @@ def at_once(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("at_once")
 @pytest.mark.parametrize(("target", "outcome", "said"), thinned(FATAL, 4))
-def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
-    scene: Scene, mark: str, target: str, outcome: Outcome, said: str, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_a_process_does_not_outlive_is_a_row_with_a_name(scene, mark, target, outcome, said, monkeypatch):
     assert UserSolver(target, target).about() == {}, "the process has started"
     monkeypatch.setenv(VARIABLE, "0.05" if outcome is Outcome.TIMEOUT else "60")
     row = row_of(scene, target)
@@ -115,7 +110,7 @@ def test_what_a_process_does_not_outlive_is_a_row_with_a_name(
     assert left(mark) == []
 
 
-def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:
+def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene):
     """More than a pipe holds: the solver's process has stopped, and nobody takes the request."""
     blind = [sys.executable, "-c", "import time; time.sleep(60)"]
     with pytest.raises(worker.WorkerHangs, match=r"no answer within 0\.2 s"):
@@ -123,20 +118,20 @@ def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene: Scene) -> None:
 
 
 @pytest.mark.long
-def test_an_answer_without_end_is_ended(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_answer_without_end_is_ended(monkeypatch):
     monkeypatch.setattr(worker, "LONGEST_ANSWER", 100_000)
     endless = [sys.executable, "-c", "import sys\nwhile True: sys.stdout.write('x' * 1000)"]
     with pytest.raises(worker.WorkerDied, match="no answer but 'xxx"):
         worker.ask(endless, os.environ, {}, 30.0)
 
 
-def test_a_command_that_is_not_there_is_named() -> None:
+def test_a_command_that_is_not_there_is_named():
     with pytest.raises(worker.WorkerDied, match="cannot be started: /no/such: No such file or directory"):
         worker.ask(["/no/such"], os.environ, {}, 10.0)
 
 
 @pytest.mark.long
-def test_a_study_of_hostile_solvers_ends_with_every_row(mark: str, tmp_path: Path) -> None:
+def test_a_study_of_hostile_solvers_ends_with_every_row(mark, tmp_path):
     """Through the command line, on two workers: every case a row, no traceback."""
     names = MANY.split()
     path = tmp_path / "all.toml"

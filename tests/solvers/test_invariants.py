@@ -4,34 +4,27 @@ The units of length, mass and time are free; what is asked for later does not ch
 goes with its load; to ask again, for less, or without savings gives the same numbers.
 """
 
-from __future__ import annotations
-
 import tomllib
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from conftest import thinned
 from oracles.matrices_of_scenes import matrices, rule_of
 from oracles.plain_newmark import stepped
-from oracles.stepped_vibration import Rule, amplitudes
+from oracles.stepped_vibration import amplitudes
 
 from validation import response
 from validation.metrics.contact import imbalance
-from validation.runs.history import Array
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 from validation.solvers.contract import NotReported
 from validation.solvers.opened import resultant_load
 from validation.solvers.registry import BUILT_IN, get_solver
 
 TIME = {"step": 2e-3, "steps": 12}
 USUAL = ("displacement", "contact_pressure")
-SCENES: dict[str, dict[str, Any]] = tomllib.loads(
-    Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8")
-)
+SCENES = tomllib.loads(Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8"))
 NOT_LINEAR = (
     *("opening in a ramp", "adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning"),
     *("dashpots", "impact"),
@@ -61,11 +54,11 @@ STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}
 UNITS = (2.0**-9, 2.0**-12, 2.0**-5)  # powers of two round nothing: an absolute tolerance shows, and nothing else does
 
 
-def scaled(kind: str, units: tuple[float, float, float]) -> float:
+def scaled(kind, units):
     return float(np.prod([unit**exponent for unit, exponent in zip(units, EXPONENTS[kind], strict=True)]))
 
 
-def in_units(table: str, data: Any, units: tuple[float, float, float]) -> Any:
+def in_units(table, data, units):
     """Return a table of a scene with its numbers in other units."""
     if isinstance(data, list):
         return [in_units(table, entry, units) for entry in data]
@@ -81,7 +74,7 @@ def in_units(table: str, data: Any, units: tuple[float, float, float]) -> Any:
     return other
 
 
-def made(name: str, directory: Path, units: tuple[float, float, float] = (1.0, 1.0, 1.0), load: float = 1.0) -> Scene:
+def made(name, directory, units=(1.0, 1.0, 1.0), load=1.0):
     """Return a scene of the table, its numbers in other units and its loads multiplied."""
     tables = {key: value for key, value in SCENES[name].items() if isinstance(value, dict)}
     tables["time"] = TIME | tables.get("time", {})
@@ -99,7 +92,7 @@ def made(name: str, directory: Path, units: tuple[float, float, float] = (1.0, 1
     return parse_scene({"name": name, **data, "fem": {"elements": 2}}, name)
 
 
-def mirrored(scene: Scene, directory: Path) -> Scene:
+def mirrored(scene, directory):
     """Return a scene seen from behind: what is at the right is at the left."""
     data = scene.definition()
     block, load = data["block"], data["load"]
@@ -115,22 +108,22 @@ def mirrored(scene: Scene, directory: Path) -> Scene:
     return parse_scene(data, "mirrored")
 
 
-def asked(solver: str, scene: Scene) -> Scene:
+def asked(solver, scene):
     """Return the scene with the columns that a solver has."""
     own = get_solver(solver).columns()
     return scene.with_values({"run.columns": [c for c in scene.run.columns if own is None or c in own]})
 
 
 @pytest.fixture(scope="module")
-def records(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def records(tmp_path_factory):
     """Return where the motions of bases are kept, so that equal scenes are equal."""
     return tmp_path_factory.mktemp("records")
 
 
-RUNS: dict[tuple[str, str, bool], Mapping[str, Array]] = {}
+RUNS = {}
 
 
-def solved(solver: str, scene: Scene, full: bool = False) -> Mapping[str, Array]:
+def solved(solver, scene, full=False):
     """Return the columns of a run, made once; no test changes them."""
     key = (solver, repr(scene.definition()), full)
     if key not in RUNS:
@@ -138,14 +131,14 @@ def solved(solver: str, scene: Scene, full: bool = False) -> Mapping[str, Array]
     return RUNS[key]
 
 
-def solved_afresh(solver: str, scene: Scene, full: bool = False) -> Mapping[str, Array]:
+def solved_afresh(solver, scene, full=False):
     run = get_solver(solver).solve(scene, full=full)
     assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
     assert list(run.history.time) == pytest.approx([scene.time.step * n for n in range(1, scene.time.steps + 1)])
     return run.history.columns
 
 
-def static(solver: str, scene: Scene) -> Mapping[str, Array]:
+def static(solver, scene):
     """Return the static solution, nothing where none is reported."""
     try:
         return {name: np.array(value) for name, value in get_solver(solver).static(scene).items()}
@@ -153,7 +146,7 @@ def static(solver: str, scene: Scene) -> Mapping[str, Array]:
         return {}
 
 
-def assert_same(values: Mapping[str, Array], expected: Mapping[str, Array], rounding: float) -> None:
+def assert_same(values, expected, rounding):
     """Compare columns, each over its largest value; one that is nothing beside the others may be anything as small."""
     assert values.keys() == expected.keys()
     for name, wanted in expected.items():
@@ -164,17 +157,7 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
     "dda": tuple(SCENES),
     "dda-textbook": ("locked",),
     "fem": tuple(name for name in SCENES if name not in OF_DDA),
-    "fenicsx": (
-        "locked",
-        "explicit",
-        "lateral",
-        "sub-blocks",
-        "shaken",
-        "opening",
-        "opening sub-blocks",
-        "landing",
-        "sliding",
-    ),
+    "fenicsx": ("locked", "explicit", "lateral", "sub-blocks", "shaken"),
     "bar": ("locked", "ramped", "damped", "opening", "opening sub-blocks", "landing"),
     "continuum": ("locked", "damped"),
     "layers": ("column",),
@@ -187,7 +170,7 @@ TAKES = {  # what each solver takes; the other scenes it refuses by name
 }
 
 
-def pairs(solver: str) -> list[Any]:
+def pairs(solver):
     """Return a solver with its scenes; FEniCSx is another program, which is started for its tests alone."""
     marks = [pytest.mark.fenicsx] if solver == "fenicsx" else []
     return [pytest.param(solver, name, id=f"{solver}-{name}", marks=marks) for name in TAKES.get(solver, ())]
@@ -203,13 +186,13 @@ OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if "column"
 
 
 @pytest.mark.parametrize("solver", BUILT_IN)
-def test_a_solver_takes_its_scenes_and_no_others(solver: str, records: Path) -> None:
+def test_a_solver_takes_its_scenes_and_no_others(solver, records):
     adapter = get_solver(solver)
     assert [name for name in SCENES if adapter.refusal(made(name, records)) is None] == list(TAKES[solver])
 
 
 @EVERY
-def test_units_are_free(solver: str, name: str, records: Path) -> None:
+def test_units_are_free(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
     other = solved(solver, asked(solver, made(name, records, UNITS)))
@@ -218,7 +201,7 @@ def test_units_are_free(solver: str, name: str, records: Path) -> None:
 
 
 @SOME
-def test_what_comes_later_changes_nothing(solver: str, name: str, records: Path) -> None:
+def test_what_comes_later_changes_nothing(solver, name, records):
     scene = asked(solver, made(name, records))
     longer = solved(solver, scene.with_values({"time.steps": 3 * scene.time.steps}))
     beginning = {column: values[: scene.time.steps] for column, values in longer.items()}
@@ -226,7 +209,7 @@ def test_what_comes_later_changes_nothing(solver: str, name: str, records: Path)
 
 
 @SOME
-def test_asked_again_for_one_column_it_gives_the_same(solver: str, name: str, records: Path) -> None:
+def test_asked_again_for_one_column_it_gives_the_same(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
     again = solved_afresh(solver, scene)
@@ -239,13 +222,13 @@ WITH_SAVINGS = [param for solver in ("dda", "dda-textbook", "fem") for param in 
 
 
 @pytest.mark.parametrize(("solver", "name"), WITH_SAVINGS)
-def test_without_savings_it_gives_the_same(solver: str, name: str, records: Path) -> None:
+def test_without_savings_it_gives_the_same(solver, name, records):
     scene = asked(solver, made(name, records))
     assert_same(solved(solver, scene, full=True), solved(solver, scene), 1e-8)
 
 
 @pytest.mark.parametrize(("solver", "name"), LINEAR)
-def test_a_linear_motion_goes_with_its_load(solver: str, name: str, records: Path) -> None:
+def test_a_linear_motion_goes_with_its_load(solver, name, records):
     """The negative of twice the load, the negative of twice the motion and of what it ends at; of no load none."""
     scene = asked(solver, made(name, records))
     other = asked(solver, made(name, records, load=-2.0))
@@ -258,7 +241,7 @@ def test_a_linear_motion_goes_with_its_load(solver: str, name: str, records: Pat
 
 
 @pytest.mark.parametrize(("solver", "name"), OF_BLOCKS)
-def test_left_is_the_mirror_image_of_right(solver: str, name: str, records: Path) -> None:
+def test_left_is_the_mirror_image_of_right(solver, name, records):
     """Even are v and the pressure, odd are u and the rotation."""
     scene = asked(solver, made(name, records))
     other = solved(solver, mirrored(scene, records))
@@ -269,7 +252,7 @@ def test_left_is_the_mirror_image_of_right(solver: str, name: str, records: Path
 OPENED = [param for param in EVERY.args[1] if param.values[1] in NOT_LINEAR and param.values[1] != "adaptive"]
 
 
-def carried(scene: Scene) -> tuple[float, float]:
+def carried(scene):
     """Return the mass [kg] and the resultant of pressure and weight [N] that a contact record balances."""
     if scene.column is None:
         return scene.block.mass, resultant_load(scene)
@@ -278,7 +261,7 @@ def carried(scene: Scene) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize(("solver", "name"), OPENED)
-def test_what_a_contact_does_keeps_momentum_and_energy(solver: str, name: str, records: Path) -> None:
+def test_what_a_contact_does_keeps_momentum_and_energy(solver, name, records):
     """Momentum: m (V - V0) and the loads' impulse are the contact's; energy: stored and lost are those of the start."""
     scene = asked(solver, made(name, records))
     prepared = get_solver(solver).prepare(scene)
@@ -287,7 +270,7 @@ def test_what_a_contact_does_keeps_momentum_and_energy(solver: str, name: str, r
     try:
         record = prepared.contact_record()
     except NotReported:
-        assert solver in ("bars-events", "fenicsx")
+        assert solver == "bars-events"
         return
     mass, load = carried(scene)
     if name != "opening in a ramp":
@@ -316,9 +299,7 @@ AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 
 @pytest.mark.parametrize(("truth", "name"), TRUTHS)
 @pytest.mark.parametrize(("scheme", "ratio"), [({}, 2.0), (AVERAGE, 4.0)], ids=["constant", "average"])
-def test_steps_tend_to_the_exact_motion_by_their_order(
-    truth: str, name: str, scheme: dict[str, Any], ratio: float, records: Path
-) -> None:
+def test_steps_tend_to_the_exact_motion_by_their_order(truth, name, scheme, ratio, records):
     """Half the step leaves a half of the error of order one, a quarter of order two: in size, in sign, in every column.
 
     A switch lies between two steps, which leaves a tenth of the errors beside their order.
@@ -341,7 +322,7 @@ RESTING = [param for param in RESTING if param.values[1] not in ("column", "expl
 
 
 @pytest.mark.parametrize(("solver", "name"), RESTING)
-def test_a_damped_run_comes_to_rest_where_static_says(solver: str, name: str, records: Path) -> None:
+def test_a_damped_run_comes_to_rest_where_static_says(solver, name, records):
     """55 steps after the load's course has ended, of which each leaves 0.41 of the slowest motion."""
     damped = {"time.alpha": 0.5625, "time.gg": 0.3, "time.step": 1e-2, "time.steps": 60}
     scene = asked(solver, made(name, records).with_values(damped))
@@ -357,7 +338,7 @@ LINEAR_STEPS = ("locked", "explicit", "lateral", "sub-blocks", "damped", "adapti
 @pytest.mark.parametrize("solver", ["dda", "fem"])
 @pytest.mark.parametrize("name", LINEAR_STEPS)
 @pytest.mark.parametrize("scheme", [{}, AVERAGE], ids=["constant", "average"])
-def test_a_history_is_that_of_the_printed_scheme(name: str, solver: str, scheme: dict[str, Any], records: Path) -> None:
+def test_a_history_is_that_of_the_printed_scheme(name, solver, scheme, records):
     """Newmark's steps on full matrices, with C = a0 M + a1 K, with gg as it is stated or as kinetic damping sets it."""
     scheme = scheme | ({} if name == "adaptive" else {"time.gg": 0.97})
     if name == "explicit":
@@ -375,7 +356,7 @@ def test_a_history_is_that_of_the_printed_scheme(name: str, solver: str, scheme:
         assert np.abs(history[column] - values).max() <= 1e-8 * np.abs(values).max(), column
 
 
-def adaptively(M: Array, K: Array, F: Array, rows: Array, rule: Rule, floor: float, steps: int) -> Array:
+def adaptively(M, K, F, rows, rule, floor, steps):
     """Return the rows of every step; gg is the root of two kinetic energies that fall, or the floor."""
     dt = rule.step
     D, V = np.zeros((2, len(F)))
@@ -398,7 +379,7 @@ def adaptively(M: Array, K: Array, F: Array, rows: Array, rule: Rule, floor: flo
 
 @pytest.mark.parametrize("solver", ["dda", "fem"])
 @pytest.mark.parametrize("name", [name for name in LINEAR_STEPS if name != "adaptive"])
-def test_a_response_is_where_stepped_vibrations_end(name: str, solver: str, records: Path) -> None:
+def test_a_response_is_where_stepped_vibrations_end(name, solver, records):
     """Steps of full matrices in their modes, under the load as cos(wt), until what begins has gone by gg."""
     scene = made(name, records).with_values({"time.gg": 0.97, "run.columns": USUAL})
     M, K, F, rows = matrices(get_solver(solver).prepare(scene))
@@ -413,7 +394,7 @@ def test_a_response_is_where_stepped_vibrations_end(name: str, solver: str, reco
             assert abs(closed - expected) <= 1e-9 * abs(expected) + 1e-11 * abs(at_rest[column]), column
 
 
-def test_a_damped_bar_answers_as_its_fine_mesh(records: Path) -> None:
+def test_a_damped_bar_answers_as_its_fine_mesh(records):
     scene = made("damped", records).with_values({"time.gg": 0.97, "fem.elements": 48})
     for frequency in (13.0, 60.0):
         bar, mesh = (response(scene, frequency, solver).columns for solver in ("bar", "fem"))

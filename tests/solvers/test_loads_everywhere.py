@@ -3,8 +3,6 @@
 Each expectation is statics, a symmetry or the superposition of a linear model.
 """
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 
@@ -27,7 +25,7 @@ SQUARE = ((0.0, 0.0), (A, 0.0), (A, A), (0.0, A))
     ("side", "e", "foundation"),
     thinned(itertools.product([1, 3], [0.0, 0.3, -0.3], ["block", "sub-blocks", "corner"]), 5),
 )
-def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None:
+def test_a_side_wall_can_be_loaded(side, e, foundation):
     """A vertical pressure and a horizontal traction on a wall of a rigid block: force, moment over p a^2 / 2.
 
     The eccentricity of the pressed part runs towards +y on an upright edge, so it moves no vertical force's lever.
@@ -52,18 +50,16 @@ def test_a_side_wall_can_be_loaded(side: int, e: float, foundation: str) -> None
 @pytest.mark.parametrize("elements", thinned([1, 2, 3], 5))
 @pytest.mark.parametrize("cells", ["quadrilaterals", "triangles"])
 @pytest.mark.parametrize("degree", [1, 2])
-def test_the_rotation_of_the_middle_is_the_mean_over_the_elements_that_meet_there(
-    elements: int, cells: str, degree: int
-) -> None:
+def test_the_rotation_of_the_middle_is_the_mean_over_the_elements_that_meet_there(elements, cells, degree):
     """With u = -3e-3 y, v = 5e-3 x it turns by 4e-3 whether one, two, four or six elements meet in the middle."""
-    assembled = assemble(make(elements=elements, degree=degree, cells=cells))  # type: ignore[arg-type]
+    assembled = assemble(make(elements=elements, degree=degree, cells=cells))
     x, y = assembled.basis.doflocs
     D = np.where(elasticity.components(assembled.basis) == 0, -3e-3 * y, 5e-3 * x)
     assert assembled.observers["rotation"] @ D == pytest.approx(4e-3, rel=1e-12)
 
 
 @pytest.mark.parametrize(("off", "met"), [(0.0, True), (3e-10, True), (1e-6, False)])
-def test_joints_whose_ends_differ_by_rounding_meet(off: float, met: bool) -> None:
+def test_joints_whose_ends_differ_by_rounding_meet(off, met):
     """Two joints end to end: a shared point makes one group of gaps of it, apart they are two plain joints."""
     material = dda.Material(2700.0, 1e9, 0.0)
     rows = [[[0, 0], [2, 0], [2, 1], [0, 1]], [[0, 1], [1, 1], [1, 2], [0, 2]], [[1, 1], [2, 1], [2, 2], [1, 2]]]
@@ -72,7 +68,7 @@ def test_joints_whose_ends_differ_by_rounding_meet(off: float, met: bool) -> Non
     assert len(gap_groups(blocks, joints)) == (3 if met else 2)
 
 
-def test_inverses_of_graded_matrices_keep_their_digits() -> None:
+def test_inverses_of_graded_matrices_keep_their_digits():
     """The inverse of R H R is (1/R) H^-1 (1/R) entry by entry, however R is graded."""
     from dda.bodies.block_system import _inverse
 

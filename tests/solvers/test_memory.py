@@ -1,9 +1,6 @@
 """Memory: limits of control groups count, and a refusal for want of it is not kept."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import pytest
 from conftest import SCENE, typed
@@ -17,7 +14,7 @@ from validation.suite.folders import scene_study
 MB = 2**20
 
 
-def machine(root: Path, groups: str, files: dict[str, str]) -> Path:
+def machine(root, groups, files):
     """Make the files of a machine's control groups."""
     for name, text in {"proc/self/cgroup": groups, **{f"sys/fs/cgroup/{n}": t for n, t in files.items()}}.items():
         path = root / name
@@ -26,7 +23,7 @@ def machine(root: Path, groups: str, files: dict[str, str]) -> Path:
     return root
 
 
-def left(root: Path) -> float:
+def left(root):
     return min(memory.of_groups(root), default=math.inf)
 
 
@@ -56,11 +53,11 @@ JOB, USER = "user.slice/job.scope", "user.slice"
         ("rubbish\n", {"memory.max": "1"}, math.inf),
     ],
 )
-def test_what_control_groups_leave(groups: str, files: dict[str, str], expected: float, tmp_path: Path) -> None:
+def test_what_control_groups_leave(groups, files, expected, tmp_path):
     assert left(machine(tmp_path, groups, files)) == expected
 
 
-def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
     monkeypatch.setattr(memory, "available", lambda: 1.0)
@@ -73,7 +70,7 @@ def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path: Path, monkeypatch: p
     assert row.outcome is Outcome.COMPLETED and not any(memory.REFUSED in note for note in row.notes)
 
 
-def test_models_of_the_advice_must_fit_as_well(scene_file: Path) -> None:
+def test_models_of_the_advice_must_fit_as_well(scene_file):
     options = ["--set", "block.poisson=0.2", "--set", "fem.elements=100000"]
     done = typed("advise", "damping", scene_file, *options)
     assert "Traceback" not in done.stderr

@@ -1,7 +1,5 @@
 """Memory that a case needs: by columns, steps, unknowns and sub-blocks."""
 
-from __future__ import annotations
-
 import pytest
 from conftest import scene_of
 
@@ -9,12 +7,12 @@ from validation.solvers import memory
 from validation.solvers.registry import get_solver
 
 
-def bytes_of(solver: str = "fem", **changes: object) -> float:
+def bytes_of(solver="fem", **changes):
     return memory.needed(scene_of(**changes), get_solver(solver))[0]
 
 
 @pytest.mark.parametrize("solver", ["fem", "fenicsx", "fenicsx:2"])
-def test_memory_of_a_mesh_grows_by_its_unknowns(solver: str) -> None:
+def test_memory_of_a_mesh_grows_by_its_unknowns(solver):
     """2 (n d + 1)^2 unknowns, a little more than in proportion: the factor fills."""
     sizes = {
         (n, d): bytes_of(solver, fem__elements=n, fem__degree=d, block__poisson=0.3)
@@ -40,8 +38,6 @@ def test_memory_of_a_mesh_grows_by_its_unknowns(solver: str) -> None:
     ],
     ids=str,
 )
-def test_memory_of_one_column_is_asked_only_where_one_column_will_do(
-    solver: str, changes: dict[str, object], column: bool
-) -> None:
+def test_memory_of_one_column_is_asked_only_where_one_column_will_do(solver, changes, column):
     size = bytes_of(solver, **({"fem__elements": 300, "fem__degree": 1, "time__steps": 1} | changes))
     assert size < 1e7 if column else size > 2 * 301**2 * 1000

@@ -1,9 +1,6 @@
 """Time schemes and contact methods of scenes through the adapters: their numbers reach the packages, in full."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -11,8 +8,7 @@ import pytest
 from validation import solve
 from validation.errors import InputError
 from validation.metrics.modes import operator_damping
-from validation.runs.contact import ContactRecord
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers import opened
 from validation.solvers.registry import get_solver
 from validation.theory.stepping import Stepping
@@ -20,7 +16,7 @@ from validation.theory.stepping import Stepping
 LOCKED = load_scene("figures-3-4").with_values({"time.step": 5e-4, "time.steps": 40, "fem.elements": 2})
 OPENING = load_scene("unlocked-average").expand()[0].with_values({"time.step": 2e-4, "time.steps": 200})
 COLUMN = load_scene("waves-base").expand()[0]
-SCHEMES: dict[str, dict[str, Any]] = {
+SCHEMES = {
     "chung-hulbert": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.6},
     "hht": {"time.scheme": "hht", "time.rho_inf": 0.7},
     "wbz": {"time.scheme": "wbz", "time.rho_inf": 0.3},
@@ -31,7 +27,7 @@ RIGID = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0}
 IMPACT = RIGID | {"contact.rule": "impact", "contact.restitution": 0.4}
 
 
-def record_of(scene: Scene, solver: str = "dda") -> ContactRecord:
+def record_of(scene, solver="dda"):
     prepared = get_solver(solver).prepare(scene)
     prepared.keeps_contact_record = True
     assert prepared.run().outcome == "completed"
@@ -41,7 +37,7 @@ def record_of(scene: Scene, solver: str = "dda") -> ContactRecord:
 @pytest.mark.parametrize("solver", ["dda", "fem", "bar"])
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("gg", [1.0, 0.99])
-def test_modes_have_the_roots_of_the_scene_s_scheme(scheme: str, solver: str, gg: float) -> None:
+def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
     scene = LOCKED.with_values(SCHEMES[scheme] | {"time.gg": gg})
     if solver == "bar" and scheme == "leapfrog":
         with pytest.raises(InputError, match="explicit"):
@@ -55,7 +51,7 @@ def test_modes_have_the_roots_of_the_scene_s_scheme(scheme: str, solver: str, gg
 
 
 @pytest.mark.parametrize(("solver", "scene"), [("continuum", LOCKED), ("block-events", OPENING), ("layers", COLUMN)])
-def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver: str, scene: Scene) -> None:
+def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver, scene):
     scene = scene.with_values({"time.steps": 20})
     expected = solve(scene, solver).history.columns
     for values in SCHEMES.values():
@@ -65,7 +61,7 @@ def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver: str, scene: S
 
 
 @pytest.mark.parametrize("name", ["unlocked-average", "columns-drop-average"])
-def test_the_leapfrog_is_refused_beyond_its_limit_unless_that_is_allowed(name: str) -> None:
+def test_the_leapfrog_is_refused_beyond_its_limit_unless_that_is_allowed(name):
     beyond = {"time.step": 0.1, "time.steps": 3} | SCHEMES["leapfrog"]
     scene = load_scene(name).expand()[0].with_values(beyond)
     with pytest.raises(InputError) as caught:
@@ -74,7 +70,7 @@ def test_the_leapfrog_is_refused_beyond_its_limit_unless_that_is_allowed(name: s
     assert solve(scene.with_values({"time.allow_unstable": True}), "dda").history is not None
 
 
-def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode() -> None:
+def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode():
     frequency = max(mode.frequency for mode in get_solver("dda").modes(LOCKED))
     limit = math.sqrt(2 * 1.99) / frequency
     leapfrog = LOCKED.with_values(SCHEMES["leapfrog"] | {"time.gg": 0.99, "time.steps": 3})
@@ -84,7 +80,7 @@ def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode() -> None:
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
-def test_the_impulse_of_a_scheme_is_that_of_the_momentum(scheme: str) -> None:
+def test_the_impulse_of_a_scheme_is_that_of_the_momentum(scheme):
     record = record_of(OPENING.with_values({"contact.damping_ratio": 0.3} | SCHEMES[scheme]))
     gained = OPENING.block.mass * record.velocity
     load = opened.resultant_load(OPENING) * record.time
@@ -94,14 +90,14 @@ def test_the_impulse_of_a_scheme_is_that_of_the_momentum(scheme: str) -> None:
     assert record.impulse[-1] == pytest.approx(trapezoids[-1], rel=0.02)
 
 
-def test_solves_of_a_composite_scheme_are_two_a_step() -> None:
+def test_solves_of_a_composite_scheme_are_two_a_step():
     calm = OPENING.with_values({"contact.restitution": 0.3})
     mean = {name: float(record_of(calm.with_values(SCHEMES[name])).solves.mean()) for name in ("hht", "composite")}
     assert 1.0 <= mean["hht"] < 1.1 and 2.0 <= mean["composite"] < 2.1
 
 
 @pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT | {"contact.restitution": 0.0}])
-def test_a_contact_method_converges_to_its_exact_motion(values: dict[str, Any]) -> None:
+def test_a_contact_method_converges_to_its_exact_motion(values):
     coarse = OPENING.with_values(values | {"time.steps": 100})
     errors = []
     for halvings in (0, 4):
@@ -113,7 +109,7 @@ def test_a_contact_method_converges_to_its_exact_motion(values: dict[str, Any]) 
     assert errors[1] < errors[0] / 4 < 0.02
 
 
-def test_an_augmented_lagrangian_leaves_the_penetration_that_is_asked_and_reports_its_passes() -> None:
+def test_an_augmented_lagrangian_leaves_the_penetration_that_is_asked_and_reports_its_passes():
     values = {"contact.rule": "augmented", "time.alpha": 0.5, "time.delta": 1.0, "time.step": 1e-3, "time.steps": 40}
     for penetration in (1e-5, 1e-8):
         columns = ["displacement", "contact_pressure", "gap_m", "passes"]

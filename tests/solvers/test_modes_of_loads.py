@@ -1,7 +1,5 @@
 """Which mode a load excites most, how many are looked for, and what one step's diagnostics measure."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import replace
 
@@ -16,14 +14,13 @@ from scipy.linalg import eigh
 import dda
 import fem_reference
 from fem_reference.mesh.model import build
-from validation.runs.history import Array
 
 A, E, RHO, P = 2.0, 1e9, 2700.0, 1e9
 SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
 RECORDS = {"x": ((0.0, 1e-3), (0.0, 0.0)), "y": ((0.0, 0.0), (0.0, 1e-3)), "xy": ((0.0, 2e-3), (0.0, 1e-3))}
 
 
-def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
+def carried(mass, stiffness, rigid):
     """Return frequencies and shares (phi' M R)^2 / (w^2 R' M K^-1 M R), the largest share first."""
     squares, shapes = eigh(stiffness, mass)
     inertia = mass @ rigid
@@ -32,23 +29,23 @@ def carried(mass: Array, stiffness: Array, rigid: Array) -> tuple[Array, Array]:
     return np.sqrt(squares[order]), shares[order]
 
 
-def upright(n: int, p: float) -> tuple[Array, Array, Array]:
+def upright(n, p):
     """Return M, K and R of a bar of n linear elements."""
     return *plain_newmark.upright(n, p), np.ones(n + 1)
 
 
-def model(p: float, way: str) -> dda.TwoBlockModel:
+def model(p, way):
     motion = dda.BaseMotion([0.0, 0.01], np.transpose(RECORDS[way]))
     block = dda.Block.rectangle(A, A, dda.Material(RHO, E, 0.0))
     return dda.TwoBlockModel(block, dda.Contact(p), 0.0, motion=motion)
 
 
-def problem(n: int, p: float, way: str, **changes: object) -> fem_reference.Problem:
+def problem(n, p, way, **changes):
     motion = fem_reference.Motion((0.0, 0.01), *RECORDS[way])
-    return replace(make(p=p, elements=n, degree=1), pressure=0.0, motion=motion, **changes)  # type: ignore[arg-type]
+    return replace(make(p=p, elements=n, degree=1), pressure=0.0, motion=motion, **changes)
 
 
-def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-untyped-def]
+def agree(found, expected):
     """Compare the modes that have a share worth the name; dense solvers and glue leave 1e-8 of the others."""
     seen = [mode for mode in found if mode.share > 1e-4]
     kept = expected[1] > 1e-4
@@ -59,7 +56,7 @@ def agree(found, expected: tuple[Array, Array]) -> None:  # type: ignore[no-unty
 @pytest.mark.parametrize(
     ("p", "n", "solver"), thinned(itertools.product([1e9, 1e11], [1, 5], ["fem", "whole fem", "sub-blocks"]), 5)
 )
-def test_shares_of_a_column_under_a_moving_base(p: float, n: int, solver: str) -> None:
+def test_shares_of_a_column_under_a_moving_base(p, n, solver):
     if solver == "sub-blocks":
         found = dda.modes(dda.subdivided(model(p, "y"), 1, n, 1e17), SCHEME)
     else:
@@ -67,7 +64,7 @@ def test_shares_of_a_column_under_a_moving_base(p: float, n: int, solver: str) -
     agree(found, carried(*upright(n, p)))
 
 
-def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
+def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways():
     """Of the paper's block at p = 1E, mu = 0: 327.7 and 137.4 rad/s for elements, 344.6 and 226.5 for the block."""
     for way, fem, block in (("y", 327.7, 344.561), ("x", 137.4, 226.5)):
         assert fem_reference.modes(problem(8, 1e9, way), SAME)[0].frequency == pytest.approx(fem, abs=0.5)
@@ -75,7 +72,7 @@ def test_the_base_excites_the_axial_mode_upwards_and_rocking_sideways() -> None:
 
 
 @pytest.mark.parametrize("count", thinned([1, 2, 3], 3))
-def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int) -> None:
+def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count):
     """Of the whole block the rocking modes lie lower; asked for few, the search goes on."""
     few = fem_reference.modes(make(elements=4), SAME, count=count, full=True)
     assert few[0].frequency == pytest.approx(327.682, abs=0.01)
@@ -86,7 +83,7 @@ def test_modes_are_looked_for_until_the_first_axial_one_is_among_them(count: int
 
 
 @pytest.mark.parametrize("dense", [1, 10**6])
-def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatch, dense: int) -> None:
+def test_the_highest_frequency_of_many_sub_blocks(monkeypatch, dense):
     """Of a long chain, all blocks breathing against their joints: w^2 = 12 (E w h + 2 g h^2) / (m h^2).
 
     Blocks w x h with joints of 2 g; the ends of n blocks spoil it by pi^2 / n^2 at most.
@@ -101,7 +98,7 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.parametrize("dense", thinned([1, 10**6], 2))
 @pytest.mark.parametrize("full", [False, True])
-def test_the_highest_frequency_of_a_mesh(monkeypatch: pytest.MonkeyPatch, dense: int, full: bool) -> None:
+def test_the_highest_frequency_of_a_mesh(monkeypatch, dense, full):
     seams.FEM_DENSE.put(monkeypatch, dense)
     case = make(poisson=0.3, elements=6, degree=1)
     equations = build(case, full)

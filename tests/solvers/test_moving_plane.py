@@ -131,7 +131,8 @@ def shaken(directory, step, horizontal):
     else:
         plane |= {"contact": {"stiffness": STIFFNESS, "friction": 30.0}, "touch": touch, "gravity": [0.0, -9.81]}
     held = [block | {"motion": str(directory / "shake.csv")} for block in (walls if horizontal else [base])]
-    columns = ["square.x", "square.y", f"{held[0]['name']}.x", f"{held[0]['name']}.y", "energy.balance"]
+    parts = ("x", "y", "vx", "vy", "spin")
+    columns = ["square.x", "square.y", *(f"{held[0]['name']}.{part}" for part in parts), "energy.balance"]
     stepping = {"step": step, "steps": len(time) - 1, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
     return parse_scene(
         {"plane": plane | {"block": [*held, square]}, "time": stepping, "run": {"columns": columns}}, "s"
@@ -155,6 +156,9 @@ def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(tmp_path, hori
         assert history.columns[f"{base}.{along}"] - history.columns[f"{base}.{along}"][-1] == pytest.approx(
             driven - driven[-1], abs=1e-9 * DRIVEN["amplitude"]
         )
+        rate = np.diff(driven, prepend=0.0) / step
+        assert history.columns[f"{base}.v{along}"] == pytest.approx(rate, abs=1e-9 * w * DRIVEN["amplitude"])
+        assert not np.any(history.columns[f"{base}.v{across}"]) and not np.any(history.columns[f"{base}.spin"])
         assert history.columns[f"square.{across}"] == pytest.approx(0.0, abs=1e-9 * DRIVEN["amplitude"])
         assert np.max(np.abs(history.columns["energy.balance"])) < 1e-9 * MASS * (w * DRIVEN["amplitude"]) ** 2
         errors.append(np.max(np.abs(history.columns[f"square.{along}"] - exact)))

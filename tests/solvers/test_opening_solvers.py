@@ -5,19 +5,19 @@ import pytest
 
 from validation import solve
 from validation.metrics.catalogue import pair
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
 
 @pytest.fixture
-def scene() -> Scene:
+def scene():
     """A block dropped by its own weight, under a pressure; 64 quadratic elements resolve its front."""
     case = load_scene("unlocked").expand()[1]
     values = {"time.step": 2e-4, "time.steps": 200, "fem.elements": 64, "load.gravity": 9.81}
     return case.with_values(values | {"block.velocity": -0.2, "contact.gap": 1e-4, "run.solvers": ["fem", "bar"]})
 
 
-def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene: Scene) -> None:
+def test_the_bar_opens_under_weight_and_is_what_elements_tend_to(scene):
     columns = ["displacement", "contact_pressure", "gap_m", "gap_n", "normal_force_m", "normal_force_n"]
     prepared = get_solver("bar").prepare(scene.with_values({"run.columns": columns}))
     run = prepared.run()

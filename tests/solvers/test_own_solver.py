@@ -21,7 +21,7 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers import user
 from validation.solvers.processes.user_worker import place_of
 from validation.solvers.processes.worker import WorkerHangs
@@ -49,7 +49,7 @@ SLIPS = {  # of tests/oracles/six_unknowns.py: groups that the fault lies in, gr
 # ---- slips ----------------------------------------------------------------------------------------------------------
 
 
-def through_the_gates(solver: str, where: Path, *options: str) -> str:
+def through_the_gates(solver, where, *options):
     """Run the gates on a solver as a user does, and return what pytest says."""
     command = [sys.executable, "-m", "pytest", "--pyargs", "validation", "-m", "validation", "-q", "-rN"]
     done = subprocess.run(
@@ -88,9 +88,7 @@ def noisy(scene):
         ("six_unknowns:sound", set(), ""),
     ],
 )
-def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
-    solver: str, same_as: set[str], line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(solver, same_as, line, tmp_path, monkeypatch):
     (tmp_path / "copies.py").write_text(COPIES)
     monkeypatch.syspath_prepend(str(ORACLES))
     monkeypatch.syspath_prepend(str(tmp_path))
@@ -106,12 +104,12 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
     assert [text[: len(line)] for text in warnings] == ([line] if line else [])
 
 
-def page() -> str:
+def page():
     return (ROOT / "docs/judge.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.long
-def test_the_page_shows_the_block_of_twice_the_density() -> None:
+def test_the_page_shows_the_block_of_twice_the_density():
     lines = re.search(r"^```text\n(right:.*?)^```$", page(), re.M | re.S)
     assert lines and lines[1] in through_the_gates("six_unknowns:double_density", ORACLES)
 
@@ -129,7 +127,7 @@ def solve(scene):
 
 
 @pytest.mark.long
-def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slow(tmp_path: Path) -> None:
+def test_the_solver_of_the_page_passes_every_gate_on_a_machine_five_times_as_slow(tmp_path):
     write_my_solver(tmp_path)
     (tmp_path / "busy.py").write_text(BUSY)
     shown = through_the_gates("busy:solve", tmp_path)
@@ -151,7 +149,7 @@ AUTHORS = {  # of tests/oracles/six_unknowns.py: what the block says once
 
 @pytest.mark.long
 @pytest.mark.parametrize("author", AUTHORS)
-def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
+def test_what_an_author_can_do_wrong_is_said_once(author):
     shown = through_the_gates(
         f"six_unknowns:{author}", ORACLES, "-k", "figure", *["--dda-timeout=5"] * (author == "hangs")
     )
@@ -159,22 +157,22 @@ def test_what_an_author_can_do_wrong_is_said_once(author: str) -> None:
     assert "not tried, since 2 scenes" in shown if author == "hangs" else "not tried" not in shown
 
 
-def test_a_word_that_names_no_solver_is_refused() -> None:
+def test_a_word_that_names_no_solver_is_refused():
     options = SimpleNamespace(addinivalue_line=lambda *_: None, getoption=lambda *_: "my_solver.py")
     with pytest.raises(pytest.UsageError, match=r"^--dda-solver: must be module:attribute, or a name"):
-        plugin.pytest_configure(options)  # type: ignore[arg-type]
+        plugin.pytest_configure(options)
 
 
 @pytest.mark.long
-def test_a_solver_that_cannot_be_loaded_is_refused_before_anything_runs(tmp_path: Path) -> None:
+def test_a_solver_that_cannot_be_loaded_is_refused_before_anything_runs(tmp_path):
     shown = through_the_gates("nope:solve", tmp_path)
     assert "ERROR: --dda-solver: solver: must be a module that Python finds, got 'nope:solve'" in shown
     assert "failed" not in shown
 
 
-def gate_report(outcome: str, when: str = "call") -> pytest.TestReport:
+def gate_report(outcome, when="call"):
     node = "validation/test_gates.py::test_gate[a]"
-    return pytest.TestReport(node, (node, 0, node), {}, outcome, None, when)  # type: ignore[arg-type]
+    return pytest.TestReport(node, (node, 0, node), {}, outcome, None, when)
 
 
 @pytest.mark.parametrize(
@@ -186,16 +184,16 @@ def gate_report(outcome: str, when: str = "call") -> pytest.TestReport:
         ([], pytest.ExitCode.OK),  # tests of somebody's own, which are no gates
     ],
 )
-def test_a_session_that_judged_nothing_fails(reports: list[pytest.TestReport], status: pytest.ExitCode) -> None:
+def test_a_session_that_judged_nothing_fails(reports, status):
     reporter = SimpleNamespace(stats={"": reports})
     config = SimpleNamespace(pluginmanager=SimpleNamespace(get_plugin=lambda _: reporter))
     session = SimpleNamespace(config=config, exitstatus=pytest.ExitCode.OK)
-    plugin.pytest_sessionfinish(session, session.exitstatus)  # type: ignore[arg-type]
+    plugin.pytest_sessionfinish(session, session.exitstatus)
     assert session.exitstatus == status
 
 
 @pytest.mark.long
-def test_a_report_of_junit_brings_no_warnings(tmp_path: Path) -> None:
+def test_a_report_of_junit_brings_no_warnings(tmp_path):
     (tmp_path / "short.py").write_text("def solve(scene):\n    return [0.0], [0.0]\n")
     shown = through_the_gates("short:solve", tmp_path, "--junitxml=j.xml", "-k", "figures-3-4 and settling", "-n0")
     assert "warning" not in shown
@@ -205,7 +203,7 @@ def test_a_report_of_junit_brings_no_warnings(tmp_path: Path) -> None:
 # ---- what a history shows -------------------------------------------------------------------------------------------
 
 
-def swinging(scene: Scene, steps: int, noise: float = 0.0) -> History:
+def swinging(scene, steps, noise=0.0):
     """Return -0.01 + sum of both modes' powers, as the step's roots in closed form make it, with noise."""
     n, x = np.arange(1, steps + 1), np.full(steps, -0.01)
     frequencies = spectra.dda_frequency(scene), spectra.contact_frequency(scene)
@@ -215,14 +213,14 @@ def swinging(scene: Scene, steps: int, noise: float = 0.0) -> History:
     return History(scene.time.step * n, {"displacement": x})
 
 
-def test_what_is_no_sum_of_two_modes_shows_none() -> None:
+def test_what_is_no_sum_of_two_modes_shows_none():
     scene = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5})
     assert root(scene, swinging(scene, 200, 0.01)) is None
     for x in (np.zeros(200), np.full(200, np.inf), np.ones(9)):
         assert root(scene, History(x, {"displacement": x})) is None
 
 
-def test_what_the_solver_does_not_report_is_not_run() -> None:
+def test_what_the_solver_does_not_report_is_not_run():
     scene, gate = load_scene("figure-8").expand()[0], Gate("s", ("dda",), "energy.drift", 0, 1, "r")
     assert gates.lacking(gate, scene, {"static"}) == "modes" and gates.lacking(gate, scene, {"modes"}) is None
     gate = replace(gate, metric="pressure.static")
@@ -232,29 +230,27 @@ def test_what_the_solver_does_not_report_is_not_run() -> None:
     assert gates.lacking(replace(gate, pair=("dda", "fem"), metric="mode1.damping"), scene, set()) == "modes"
 
 
-def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(str(ORACLES))
     answer_here(monkeypatch)
     session = Session("six_unknowns:sound", Results(tmp_path))
     names = [name for name in gates.applying() if name.startswith("long-run")]
     assert names and {session.judge(name)[0].why for name in names} == {"the solver does not report modes(scene)"}
-    assert not session.finished.rows
+    assert not session.rows
 
 
 # ---- authors --------------------------------------------------------------------------------------------------------
 
 
 @pytest.fixture
-def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+def scene(scene_file, monkeypatch):
     monkeypatch.syspath_prepend(str(ORACLES))
     monkeypatch.chdir(ORACLES)
     answer_here(monkeypatch)
     return load_scene(scene_file)
 
 
-def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene: Scene) -> None:
+def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene):
     run = completed(get_solver("six_unknowns:raises"), scene)
     lines = (ORACLES / "six_unknowns.py").read_text().splitlines()
     number = 1 + next(
@@ -264,18 +260,18 @@ def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene: Scen
     assert place_of(ValueError("of nobody's code"), ORACLES) == ""
 
 
-def test_a_scene_that_is_not_for_the_solver_is_not_run(scene: Scene) -> None:
+def test_a_scene_that_is_not_for_the_solver_is_not_run(scene):
     run = completed(get_solver("six_unknowns:sound"), scene.with_values({"load.gravity": 9.81}))
     assert (
         run.outcome is Outcome.NOT_APPLICABLE and "a rectangle on springs that pull, under a pressure" in run.notes[0]
     )
 
 
-def test_the_time_limit_grows_with_the_steps(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_time_limit_grows_with_the_steps(monkeypatch):
     """20 steps have 0.1 s beside what is set, and 6000 have 30 s."""
     limits = []
 
-    def ask(command: object, environment: object, request: object, limit: float) -> dict[str, object]:
+    def ask(command, environment, request, limit):
         limits.append(limit)
         raise WorkerHangs
 
@@ -293,11 +289,11 @@ SOUND = GateReport(
 )
 
 
-def of(**values: object) -> GateReport:
-    return replace(SOUND, **values)  # type: ignore[arg-type]
+def of(**values):
+    return replace(SOUND, **values)
 
 
-def test_an_ending_is_told_once_with_its_scenes() -> None:
+def test_an_ending_is_told_once_with_its_scenes():
     raised = [
         of(scene=f"s{n % 5}", status="FAIL", value=None, why="E: step 3 (f.py:7, in g)", outcome="raised")
         for n in range(20)
@@ -315,20 +311,20 @@ def test_an_ending_is_told_once_with_its_scenes() -> None:
     assert "\n".join(block(units)).count("wrong units") == 1
 
 
-def test_what_is_not_run_is_neither_right_nor_wrong() -> None:
+def test_what_is_not_run_is_neither_right_nor_wrong():
     lines = block([SOUND, of(group="damping", status="NOT RUN", value=None, why="no modes", outcome="")])
     assert "\nright:  statics" in lines and "  1 gate: no modes" in lines
     assert not [line for line in lines if line.startswith("wrong")]
 
 
-def test_failing_gates_are_counted_beyond_the_first_few() -> None:
+def test_failing_gates_are_counted_beyond_the_first_few():
     failed = [of(status="FAIL", value=2.0 + n, scene=f"s{n}") for n in range(5)]
     some, every = ("\n".join(block([replace(t, results="/nowhere") for t in failed], every=e)) for e in (False, True))
     assert some.count("is outside") == 3 and "and 2 more (-v lists them)" in some
     assert every.count("is outside") == 5
 
 
-def test_a_value_is_seen_outside_its_band() -> None:
+def test_a_value_is_seen_outside_its_band():
     assert outside(of(value=1.1 + 1e-9)).startswith("displacement.final = 1.100000001 is outside [0.9, 1.1")
     assert outside(of(value="undefined")) == "displacement.final is undefined; the band is [0.9, 1.1]"
 
@@ -336,7 +332,7 @@ def test_a_value_is_seen_outside_its_band() -> None:
 @pytest.mark.parametrize(
     ("causes", "said"), [(["start"], "causes: start"), (["unexplained"], "not explained: "), ([], "a sentence")]
 )
-def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_what_compare_says_ends_the_block(causes, said, monkeypatch):
     scene = gates.starts()[0]
     failed = of(scene=scene.name, study="own-solver", status="FAIL", value=2.0)
     x = np.ones(scene.time.steps)
@@ -351,14 +347,14 @@ def test_what_compare_says_ends_the_block(causes: list[str], said: str, monkeypa
 # ---- data of the block ----------------------------------------------------------------------------------------------
 
 
-def told_by(solver: str, results: Path, study: str = "own-solver") -> list[GateReport]:
+def told_by(solver, results, study="own-solver"):
     """Return what the gates on the start and on data of the block say of a solver."""
     session = Session(solver, Results(results))
     return [session.judge(name)[1] for name, (owner, _) in gates.applying().items() if owner == study]
 
 
 @pytest.fixture(autouse=True)
-def oracles(monkeypatch: pytest.MonkeyPatch) -> None:
+def oracles(monkeypatch):
     monkeypatch.syspath_prepend(str(ORACLES))
 
 
@@ -387,7 +383,7 @@ WHAT_IS_MISREAD = {  # of tests/oracles/six_unknowns.py: scenes that fail where 
 
 
 @pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 8))
-def test_a_datum_that_a_solver_misreads_is_named(solver: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_datum_that_a_solver_misreads_is_named(solver, tmp_path, monkeypatch):
     answer_here(monkeypatch)
     told = told_by(f"six_unknowns:{solver}", tmp_path)
     failed = [t for t in told if t.status == "FAIL"]
@@ -407,9 +403,7 @@ SLIPS_OF_THE_SCHEME = ("gg_twice", "delta_missing", "zero_start", "consistent_st
 
 @pytest.mark.long
 @pytest.mark.parametrize("slip", thinned(SLIPS_OF_THE_SCHEME, 5))
-def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(
-    slip: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(slip, tmp_path, monkeypatch):
     answer_here(monkeypatch)
     told = told_by(f"six_unknowns:{slip}", tmp_path)
     assert not [t for t in told if t.metric == AT_REST and t.status != "PASS"]
@@ -419,7 +413,7 @@ def test_a_slip_of_the_scheme_leaves_the_data_of_the_block_alone(
 
 
 @pytest.mark.parametrize("is_discount_judged", [False, True])
-def test_a_discount_is_suspected_where_no_other_scene_has_one(is_discount_judged: bool) -> None:
+def test_a_discount_is_suspected_where_no_other_scene_has_one(is_discount_judged):
     """The scenes of the data are damped by gg: a discount that is applied twice shows in them alone."""
     rectangle = block_data.scenes()[0].name
     failed = of(scene=rectangle, study="own-solver", group=gates.BLOCK_DATA, metric="displacement.max", status="FAIL")
@@ -432,7 +426,7 @@ def test_a_discount_is_suspected_where_no_other_scene_has_one(is_discount_judged
     assert ("gg" in line) is not is_discount_judged
 
 
-def test_wrong_statics_of_the_square_are_looked_for_first() -> None:
+def test_wrong_statics_of_the_square_are_looked_for_first():
     at = block_data.scenes()[0]
     failed = of(scene=at.name, study="own-solver", group=gates.BLOCK_DATA, metric=AT_REST, status="FAIL", value=-1.0)
     lines = block([of(status="FAIL", value=2.0, results="/nowhere"), replace(failed, results="/nowhere")])
@@ -440,9 +434,7 @@ def test_wrong_statics_of_the_square_are_looked_for_first() -> None:
     assert f"        {gates.BLOCK_DATA}: may follow from it, look again when it is right" in lines
 
 
-def test_a_scheme_that_does_not_damp_hides_a_misread_datum_but_makes_none_up(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_scheme_that_does_not_damp_hides_a_misread_datum_but_makes_none_up(tmp_path, monkeypatch):
     answer_here(monkeypatch)
     told = told_by("six_unknowns:undamped", tmp_path)
     assert not [t for t in told if t.metric == AT_REST and t.status != "PASS"]

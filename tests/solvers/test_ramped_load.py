@@ -1,7 +1,6 @@
 """A load that rises in a ramp: who refuses it, and what `compare` makes of it."""
 
 import math
-from pathlib import Path
 
 import pytest
 from conftest import refused, typed
@@ -11,7 +10,7 @@ import dda
 RAMP = 0.0137  # s, between two steps
 
 
-def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
+def test_the_packages_refuse_a_ramp_where_they_do_not_know_it():
     block = dda.Block([(0, 0), (2, 0), (2, 2), (0, 2)], dda.Material(2700.0, 1e9, 0.0))
     load = dda.Load(pressure=1e6, ramp=0.1)
     model = dda.TwoBlockModel(block, dda.Contact(1e9, 1e9), load)
@@ -33,7 +32,7 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it() -> None:
 
 
 @pytest.mark.long
-def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path: Path) -> None:
+def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path):
     values = ("--set", "time.step=0.002", "--set", f"load.ramp={RAMP}")
     history = tmp_path / "ramped.csv"
     assert typed("solve", "figures-3-4", *values, "--solver", "dda", "--csv", history).returncode == 0

@@ -1,8 +1,6 @@
 """Frequency responses: moving bases, large systems, limits and peaks."""
 
 import math
-from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -13,8 +11,6 @@ import dda.linear.elimination
 import fem_reference.history.response
 from validation import load_scene, response, solve
 from validation.advice.response import Response
-from validation.runs.history import Array, Complex
-from validation.scenes.scene import Scene
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002, "run.columns": ["displacement", "contact_pressure"]})
 COLUMNS = ("displacement", "contact_pressure")
@@ -28,7 +24,7 @@ MOVING = [
 ]
 
 
-def moving(path: Path, scene: Scene, along: tuple[float, float], w: float) -> Scene:
+def moving(path, scene, along, w):
     """Return the scene on a base that moves along a vector as sin(wt)."""
     times = scene.time.step * np.arange(scene.time.steps + 1.0)
     table = np.column_stack([times, *(part * np.sin(w * times) for part in along)])
@@ -37,9 +33,7 @@ def moving(path: Path, scene: Scene, along: tuple[float, float], w: float) -> Sc
 
 
 @pytest.mark.parametrize(("solver", "values", "along"), thinned(MOVING, 2))
-def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(
-    tmp_path: Path, solver: str, values: dict[str, object], along: tuple[float, float]
-) -> None:
+def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(tmp_path, solver, values, along):
     w = 2 * np.pi * 43.0
     time = {"time.step": 0.003, "time.steps": 900, "time.alpha": 0.7, "time.gg": 0.97, "contact.stiffness": 4e8}
     scene = moving(tmp_path / "base.csv", BLOCK.with_values(values | time), along, w)
@@ -58,7 +52,7 @@ def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(
     "damped",
     thinned([{"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}, pytest.param({}, marks=pytest.mark.long)], 3),
 )
-def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatch, damped: dict[str, object]) -> None:
+def test_a_small_space_answers_as_eliminations_do(monkeypatch, damped):
     size = {"block.subdivide": [4, 4], "fem.elements": 4}
     scene = BLOCK.with_values(size | {"block.poisson": 0.3, "load.traction": 1e6} | damped)
     f = np.linspace(0.0, 240.0, 25)
@@ -72,7 +66,7 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch: pytest.MonkeyPatc
             assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
 
 
-def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
+def test_at_rest_and_at_a_load_that_turns_every_step():
     for solver in ("dda", "fem", "bar"):
         found = response(BLOCK, [0.0, 250.0], solver)
         assert found.displacement[0] == pytest.approx(-0.01, rel=1e-9)
@@ -80,10 +74,10 @@ def test_at_rest_and_at_a_load_that_turns_every_step() -> None:
         assert abs(found.displacement[1]) < 1e-12  # (1/2, 1): W2 has no bound at half the sampling frequency
 
 
-def rational(poles: list[tuple[float, float, float]]) -> Callable[[Array], dict[str, Complex]]:
+def rational(poles):
     """Return the response sum r / (f0^2 - f^2 + 2 i zeta f0 f) of poles (r, f0, zeta)."""
 
-    def answer(f: Array) -> dict[str, Complex]:
+    def answer(f):
         parts = [r / (f0**2 - f**2 + 2j * zeta * f0 * f) for r, f0, zeta in poles]
         return {"displacement": np.asarray(sum(parts), complex)}
 
@@ -110,15 +104,13 @@ PEAKS = {  # poles, range and its points, peaks
 
 
 @pytest.mark.parametrize(("poles", "span", "expected"), PEAKS.values(), ids=PEAKS)
-def test_peaks_are_those_of_the_model_between_the_listed_frequencies(
-    poles: list[tuple[float, float, float]], span: tuple[float, float, int], expected: list[tuple[float, float]]
-) -> None:
+def test_peaks_are_those_of_the_model_between_the_listed_frequencies(poles, span, expected):
     answer = rational(poles)
     frequency = np.linspace(*span)
     peaks = Response("s", "dda", True, False, frequency, answer(frequency), answer).peaks("displacement")
     assert np.allclose(np.array(peaks).reshape(-1, 2), np.array(expected).reshape(-1, 2), rtol=1e-6)
 
 
-def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn() -> None:
+def test_phases_of_what_nothing_damps_are_zero_or_a_half_turn():
     table = response(BLOCK, np.linspace(1.0, 200.0, 50), "continuum").table()
     assert set(np.unique(table[:, [2, 4]])) == {0.0, np.pi}

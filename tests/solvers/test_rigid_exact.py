@@ -1,27 +1,21 @@
 """The exact motions of rigid boxes: they pass their own problems, keep their energy, and refuse the rest."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.box_scenes import box_scene
 
 from validation.gates.gate import Status
-from validation.models.plane.posed import PlaneCase
 from validation.models.plane.problems import box_problems
 from validation.problems.numbered import measured
-from validation.runs.history import History
-from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
 BOX = {"width": 0.8, "height": 0.5, "density": 700.0}
 CASES = [(name, case) for name, problem in box_problems().items() for case in problem.cases]
 
 
-def motion(scene: Scene) -> History:
+def motion(scene):
     """Return the exact motion of a scene."""
     solver = get_solver("rigid-exact")
     assert solver.refusal(scene) is None
@@ -30,13 +24,13 @@ def motion(scene: Scene) -> History:
     return history
 
 
-def refusal(scene: Scene) -> str:
+def refusal(scene):
     """Return why a scene is refused."""
     return get_solver("rigid-exact").refusal(scene) or ""
 
 
 @pytest.mark.parametrize(("name", "case"), CASES, ids=[f"{name} {case.label}" for name, case in CASES])
-def test_the_exact_motion_passes_its_problem(name: str, case: PlaneCase) -> None:
+def test_the_exact_motion_passes_its_problem(name, case):
     problem = box_problems()[name]
     scene = problem.scene(case)
     quantities = (case.quantities or problem.quantities)(scene)
@@ -49,7 +43,7 @@ def test_the_exact_motion_passes_its_problem(name: str, case: PlaneCase) -> None
         assert one.status is Status.PASS and error is not None and error <= 0.05 * allowed, one
 
 
-def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> None:
+def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back():
     pushed = BOX | {"velocity": [-1.0, 0.0]}
     for friction, back in ((25.0, 0.0), (10.0, 1.0)):
         history = motion(box_scene(pushed, slope=20.0, friction=friction, steps=300))
@@ -63,9 +57,7 @@ def test_a_box_that_is_pushed_up_a_slope_stops_and_stands_or_slides_back() -> No
 @pytest.mark.parametrize("shape", [(1.0, 0.5), (0.3, 1.0)])
 @pytest.mark.parametrize("tilt", [-70.0, 3.0, 45.0])
 @pytest.mark.parametrize("lift", [1e-6, 3e-3, 0.3])
-def test_a_tumbling_box_stays_above_ground_and_keeps_its_energy(
-    shape: tuple[float, float], tilt: float, lift: float
-) -> None:
+def test_a_tumbling_box_stays_above_ground_and_keeps_its_energy(shape, tilt, lift):
     step, (width, height) = 5e-4, shape
     box = {"width": width, "height": height, "density": 700.0, "tilt": tilt, "lift": lift}
     columns = motion(box_scene(box, restitution=1.0, step=step, steps=2000)).columns
@@ -104,17 +96,17 @@ SHIFTED = BOX | {"x": 0.45}
         ([BOX], {"base": (0.1, 1.0), "slope": 1.0}, "on level, rigid ground"),
     ],
 )
-def test_other_motions_are_refused_by_name(boxes: list[dict[str, Any]], rigid: dict[str, Any], why: str) -> None:
+def test_other_motions_are_refused_by_name(boxes, rigid, why):
     assert why in refusal(box_scene(*boxes, **rigid))
 
 
-def test_a_corner_that_slips_is_refused() -> None:
+def test_a_corner_that_slips_is_refused():
     scene = box_problems()["toppling"].scene()
     assert "friction must be above 13.3" in refusal(scene.with_values({"plane.contact.friction": 13.0}))
     assert not refusal(scene.with_values({"plane.contact.friction": 14.0}))
 
 
-def test_boxes_that_are_not_above_each_other_stand_as_long_as_their_weight_is_carried() -> None:
+def test_boxes_that_are_not_above_each_other_stand_as_long_as_their_weight_is_carried():
     scene = box_scene(BOX, BOX | {"x": 0.35, "density": 300.0}, friction=20.0)
     columns = motion(scene).columns
     assert columns["box_2.x"][-1] == 0.35

@@ -3,40 +3,38 @@
 It is an optional package (`pip install 'dda-validation[site]'`); without it these tests are skipped by name.
 """
 
-from types import ModuleType
-
 import numpy as np
 import pytest
 
 from validation import load_scene, response
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 FREQUENCIES = np.linspace(0.1, 20.0, 200)  # Hz
 
 
 @pytest.fixture(scope="module")
-def program() -> ModuleType:
+def program():
     """Return the program, or skip."""
     return pytest.importorskip("pystrata", reason="NOT RUN: pystrata is not installed")
 
 
 @pytest.fixture(scope="module")
-def site() -> Scene:
+def site():
     return load_scene("waves-site")
 
 
-def on_rigid(site: Scene) -> Scene:
+def on_rigid(site):
     """Return the site on a rigid base."""
     data = site.definition()
     column = {key: value for key, value in data["column"].items() if not key.startswith("base")}
     return parse_scene(data | {"column": column | {"base": "rigid"}}, "rigid")
 
 
-def transfer(program: ModuleType, site: Scene, kind: str) -> np.ndarray:
+def transfer(program, site, kind):
     """Return surface over base by the program: of an outcrop of the rock, or of the rock below the layers."""
     gravity, column = program.motion.GRAVITY, site.column
 
-    def layer(density: float, thickness: float, speed: float) -> object:
+    def layer(density, thickness, speed):
         return program.site.Layer(program.site.SoilType("", density * gravity, None, 0.0), thickness, speed)
 
     layers = [layer(x.density, x.thickness, (column.modulus(x) / x.density) ** 0.5) for x in reversed(column.layer)]
@@ -48,7 +46,7 @@ def transfer(program: ModuleType, site: Scene, kind: str) -> np.ndarray:
 
 
 @pytest.mark.filterwarnings("ignore")  # another package's own
-def test_surface_over_outcrop(program: ModuleType, site: Scene) -> None:
+def test_surface_over_outcrop(program, site):
     """An outcrop shows twice the wave that comes up."""
     theirs = transfer(program, site, "outcrop")
     ours = response(site, FREQUENCIES, "layers").displacement / 2
@@ -56,7 +54,7 @@ def test_surface_over_outcrop(program: ModuleType, site: Scene) -> None:
 
 
 @pytest.mark.filterwarnings("ignore")
-def test_surface_over_the_rock_below(program: ModuleType, site: Scene) -> None:
+def test_surface_over_the_rock_below(program, site):
     """The motion within the rock is that of a rigid base."""
     theirs = transfer(program, site, "within")
     ours = response(on_rigid(site), FREQUENCIES, "layers").displacement
@@ -65,7 +63,7 @@ def test_surface_over_the_rock_below(program: ModuleType, site: Scene) -> None:
 
 @pytest.mark.filterwarnings("ignore")
 @pytest.mark.parametrize("solver", ["dda", "fem"])
-def test_blocks_and_elements_converge_to_it(program: ModuleType, site: Scene, solver: str) -> None:
+def test_blocks_and_elements_converge_to_it(program, site, solver):
     """Below 8 Hz, 40 blocks a wavelength and more: within one per cent of the greatest amplification."""
     theirs = transfer(program, site, "outcrop")
     ours = response(site, FREQUENCIES, solver).displacement / 2

@@ -1,9 +1,5 @@
 """The exact motion with friction as a solver: its columns, switches, slip and energies, and who refuses it."""
 
-from __future__ import annotations
-
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,7 +7,6 @@ from fem_reference.events import block_events, block_march
 from fem_reference.events.switches import NoContactStateError
 from validation import load_scene
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene
 from validation.solvers.events import BarMotion
 from validation.solvers.registry import get_solver
 
@@ -38,14 +33,14 @@ columns = ["displacement", "slide_m", "slide_n", "state_m", "state_n", "shear_fo
 """
 
 
-def scene(tmp_path: Path, text: str = INCLINE) -> Scene:
+def scene(tmp_path, text=INCLINE):
     path = tmp_path / "incline.toml"
     path.write_text(text)
     return load_scene(path)
 
 
-def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def stuck(*_args: object) -> None:
+def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path, monkeypatch):
+    def stuck(*_args):
         raise NoContactStateError("no state of the corners agrees with the motion at 0.5 s")
 
     monkeypatch.setattr(block_events, block_events.solve.__name__, stuck)
@@ -55,7 +50,7 @@ def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path: Path, monkeypat
     assert "at 0.5 s" in run.notes[0]
 
 
-def test_the_notes_tell_what_is_proven(tmp_path: Path) -> None:
+def test_the_notes_tell_what_is_proven(tmp_path):
     prepared = get_solver("block-events").prepare(scene(tmp_path))
     notes = prepared.run().notes
     assert sum(note.startswith("proven: ") for note in notes) == 2
@@ -87,9 +82,7 @@ solvers = ["bar-events"]
     ("name", "module", "limit", "most", "horizon"),
     [("bar-events", BarMotion, "most_terms", 7e5, 0.0088), ("block-events", block_march, "STEPS", 27, 0.0049)],
 )
-def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str, module: object, limit: str, most: float, horizon: float
-) -> None:
+def test_a_motion_of_too_much_work_ends_at_a_named_horizon(tmp_path, monkeypatch, name, module, limit, most, horizon):
     monkeypatch.setattr(module, limit, most)
     run = get_solver(name).prepare(scene(tmp_path, GRANITE)).run()
     assert run.outcome is Outcome.HORIZON
@@ -101,7 +94,7 @@ def test_a_motion_of_too_much_work_ends_at_a_named_horizon(
 
 
 @pytest.mark.long
-def test_a_base_that_moves_and_its_work(tmp_path: Path) -> None:
+def test_a_base_that_moves_and_its_work(tmp_path):
     (tmp_path / "base.csv").write_text("time,x\n0,0\n0.01,0.002\n0.02,0\n")
     text = INCLINE.replace("slope = 20.0", f'base_motion = "{tmp_path / "base.csv"}"')
     prepared = get_solver("block-events").prepare(scene(tmp_path, text))

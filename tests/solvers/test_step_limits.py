@@ -1,10 +1,6 @@
 """A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,36 +10,36 @@ from validation.engine.measure import attempt
 from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 from validation.solvers.contract import Solver
 from validation.solvers.registry import get_solver, solve
 from validation.solvers.soundness import reach
 
-BLOCK: dict[str, Any] = {"side": 2.0, "density": 2700.0, "young": 1e9}
-CONTACT: dict[str, Any] = {"stiffness": 1e9}
-OPEN: dict[str, Any] = {**CONTACT, "law": "unilateral"}
-PRESSURE: dict[str, Any] = {"pressure": 5e6}
-COLUMN: dict[str, Any] = {
+BLOCK = {"side": 2.0, "density": 2700.0, "young": 1e9}
+CONTACT = {"stiffness": 1e9}
+OPEN = {**CONTACT, "law": "unilateral"}
+PRESSURE = {"pressure": 5e6}
+COLUMN = {
     "motion": "shear",
     "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
 }
-HALF_SPACE: dict[str, Any] = COLUMN | {"base": "transmitting", "base_density": 2000.0, "base_speed": 10.0}
-STACK: dict[str, Any] = {
+HALF_SPACE = COLUMN | {"base": "transmitting", "base_density": 2000.0, "base_speed": 10.0}
+STACK = {
     "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
     "stiffness": 1e9,
 }
-PULSE: dict[str, Any] = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
-KNOCK: dict[str, Any] = {"at": "top", "shape": "half-sine", "pressure": 1e5, "duration": 0.5}
+PULSE = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
+KNOCK = {"at": "top", "shape": "half-sine", "pressure": 1e5, "duration": 0.5}
 
 
-def scene(step: float, steps: int = 300, **tables: Any) -> Scene:
+def scene(step, steps=300, **tables):
     """Return a scene under central differences, a block unless `tables` says otherwise."""
     plain = {"time": {"step": step, "steps": steps, "alpha": 0.0, "delta": 0.5}, "fem": {"elements": 2}}
     body = {} if "column" in tables else {"block": BLOCK, "contact": CONTACT, "load": PRESSURE}
     return parse_scene({**body, **plain, **tables}, "limited")
 
 
-def refusal(solver: str, limited: Scene) -> str | None:
+def refusal(solver, limited):
     """Return why a run is refused, None where it is not."""
     run = attempt(get_solver(solver), limited, full=False)[1]
     return run.notes[-1] if run.outcome is Outcome.REFUSED else None
@@ -75,7 +71,7 @@ SCENES = {
 
 
 @pytest.mark.parametrize("name", thinned(SCENES, 4))
-def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name: str) -> None:
+def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name):
     solver, tables = SCENES[name]
     said = refusal(solver, scene(1.0, 2, **tables))
     assert said is not None
@@ -85,14 +81,14 @@ def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_
     assert run.outcome is Outcome.COMPLETED, run.notes
 
 
-def test_a_rigid_stop_has_no_stable_step_of_a_conditional_scheme() -> None:
+def test_a_rigid_stop_has_no_stable_step_of_a_conditional_scheme():
     rigid = scene(1e-6, 2, contact={**OPEN, "stiffness": math.inf, "shear_stiffness": 0.0})
     said = refusal("dda", rigid.with_values({"time.alpha": 0.2}))
     assert said is not None and "rigid stop" in said
     assert refusal("dda", rigid.with_values({"time.alpha": 0.25})) is None
 
 
-def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top() -> None:
+def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top():
     flat = {"width": 0.67, "height": 0.17, "density": 2700.0, "young": 1e9}
     load = {"pressure": 1e6, "eccentricity": 0.2}
     said = refusal("dda", scene(0.1, 2, block=flat, contact=OPEN, load=load, run={"geometry": "updated"}))
@@ -103,7 +99,7 @@ GROWING = ("opening", "turning", "opening sub-blocks", "opening mesh", "locked",
 
 
 @pytest.mark.parametrize("name", GROWING)
-def test_a_step_that_is_allowed_runs_and_its_growth_is_an_outcome_of_its_own(name: str) -> None:
+def test_a_step_that_is_allowed_runs_and_its_growth_is_an_outcome_of_its_own(name):
     solver, tables = SCENES[name]
     run = solve(scene(0.05, 20, **tables).with_values({"time.allow_unstable": True}), solver)
     assert run.outcome is Outcome.UNBOUNDED, run.notes
@@ -114,10 +110,10 @@ class Driven(Solver):
 
     name = "driven"
 
-    def __init__(self, values: Any) -> None:
+    def __init__(self, values):
         self.values = np.asarray(values, float)
 
-    def solve(self, scene: Scene, full: bool = False, fields: Any = None) -> Run:
+    def solve(self, scene, full=False, fields=None):
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         return Run(Outcome.COMPLETED, History(time, {"displacement": self.values}))
 
@@ -132,12 +128,12 @@ class Driven(Solver):
         ([0.0, -1.0, 0.0], Outcome.COMPLETED),
     ],
 )
-def test_solve_from_python_names_what_is_wrong_with_a_history(values: list[float], outcome: Outcome) -> None:
+def test_solve_from_python_names_what_is_wrong_with_a_history(values, outcome):
     plain = scene(1e-3, 3, run={"columns": ["displacement"]})
     assert solve(plain, Driven(values)).outcome is outcome
 
 
-def test_the_motion_of_a_base_enters_the_bound(tmp_path: Path) -> None:
+def test_the_motion_of_a_base_enters_the_bound(tmp_path):
     record = tmp_path / "base.csv"
     record.write_text("time,x\n0,0\n1,2\n2,2\n")
     shaken = scene(1e-3, 1000, load={"base_motion": str(record)})
@@ -146,10 +142,10 @@ def test_the_motion_of_a_base_enters_the_bound(tmp_path: Path) -> None:
     assert reach(shaken) == math.inf
 
 
-AT_REST: dict[str, Any] = {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
-ABSURD_LAYER: dict[str, Any] = {"thickness": 1e150, "density": 1e8, "young": 1e9, "blocks": 2}
-THIN: dict[str, Any] = {"thickness": 1e-20, "density": 1.0, "young": 1e9, "blocks": 2}
-RIGID_STOPS: dict[str, Any] = {"motion": "pressure", "law": "unilateral", "stiffness": math.inf}
+AT_REST = {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
+ABSURD_LAYER = {"thickness": 1e150, "density": 1e8, "young": 1e9, "blocks": 2}
+THIN = {"thickness": 1e-20, "density": 1.0, "young": 1e9, "blocks": 2}
+RIGID_STOPS = {"motion": "pressure", "law": "unilateral", "stiffness": math.inf}
 
 
 @pytest.mark.parametrize("solver", ["dda", "fem"])
@@ -178,9 +174,7 @@ RIGID_STOPS: dict[str, Any] = {"motion": "pressure", "law": "unilateral", "stiff
     ],
     ids=["elastic on stops", "rigid on stops", "singular", "half-space"],
 )
-def test_what_cannot_be_stepped_is_an_outcome(
-    column: dict[str, Any], time: dict[str, Any], outcome: Outcome, words: str, solver: str
-) -> None:
+def test_what_cannot_be_stepped_is_an_outcome(column, time, outcome, words, solver):
     base = {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}
     limited = scene(1e-4, 20, column=column, input=base)
     limited = limited.with_values({f"time.{key}": value for key, value in time.items()})
@@ -192,16 +186,16 @@ def test_what_cannot_be_stepped_is_an_outcome(
 
 
 @pytest.mark.parametrize("layers", [[ABSURD_LAYER, THIN], [THIN | {"blocks": 100_000}, ABSURD_LAYER]])
-def test_blocks_that_are_no_part_of_a_height_are_refused(layers: list[dict[str, Any]]) -> None:
+def test_blocks_that_are_no_part_of_a_height_are_refused(layers):
     with pytest.raises(InputError) as error:
         scene(1e-4, 20, column=COLUMN | {"layer": layers}, input=PULSE)
     assert "layer.thickness" in str(error.value)
 
 
 LATE = "time,velocity\n5,0\n6,1\n7,0\n"
-OPENS: dict[str, Any] = STACK | {"motion": "pressure", "law": "unilateral", "gap": 0.01}
-SLIPS: dict[str, Any] = STACK | {"motion": "shear", "law": "frictional", "strength": 1e4}
-SETTLED: dict[str, Any] = OPENS | AT_REST | {"stiffness": 1e3, "gravity": 9.81, "settled": True}
+OPENS = STACK | {"motion": "pressure", "law": "unilateral", "gap": 0.01}
+SLIPS = STACK | {"motion": "shear", "law": "frictional", "strength": 1e4}
+SETTLED = OPENS | AT_REST | {"stiffness": 1e3, "gravity": 9.81, "settled": True}
 
 
 @pytest.mark.parametrize("solver", ["dda", "fem", "column-events", "bars-events"])
@@ -216,9 +210,7 @@ SETTLED: dict[str, Any] = OPENS | AT_REST | {"stiffness": 1e3, "gravity": 9.81, 
     ],
     ids=["late", "late slip", "settled", "drive between steps", "pulse between steps"],
 )
-def test_a_column_with_gaps_and_hardly_a_drive_is_sound(
-    column: dict[str, Any], drive: str | dict[str, Any] | None, time: dict[str, Any], solver: str, tmp_path: Path
-) -> None:
+def test_a_column_with_gaps_and_hardly_a_drive_is_sound(column, drive, time, solver, tmp_path):
     if isinstance(drive, str):
         (tmp_path / "late.csv").write_text(drive)
         drive = {"record": str(tmp_path / "late.csv")}

@@ -1,16 +1,13 @@
 """A user's columns in other units, with another sign, or as a force: each slip is named, and nothing sound is."""
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 from conftest import thinned
 
 from validation.runs.columns import unit_of
-from validation.runs.history import Array
 from validation.runs.run import Outcome
 from validation.runs.units import ratios
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.foreign import factor, run_of_columns
 from validation.solvers.registry import get_solver
 
@@ -38,21 +35,21 @@ VARIANTS = {  # the unit must be seen on any scene, and under a solver that is o
 }
 
 
-def columns_of(scene: Scene, times: dict[str, float] | None = None) -> dict[str, Array]:
+def columns_of(scene, times=None):
     """Return the sound history of a scene, some of its columns multiplied."""
     history = get_solver("dda").solve(scene).history
     found = {"time": history.time, **history.columns}
     return {name: values * (times or {}).get(name, 1.0) for name, values in found.items()}
 
 
-def test_every_unit_of_the_table_is_tested() -> None:
+def test_every_unit_of_the_table_is_tested():
     units = {**SI, **{f"{column}_1": units for column, units in AT_HEIGHTS.items()}}
     for column, of_column in units.items():
         assert set(ratios("s" if column == "time" else unit_of(column)).values()) == set(of_column)
 
 
 @pytest.mark.parametrize("column", AT_HEIGHTS)
-def test_another_unit_at_a_height_is_named(scene: Scene, column: str) -> None:
+def test_another_unit_at_a_height_is_named(scene, column):
     expected = np.sin(np.linspace(0.1, 9.0, 50))
     for unit, times in AT_HEIGHTS[column].items():
         told = factor(f"{column}_1", 1.1 * times * expected, expected)
@@ -64,7 +61,7 @@ def test_another_unit_at_a_height_is_named(scene: Scene, column: str) -> None:
     ("column", "unit", "size", "variant"),
     thinned(((*name, size, variant) for name in NAMES for size in (0.85, 1.0, 1.2) for variant in VARIANTS), 5),
 )
-def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float, variant: str) -> None:
+def test_another_unit_is_named(scene, column, unit, size, variant):
     if column == "time":
         size = 1.0  # the instants are the scene's own
     scene, factor = scene.with_values(VARIANTS[variant] | (SIDEWAYS if column in ASIDE else {})), SI[column][unit]
@@ -75,7 +72,7 @@ def test_another_unit_is_named(scene: Scene, column: str, unit: str, size: float
 
 @pytest.mark.parametrize("values", VARIANTS.values(), ids=VARIANTS)
 @pytest.mark.parametrize("column", COLUMNS)
-def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, object]) -> None:
+def test_another_sign_is_named(scene, column, values):
     scene = scene.with_values(values)
     run = run_of_columns(scene, columns_of(scene, {column: -1.0}))
     assert run.outcome is Outcome.WRONG_UNITS and run.notes[0].startswith(f"wrong sign: {column} is the negative of")
@@ -83,7 +80,7 @@ def test_another_sign_is_named(scene: Scene, column: str, values: dict[str, obje
 
 
 @pytest.mark.parametrize("width", [0.4, 1.6, 2.0, 7.0])
-def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width: float) -> None:
+def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene, width):
     scene = scene.with_values({"block.width": width, "block.height": 1.5})
     run = run_of_columns(scene, columns_of(scene, {"contact_pressure": width}))
     assert run.outcome is Outcome.WRONG_UNITS
@@ -106,16 +103,16 @@ def test_a_force_instead_of_a_pressure_is_named_by_the_base(scene: Scene, width:
     ],
     ids=str,
 )
-def test_a_bad_answer_in_si_is_no_slip_of_units(scene: Scene, times: dict[str, float]) -> None:
+def test_a_bad_answer_in_si_is_no_slip_of_units(scene, times):
     assert run_of_columns(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
 
 
-def test_a_base_of_one_metre_makes_force_and_pressure_one(scene: Scene) -> None:
+def test_a_base_of_one_metre_makes_force_and_pressure_one(scene):
     scene = scene.with_values({"block.side": 1.0})
     assert run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED
 
 
-def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> None:
+def test_another_motion_in_another_size_is_not_called_a_unit(scene):
     """A column that is alike by less than 0.8 tells nothing of units: here it is noise of a thousandfold size."""
     columns = columns_of(scene)
     noise = np.random.default_rng(3).standard_normal(scene.time.steps)
@@ -123,13 +120,13 @@ def test_another_motion_in_another_size_is_not_called_a_unit(scene: Scene) -> No
     assert run_of_columns(scene, columns | {"displacement": 1e3 * size * noise}).outcome is Outcome.COMPLETED
 
 
-def test_time_is_judged_before_the_columns(scene: Scene) -> None:
+def test_time_is_judged_before_the_columns(scene):
     run = run_of_columns(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
     assert "time is 1000 times" in run.notes[0]
     late = columns_of(scene) | {"time": columns_of(scene)["time"] + scene.time.step}
     assert run_of_columns(scene, late).outcome is Outcome.WRONG_SHAPE
 
 
-def test_a_column_has_no_base_that_makes_a_pressure_a_force() -> None:
+def test_a_column_has_no_base_that_makes_a_pressure_a_force():
     scene = load_scene("field-column").with_values({"run.columns": ["displacement", "displacement_1"]})
     assert run_of_columns(scene, columns_of(scene)).outcome is Outcome.COMPLETED

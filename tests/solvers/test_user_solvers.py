@@ -12,7 +12,7 @@ from validation.engine.measure import completed, execute
 from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE, UserSolver
 from validation.suite.folders import scene_study
@@ -21,12 +21,12 @@ HERE = Path(__file__).parent / "user_solvers"
 
 
 @pytest.fixture
-def scene(scene_file: Path, monkeypatch: pytest.MonkeyPatch) -> Scene:
+def scene(scene_file, monkeypatch):
     monkeypatch.syspath_prepend(str(HERE))
     return load_scene(scene_file)
 
 
-def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene: Scene, tmp_path: Path) -> None:
+def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene, tmp_path):
     """DDA takes no base that is elsewhere than at zero where contact opens; another program's answer stands."""
     (tmp_path / "base.csv").write_text("time,x,y\n0,0.001,0\n1,0.001,0\n")
     moved = load_scene("field-opening").with_values({"load.base_motion": str(tmp_path / "base.csv"), "time.steps": 3})
@@ -37,7 +37,7 @@ def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene: 
 
 
 @pytest.mark.long
-def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_solver_that_hangs_is_ended_with_what_it_started(scene, monkeypatch):
     monkeypatch.setenv(VARIABLE, "1.5")
     run = completed(get_solver("my_solver:hangs"), scene)
     assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("no history within 1.75 s, the time limit for 50 steps",))
@@ -45,7 +45,7 @@ def test_a_solver_that_hangs_is_ended_with_what_it_started(scene: Scene, monkeyp
     assert "time.sleep(60)" not in shown and "my_solver:hangs" not in shown
 
 
-def test_what_is_not_reported_is_not_made_up(scene: Scene) -> None:
+def test_what_is_not_reported_is_not_made_up(scene):
     scenes = [scene.with_values({"title": f"my_solver:{name}"}) for name in ("displacement_only", "Reporting")]
     row, _ = execute(Case(scenes[0], "named:Named"), "key", "study")
     assert row.metrics["displacement.static"] == row.metrics["mode1.damping"] == "not reported"
@@ -55,7 +55,7 @@ def test_what_is_not_reported_is_not_made_up(scene: Scene) -> None:
     assert row.metrics["displacement.static"] == -0.01
 
 
-def test_names(scene: Scene) -> None:
+def test_names(scene):
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
     with pytest.raises(InputError, match=r"must be one of dda, .* module:attribute, .*, got 'femm:2'"):
@@ -63,28 +63,28 @@ def test_names(scene: Scene) -> None:
 
 
 @pytest.mark.parametrize("name", ["nowhere:solve", "nowhere.py:solve", "my_solver.py:solve", "my_solver.inner:solve"])
-def test_a_module_that_is_not_found_is_bad_input(scene: Scene, name: str) -> None:
+def test_a_module_that_is_not_found_is_bad_input(scene, name):
     with pytest.raises(InputError) as told:
-        get_solver(name).check_module()  # type: ignore[attr-defined]
+        get_solver(name).check_module()
     assert (told.value.field, told.value.value) == ("solver", repr(name))
     assert ("without .py" in told.value.rule) is (".py" in name)
     assert os.getcwd() in str(told.value.advice)
 
 
-def test_a_user_solver_always_runs_afresh(scene: Scene, tmp_path: Path) -> None:
+def test_a_user_solver_always_runs_afresh(scene, tmp_path):
     from validation.engine.run import run_study
 
     path = tmp_path / "own.toml"
     named = SCENE.replace("A small scene", "my_solver:solve")
     path.write_text(named + '[run]\nsolvers = ["named:Named", "dda"]\n')
-    seen: list[str] = []
+    seen = []
     for _ in range(2):
         run_study(scene_study(str(path)), Results(tmp_path / "r"), progress=lambda d, t, label: seen.append(label))
     assert sorted(seen) == ["own dda", "own named:Named", "own named:Named"]
 
 
 @pytest.mark.long
-def test_an_entry_point_is_a_name_everywhere(scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_entry_point_is_a_name_everywhere(scene_file, tmp_path, monkeypatch):
     package = tmp_path / "site/my_package-1.0.dist-info"
     package.mkdir(parents=True)
     (package / "METADATA").write_text("Metadata-Version: 2.1\nName: my-package\nVersion: 1.0\n")

@@ -1,11 +1,5 @@
 """The study `boxes`: every gate is bitten by a fault of blocks that move, and every fault is seen."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
-
 import pytest
 from faults import seams
 from faults.fault import Fault
@@ -16,10 +10,10 @@ from validation.suite.folders import get_study
 DDA = ("dda",)
 
 
-def changed(name: str, factor: float) -> Callable[..., Callable[..., Any]]:
+def changed(name, factor):
     """Multiply what a model is made with, by its name; a vector in both parts."""
 
-    def times(value: Any) -> Any:
+    def times(value):
         if value is None:
             return None
         return tuple(factor * part for part in value) if isinstance(value, tuple) else factor * value
@@ -27,7 +21,7 @@ def changed(name: str, factor: float) -> Callable[..., Callable[..., Any]]:
     return lambda sound: lambda *a, **k: sound(*a, **{**k, name: times(k[name])})
 
 
-def heavier(sound: Callable[..., Any]) -> Callable[..., Any]:
+def heavier(sound):
     """Raise the density by a millionth, which is stated second."""
     return lambda vertices, density, **k: sound(vertices, (1 + 1e-6) * density, **k)
 
@@ -42,7 +36,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     study = get_study("boxes")
     gates = [*study.gates()]
     check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)

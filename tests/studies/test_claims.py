@@ -11,9 +11,7 @@ from faults import seams
 from faults.fault import soft_springs, told, with_scheme
 from faults.kill_matrix import whole
 
-from dda import ContactResult
 from validation import solve
-from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import _derived_record, finish
 from validation.gates.gate import Status
@@ -27,30 +25,29 @@ from validation.suite.folders import get_study
 
 ROOT = Path(__file__).parents[2]
 PAPER = get_study("paper")
-pytestmark = pytest.mark.xdist_group("claims")
 NEEDED = {need for claim in CLAIMS for need in claim.needs}
 OPENED = {need for claim in CLAIMS if claim.id in open_close.TESTS for need in claim.needs}
 
 
-def run(directory: Path, needed: set[tuple[str, str]] = NEEDED) -> Finished:
+def run(directory, needed=NEEDED):
     cases = [case for case in PAPER.cases() if (case.scene.name, case.solver) in needed]
     return finish(cases, PAPER, Results(directory))
 
 
 @pytest.fixture(scope="module")
-def finished(finished_cases: Path) -> Finished:
+def finished(finished_cases):
     """Return the finished cases of the register."""
     return run(finished_cases)
 
 
 @pytest.mark.long
-def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished: Finished) -> None:
+def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished):
     found = {claim.id: finished.row(REGISTER, claim.id).metrics["verdict"] for claim in CLAIMS}
     assert found == {claim.id: claim.expected for claim in CLAIMS}
     assert all(evaluate(gate, finished).status is Status.PASS for gate in PAPER.gates())
 
 
-def test_a_changed_threshold_turns_the_verdict_over(finished: Finished) -> None:
+def test_a_changed_threshold_turns_the_verdict_over(finished):
     for claim in CLAIMS:
         numbers = claim.measure(Evidence(finished))
         bands = (*claim.printed, *claim.conditional)
@@ -65,18 +62,18 @@ def test_a_changed_threshold_turns_the_verdict_over(finished: Finished) -> None:
         assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
 
 
-def test_the_page_in_docs_is_what_a_fresh_run_writes(finished: Finished) -> None:
+def test_the_page_in_docs_is_what_a_fresh_run_writes(finished):
     rows = [_derived_record(finished, REGISTER, claim.id) for claim in CLAIMS]
     text = (ROOT / CLAIMS_OF_THE_PAPER.page).read_text(encoding="utf-8")
     assert text == page(CLAIMS_OF_THE_PAPER, rows)
     assert not re.search(r"e-1[0-9]", text)
 
 
-def damped(delta: float) -> float:
+def damped(delta):
     return delta + 0.05
 
 
-def held(found: ContactResult) -> dict[str, object]:
+def held(found):
     """Count the corners as closed."""
     return {"closed": np.ones_like(found.closed)}
 
@@ -97,7 +94,7 @@ FAULTS = {  # seam, what is made of it, and the claims that it turns over
 
 
 @pytest.fixture(scope="module")
-def killed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
+def killed(tmp_path_factory):
     """Gates that fail under each fault; all of them pass in the sound run."""
     found = {}
     for fault, (seam, replacement, _) in FAULTS.items():
@@ -111,13 +108,13 @@ def killed(tmp_path_factory: pytest.TempPathFactory) -> dict[str, set[str]]:
 
 @pytest.mark.long
 @pytest.mark.parametrize("fault", FAULTS)
-def test_changed_code_turns_verdicts_over(fault: str, killed: dict[str, set[str]]) -> None:
+def test_changed_code_turns_verdicts_over(fault, killed):
     turned = {f"{REGISTER}:{claim}:verdict" for claim in FAULTS[fault][2]}
     assert turned <= killed[fault], sorted(turned - killed[fault])
 
 
 @pytest.mark.long
-def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed: dict[str, set[str]]) -> None:
+def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed):
     bitten = set().union(*killed.values())
     unbitten = {gate.id for gate in PAPER.gates()} - bitten
     # no fault of ours makes a refuted statement true: those gates are bitten by changed thresholds alone
@@ -125,14 +122,14 @@ def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed
     assert unbitten <= refuted, sorted(unbitten - refuted)
 
 
-def test_the_command_needs_results(tmp_path: Path) -> None:
+def test_the_command_needs_results(tmp_path):
     assert "run paper" in refused("claims", "--results", tmp_path)
 
 
 SCHEMES = [(0.5, 1.0), (0.5625, 1.0), (0.5, 0.75), (0.25, 0.5), (0.5, 0.5)]
 
 
-def most_solves(alpha: float, delta: float, values: dict[str, float]) -> tuple[int, int]:
+def most_solves(alpha, delta, values):
     """Return the most solves of a step and the cuts of the paper's unlocked block, p = 100E, dt = 1 ms."""
     scheme = {"time.alpha": alpha, "time.delta": delta, "time.steps": 200}
     case = load_scene("open-close").expand()[0].with_values(scheme | values)
@@ -144,14 +141,14 @@ def most_solves(alpha: float, delta: float, values: dict[str, float]) -> tuple[i
 
 
 @pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
-def test_two_contacts_without_friction_converge_at_any_damping(alpha: float, delta: float) -> None:
+def test_two_contacts_without_friction_converge_at_any_damping(alpha, delta):
     for eccentricity, traction in ((0.0, 0.0), (0.4, 5e5), (0.6, 1e5)):
         free = {"contact.shear_stiffness": 0.0, "load.eccentricity": eccentricity, "load.traction": traction}
         solves, cuts = most_solves(alpha, delta, free)
         assert solves <= 3 and cuts == 0
 
 
-def test_contacts_glued_in_shear_and_loaded_off_centre_may_need_many_solves_with_damping_as_without() -> None:
+def test_contacts_glued_in_shear_and_loaded_off_centre_may_need_many_solves_with_damping_as_without():
     off_centre = [{"load.eccentricity": 0.4, "load.traction": 5e5}, {"load.eccentricity": 0.6, "load.traction": 1e5}]
     damped = [most_solves(0.5625, 1.0, load)[0] for load in off_centre]
     undamped = [most_solves(0.25, 0.5, load)[0] for load in off_centre]
@@ -164,7 +161,7 @@ WAYS = {0.01: 1.0790587, 0.002: 2.7461378, 0.001: 5.1759751, 0.0005: 10.0452057}
 
 
 @pytest.mark.parametrize("step", WAYS)
-def test_a_stable_block_slides_the_farther_the_finer_the_step_and_stands_in_the_end(step: float) -> None:
+def test_a_stable_block_slides_the_farther_the_finer_the_step_and_stands_in_the_end(step):
     case = next(s for s in load_scene("creep-claim").expand() if s.contact.rules == "consistent")
     columns = ["displacement", "contact_pressure", "horizontal_displacement", "slide_m", "slide_n"]
     values = {"time.step": step, "time.steps": round(1 / step), "run.columns": columns}

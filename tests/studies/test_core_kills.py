@@ -4,11 +4,6 @@ A fault patches a named line of a solver; production code has no switch for it. 
 a fault reaches run again, the others are taken from the sound run.
 """
 
-from __future__ import annotations
-
-from collections.abc import Collection
-from pathlib import Path
-
 import pytest
 from faults import seams
 from faults.fault import (
@@ -73,7 +68,7 @@ FAULTS = [
 ]
 
 
-def check(slow: bool, names: Collection[str], directory: Path, finished_cases: Path) -> None:
+def check(slow, names, directory, finished_cases):
     """Check the kill matrix of the longest scene or of the others with the faults of these names."""
     cases = [case for case in get_study("core").cases() if case.scene.name.startswith(SLOW) == slow]
     gates = [gate for gate in get_study("core").gates() if gate.scene.startswith(SLOW) == slow]
@@ -83,10 +78,10 @@ def check(slow: bool, names: Collection[str], directory: Path, finished_cases: P
 
 
 @pytest.mark.long
-def test_every_gate_of_the_longest_scene_is_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_of_the_longest_scene_is_bitten(tmp_path, finished_cases):
     check(True, FEW, tmp_path, finished_cases)
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     check(False, [fault.name for fault in FAULTS], tmp_path, finished_cases)

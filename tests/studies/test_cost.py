@@ -1,11 +1,7 @@
 """Error against run time: rivals, window and norm, what reaches an error, a user's block, and the kill matrix."""
 
-from __future__ import annotations
-
 from dataclasses import replace
-from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -144,7 +140,7 @@ def test_a_method_sets_its_scheme_cut_mesh_and_springs_alone():
 # ---- what reaches an error ----------------------------------------------------------------------------------------
 
 
-def made_run(name: str, level: int, error: float, work: float = 1.0) -> measures.Run:
+def made_run(name, level, error, work=1.0):
     method = Method(name, name, "dda", {}, ())
     return measures.Run(method, level, {"error.force": error, "work": work})
 
@@ -165,7 +161,7 @@ def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
 # ---- the table of a study -----------------------------------------------------------------------------------------
 
 
-def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path: Path) -> None:
+def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path):
     scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
     work = {"unknowns": 6, "solves": 41, "steps": 40}
     spent = {"setup": 0.25, "stepping": 0.5}
@@ -177,7 +173,7 @@ def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path: Path) ->
     results = Results(tmp_path)
     manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
     derived = {"derived": [{"scene": "owner", "name": "order", "metrics": {"power": 2.0}}]}
-    lines = list(tidy(results, manifest | derived))  # type: ignore[arg-type]
+    lines = list(tidy(results, manifest | derived))
     numbers = {(row.solver, row.reference, row.metric): row.value for row in lines}
     assert len(numbers) == len(lines)
     assert numbers["dda", "", "outcome"] == "completed" and numbers["dda", "", "estimate"] == 2e-15
@@ -193,21 +189,19 @@ def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path: Path) ->
 # ---- orders -------------------------------------------------------------------------------------------------------
 
 
-def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times() -> None:
+def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times():
     """Step n of dt and step 4 n of dt / 4 end at the same time."""
     fine = made_history(0.25, np.arange(1, 13) ** 2, np.arange(1, 13))
-    finished: Any = SimpleNamespace(needed_history=lambda case, solver: fine)
+    finished = SimpleNamespace(needed_history=lambda case, solver: fine)
     columns = formulas._columns(finished, "a", "dda", 4)
     assert columns["displacement"].tolist() == [16, 64, 144] and columns["pressure"].tolist() == [4, 8, 12]
 
 
-def test_the_grid_convergence_index_is_that_of_the_last_change() -> None:
+def test_the_grid_convergence_index_is_that_of_the_last_change():
     """Values 1 + n^-2 change by (3/4) n^-2: order 2, index 1.25 |last change| / (2^2 - 1)."""
     recipe, index = formulas.grid_convergence(), load_scene("cost-h-poisson").expand()
     values = {case.name: 1 + n**-2 for case, n in zip(index, formulas.MESHES, strict=True)}
-    made: Any = SimpleNamespace(
-        needed_history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3)
-    )
+    made = SimpleNamespace(needed_history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3))
     metrics = recipe.compute(made)
     change = 0.75 * 32**-2 / values[index[-1].name]
     assert metrics["order.displacement"] == pytest.approx(2.0, abs=0.02)
@@ -225,7 +219,7 @@ MINE = {
 }
 
 
-def test_a_user_s_block_is_run_and_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_user_s_block_is_run_and_told(tmp_path, monkeypatch):
     """Few methods, two levels each: the command runs the study of the scene and prints the cheapest ways."""
     short = tuple(replace(one, levels=one.levels[:2]) for one in methods() if one.id in ("fem-linear", "modal"))
     monkeypatch.setattr("validation.studies.cost.ladder.methods", lambda: short)
@@ -242,7 +236,7 @@ def test_a_user_s_block_is_run_and_told(tmp_path: Path, monkeypatch: pytest.Monk
     assert {"work.lines", "seconds.spread", "error.force"} <= {line["metric"] for line in lines}
 
 
-def inline(values: dict[str, Any]) -> str:
+def inline(values):
     return "{ " + ", ".join(f"{key} = {value!r}" for key, value in values.items()) + " }"
 
 
@@ -325,26 +319,26 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
 
 
 @pytest.fixture(scope="module")
-def sound(tmp_path_factory: pytest.TempPathFactory, finished_cases: Path) -> Results:
+def sound(tmp_path_factory, finished_cases):
     """Return the results of the paper's block alone, untimed."""
     results = beside(finished_cases, tmp_path_factory.mktemp("cost"))
     run_study(paper_alone(), results)
     return results
 
 
-def paper_alone() -> Any:
+def paper_alone():
     scenes = [scene for scene in COST.scenes if isinstance(scene, Scene) and scene.name.startswith("cost-paper")]
     derived = [row for row in COST.derived() if row.scene.startswith("cost-paper")]
     gates = [gate for gate in COST.gates() if gate.scene == "cost-paper"]
     return replace(COARSE, scenes=scenes, derived=lambda: tuple(derived), gates=lambda: tuple(gates))
 
 
-def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound: Results) -> None:
+def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
     verdicts = sound.verdicts("cost")
     assert len(verdicts) == 2 * 8 and {verdict["verdict"] for verdict in verdicts} == {"PASS"}
     rows = {(row["scene"], row["name"]): row["metrics"] for row in sound.manifest("cost")["derived"]}
@@ -353,7 +347,7 @@ def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound: Results) -> None:
     assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
 
 
-def test_a_seeded_fault_makes_the_gates_red(sound: Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_seeded_fault_makes_the_gates_red(sound, tmp_path, monkeypatch):
     fault = FAULTS[0]
     fault.seam.wrap(monkeypatch, fault.replacement)
     faulty = Results(tmp_path)

@@ -1,11 +1,6 @@
 """Facts of the studies without a run of their own: computed in another way, and not deaf to a fault."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,7 +8,7 @@ from scipy.integrate import solve_ivp
 
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
-from validation.gates.gate import Gate, Status
+from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 from validation.studies.methods import closed, facts
@@ -27,12 +22,12 @@ from validation.theory.stepping import Stepping
 UNIT = np.eye(1)
 
 
-def judged(study: str, owner: str, directory: Path) -> dict[str, set[Status]]:
+def judged(study, owner, directory):
     """Return the verdicts of an owner's rows that need no run, by row."""
     derived = {(row.scene, row.name): row for row in get_study(study).derived() if row.scene == owner and not row.needs}
     finished = Finished({}, Results(directory), derived)
-    gates: list[Gate] = [gate for gate in get_study(study).gates() if (gate.scene, gate.pair[0]) in derived]
-    statuses: dict[str, set[Status]] = {name: set() for _, name in derived}
+    gates = [gate for gate in get_study(study).gates() if (gate.scene, gate.pair[0]) in derived]
+    statuses = {name: set() for _, name in derived}
     for gate in gates:
         statuses[gate.pair[0]].add(evaluate(gate, finished).status)
     return statuses
@@ -42,18 +37,18 @@ OWNERS = {"methods": facts.FACTS, "slopes": sliding.FACTS, "waves": oblique.FACT
 
 
 @pytest.mark.parametrize("study", OWNERS)
-def test_facts_hold(study: str, tmp_path: Path) -> None:
+def test_facts_hold(study, tmp_path):
     statuses = judged(study, OWNERS[study], tmp_path)
     assert statuses and set().union(*statuses.values()) == {Status.PASS}
     assert all(statuses.values()), "every row has a gate"
 
 
-def scaled(factor: float) -> Callable[[Any], Any]:
+def scaled(factor):
     """Make the values of a function off by a factor."""
     return lambda function: lambda *arguments, **options: factor * function(*arguments, **options)
 
 
-FAULTS: dict[str, tuple[Any, str, Callable[[Any], Any], str, str]] = {
+FAULTS = {
     "forward Euler with the new velocity": (
         facts, "EXPLICIT_EULER", lambda stages: LEAPFROG, "methods", "mean rebound"),
     "a dashpot of the whole mass": (facts, "QUARTER", lambda quarter: 1.0, "methods", "dashpot"),
@@ -73,7 +68,7 @@ FAULTS: dict[str, tuple[Any, str, Callable[[Any], Any], str, str]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_a_fault_is_bitten(fault: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_is_bitten(fault, tmp_path, monkeypatch):
     module, name, change, study, row = FAULTS[fault]
     monkeypatch.setattr(module, name, change(getattr(module, name)))
     assert Status.FAIL in judged(study, OWNERS[study], tmp_path)[row]
@@ -83,7 +78,7 @@ def test_a_fault_is_bitten(fault: str, tmp_path: Path, monkeypatch: pytest.Monke
 
 
 @pytest.mark.parametrize(("zeta", "omega"), [(0.05, 0.3), (0.2, 1.1), (0.4, 0.05)])
-def test_a_damped_step_without_a_step_is_exact(zeta: float, omega: float) -> None:
+def test_a_damped_step_without_a_step_is_exact(zeta, omega):
     fine = closed.damped_roots(Stepping(1e-4 * omega, 0.25, 0.5), UNIT, 2 * zeta * UNIT, UNIT)
     assert fine[0] == pytest.approx(zeta, rel=1e-5)
     assert closed.exact_damped_roots(UNIT, 2 * zeta * UNIT, UNIT)[0] == pytest.approx(zeta, rel=1e-12)
@@ -100,7 +95,7 @@ def test_a_damped_step_without_a_step_is_exact(zeta: float, omega: float) -> Non
         assert found == pytest.approx(-root.real / abs(root), rel=1e-9)
 
 
-def test_the_locked_block_is_that_of_an_integrator() -> None:
+def test_the_locked_block_is_that_of_an_integrator():
     scene = load_scene("figures-3-4").with_values(
         {"time.step": 0.01, "contact.stiffness": 3e9, "block.width": 2.0, "block.height": 1.3}
     )
@@ -109,14 +104,14 @@ def test_the_locked_block_is_that_of_an_integrator() -> None:
     load = pressure * np.array([-1.0, -1.3 / 2])
     time = np.linspace(0.001, 0.05, 40)
 
-    def rates(_: float, y: np.ndarray) -> np.ndarray:
+    def rates(_, y):
         return np.concatenate([y[2:], np.linalg.solve(mass, load - stiffness @ y[:2])])
 
     exact = solve_ivp(rates, (0, 0.05), np.zeros(4), t_eval=time, rtol=1e-11, atol=1e-13, method="DOP853").y[0]
     assert closed.exact_locked(scene, time) == pytest.approx(exact, rel=1e-6)
 
 
-def test_energy_of_oblique_waves() -> None:
+def test_energy_of_oblique_waves():
     for wave in ("P", "S"):
         for poisson in (0.1, 0.25, 0.4):
             assert oblique.returned_energy(0.0, wave, poisson) == pytest.approx(0, abs=1e-24)
@@ -127,11 +122,11 @@ def test_energy_of_oblique_waves() -> None:
     assert 0 < oblique.returned_energy(50.0, "S", 0.25) < 1
 
 
-def test_a_shaken_block_with_a_rate_of_drag_is_that_of_an_integrator() -> None:
+def test_a_shaken_block_with_a_rate_of_drag_is_that_of_an_integrator():
     b = math.radians(20)
     rate = 2.0
 
-    def slide(t: float, y: np.ndarray) -> list[float]:
+    def slide(t, y):
         a = 9.81 * (math.sin(b) + 0.28 * math.sin(2 * math.pi * 2.66 * t) - math.tan(math.radians(30)) * math.cos(b))
         a -= rate * y[1]
         return [y[1], a if y[1] > 0 or a > 0 else 0.0]

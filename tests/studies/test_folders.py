@@ -1,9 +1,6 @@
 """A study is one folder: one that is added is run, judged and told, one that is taken away leaves the others whole."""
 
-from __future__ import annotations
-
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -89,7 +86,7 @@ def chapter(results, manifest, directory):
 
 
 @pytest.fixture
-def added(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
+def added(tmp_path, monkeypatch):
     """A package of studies elsewhere, of one folder, beside those of the suite."""
     folder = tmp_path / "package" / "added"
     (folder / "scenes").mkdir(parents=True)
@@ -102,9 +99,7 @@ def added(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
         del sys.modules[name]
 
 
-def test_a_folder_that_is_added_is_run_judged_and_told(
-    added: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_that_is_added_is_run_judged_and_told(added, tmp_path, monkeypatch):
     names = study_names()
     assert names[names.index("paper") + 1] == "added-study"
     assert not [name for name in sys.modules if name.startswith("validation.studies.added")]  # nothing is imported
@@ -120,9 +115,7 @@ def test_a_folder_that_is_added_is_run_judged_and_told(
 
 
 @pytest.mark.parametrize("folder", sorted(path.parent.name for path in HERE.glob("*/study.toml")))
-def test_a_folder_that_is_taken_away_leaves_the_others_whole(
-    folder: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_folder_that_is_taken_away_leaves_the_others_whole(folder, tmp_path, monkeypatch):
     """Contracts of imports hold that no module needs it; here no scene of another study stands in it."""
     own = {name for name, path in study_folders().items() if path.path.name == folder}
     files = {name for name, path in scene_files().items() if folder in path.parts}
@@ -139,7 +132,7 @@ def test_a_folder_that_is_taken_away_leaves_the_others_whole(
 
 
 @pytest.mark.parametrize("name", study_names())
-def test_what_gates_and_derived_rows_need_is_run(name: str) -> None:
+def test_what_gates_and_derived_rows_need_is_run(name):
     study = get_study(name)
     owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes())
     needed = {pair for gate in study.gates() for pair in study.needs(gate)}
@@ -147,7 +140,7 @@ def test_what_gates_and_derived_rows_need_is_run(name: str) -> None:
     assert not needed - owned
 
 
-def test_scenes_of_the_library_are_no_studys_alone() -> None:
+def test_scenes_of_the_library_are_no_studys_alone():
     assert all(path.parent == LIBRARY or path.parent.parent.parent == HERE for path in scene_files().values())
     assert load_scene("mesh-convergence").title
 
@@ -161,7 +154,7 @@ def test_scenes_of_the_library_are_no_studys_alone() -> None:
         ('derived = "twice"', 'derived = "thrice"', "names 'thrice', which formulas.py has not"),
     ],
 )
-def test_a_table_that_cannot_be_read_is_named(old: str, new: str, words: str, added: Path) -> None:
+def test_a_table_that_cannot_be_read_is_named(old, new, words, added):
     (added / "study.toml").write_text(STUDY.replace(old, new))
     with pytest.raises(InputError, match=words):
         study = get_study("added-study")
@@ -169,7 +162,7 @@ def test_a_table_that_cannot_be_read_is_named(old: str, new: str, words: str, ad
 
 
 @pytest.mark.parametrize(("file", "old", "new"), [("study.toml", "added-study", "core"), ("scenes", "", "figures-3-4")])
-def test_two_of_one_name_are_refused(file: str, old: str, new: str, added: Path) -> None:
+def test_two_of_one_name_are_refused(file, old, new, added):
     if old:
         (added / file).write_text(STUDY.replace(old, new))
     else:

@@ -1,11 +1,6 @@
 """The studies `patch` and `beams`: every gate is bitten by a fault of glued blocks or elements, every fault is seen."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -13,20 +8,19 @@ from faults import seams
 from faults.fault import Fault, times
 from faults.kill_matrix import cases_of, check_kill_matrix
 
-from dda.model.material import Material
 from validation.studies.beams.formulas import bending_ratio
 from validation.suite.folders import get_study
 
 
-def traction_times(factor: float) -> Callable[..., Callable[..., Any]]:
+def traction_times(factor):
     """Multiply the two components of a traction."""
     return lambda sound: lambda *a: tuple(factor * part for part in sound(*a))
 
 
-def without_half_of_the_shear(sound: Callable[..., Any]) -> Callable[..., Any]:
+def without_half_of_the_shear(sound):
     """Lose the half of g_xy in the displacement of a point: x then takes none of it, and y all."""
 
-    def rows(*a: Any) -> Any:
+    def rows(*a):
         values = np.array(sound(*a))
         if values.shape[1] == 6:
             values[:, 5] = [0.0, 2 * values[1, 5]]
@@ -35,18 +29,18 @@ def without_half_of_the_shear(sound: Callable[..., Any]) -> Callable[..., Any]:
     return rows
 
 
-def in_plane_strain(sound: Callable[..., Material]) -> Callable[..., Material]:
+def in_plane_strain(sound):
     return lambda *a, **k: replace(sound(*a, **k), hypothesis="plane strain")
 
 
-def stiffer(sound: Callable[..., Material]) -> Callable[..., Material]:
+def stiffer(sound):
     return lambda *a, **k: replace(sound(*a, **k), young=1.06 * sound(*a, **k).young)
 
 
-def glued_by(factor: float) -> Callable[..., Callable[..., Any]]:
+def glued_by(factor):
     """Change the springs at the first end of each shared edge."""
 
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
+    def wrap(sound):
         return lambda blocks, normal, shear: sound(blocks, factor * normal, shear)
 
     return wrap
@@ -73,13 +67,13 @@ FAULTS = {
     (4, 2.0, 1.81914893617), (8, 2.0, 1.07487539647), (8, 20.0, 4.30646296355),
     (3, 20.0, 21.0021786492), (4, 0.856117, 1.0), (8, 1.702458, 1.0), (16, 3.355015, 1.0),
 ])  # fmt: skip
-def test_the_bending_stiffness_of_squares_is_that_of_an_independent_program(n: int, glue: float, ratio: float) -> None:
+def test_the_bending_stiffness_of_squares_is_that_of_an_independent_program(n, glue, ratio):
     assert bending_ratio(n, glue) == pytest.approx(ratio, rel=2e-6)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", FAULTS)
-def test_every_gate_is_bitten_and_every_fault_is_seen(name: str, tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(name, tmp_path, finished_cases):
     study = get_study(name)
     gates = [gate for gate in study.gates() if not any("fenicsx" in solver for solver in gate.pair)]
     check_kill_matrix(study, cases_of(study, gates), gates, FAULTS[name], tmp_path, finished_cases)

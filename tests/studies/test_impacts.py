@@ -1,9 +1,6 @@
 """The study of published impacts: its gates hold, and each is bitten by a fault of data or of what is found."""
 
-from __future__ import annotations
-
 import math
-from pathlib import Path
 
 import pytest
 from faults import seams
@@ -30,7 +27,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     gates = get_study("impacts").gates()
     check_kill_matrix(
         get_study("impacts"), cases_of(get_study("impacts"), gates), gates, FAULTS, tmp_path, finished_cases
@@ -38,13 +35,13 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
 
 
 @pytest.mark.parametrize(("ratio", "known"), [(10, 2.0839173495), (100, 2.00839173495)])
-def test_the_closed_form_of_a_release_is_that_of_the_independent_program(ratio: int, known: float) -> None:
+def test_the_closed_form_of_a_release_is_that_of_the_independent_program(ratio, known):
     """At p/E = 10 and 100 the impacts of the bar are stiff: e^(-2 F) is left out."""
     (case,) = (case for case in cases("impact") if case.contact.stiffness == ratio * case.block.young)
     assert impacts.release(case) / impacts.transit(case) == pytest.approx(known, abs=1e-11)
 
 
-def test_the_scenes_hold_the_published_data() -> None:
+def test_the_scenes_hold_the_published_data():
     inch, pound = 0.0254, 4.4482216152605
     (rod,), (bar,), (mass,) = (tuple(cases(name)) for name in ("ansys-vm265", "siconos-bar", "bouncing-mass"))
     assert rod.block.young == pytest.approx(3e7 * pound / inch**2, rel=1e-12)

@@ -1,12 +1,7 @@
 """The study `methods`: its gates hold, each is bitten by a fault, and it says what its scenes show."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -24,22 +19,22 @@ DDA = ("dda",)
 SHORT = ("methods-locked-ch-0.5[", "methods-locked-tr-bdf2[", "methods-locked-leapfrog[", "methods-sliding-ch-0.5[")
 
 
-def of_scheme(change: Callable[[Any], Any]) -> Callable[..., Callable[..., Any]]:
+def of_scheme(change):
     """Change the scheme that the adapter hands to DDA."""
     return lambda sound: lambda scene: change(sound(scene))
 
 
-def of_table(change: Callable[[Any], Any]) -> Callable[..., Callable[..., Any]]:
+def of_table(change):
     """Change the stages of a scheme other than Newmark's."""
     return of_scheme(lambda scheme: scheme if scheme.table is None else replace(scheme, table=change(scheme.table)))
 
 
-def exchanged(table: Any) -> Any:
+def exchanged(table):
     """Exchange am and af."""
     return table._replace(stages=tuple(stage._replace(am=stage.af, af=stage.am) for stage in table.stages))
 
 
-def half_split(table: Any) -> Any:
+def half_split(table):
     """Let the first stage of a composite scheme end at half the step, with the numbers of another split."""
     if len(table.stages) < 2:
         return table
@@ -47,17 +42,17 @@ def half_split(table: Any) -> Any:
     return table._replace(stages=(first, *table.stages[1:]))
 
 
-def from_rest(scheme: Any) -> Any:
+def from_rest(scheme):
     """Begin without the acceleration of the load."""
     return scheme if scheme.lag else replace(scheme, start="zero")
 
 
-def sprung(contact: Any) -> Any:
+def sprung(contact):
     """Put springs in the place of a rigid stop."""
     return replace(contact, stiffness=1e12) if math.isinf(contact.stiffness) else contact
 
 
-def growing(result: Any) -> dict[str, Any]:
+def growing(result):
     """Multiply the columns of a history by a factor that grows with the step."""
     factor = 1 + 8e3 * (result.time[1] - result.time[0])
     return {"columns": {name: factor * values for name, values in result.columns.items()}}
@@ -84,7 +79,7 @@ FAULTS = [
 ]  # fmt: skip
 
 
-def check(faults: list[Fault], words: tuple[str, ...], tmp_path: Path, finished_cases: Path) -> None:
+def check(faults, words, tmp_path, finished_cases):
     declared = get_study("methods")
     without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # in test_facts.py
     gates = [gate for gate in declared.gates() if (gate.scene, gate.pair[0]) not in without_runs]
@@ -94,27 +89,27 @@ def check(faults: list[Fault], words: tuple[str, ...], tmp_path: Path, finished_
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     check(FAULTS, (), tmp_path, finished_cases)
 
 
 @pytest.mark.long
-def test_gates_of_four_scenes_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_gates_of_four_scenes_are_bitten(tmp_path, finished_cases):
     check(FAULTS[:5], SHORT, tmp_path, finished_cases)
 
 
-def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch):
     gates = [gate for gate in get_study("methods").gates() if gate.pair[0] == methods.RIGID_MAP]
     rows = {row.scene: row for row in methods.derived() if row.name == methods.RIGID_MAP}
 
-    def failing() -> set[str]:
-        values = {gate.id: rows[gate.scene].compute(None)[gate.metric] for gate in gates}  # type: ignore[arg-type]
-        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}  # type: ignore[operator]
+    def failing():
+        values = {gate.id: rows[gate.scene].compute(None)[gate.metric] for gate in gates}
+        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}
 
     assert len(gates) > 40 and not failing()
     sound = rebound.rebound_statistics
 
-    def faulty(*arguments: Any, **named: Any) -> Any:
+    def faulty(*arguments, **named):
         return rebound.ReboundStatistics(*(value + 0.01 for value in sound(*arguments, **named)))
 
     methods.rigid_statistics.cache_clear()
@@ -124,14 +119,14 @@ def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch: pytest.MonkeyPatch) 
     methods.rigid_statistics.cache_clear()
 
 
-def test_what_gains_is_what_rebounds_faster_than_it_lands() -> None:
+def test_what_gains_is_what_rebounds_faster_than_it_lands():
     for one in METHODS:
         if one.group != "explicit" and one.id != "conserving":
             assert (methods.rigid_statistics(one).most > 1) == one.gains, one.id
             assert (methods.rigid_statistics(one).mean_square > 1) == one.gains, one.id
 
 
-def test_every_method_is_one_scheme_of_the_theory() -> None:
+def test_every_method_is_one_scheme_of_the_theory():
     assert len({one.id for one in METHODS}) == len(METHODS)
     assert {one.group for one in SCHEMES} == {"Newmark", "generalised-alpha", "composite", "explicit"}
     for one in SCHEMES:
@@ -140,7 +135,7 @@ def test_every_method_is_one_scheme_of_the_theory() -> None:
         assert one.stepping.solves == (0 if one.group == "explicit" else one.solves)
 
 
-def test_gains_make_chaos_of_what_is_not_gated() -> None:
+def test_gains_make_chaos_of_what_is_not_gated():
     """The load changed in its thirteenth digit changes the peak pressure of 0.1 s by percents."""
     peaks = {}
     for name in ("ch-0.8", "ch-0"):
@@ -154,7 +149,7 @@ def test_gains_make_chaos_of_what_is_not_gated() -> None:
     assert names["ch-0"] in gated and names["ch-0.8"] not in gated
 
 
-def test_the_exact_locked_block_is_that_of_the_exact_solver() -> None:
+def test_the_exact_locked_block_is_that_of_the_exact_solver():
     case = methods.locked(method("average")).expand()[4]
     exact = solve(case, "block-events").displacement
     assert (

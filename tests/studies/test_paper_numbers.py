@@ -3,8 +3,6 @@
 Each number was computed by an independent program outside this project; the tolerance is half a unit of its last digit.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -14,9 +12,9 @@ from scipy.linalg import eigh
 
 from dda.scheme import spectral
 from fem_reference import Scheme as FemScheme
-from fem_reference.mesh.model import Model, build
+from fem_reference.mesh.model import build
 from fem_reference.scheme.newmark import State, Stepper
-from validation import Scene, load_scene, solve
+from validation import load_scene, solve
 from validation.metrics.columns import settling_step
 from validation.solvers.registry import get_solver
 
@@ -26,18 +24,18 @@ LIGHT = load_scene("figure-9").with_values({"time.gg": 1.0})
 STIFF = load_scene("figures-5-6").expand()[2]
 
 
-def settles(scene: Scene, tolerance: float) -> tuple[object, object]:
+def settles(scene, tolerance):
     run, static = solve(scene, "dda"), get_solver("dda").static(scene)
     pairs = ((run.displacement, static["displacement"]), (run.contact_pressure, static["contact_pressure"]))
     return tuple(settling_step(x, end, tolerance) for x, end in pairs)
 
 
-def test_a_stiff_contact_rings_long_after_the_block_rests() -> None:
+def test_a_stiff_contact_rings_long_after_the_block_rests():
     assert settles(STIFF, 1e-4) == (41, 157)
     assert settles(STIFF, 1e-2) == (21, 24)
 
 
-def exact(scene: Scene, time: np.ndarray, rate: float) -> np.ndarray:
+def exact(scene, time, rate):
     """Displacement of M D'' + c M D' + K D = F from rest, by the modes of the block."""
     modes, static = get_solver("dda").modes(scene), get_solver("dda").static(scene)["displacement"]
     shares = _centroid_shares(scene)
@@ -50,15 +48,15 @@ def exact(scene: Scene, time: np.ndarray, rate: float) -> np.ndarray:
     return static * found
 
 
-def _centroid_shares(scene: Scene) -> list[float]:
+def _centroid_shares(scene):
     """Shares of the modes of (v, ey) in the static displacement of the centroid, largest first."""
-    model = get_solver("dda").prepare(scene).model  # type: ignore[attr-defined]
+    model = get_solver("dda").prepare(scene).model
     squares, shapes = eigh(model.stiffness[np.ix_([1, 4], [1, 4])], model.mass[np.ix_([1, 4], [1, 4])])
     parts = shapes[0] * (shapes.T @ model.force[[1, 4]]) / squares
     return list(parts / parts.sum())
 
 
-def order(rate: float) -> float:
+def order(rate):
     """Order in dt of average acceleration over 0.02 s, fitted with its sign on five levels."""
     steps = [2e-4, 1e-4, 5e-5, 2.5e-5, 1.25e-5]
     errors = []
@@ -70,13 +68,13 @@ def order(rate: float) -> float:
     return float(np.polyfit(np.log(steps), np.log(errors), 1)[0])
 
 
-def test_a_rate_of_discount_converges_in_the_order_of_the_scheme() -> None:
+def test_a_rate_of_discount_converges_in_the_order_of_the_scheme():
     """Without a rate the orders from both starts are gates of the study `cost`."""
     assert order(60.0) == pytest.approx(2.0, abs=0.03)
 
 
 @pytest.mark.parametrize("stiffness", [1e9, 1e10, 1e11])
-def test_the_block_is_pulled_up_at_first_where_dt_is_below_its_own_transit(stiffness: float) -> None:
+def test_the_block_is_pulled_up_at_first_where_dt_is_below_its_own_transit(stiffness):
     base = load_scene("figures-3-4").with_values({"contact.stiffness": stiffness, "time.steps": 4})
     c = math.sqrt(1e9 / 2700)
     edge = 2.0 / (c * math.sqrt(6 * 0.5))
@@ -85,7 +83,7 @@ def test_the_block_is_pulled_up_at_first_where_dt_is_below_its_own_transit(stiff
     assert below.contact_pressure[0] < 0 < above.contact_pressure[0]
 
 
-def test_first_pressures_at_one_millisecond_and_towards_zero() -> None:
+def test_first_pressures_at_one_millisecond_and_towards_zero():
     base = load_scene("figures-3-4")
     coarse = solve(base.with_values({"time.step": 1e-3}), "dda").contact_pressure
     assert coarse[:2] == pytest.approx([-0.338e6, -0.435e6], abs=500)
@@ -96,16 +94,16 @@ def test_first_pressures_at_one_millisecond_and_towards_zero() -> None:
 # ---- the assembled step of the elements ---------------------------------------------------------------------------
 
 
-def free_model(**changes: object) -> Model:
+def free_model(**changes):
     return build(make(poisson=0.3, elements=2, degree=1, **changes), full=True)
 
 
-def stepper(model: Model, scheme: FemScheme) -> Stepper:
+def stepper(model, scheme):
     return Stepper(model.M, model.K, np.zeros_like(model.F), scheme)
 
 
 @pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
-def test_energy_identity_of_the_elements(alpha: float, delta: float) -> None:
+def test_energy_identity_of_the_elements(alpha, delta):
     model = free_model()
     highest = math.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1])
     dt = min(2e-4, 0.9 * spectral.critical_omega(alpha, delta) / highest)
@@ -115,7 +113,7 @@ def test_energy_identity_of_the_elements(alpha: float, delta: float) -> None:
     D, V = rng.normal(size=(2, len(model.F)))
     state = State(D, V * highest, -np.linalg.solve(M.toarray(), K @ D))
 
-    def energy(s: State) -> float:
+    def energy(s):
         return float(s.V @ (M @ s.V) + s.D @ (K @ s.D) + c * dt**2 * s.A @ (M @ s.A)) / 2
 
     largest = energy(state)

@@ -1,12 +1,7 @@
 """The study `plates`: closed forms and linear elements against other programs; every gate is bitten by a fault."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -14,18 +9,20 @@ from faults import seams
 from faults.fault import Fault, times
 from faults.kill_matrix import cases_of, check_kill_matrix
 
-from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement, hole_stress
+from validation.models.plane.glued import POINTS, WEIGHTS, PlateSection
+from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
 from validation.studies.plates.elements import displacements, stress
-from validation.studies.plates.formulas import INNER, OUTER, POINTS, POISSON, TENSION, WEIGHTS, YOUNG
-from validation.studies.plates.shapes import outline, ring
 from validation.suite.folders import get_study
+
+PLATE = PlateSection(hole=1.0, radius=4.0, tension=1e6, cells=8)
+YOUNG, POISSON = 1e9, 0.25
 
 
 def test_a_hole_and_a_disc_are_as_another_program_has_them():
     assert hole_displacement(1.0, 0.0, 1e6, 1e9, 0.25) == pytest.approx(0.003)
     assert hole_displacement(1.0, math.pi / 2, 1e6, 1e9, 0.25) == pytest.approx(-0.001)
-    assert hole_stress(np.array([[0.0, 1.0], [1.0, 0.0]]), 1.0, 1.0) == pytest.approx(
-        np.array([[3.0, 0.0, 0.0], [0.0, -1.0, 0.0]]), abs=1e-12
+    assert PLATE.stresses(np.array([[0.0, 1.0], [1.0, 0.0]])) == pytest.approx(
+        np.array([[3e6, 0.0, 0.0], [0.0, -1e6, 0.0]]), abs=1e-6
     )
     pressure = 1e6 / (2 * math.pi / 8)
     assert disc_centre(pressure, math.pi / 8) == pytest.approx((254849.282066966, -891469.054434547), rel=1e-12)
@@ -37,18 +34,18 @@ def test_a_disc_under_a_pressure_all_round_and_without_poisson_shrinks_as_it_mus
 
 def test_linear_elements_widen_a_hole_as_another_program_has_it():
     """With tractions that vary along the edges, which the other program has."""
-    triangles = ring(INNER, OUTER, 8)
+    triangles = [*PLATE.triangles()]
     loads = []
-    for start, end in outline(triangles, OUTER):
+    for start, end in PLATE.rim():
         half = (np.array(end) - start) / 2
         length = 2 * math.hypot(*half)
         places = np.array(start) + half + POINTS[:, None] * half
-        s_xx, s_yy, s_xy = hole_stress(places, INNER, TENSION).T
+        s_xx, s_yy, s_xy = PLATE.stresses(places).T
         nx, ny = 2 * half[1] / length, -2 * half[0] / length
         traction = np.stack([s_xx * nx + s_xy * ny, s_xy * nx + s_yy * ny])
         first, second = (length * traction @ (WEIGHTS * (1 + sign * POINTS) / 4) for sign in (-1, 1))
         loads.append((start, end, first, second))
-    top = [triangle for triangle in triangles if (0.0, INNER) in triangle]
+    top = [triangle for triangle in triangles if (0.0, PLATE.hole) in triangle]
     places = [(1.0, 0.0), (-1.0, 0.0), *(corner for triangle in top for corner in triangle)]
     right, left, *corners = displacements(triangles, loads, YOUNG, POISSON, places)
     assert (right[0] - left[0]) / 2 == pytest.approx(0.0028535209, abs=1e-10)
@@ -57,17 +54,17 @@ def test_linear_elements_widen_a_hole_as_another_program_has_it():
     assert stresses == pytest.approx([2.82797e6, 2.82797e6], abs=5)
 
 
-def stiffer(by: float) -> Callable[..., Callable[..., Any]]:
+def stiffer(by):
     """Multiply Young's modulus of the blocks."""
     return lambda sound: lambda *a, **k: replace(sound(*a, **k), young=by * sound(*a, **k).young)
 
 
-def glued_by(factor: float) -> Callable[..., Callable[..., Any]]:
+def glued_by(factor):
     """Multiply the springs across every shared edge."""
     return lambda sound: lambda blocks, normal, shear: sound(blocks, factor * normal, shear)
 
 
-def pulled(factor: float) -> Callable[..., Callable[..., Any]]:
+def pulled(factor):
     """Multiply all tractions."""
     return lambda sound: lambda start, end, value: sound(start, end, (factor * value[0], factor * value[1]))
 
@@ -85,7 +82,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     study = get_study("plates")
     gates = [gate for gate in study.gates() if not any("fenicsx" in solver for solver in gate.pair)]
     check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)

@@ -1,12 +1,7 @@
 """The study `rebound`: its gates hold, each is bitten by a fault, and its scenes are what they say."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -20,10 +15,10 @@ from validation.suite.folders import get_study
 from validation.suite.own_solver.gates import applies
 
 
-def fewer(sound: Callable[..., Any]) -> Callable[..., Any]:
+def fewer(sound):
     """Lose the last switch."""
 
-    def solve(*a: Any, **k: Any) -> Any:
+    def solve(*a, **k):
         motion = sound(*a, **k)
         return replace(motion, switches=motion.switches[:-1])
 
@@ -43,7 +38,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     gates = [gate for gate in get_study("rebound").gates() if gate.scene != rebound.MAP]
     faults = [fault for fault in FAULTS if fault.solvers != ("map",)]
     check_kill_matrix(
@@ -51,13 +46,13 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_c
     )
 
 
-def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_gates_of_the_map_are_bitten(monkeypatch):
     gates = [gate for gate in get_study("rebound").gates() if gate.scene == rebound.MAP]
     rows = {row.name: row for row in rebound.derived() if row.scene == rebound.MAP}
 
-    def failing() -> set[str]:
-        values = {gate.id: rows[gate.pair[0]].compute(None)[gate.metric] for gate in gates}  # type: ignore[arg-type]
-        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}  # type: ignore[operator]
+    def failing():
+        values = {gate.id: rows[gate.pair[0]].compute(None)[gate.metric] for gate in gates}
+        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}
 
     assert len(gates) == 20 and not failing()
     with monkeypatch.context() as patch:
@@ -65,7 +60,7 @@ def test_the_gates_of_the_map_are_bitten(monkeypatch: pytest.MonkeyPatch) -> Non
         assert failing() == {gate.id for gate in gates}
 
 
-def test_the_scenes_land_where_they_say() -> None:
+def test_the_scenes_land_where_they_say():
     for name in rebound.IMPACTS:
         found = list(cases(name))
         omegas = sorted({round(rebound.omega(case), 9) for case in found})
@@ -77,7 +72,7 @@ def test_the_scenes_land_where_they_say() -> None:
         assert all(math.isclose(case.time.duration, 0.2) for case in cases(name))
 
 
-def test_the_closed_forms_of_a_rigid_contact() -> None:
+def test_the_closed_forms_of_a_rigid_contact():
     """(1/2, 1) returns |2 theta - 1|; (1/4, 1/2) 3 - 8 theta up to 1/3, then 4 theta - 1."""
     for theta in (0.05, 0.25, 0.4, 0.77):
         assert rebound.impact_restitution(0.5, 1.0, 1.0, math.inf, theta) == pytest.approx(abs(2 * theta - 1))
@@ -85,6 +80,6 @@ def test_the_closed_forms_of_a_rigid_contact() -> None:
         assert rebound.impact_restitution(0.25, 0.5, 1.0, math.inf, theta) == pytest.approx(average)
 
 
-def test_a_users_solver_is_not_asked_for_contact_that_opens() -> None:
+def test_a_users_solver_is_not_asked_for_contact_that_opens():
     opening = [gate for gate in get_study("rebound").gates() if gate.pair == DDA]
     assert opening and not any(applies("rebound", gate) for gate in opening)

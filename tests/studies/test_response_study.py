@@ -1,11 +1,5 @@
 """The study `response`: each of its gates is bitten by a fault, and its records are what its scenes say."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
-
 import numpy as np
 import pytest
 from faults import seams
@@ -13,7 +7,6 @@ from faults.fault import Fault, late, thousandth, with_scheme
 from faults.kill_matrix import check_kill_matrix, failed
 
 from validation.engine.run import finish
-from validation.gates.gate import Gate
 from validation.runs.results import Results
 from validation.scenes.record import base_record
 from validation.scenes.scene import load_scene
@@ -24,7 +17,7 @@ from validation.suite.folders import get_study
 STUDY = get_study("response")
 
 
-def another_frequency(sound: Callable[..., Any]) -> Callable[..., Any]:
+def another_frequency(sound):
     """Answer at a squared frequency that is a millionth off, and has turned by as much."""
     return lambda *a, **k: (lambda w2, factor: (w2 * (1 + 1e-6 + 1e-6j), factor))(*sound(*a, **k))
 
@@ -43,7 +36,7 @@ STEPS = [
 
 @pytest.mark.parametrize("fault", ANSWERS, ids=lambda fault: fault.name)
 @pytest.mark.long
-def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault: Fault, finished_cases: Path) -> None:
+def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault, finished_cases):
     judged = [g for g in STUDY.gates() if g.metric not in ("damping.steps", "mode1.damping")]
     gates = [g for g in judged if reached(g, fault.name)]
     finished = finish(STUDY.cases(), STUDY, Results(finished_cases))
@@ -52,22 +45,20 @@ def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault: Faul
         assert failed(finished, gates) == {gate.id for gate in gates}
 
 
-def reached(gate: Gate, solver: str) -> bool:
+def reached(gate, solver):
     """Return whether a gate judges a solver's response; the bar is also what the mesh is held against."""
     return gate.pair[0].startswith(solver) or (solver == "bar" and gate.metric.endswith(".mesh"))
 
 
 @pytest.mark.long
-def test_gates_on_steps_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_gates_on_steps_are_bitten(tmp_path, finished_cases):
     stepped = (BASE, VISCOUS)
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)
 
 
 @pytest.mark.parametrize(("name", "frequencies", "step"), [(BASE, FREQUENCIES, 0.002), (DAMPING, LOW, 0.01)])
-def test_records_are_sines_of_a_millimetre_of_whole_periods(
-    name: str, frequencies: tuple[float, ...], step: float
-) -> None:
+def test_records_are_sines_of_a_millimetre_of_whole_periods(name, frequencies, step):
     record = base_record(load_scene(name).expand()[0])
     assert record is not None
     sines = 1e-3 * np.sin(2 * np.pi * np.outer(frequencies, record.time)).sum(axis=0)

@@ -1,12 +1,8 @@
 """The studies of rocking and toppling: gates that faults bite, closed forms against scipy, numbers of the text."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +15,6 @@ from dda.bodies import turning_step as step
 from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
 from dda.march.step import steps_by
 from fem_reference.exact.rocking import RockingBlock
-from validation.engine.study import Study
 from validation.studies.rocking import formulas as rocking
 from validation.studies.toppling import formulas as toppling
 from validation.suite.bands import cases
@@ -27,16 +22,15 @@ from validation.suite.folders import get_study
 from validation.theory.rocking import Rectangle
 
 DDA = ("dda",)
-Wrapper = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-def read_as(change: Callable[[Any], Any]) -> Callable[[property], property]:
+def read_as(change):
     """Return a wrapper that changes what a property tells."""
     return lambda sound: property(lambda model: change(sound.__get__(model)))
 
 
-def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
-    def faulty(M: Any, block: Any) -> Any:
+def heavy(sound):
+    def faulty(M, block):
         heavier = M.copy()
         heavier[2, 2] *= 1.02
         return sound(heavier, block)
@@ -44,11 +38,11 @@ def heavy(sound: Callable[..., Any]) -> Callable[..., Any]:
     return faulty
 
 
-def quicker(share: float) -> Wrapper:
+def quicker(share):
     """Add a share to the velocities in every step."""
 
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def faulty(march: Any, stage: Any, start: Any, before: Any, after: Any, *given: Any) -> tuple[int, int]:
+    def wrap(sound):
+        def faulty(march, stage, start, before, after, *given):
             outcome, solves = step.make_stage(march, stage, start, before, after, *given)
             after.p[:] = [(1 + share) * p for p in after.p]
             return outcome, solves
@@ -58,12 +52,12 @@ def quicker(share: float) -> Wrapper:
     return wrap
 
 
-def turning_by(rotation: str) -> Wrapper:
+def turning_by(rotation):
     return lambda sound: lambda Q, r, exact, out: sound(Q, r, rotation == EXACT, out)
 
 
-def grown_twice(sound: Callable[..., Any]) -> Callable[..., Any]:
-    def faulty(Q: Any, r: float, exact: bool, out: Any) -> None:
+def grown_twice(sound):
+    def faulty(Q, r, exact, out):
         sound(Q, r, exact, out)
         if not exact:
             out.end[:] = [[math.sqrt(1 + r * r) * x for x in row] for row in out.end]
@@ -71,15 +65,15 @@ def grown_twice(sound: Callable[..., Any]) -> Callable[..., Any]:
     return faulty
 
 
-def further(share: float) -> Wrapper:
+def further(share):
     """Return a wrapper that makes the base move further by a share."""
     return lambda sound: (
         lambda model: (motion := sound(model)) and replace(motion, displacement=(1 + share) * motion.displacement)
     )
 
 
-def doubled(sound: Callable[..., Any]) -> Callable[..., Any]:
-    def faulty(*given: Any) -> Any:
+def doubled(sound):
+    def faulty(*given):
         columns = sound(*given)
         return columns | {"rotation": 2 * columns["rotation"]}
 
@@ -127,31 +121,31 @@ FAULTS = {
 
 @pytest.mark.long
 @pytest.mark.parametrize("study", [get_study("rocking"), get_study("toppling")], ids=lambda study: study.name)
-def test_every_gate_is_bitten_and_every_fault_is_seen(study: Study, tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(study, tmp_path, finished_cases):
     check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
 
 
-PRECISELY: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}
+PRECISELY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}
 
 
-def rigid(block: Rectangle, k: Callable[[float], float], start: float, end: float, slope: float = 0.0) -> Any:
+def rigid(block, k, start, end, slope=0.0):
     """Return the motion of a rigid block about a corner by DOP853, with its events: flat, over the corner."""
 
-    def rate(t: float, y: Any) -> list[float]:
+    def rate(t, y):
         angle = block.alpha - slope - y[0]
         return [y[1], block.rate2 * (k(t) * math.cos(angle) - math.sin(angle))]
 
-    def flat(t: float, y: Any) -> float:
+    def flat(t, y):
         return float(y[0])
 
-    def over(t: float, y: Any) -> float:
+    def over(t, y):
         return float(y[0] - block.alpha)
 
     flat.direction = -1
     return solve_ivp(rate, (0, end), [start, 0.0], events=(flat, over), max_step=0.01, **PRECISELY)
 
 
-def test_quarter_periods_and_falls_are_those_of_the_differential_equation() -> None:
+def test_quarter_periods_and_falls_are_those_of_the_differential_equation():
     for height, tilt in ((2.0, 1e-3), (8.0, 1e-3), (4.0, 0.2)):
         block = Rectangle(2.0, height, 9.81)
         exact = rigid(block, lambda t: 0.0, tilt, 2.0).t_events[0][0]
@@ -165,14 +159,14 @@ def test_quarter_periods_and_falls_are_those_of_the_differential_equation() -> N
     assert tower.squared_rate(slope - tower.alpha, duration) == pytest.approx(squared, rel=1e-6)
 
 
-def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package() -> None:
+def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package():
     for height, tilt in ((2.0, 1e-3), (4.0, 1e-3), (8.0, 0.12)):
         own, other = Rectangle(2.0, height, 9.81), RockingBlock(2.0, height, 9.81)
         assert own.quarter_period(tilt) == pytest.approx(other.quarter_period(tilt), rel=1e-12)
         assert own.housner == pytest.approx(other.ratio, rel=1e-14)
 
 
-def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
+def test_the_numbers_of_the_page_are_those_of_the_closed_forms():
     page = (Path(__file__).parents[2] / "docs/rotation.md").read_text(encoding="utf-8")
     text = " ".join(page.split())
     blocks = [Rectangle(2.0, height, 9.81) for height in (2.0, 4.0, 8.0)]
@@ -192,14 +186,14 @@ def test_the_numbers_of_the_page_are_those_of_the_closed_forms() -> None:
 
 
 @pytest.mark.parametrize("size", [0.9, 1.02])
-def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
+def test_pulses_overturn_as_the_differential_equation_says(size):
     block, duration = Rectangle(1.0, 4.0, 9.81), 0.36
     k = size * block.pulse_threshold(duration)
     during = rigid(block, lambda t: k, 0.0, duration)
     angle, rate = during.y[:, -1]
     assert block.pulse_end(k, duration) == pytest.approx(angle, rel=1e-9)
 
-    def free(t: float, y: Any) -> list[float]:
+    def free(t, y):
         return [y[1], -block.rate2 * math.sin(block.alpha - y[0])]
 
     after = solve_ivp(free, (0, 1.5), [angle, rate], **PRECISELY)
@@ -210,7 +204,7 @@ def test_pulses_overturn_as_the_differential_equation_says(size: float) -> None:
         assert after.sol(block.pulse_overturning(k, duration) - duration)[0] == pytest.approx(block.alpha, rel=1e-7)
 
 
-def test_the_record_of_the_base_is_the_pulse_of_the_study() -> None:
+def test_the_record_of_the_base_is_the_pulse_of_the_study():
     from validation.scenes.record import base_record
 
     for case in cases(rocking.PULSED):

@@ -1,12 +1,7 @@
 """The studies `slopes` and `creep`: their gates hold, each is bitten by a fault, and every fault is seen."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -17,9 +12,8 @@ from faults.kill_matrix import cases_of, check_kill_matrix
 from oracles.sliding_dda import Slider, run
 
 from validation import solve
-from validation.gates.gate import Gate
 from validation.scenes.record import base_record
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.creep import formulas as creep
 from validation.studies.slopes import formulas as sliding
@@ -27,17 +21,15 @@ from validation.suite.bands import cases
 from validation.suite.folders import get_study
 from validation.theory import friction
 
-Wrap = Callable[[Callable[..., Any]], Callable[..., Any]]
 
-
-def of_law(**changes: Callable[[Any], Any]) -> Wrap:
+def of_law(**changes):
     """Change fields of the contact law, each a function of the law."""
     return of_first(
         lambda model: {"contact": replace(model.contact, **{k: f(model.contact) for k, f in changes.items()})}
     )
 
 
-def of_scheme(change: Callable[[Any], dict[str, Any]]) -> Wrap:
+def of_scheme(change):
     """Change the scheme."""
     return lambda sound: lambda model, scheme, *a, **k: sound(model, replace(scheme, **change(scheme)), *a, **k)
 
@@ -65,13 +57,13 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     study = get_study("slopes")
     gates = [gate for gate in study.gates() if gate.scene != sliding.FACTS]  # those are bitten in test_facts.py
     check_kill_matrix(study, study.cases(), gates, FAULTS, tmp_path, finished_cases)
 
 
-def test_the_record_of_the_shaking_is_its_formula() -> None:
+def test_the_record_of_the_shaking_is_its_formula():
     record = base_record(next(cases(sliding.QUAKE)))
     t = record.time
     parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
@@ -81,7 +73,7 @@ def test_the_record_of_the_shaking_is_its_formula() -> None:
     assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
 
 
-def gates_of(*scenes: str) -> list[Gate]:
+def gates_of(*scenes):
     """Return the gates of the study of creep on some scenes."""
     return [gate for gate in get_study("creep").gates() if gate.scene.partition("[")[0] in scenes]
 
@@ -93,14 +85,14 @@ CREEP = [
 ]
 
 
-def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path, finished_cases):
     gates = [g for g in gates_of(creep.STEPS, creep.LAGGED) if g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"]
     study = get_study("creep")
     check_kill_matrix(study, cases_of(study, gates), gates, CREEP, tmp_path, finished_cases)
 
 
 @pytest.mark.long
-def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path, finished_cases):
     exact = gates_of(creep.EXACT)
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
     own = [case for case in get_study("creep").cases() if case.scene.name.startswith(creep.EXACT)]
@@ -109,10 +101,10 @@ def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path: Path,
     )
 
 
-def kept_reference(sound: Callable[..., Any]) -> Callable[..., Any]:
+def kept_reference(sound):
     """Let a corner that opens keep the shear reference that it had."""
 
-    def faulty(march: Any, length: Any, before: Any, after: Any) -> None:
+    def faulty(march, length, before, after):
         sound(march, length, before, after)
         for r in range(len(after.path)):
             if after.rows.slip[r] == 0:
@@ -132,14 +124,14 @@ SPRINGS = [
 
 
 @pytest.mark.long
-def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path, finished_cases):
     gates = gates_of(creep.STIFFNESS, creep.DAMPED)
     own = [case for case in get_study("creep").cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
     check_kill_matrix(get_study("creep"), own, gates, SPRINGS, tmp_path, finished_cases)
 
 
 @pytest.mark.long
-def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_cases: Path) -> None:
+def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path, finished_cases):
     gates = gates_of(creep.STEPS, creep.LAGGED, "creep-claim", *creep.REFINED)
     others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
     own = [case for case in get_study("creep").cases() if not case.scene.name.startswith(others)]
@@ -147,7 +139,7 @@ def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path: Path, finished_
     check_kill_matrix(get_study("creep"), own, gates, [*CREEP, soft], tmp_path, finished_cases)
 
 
-def test_dda_is_the_plain_program_step_by_step() -> None:
+def test_dda_is_the_plain_program_step_by_step():
     """The oracle shares no line with it; consistent and lagged, sticking, slipping and open."""
     for rules in ("consistent", "lagged"):
         case = next(iter(cases(creep.LAGGED))).with_values(
@@ -159,7 +151,7 @@ def test_dda_is_the_plain_program_step_by_step() -> None:
             assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
 
 
-def oracle(case: Scene, lagged: bool) -> Slider:
+def oracle(case, lagged):
     c, t = case.contact, case.time
     pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
     return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)
@@ -178,8 +170,8 @@ CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, s
 
 @pytest.mark.parametrize(("slope", "phi", "shear", "factor"), thinned(CREEP_FACTORS, len(CREEP_FACTORS)))
 def test_the_creep_of_the_exact_block_scales_with_g_over_w_n_by_a_factor_of_slope_friction_and_springs(
-    slope: float, phi: float, shear: float, factor: float
-) -> None:
+    slope, phi, shear, factor
+):
     values = {"load.slope": slope, "contact.friction": phi, "contact.shear_stiffness": shear * 1e9}
     case = load_scene("creep-exact").expand()[0].with_values(values)
     history = solve(case, "block-events").history

@@ -1,11 +1,6 @@
 """The study `touching`: roots and impacts against numbers of other programs; every gate is bitten by a fault."""
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -84,11 +79,11 @@ def test_two_corners_rise_and_turn_as_another_program_has_them():
     assert formulas.two_corners((-1.0, 0.5), 2 / 3) == pytest.approx((0.99561982, -0.11450666), abs=1e-7)
 
 
-def law(**changes: Callable[[dda.ContactSprings], Any]) -> Callable[..., Callable[..., Any]]:
+def law(**changes):
     """Change the springs of contacts that are found."""
 
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def model(blocks: Any, *, found: Any, **others: Any) -> Any:
+    def wrap(sound):
+        def model(blocks, *, found, **others):
             changed = {name: change(found) for name, change in changes.items()}
             return sound(blocks, found=replace(found, **changed), **others)
 
@@ -97,11 +92,11 @@ def law(**changes: Callable[[dda.ContactSprings], Any]) -> Callable[..., Callabl
     return wrap
 
 
-def outlines(change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., Callable[..., Any]]:
+def outlines(change):
     """Change the corners of the first block about its centroid."""
 
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def model(blocks: Any, **others: Any) -> Any:
+    def wrap(sound):
+        def model(blocks, **others):
             centroid = blocks[0].block.section.centroid
             first = replace(blocks[0], vertices=centroid + change(blocks[0].block.corners - centroid))
             return sound([first, *blocks[1:]], **others)
@@ -111,11 +106,11 @@ def outlines(change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., Callab
     return wrap
 
 
-def spun(share: float) -> Callable[..., Callable[..., Any]]:
+def spun(share):
     """Multiply all spins, and let blocks that do not turn spin a little."""
 
-    def wrap(sound: Callable[..., Any]) -> Callable[..., Any]:
-        def model(blocks: Any, **others: Any) -> Any:
+    def wrap(sound):
+        def model(blocks, **others):
             return sound(
                 [part if part.fixed else replace(part, spin=share * part.spin + 0.02) for part in blocks], **others
             )
@@ -125,7 +120,7 @@ def spun(share: float) -> Callable[..., Callable[..., Any]]:
     return wrap
 
 
-def other_edge(contact: Any) -> Any:
+def other_edge(contact):
     """Name the next edge, and an edge where nothing touches."""
     if contact is None:
         return dda.first_contact([(0, 0), (1, 0), (0, 1)], [(0, 0), (1, 0), (0, 1)], (2, 0, 0, -1, 0, 0), (0,) * 6, 3.0)
@@ -138,7 +133,7 @@ def other_edge(contact: Any) -> Any:
     return contact._replace(touches=touches)
 
 
-def later(contact: Any) -> Any:
+def later(contact):
     """Let the touch be a nanosecond late, and its foot as much of the edge away."""
     if contact is None:
         return None
@@ -149,7 +144,7 @@ def later(contact: Any) -> Any:
     return contact._replace(time=contact.time + 1e-9, touches=touches)
 
 
-def gained(result: Any) -> dict[str, object]:
+def gained(result):
     kinetic = result.energy["kinetic"]
     rising = 1 + 1e-9 * np.arange(len(kinetic))
     return {
@@ -171,7 +166,7 @@ FAULTS = [
 
 
 @pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path: Path, finished_cases: Path) -> None:
+def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     study = get_study("touching")
     gates = [gate for gate in study.gates() if gate.pair != ("query",)]  # which no run of a solver changes
     check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)

@@ -1,7 +1,5 @@
 """Closed forms of rigid boxes against other formulas, and against plain integration in small steps."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -20,7 +18,7 @@ from validation.theory.rocking import Rectangle
 
 
 @pytest.mark.parametrize(("slope", "friction", "gravity"), [(31.0, 17.0, 9.81), (12.0, 4.0, 1.62)])
-def test_a_box_slides_by_the_difference_of_weight_and_friction(slope: float, friction: float, gravity: float) -> None:
+def test_a_box_slides_by_the_difference_of_weight_and_friction(slope, friction, gravity):
     angle = math.radians(slope)
     expected = gravity * (math.sin(angle) - math.tan(math.radians(friction)) * math.cos(angle))
     assert sliding_acceleration(slope, friction, gravity) == pytest.approx(expected, rel=1e-12)
@@ -28,13 +26,13 @@ def test_a_box_slides_by_the_difference_of_weight_and_friction(slope: float, fri
 
 
 @pytest.mark.parametrize(("box", "share"), [(Rectangle(0.7, 2.9, 9.81), 0.83), (Rectangle(1.3, 1.9, 3.7), 0.97)])
-def test_a_box_about_its_corner_turns_as_the_integrated_pendulum(box: Rectangle, share: float) -> None:
+def test_a_box_about_its_corner_turns_as_the_integrated_pendulum(box, share):
     radius = math.hypot(box.width, box.height) / 2
     inertia_over_mass = (box.width**2 + box.height**2) / 3
     spin = critical_spin(box)
     assert inertia_over_mass * spin**2 / 2 == pytest.approx(box.gravity * (radius - box.height / 2), rel=1e-12)
 
-    def rates(_: float, state: np.ndarray) -> list[float]:
+    def rates(_, state):
         torque = box.gravity * (box.height / 2 * math.sin(state[0]) - box.width / 2 * math.cos(state[0]))
         return [state[1], torque / inertia_over_mass]
 
@@ -54,7 +52,7 @@ def test_a_box_about_its_corner_turns_as_the_integrated_pendulum(box: Rectangle,
         ShakenBox(0.2, 3.0, 0.05, 3.7),  # hardly follows
     ],
 )
-def test_the_slip_on_shaken_ground_is_that_of_small_steps(box: ShakenBox) -> None:
+def test_the_slip_on_shaken_ground_is_that_of_small_steps(box):
     duration = 2.0
     step = 2e-5
     velocity = 0.0
@@ -73,8 +71,8 @@ def test_the_slip_on_shaken_ground_is_that_of_small_steps(box: ShakenBox) -> Non
 
 
 @pytest.mark.parametrize("impact", [SpringImpact(1700.0, 4e5, 9.81, 1.3), SpringImpact(20.0, 9e4, 1.62, 0.4)])
-def test_the_landing_on_a_spring_is_that_of_its_equation(impact: SpringImpact) -> None:
-    def rates(_: float, state: np.ndarray) -> list[float]:
+def test_the_landing_on_a_spring_is_that_of_its_equation(impact):
+    def rates(_, state):
         return [state[1], impact.gravity - impact.stiffness / impact.mass * state[0]]
 
     time = np.linspace(0, impact.duration, 4001)

@@ -7,7 +7,6 @@ import pytest
 from oracles.stepped_vibration import Rule, operators
 
 from validation import load_scene, solve
-from validation.scenes.scene import Scene
 from validation.theory import friction
 
 SLOPE = {
@@ -20,7 +19,7 @@ SLOPE = {
 OTHER = {"block.width": 1.5, "block.height": 3.0, "block.density": 2400.0, "block.young": 3e9, "contact.stiffness": 7e8}
 
 
-def scene(**changes: object) -> Scene:
+def scene(**changes):
     base = {"time.step": 0.01, "time.steps": 100}
     return load_scene("figures-3-4").with_values(SLOPE | base | {k.replace("__", "."): v for k, v in changes.items()})
 
@@ -32,7 +31,7 @@ def scene(**changes: object) -> Scene:
         (0.99, 0.001, 0.218502, True),
     ],
 )
-def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, average: bool) -> None:
+def test_a_discount_shortens_the_run_out(gg, step, way, average):
     """Numbers of an independent program; its average acceleration is from A0 = 0 and still rings by the offset."""
     scheme = {"time__alpha": 0.25, "time__delta": 0.5} if average else {"time__start": "consistent"}
     case = scene(time__gg=gg, time__step=step, time__steps=round(1 / step), **scheme)
@@ -53,7 +52,7 @@ def test_a_discount_shortens_the_run_out(gg: float, step: float, way: float, ave
         ("consistent", {"time__alpha": 0.6, "time__delta": 1.1}),
     ],
 )
-def test_free_motion_is_that_of_dda_under_every_scheme(start: str, numbers: dict[str, object], gg: float) -> None:
+def test_free_motion_is_that_of_dda_under_every_scheme(start, numbers, gg):
     case = scene(time__start=start, time__gg=gg, time__step=2e-4, time__steps=60, **numbers)
     run = solve(case.with_values({"run.columns": ["displacement", "horizontal_displacement"]}), "dda").history
     slide = run.columns["horizontal_displacement"] + friction.coefficient(case) * run.displacement
@@ -67,7 +66,7 @@ def test_free_motion_is_that_of_dda_under_every_scheme(start: str, numbers: dict
 @pytest.mark.parametrize(
     "changes", [OTHER | {"contact.cohesion": 4e3}, {"contact.friction": 35.0, "load.gravity": 3.7}]
 )
-def test_at_the_threshold_the_forces_balance(changes: dict[str, object]) -> None:
+def test_at_the_threshold_the_forces_balance(changes):
     case = scene().with_values(changes)
     limit = friction.threshold_angle(case)
     at = case.with_values({"load.slope": limit})
@@ -79,7 +78,7 @@ def test_at_the_threshold_the_forces_balance(changes: dict[str, object]) -> None
 
 
 @pytest.mark.parametrize("changes", [OTHER, {"contact.stiffness": 1e10, "load.slope": 11.0}])
-def test_the_settled_block_is_in_equilibrium(changes: dict[str, object]) -> None:
+def test_the_settled_block_is_in_equilibrium(changes):
     """-N = -2 p w at the springs, and E a h ey = -N h / 2 in the block, by the suite's own static solution."""
     from validation.solvers.registry import get_solver
 
@@ -96,7 +95,7 @@ def test_the_settled_block_is_in_equilibrium(changes: dict[str, object]) -> None
     assert friction.penalty_offset(case) > friction.coefficient(case) * weight / springs
 
 
-def test_a_rate_is_what_a_discount_takes_in_a_second() -> None:
+def test_a_rate_is_what_a_discount_takes_in_a_second():
     for gg, step in ((0.98, 1e-3), (0.9, 4e-2)):
         case = scene(time__gg=gg, time__step=step)
         assert math.exp(-friction.drag_rate(case) * step) == pytest.approx(gg, rel=1e-12)
@@ -110,7 +109,7 @@ def test_a_rate_is_what_a_discount_takes_in_a_second() -> None:
 @pytest.mark.parametrize(
     ("alpha", "delta", "gg", "stops"), [(0.5, 1.0, 1.0, True), (0.25, 0.5, 0.996, True), (0.25, 0.5, 1.0, False)]
 )
-def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha: float, delta: float, gg: float, stops: bool) -> None:
+def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha, delta, gg, stops):
     """The decay is that of the amplification matrix of (D, V, A), and the creep ends after it."""
     case = scene(time__alpha=alpha, time__delta=delta, time__gg=gg, time__step=1e-4, contact__friction=40.0)
     dt, w2 = case.time.step, friction.across(case) / friction.settlement(case)

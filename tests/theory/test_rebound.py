@@ -85,16 +85,15 @@ def test_the_stiff_limit_has_a_map_of_its_own(scheme, mean, least, most, mean_sq
 
 
 @pytest.mark.parametrize(
-    ("alpha", "delta", "gg", "omega"),
-    [(0.25, 0.5, 0.95, 1000.0), (0.3025, 0.6, 0.9, 3.0), (0.5, 1.0, 0.97, 0.4), (0.25, 0.5, 0.95, math.inf)],
+    ("alpha", "delta", "omega"), [(0.25, 0.5, 1000.0), (0.3025, 0.6, 3.0), (0.5, 1.0, 0.4), (0.25, 0.5, math.inf)]
 )
-def test_newmarks_rebounds_are_those_of_the_other_program_with_kinetic_damping_too(alpha, delta, gg, omega):
-    theta = midpoints(30, gg)
-    expected = [impact_restitution(alpha, delta, gg, omega, float(phase)) for phase in theta]
-    steps = spring_steps(stages.newmark(alpha, delta), omega, gg)
-    assert rebounds(steps, theta, gg) == pytest.approx(np.array(expected), abs=1e-12)
-    mean = impact_statistics(alpha, delta, gg, omega)[0]
-    assert rebound_statistics(steps, gg, 2000).mean == pytest.approx(mean, abs=1e-5)
+def test_newmarks_rebounds_are_those_of_the_other_program(alpha, delta, omega):
+    theta = midpoints(30)
+    expected = [impact_restitution(alpha, delta, 1.0, omega, float(phase)) for phase in theta]
+    steps = spring_steps(stages.newmark(alpha, delta), omega)
+    assert rebounds(steps, theta) == pytest.approx(np.array(expected), abs=1e-12)
+    mean = impact_statistics(alpha, delta, 1.0, omega)[0]
+    assert rebound_statistics(steps, 2000).mean == pytest.approx(mean, abs=1e-5)
 
 
 def test_energy_conserving_contact_has_no_rigid_stop():

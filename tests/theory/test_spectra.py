@@ -1,7 +1,5 @@
 """Closed forms of block, bar and elements against eigenvalues and stepped modes of their own."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -9,7 +7,6 @@ import pytest
 from oracles.stepped_vibration import Rule, operators
 from scipy.linalg import eigh
 
-from validation.scenes.scene import Scene
 from validation.theory import spectra as expected
 from validation.theory import statics
 
@@ -17,11 +14,11 @@ OBLONG = {"block.width": 0.7, "block.height": 3.1, "contact.stiffness": 4e8, "bl
 
 
 @pytest.fixture
-def oblong(scene: Scene) -> Scene:
+def oblong(scene):
     return scene.with_values(OBLONG)
 
 
-def two_unknowns(scene: Scene) -> np.ndarray:
+def two_unknowns(scene):
     """Return the frequencies of (v, ey): the springs' stretch is v - h ey / 2."""
     w, h = statics.size(scene)
     m, p, E = scene.block.density * w * h, scene.contact.stiffness, scene.block.young
@@ -29,7 +26,7 @@ def two_unknowns(scene: Scene) -> np.ndarray:
     return np.sqrt(eigh(K, m * np.diag([1, h * h / 12]), eigvals_only=True))
 
 
-def test_both_frequencies_of_an_oblong_block(oblong: Scene) -> None:
+def test_both_frequencies_of_an_oblong_block(oblong):
     first, second = two_unknowns(oblong)
     assert expected.dda_frequency(oblong) == pytest.approx(first, rel=1e-12)
     assert expected.contact_frequency(oblong) == pytest.approx(second, rel=1e-12)
@@ -45,14 +42,12 @@ def test_both_frequencies_of_an_oblong_block(oblong: Scene) -> None:
         (0.25, 0.5, 1.0, math.inf),
     ],
 )
-def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(
-    scene: Scene, alpha: float, delta: float, gg: float, limit: float
-) -> None:
+def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(scene, alpha, delta, gg, limit):
     case = scene.with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
     assert expected.critical_omega(case) == pytest.approx(limit, rel=1e-12)
 
 
-def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
+def test_what_damping_has_left_at_the_last_step(oblong):
     case = oblong.with_values({"time.steps": 7, "time.gg": 0.9})
     radii = []
     for w in two_unknowns(case):
@@ -61,7 +56,7 @@ def test_what_damping_has_left_at_the_last_step(oblong: Scene) -> None:
     assert expected.remaining_motion(case) == pytest.approx(max(radii) ** 7, rel=1e-10)
 
 
-def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:
+def test_modes_and_shares_of_the_bar(oblong):
     w, h = statics.size(oblong)
     b = expected.bar_modes(oblong, 4000)
     ratio = 2 * 4e8 * h / (6e8 * w)
@@ -74,7 +69,7 @@ def test_modes_and_shares_of_the_bar(oblong: Scene) -> None:
 
 
 @pytest.mark.parametrize("start", ["zero", "consistent"])
-def test_the_response_of_a_mode_is_the_scheme_s(scene: Scene, start: str) -> None:
+def test_the_response_of_a_mode_is_the_scheme_s(scene, start):
     case = scene.with_values({"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.97, "time.start": start})
     omega, t = np.array([0.1, 1.0, 7.0]), case.time
     found = expected.bar_response(case, omega)

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.theory import spectra, statics
 
 BASE = load_scene("poisson-statics").with_values({"contact.stiffness": 1e9})
@@ -22,12 +22,12 @@ DATA = [
 ]
 
 
-def scene(values: dict[str, object]) -> Scene:
+def scene(values):
     return BASE.with_values({"block.height": 1.0} | values if "block.width" in values else values)
 
 
 @pytest.mark.parametrize("values", DATA)
-def test_static_displacement_balances_the_three_equations(values: dict[str, object]) -> None:
+def test_static_displacement_balances_the_three_equations(values):
     s = scene(values)
     E, mu = statics.moduli(s)
     w, h = statics.size(s)
@@ -41,7 +41,7 @@ def test_static_displacement_balances_the_three_equations(values: dict[str, obje
     )
 
 
-def test_numbers_of_the_independent_computation() -> None:
+def test_numbers_of_the_independent_computation():
     cases = load_scene("figures-5-6").expand()
     assert [round(spectra.dda_frequency(c), 3) for c in cases] == [344.561, 498.812, 524.096]
     assert [round(spectra.bar_frequency(c), 3) for c in cases] == [327.682, 455.258, 475.600]

@@ -1,7 +1,5 @@
 """The theory of a time step: roots, leading terms, limits and responses of every scheme."""
 
-from __future__ import annotations
-
 import cmath
 import math
 from dataclasses import replace
@@ -53,10 +51,10 @@ LEADING = {  # of xi / W^n and of the period error / W^2
 }
 
 
-def stepped(stepping: Stepping, natural: float, steps: int, driven: float | None = None) -> np.ndarray:
+def stepped(stepping, natural, steps, driven=None):
     """Return x at t = 0, 1, ... of x'' + natural^2 x = e^{i driven t}, or of a free motion, by the oracles' steps."""
 
-    def load(t: float) -> np.ndarray:
+    def load(t):
         return np.array([0.0 if driven is None else cmath.exp(1j * driven * t)])
 
     x = np.array([0.0 if driven else 1.0 + 0j])
@@ -76,7 +74,7 @@ def stepped(stepping: Stepping, natural: float, steps: int, driven: float | None
 @pytest.mark.parametrize("name", SCHEMES)
 @pytest.mark.parametrize("gg", [1.0, 0.97])
 @pytest.mark.parametrize("omega", [0.05, 0.7, 1.9, 12.0])
-def test_the_roots_are_those_of_the_recursion_of_a_free_motion(name: str, gg: float, omega: float) -> None:
+def test_the_roots_are_those_of_the_recursion_of_a_free_motion(name, gg, omega):
     stepping = replace(SCHEMES[name], gg=gg)
     roots = stepping.roots(omega)
     x = stepped(stepping, omega, 12)[1:]  # leapfrog discounts from the second step on
@@ -89,7 +87,7 @@ def test_the_roots_are_those_of_the_recursion_of_a_free_motion(name: str, gg: fl
 
 
 @pytest.mark.parametrize("name", SCHEMES)
-def test_leading_terms_are_the_limit_of_the_roots(name: str) -> None:
+def test_leading_terms_are_the_limit_of_the_roots(name):
     stepping = SCHEMES[name]
     damping, period = LEADING[name]
     assert stepping.leading_damping(1.0) == pytest.approx(damping, rel=1e-6)
@@ -106,7 +104,7 @@ def test_leading_terms_are_the_limit_of_the_roots(name: str) -> None:
 
 @pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.5, 0.77, 1.0])
 @pytest.mark.parametrize("scheme", ["chung-hulbert", "hht", "wbz", "composite"])
-def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(scheme: str, rho_inf: float) -> None:
+def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(scheme, rho_inf):
     if scheme == "hht" and rho_inf < 0.5:
         return
     splits = (None, 0.3, 0.8) if scheme == "composite" else (None,)
@@ -131,14 +129,14 @@ def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(sch
         Stepping(1.0, 0.25, 0.45, 0.9),
     ],
 )
-def test_beyond_the_limit_a_root_leaves_the_unit_circle(stepping: Stepping) -> None:
+def test_beyond_the_limit_a_root_leaves_the_unit_circle(stepping):
     limit = stepping.critical_omega
     assert stepping.spectral_radius(limit * (1 - 1e-6)) < 1 + 1e-12
     assert stepping.spectral_radius(limit * (1 + 1e-3)) > 1 + 1e-5
 
 
 @pytest.mark.parametrize("name", [name for name in SCHEMES if SCHEMES[name].scheme != "composite"])
-def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name: str) -> None:
+def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name):
     stepping = replace(SCHEMES[name], gg=0.9)
     natural, driven = 0.8, 0.5
     amplitude = 1 / (natural**2 - complex(stepping.squared_frequency(driven)))
@@ -146,7 +144,7 @@ def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name: str) -
     assert settled == pytest.approx(amplitude, rel=1e-9)
 
 
-def test_schemes_of_one_table_are_one_scheme() -> None:
+def test_schemes_of_one_table_are_one_scheme():
     pairs = [
         (NAMED("chung-hulbert", rho_inf=0.0), NAMED("wbz", rho_inf=0.0)),
         (NAMED("chung-hulbert", rho_inf=0.5), NAMED("hht", rho_inf=0.5)),
@@ -166,7 +164,7 @@ def test_schemes_of_one_table_are_one_scheme() -> None:
             assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
 
 
-def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s() -> None:
+def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s():
     import dda
     import fem_reference
 
@@ -188,5 +186,5 @@ def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_steppi
         ("leapfrog", 0.0),
     ],
 )
-def test_the_weight_of_springs_beside_the_mass_is_that_of_the_matrix_of_a_step(scheme: str, weight: float) -> None:
+def test_the_weight_of_springs_beside_the_mass_is_that_of_the_matrix_of_a_step(scheme, weight):
     assert SCHEMES[scheme].spring_weight == pytest.approx(weight, rel=1e-14)

@@ -20,14 +20,14 @@ PAPER = {  # mm and MPa at 20, 52, 80 and 150 Hz
 
 
 @pytest.mark.parametrize(("model", "exact"), PAPER)
-def test_the_papers_block_answers_as_an_independent_computation_does(model: str, exact: bool) -> None:
+def test_the_papers_block_answers_as_an_independent_computation_does(model, exact):
     found = MODELS[model](BLOCK, W**2 if exact else Stepping.of(BLOCK).squared_frequency(W))
     displacement, pressure = PAPER[model, exact]
     assert 1e3 * abs(found.displacement) == pytest.approx(displacement, rel=6e-7)
     assert 1e-6 * abs(found.contact_pressure) == pytest.approx(pressure, rel=6e-7)
 
 
-def test_slow_vibrations_are_statics_and_the_block_keeps_its_momentum() -> None:
+def test_slow_vibrations_are_statics_and_the_block_keeps_its_momentum():
     slow = [model(BLOCK, [1e-4]) for model in MODELS.values()]
     for found in (*slow, vibration.elements(BLOCK, [1e-4], 4)):
         assert found.displacement == pytest.approx(static_displacement(BLOCK), rel=1e-7)
@@ -38,7 +38,7 @@ def test_slow_vibrations_are_statics_and_the_block_keeps_its_momentum() -> None:
     assert np.allclose(-w2 * m * moved.displacement, 2 * moved.contact_pressure, rtol=1e-10)
 
 
-def test_elements_tend_to_the_bar_at_second_order_and_bands_grow_at_a_resonance() -> None:
+def test_elements_tend_to_the_bar_at_second_order_and_bands_grow_at_a_resonance():
     w2 = Stepping.of(BLOCK).squared_frequency(W)
     exact = vibration.bar(BLOCK, w2).displacement
     off = [abs(vibration.elements(BLOCK, w2, count).displacement / exact - 1) for count in (32, 64)]

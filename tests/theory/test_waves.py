@@ -23,14 +23,14 @@ COLUMN = waves.Column(height=0.5, density=2000.0, modulus=1.8e9)
 SPEED = (1.8e9 / 2000.0) ** 0.5
 
 
-def wave(blocks: float, courant: float, scheme: tuple[float, float], gg: float = 1.0) -> tuple[Stepping, float]:
+def wave(blocks, courant, scheme, gg=1.0):
     """Return the stepping and w of a wave of some blocks of `COLUMN` a wavelength."""
     return Stepping(courant * 0.5 / SPEED, *scheme, gg), 2 * np.pi * SPEED / (blocks * 0.5)
 
 
 @pytest.mark.parametrize("scheme", [CONSTANT, AVERAGE, (0.31, 0.83)])
 @pytest.mark.parametrize("gg", [1.0, 0.9, 0.0])
-def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float, float], gg: float) -> None:
+def test_squared_frequency_satisfies_predictor_and_corrector(scheme, gg):
     alpha, delta, dt = *scheme, 3e-3
     stepping, w = Stepping(dt, alpha, delta, gg), np.array([0.3, 20.0, 700.0])
     A, V, z = -stepping.squared_frequency(w), stepping.velocity_factor(w), np.exp(1j * w * dt)
@@ -39,9 +39,7 @@ def test_squared_frequency_satisfies_predictor_and_corrector(scheme: tuple[float
 
 
 @pytest.mark.parametrize(("blocks", "courant", "constant", "average"), WAVES)
-def test_waves_in_welded_blocks(
-    blocks: float, courant: float, constant: tuple[float, float], average: tuple[float, float]
-) -> None:
+def test_waves_in_welded_blocks(blocks, courant, constant, average):
     for scheme, (speed, left) in ((CONSTANT, constant), (AVERAGE, average)):
         stepping, w = wave(blocks, courant, scheme)
         kept, error = COLUMN.travelled(stepping, w, 10 * blocks * 0.5)
@@ -50,7 +48,7 @@ def test_waves_in_welded_blocks(
 
 
 @pytest.mark.parametrize(("ratio", "speed", "left"), GLUES)
-def test_waves_in_glued_blocks(ratio: float, speed: float, left: float) -> None:
+def test_waves_in_glued_blocks(ratio, speed, left):
     column = waves.Column(0.5, 2000.0, 1.8e9, glue=ratio * 1.8e9 / 0.5)
     stepping, w = wave(10, 0.5, CONSTANT)
     kept, error = column.travelled(stepping, w, 50.0)
@@ -59,7 +57,7 @@ def test_waves_in_glued_blocks(ratio: float, speed: float, left: float) -> None:
 
 
 @pytest.mark.parametrize("glue", [None, 1e9, 1e13])
-def test_wavenumber_solves_the_recurrence(glue: float | None) -> None:
+def test_wavenumber_solves_the_recurrence(glue):
     column = waves.Column(0.5, 2000.0, 1.8e9, glue)
     stepping, w = Stepping(2e-4, 0.4, 0.9, 0.97), np.array([30.0, 900.0, 5000.0, 12000.0])
     w2 = stepping.squared_frequency(w)
@@ -70,14 +68,14 @@ def test_wavenumber_solves_the_recurrence(glue: float | None) -> None:
     assert np.all(k.real > 0)
 
 
-def test_beyond_the_cut_off_the_wave_decays() -> None:
+def test_beyond_the_cut_off_the_wave_decays():
     k = COLUMN.wavenumber(np.array([1.1, 2.0, 50.0]) * 12 * SPEED**2 / 0.25)
     assert np.allclose(k.real * 0.5, np.pi)
     assert np.all(k.imag < 0)
 
 
 @pytest.mark.parametrize(("blocks", "courant", "scheme", "transmitted"), JOINTS)
-def test_joint_in_a_column(blocks: float, courant: float, scheme: tuple[float, float], transmitted: float) -> None:
+def test_joint_in_a_column(blocks, courant, scheme, transmitted):
     stepping, w = wave(blocks, courant, scheme)
     T, R = waves.joint_in_column(COLUMN, stepping.squared_frequency(w), 2000.0 * SPEED * w)
     assert abs(T) == pytest.approx(transmitted, abs=6e-7)
@@ -85,16 +83,14 @@ def test_joint_in_a_column(blocks: float, courant: float, scheme: tuple[float, f
         assert abs(T) ** 2 + abs(R) ** 2 == pytest.approx(1, rel=1e-12)
 
 
-def test_joint_in_a_continuum() -> None:
+def test_joint_in_a_continuum():
     found = waves.joint_transmission([0.25, 0.5, 1.0, 2.0])
     assert np.allclose(found, [0.4472136, 0.7071068, 0.8944272, 0.9701425], atol=5e-8)
 
 
 @pytest.mark.parametrize(("scheme", "gg"), [(AVERAGE, 1.0), (CONSTANT, 0.99)])
 @pytest.mark.parametrize("share", [0.0, 0.3, 1.0, 4.0])
-def test_a_dashpot_at_the_foot_reflects_what_its_impedance_leaves(
-    share: float, scheme: tuple[float, float], gg: float
-) -> None:
+def test_a_dashpot_at_the_foot_reflects_what_its_impedance_leaves(share, scheme, gg):
     """R tends to (rho c - z)/(rho c + z); two waves of that ratio move the lowest face as its equation says."""
     rho_c = 2000.0 * SPEED
     fine, slow = wave(4000, 0.5, AVERAGE)

@@ -46,7 +46,7 @@ def stepping(scene: Scene) -> Stepping | None:
 
 
 def restitution(scene: Scene) -> landing.SteppedLanding | None:
-    """Return what a scene's scheme makes of a landing; None if unknown."""
+    """Return what a scene's scheme makes of a landing; None if unknown, or if its steps are too many to follow."""
     scheme = stepping(scene)
     if scheme is None:
         return None

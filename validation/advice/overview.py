@@ -37,7 +37,6 @@ PARTS = {  # what shows more: the command, and the options that it needs
     "damping": ("advise damping", ""),
     "contact": ("advise contact", " --set contact.law=unilateral"),
     "schemes": ("advise schemes", " --damping 0.05"),
-    "rayleigh": ("advise rayleigh", ""),
 }
 STILL = 1e-14  # of the height: a displacement that is rounding
 FADED = 0.01  # of an amplitude that has rung down
@@ -147,7 +146,7 @@ def _facts(scene: Scene) -> Iterator[Fact]:
     t = scene.time
     if t.discount < 1:
         sentence = f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"
-        yield Fact("discount", sentence, "rayleigh")
+        yield Fact("discount", sentence, "damping")
     if scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness):
         most = rebound_of(Stepping.of(scene).stages, landing.contact_frequency(scene) * t.step).most
         may = "may gain energy" if most > 1 + GAIN else "gains nothing"

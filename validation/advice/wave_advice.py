@@ -18,9 +18,9 @@ import numpy as np
 from validation.advice.hooks import AdviceHooks, Layer
 from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
-from validation.advice.rayleigh import check_sampled, hidden, ratio
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
+from validation.errors import InputError
 from validation.models.column.tables import NEAR
 from validation.runs.history import Array, Complex
 from validation.runs.numbers import share_text
@@ -99,7 +99,7 @@ class _WavePath:
 
     def passage(self, stepping: Stepping) -> Passage:
         loss, delay = self.passed(stepping.squared_frequency([self.omega]))
-        values = (loss[0], delay[0], ratio(stepping, self.frequency))
+        values = (loss[0], delay[0], _steady_ratio(stepping, self.frequency))
         rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
         return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *rounded)
 
@@ -143,7 +143,7 @@ def advise_wave(
     for limit, value in zip(LIMITS, (frequency, wavelengths, loss, phase_error), strict=True):
         limit.check(value)
     check_scene(scene)
-    check_sampled(frequency, scene.time.step, "--fmax")
+    _check_sampled(frequency, scene.time.step)
     features.refuse_damping(scene, "advise")
     layers = AdviceHooks.of(scene).layers(scene)
     path = _WavePath(layers, frequency, 1.0)
@@ -273,13 +273,32 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
     return is_stable
 
 
+def _steady_ratio(stepping: Stepping, frequency: float) -> float:
+    """Return the damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz."""
+    W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(frequency, float)))
+    return float(-W.imag / np.abs(W))
+
+
+def _check_sampled(frequency: float, step: float) -> None:
+    """Refuse a frequency that a time step samples less than twice a period: the steps see its alias, a lower one."""
+    limit = 0.5 / step
+    if frequency > limit * (1 + 1e-12):
+        raise InputError(
+            f"must be at most {limit:.6g} Hz, 1 / (2 dt) of the time step {step:g} s, "
+            "beyond which the steps see an alias",
+            field="--fmax",
+            value=f"{frequency:g}",
+            advice="take a lower frequency or a smaller step",
+        )
+
+
 def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:
     """Say what the present blocks and step do to the wave."""
-    rayleigh = hidden(Stepping.of(scene))
+    kinetic, algorithmic = Stepping.of(scene).rayleigh()
     kind = "algorithmic and kinetic"
-    if rayleigh.a0 == 0:
+    if kinetic == 0:
         kind = "algorithmic"
-    elif rayleigh.a1 == 0:
+    elif algorithmic == 0:
         kind = "kinetic"
     distance = path.times * sum(layer.thickness for layer in path.layers)
     late = "late" if present.delay >= 0 else "early"

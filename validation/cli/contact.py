@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from validation.cli.announcing import announced
 from validation.cli.app import (
     NUMERICAL_FAILURE,
     PASSED,
@@ -98,15 +97,11 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     from validation.engine.case import Case
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
-    from validation.solvers.registry import get_solver
 
     rows: dict[str, Row] = {}
     absent: dict[str, str] = {}
     for number, (name, scene) in enumerate(scenes.items()):
-        label = f"at most; {name}, {scene.time.steps} steps"
-        progress(number, len(scenes) + 1 + RAISES, label)
-        if words := announced(get_solver(name), scene):
-            progress(number, len(scenes) + 1 + RAISES, label + words)
+        progress(number, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
         row, _ = execute(Case(scene, name), "", "contact")
         if name == own():
             refuse_bad_input(scene.name, name, row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shlex
 import sys
+import tomllib
 from pathlib import Path
 from typing import Annotated
 
@@ -20,8 +21,8 @@ def new(
         str | None,
         typer.Option(
             "--kind",
-            help="block, slope (a block on an incline), column, beam; of blocks that move stack, wall, arch, "
-            "blocks-on-slope, pile.",
+            help="block, slope (a block on an incline), column, beam, plate (with a hole), disc; of blocks that move "
+            "stack, wall, arch, blocks-on-slope, pile.",
             metavar="KIND",
         ),
     ] = None,
@@ -29,15 +30,23 @@ def new(
         str | None, typer.Option("--rock", help="Typical values of a rock: granite, limestone, sandstone, ...")
     ] = None,
     width: Annotated[
-        float | None, typer.Option("--width", help="Of a block; depth of a beam; span of an arch.", metavar="M")
+        float | None,
+        typer.Option("--width", help="Of a block; depth of a beam; span of an arch; diameter of a disc.", metavar="M"),
     ] = None,
     height: Annotated[
         float | None,
         typer.Option("--height", help="Of a block or a column; length of a beam; thickness of an arch.", metavar="M"),
     ] = None,
-    blocks: Annotated[int | None, typer.Option("--blocks", help="How many move; rows of a wall.", metavar="N")] = None,
+    hole: Annotated[float | None, typer.Option("--hole", help="Radius of the hole in a plate.", metavar="M")] = None,
+    blocks: Annotated[
+        int | None,
+        typer.Option(
+            "--blocks", help="How many move; rows of a wall; cells of a quarter of plate or disc.", metavar="N"
+        ),
+    ] = None,
     pressure: Annotated[
-        float | None, typer.Option("--pressure", help="On the top of a block, across a beam's end.", metavar="PA")
+        float | None,
+        typer.Option("--pressure", help="On a block's top, across a beam's end, on a disc; tension.", metavar="PA"),
     ] = None,
     slope: Annotated[float | None, typer.Option("--slope", help="Of an incline.", metavar="DEG")] = None,
     friction: Annotated[float | None, typer.Option("--friction", help="Of an incline.", metavar="DEG")] = None,
@@ -50,25 +59,28 @@ def new(
     Example: [bold]dda-validate new my-block.toml --kind block --rock granite --width 1.2 --height 1.2[/bold] or
     [bold]dda-validate new arch.toml --kind arch --rock limestone --width 8 --blocks 15[/bold]
     """
-    from validation.advice.draft import KINDS, MOVING, ROCKS, draft
+    from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, ROCKS, draft
     from validation.errors import InputError
+    from validation.scenes.scene import parse_scene
 
     if path.suffix != ".toml":
         raise InputError("must end in .toml", source=path)
     if path.exists():
         raise InputError("is there already and is not overwritten", source=path)
     answers = {"kind": kind, "rock": rock, "width": width, "height": height}
-    own = {"blocks": blocks, "pressure": pressure, "slope": slope, "friction": friction, "frequency": frequency}
+    own = {"hole": hole, "blocks": blocks, "pressure": pressure, "slope": slope, "friction": friction}
+    own["frequency"] = frequency
     if sys.stdin.isatty():
         answers["kind"] = kind or typer.prompt(f"Kind ({', '.join(KINDS)})", default="block")
         answers["rock"] = rock or typer.prompt(f"Rock ({', '.join(ROCKS)})", default="granite")
     text = draft({name: value for name, value in (answers | own).items() if value is not None}, _ask)
+    parse_scene(tomllib.loads(text), str(path))  # numbers that do not go together are refused before a file is written
     try:
         with path.open("x", encoding="utf-8") as stream:
             stream.write(text)
     except FileExistsError:
         raise InputError("is there already and is not overwritten", source=path) from None
-    word = "show" if answers["kind"] in MOVING else "advise"
+    word = "show" if answers["kind"] in (*MOVING, *GLUED_BODIES) else "advise"
     echo(f"wrote {path}\nnext: dda-validate {word} {shlex.quote(str(path))}")
 
 

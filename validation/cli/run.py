@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from validation.scenes.scene import Scene
     from validation.solvers.contract import Prepared, Solver
     from validation.suite.declaration import Study
-from validation.cli.announcing import announced
 from validation.cli.app import (
     BAD_INPUT,
     GATE_FAILED,
@@ -346,7 +345,7 @@ def solve(
         extras.require("--fields", *extras.MESH)
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}") as show:
-        show(0, 1, announced(adapter, case, is_full).removeprefix(", "))
+        show(0, 1, "")
         watch = partial(_watch, show)
         ended = _run_case(adapter, case, is_full, fields, watch)
     refuse_bad_input(case.name, solver, ended)

@@ -1,4 +1,4 @@
-"""The parts of ``advise`` on frequencies: ``response`` and ``rayleigh``."""
+"""The part ``response`` of ``advise``: how a scene answers a load or a base that vibrates."""
 
 from __future__ import annotations
 
@@ -11,14 +11,11 @@ import typer
 
 from validation.cli.app import SceneArgument, SetOption, one_case, parts
 from validation.cli.printing.output import columns, echo
-from validation.runs.numbers import share_text
 
 if TYPE_CHECKING:
-    from validation.advice.rayleigh import Rayleigh
     from validation.advice.response import Peak, Response
     from validation.runs.history import Array
     from validation.scenes.scene import Scene
-    from validation.theory.stepping import Stepping
 
 FigureOption = Annotated[
     Path | None, typer.Option("--figure", help="Draw into a file .svg, .pdf or .png.", metavar="FILE")
@@ -153,128 +150,3 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
 
 def _amplitude(peak: Peak) -> str:
     return f"{peak.amplitude:.6g}" if peak.is_bounded else "unbounded"
-
-
-@parts.command()
-def rayleigh(
-    scene: SceneArgument,
-    assignments: SetOption = None,
-    a0: Annotated[
-        float | None, typer.Option("--a0", help="In reverse: the mass damping you want.", metavar="1/S")
-    ] = None,
-    a1: Annotated[
-        float | None, typer.Option("--a1", help="In reverse: the stiffness damping you want.", metavar="S")
-    ] = None,
-    ratios: Annotated[
-        list[str] | None,
-        typer.Option("--ratio", help="In reverse: a damping ratio at a frequency, 5=0.02; give two.", metavar="HZ=XI"),
-    ] = None,
-    keep_step: Annotated[bool, typer.Option("--keep-dt", help="In reverse: keep dt and find delta and gg.")] = False,
-    low: Annotated[float | None, typer.Option("--from", help="Lowest frequency shown.", metavar="HZ")] = None,
-    high: Annotated[float | None, typer.Option("--to", help="Highest frequency shown.", metavar="HZ")] = None,
-    figure: FigureOption = None,
-) -> None:
-    """Translate the damping that a time step hides into Rayleigh's a0 and a1, or what you want into dt, delta and gg.
-
-    Example: [bold]dda-validate advise rayleigh figures-3-4 --set time.step=0.01 --set time.gg=0.99 --to 20[/bold]
-
-    C = a0 M + a1 K, as other codes take it. In reverse, say what you want: --ratio 2=0.05 --ratio 20=0.05, or --a0
-    and --a1.
-    """
-    from dataclasses import replace
-
-    from validation.advice import rayleigh as advice
-    from validation.runs.files import check_ending
-
-    check_ending(figure, "--figure")
-    case = one_case(scene, assignments)
-    scheme = advice.scheme_of(case)
-    points: list[tuple[float, float]] = []
-    if ratios or a0 is not None or a1 is not None:
-        points = advice.points(ratios or [], a0, a1)
-        scheme = _back(advice.wanted(points, a0, a1), points, replace(scheme, gg=1.0), keep_step)
-    ends = sorted(f for f, _ in points) or [0.005 / scheme.step, 0.2 / scheme.step]
-    tables = case.damping
-    if tables.present:
-        rayleigh_terms = f"a0 = {tables.mass:g} 1/s and a1 = {tables.stiffness:g} s"
-        echo(f"note: the scene's own damping tables, {rayleigh_terms}, come on top of what the step hides")
-    if tables.kinetic == "adaptive":
-        echo("note: the scene's self-adaptive damping, which no a0 and a1 can express, comes on top of it")
-    band = low or ends[0], high or ends[1]
-    advice.check_band(*band, scheme.step)
-    _print_scheme(scheme, band)
-    if figure is not None:
-        _draw_ratios(scheme, band, figure)
-
-
-def _back(target: Rayleigh, points: list[tuple[float, float]], scheme: Stepping, keep_step: bool) -> Stepping:
-    """Say which scheme hides a wanted damping, and return the best one.
-
-    Two ratios may belong to a scheme although none has them to leading order.
-
-    Raises
-    ------
-    InputError
-        Neither does.
-    """
-    from validation.advice.rayleigh import ROUNDING, exact_settings, misfit, settings
-    from validation.errors import InputError
-
-    leading = None
-    echo(f"wanted: a0 = {target.a0:.6g} 1/s, a1 = {target.a1:.6g} s")
-    try:
-        leading = settings(target, scheme, keep_step)
-        echo(f"to leading order: {leading.words}")
-    except InputError as error:
-        if not points:
-            raise
-        echo(f"to leading order: none ({error})")
-    if not points:
-        return leading or scheme
-    try:
-        exact = exact_settings(points[0], points[1], scheme, keep_step)
-    except InputError as error:
-        if leading is None:
-            raise
-        echo(f"exactly: {error}")
-        return leading
-    missed = misfit(exact, *points)
-    how = "exactly" if missed <= ROUNDING else f"within {share_text(missed, 2)}"
-    echo(f"{how} at both frequencies: {exact.words}")
-    return exact
-
-
-def _print_scheme(scheme: Stepping, band: tuple[float, float]) -> None:
-    """Print a0 and a1 of a scheme and its damping ratio over frequency."""
-    import numpy as np
-
-    from validation.advice.rayleigh import hidden, matched, ratio
-
-    leading = hidden(scheme)
-    fitted = matched(scheme, *band)
-    echo(f"\n{scheme.words} hides the Rayleigh damping")
-    rows: list[tuple[str, ...]] = [("", "a0 [1/s]", "a1 [s]", "least xi [%]", "at [Hz]")]
-    for name, damping in (("leading order", leading), (f"exact at {band[0]:.4g} and {band[1]:.4g} Hz", fitted)):
-        least = ("-", "-") if damping.least is None else (f"{100 * damping.least[1]:.6g}", f"{damping.least[0]:.6g}")
-        rows.append((name, f"{damping.a0 + 0.0:.6g}", f"{damping.a1:.6g}", *least))
-    echo(columns(rows))
-    frequency = np.geomspace(*band, 8)
-    values = np.column_stack([frequency, 100 * ratio(scheme, frequency), 100 * leading.ratio(frequency)])
-    heads = ("frequency [Hz]", "steady xi [%]", "leading order")
-    echo(f"\n{columns([heads, *(tuple(f'{value:.5g}' for value in row) for row in values)])}")
-
-
-def _draw_ratios(scheme: Stepping, band: tuple[float, float], path: Path) -> None:
-    """Draw the damping ratio over frequency, exact, to leading order and matched at the ends of the band."""
-    import numpy as np
-
-    from validation.advice.rayleigh import hidden, matched, ratio
-    from validation.report.figures.response import ratio_figure, save_as
-
-    f = np.geomspace(*band, 300)
-    lines = {
-        "as stepped": ratio(scheme, f),
-        "Rayleigh, leading order": hidden(scheme).ratio(f),
-        "Rayleigh, exact at both ends": matched(scheme, *band).ratio(f),
-    }
-    echo(f"wrote {save_as(ratio_figure(f, lines), path)}")

@@ -198,12 +198,15 @@ def stages(target: Target, expected: Sequence[Array], reading: Reading, factor: 
         with np.errstate(all="ignore"):
             misfit = min(norm(values - expected_values) / (bar.norm or 1.0), 1e6)
         agrees = bar.holds(values - expected_values)
-        words = "is the scene's"
-        if not agrees:
-            words = f"is {share_text(misfit)} off (digits and noise: {share_text(bar.allowed, 1)})"
-        words = f"the {name.replace('_', ' ')} alone {words}"
-        measured.append(Stage(name, agrees, words, {"misfit": misfit, "allowed": bar.allowed}))
+        beside = f" (digits and noise: {share_text(bar.allowed, 1)})"
+        measured.append(column_stage(name, agrees, misfit, beside, {"allowed": bar.allowed}))
     return measured + _motion(target, expected[0])
+
+
+def column_stage(name: str, agrees: bool, misfit: float, beside: str, numbers: dict[str, float | None]) -> Stage:
+    """Return whether a column alone is the scene's, with its relative L2 difference and what stands beside that."""
+    what = "is the scene's" if agrees else f"is {share_text(misfit)} off{beside}"
+    return Stage(name, agrees, f"the {name.replace('_', ' ')} alone {what}", {"misfit": misfit, **numbers})
 
 
 def _motion(target: Target, expected: Array) -> list[Stage]:

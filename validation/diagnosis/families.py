@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from validation.diagnosis.causes import CAUSES, causes_of, values_of
@@ -34,13 +34,18 @@ def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[st
         numbers = {"step-factor": significant(1 / math.sqrt(density), 6)}
         alike.append(_relative(["step-factor"], numbers, CAUSES["density-factor"].further_scene))
     if "base-compliance" in ids and v.base == 0:
-        alike.append(_springs_for_base(ids, values, v))
+        # the springs that give the rows of a base without mass: it stands in series with them
+        others = [name for name in ids if name != "base-compliance"]
+        numbers = {name: values[name] for name in others if name in values}
+        numbers["springs-factor"] = significant(math.exp(-v.softness), 6)
+        further = CAUSES["base-compliance"].further_scene
+        alike.append(_relative([*others, "springs-factor"], numbers, further))
     if list(ids) in (["springs-factor"], ["base-compliance"]) and target.column.poisson == 0:
         # per unit of width, pressure, mass and stiffness of the block stay; the two springs share a wider base
         wider = significant(math.exp(v.softness), 6)
         alike.append(_relative(["width-factor"], {"width-factor": wider}, WIDER))
-    others = [_of_explanation(target, each, scene) for each in same_rows(target, scene, verdict)]
-    return [*alike, *(one for one in others if not set(ids) < set(one["causes"]))]
+    found = [_of_explanation(target, each, scene) for each in same_rows(target, scene, verdict)]
+    return [*alike, *(one for one in found if not set(ids) < set(one["causes"]))]
 
 
 def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:
@@ -53,18 +58,14 @@ def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip
     return [_relative(["sign"], {}, BESIDE_GRAVITY), upwards]
 
 
-def _springs_for_base(ids: Sequence[str], values: Mapping[str, float], variant: Variant) -> dict[str, Any]:
-    """Return the springs that give the rows of a base without mass: it stands in series with them."""
-    others = [name for name in ids if name != "base-compliance"]
-    numbers = {name: values[name] for name in others if name in values}
-    numbers["springs-factor"] = significant(math.exp(-variant.softness), 6)
-    return _relative([*others, "springs-factor"], numbers, CAUSES["base-compliance"].further_scene)
-
-
 def as_good(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
-    """Return the explanations that the file cannot tell from the best one."""
-    equals = [verdict.best, *verdict.alike] if verdict.alike else []
-    return [_of_explanation(target, explanation, verdict.scene_fit.variant) for explanation in equals]
+    """Return the explanations that the file cannot tell from the best one, or the other names of a time scheme."""
+    scene = verdict.scene_fit.variant
+    if verdict.alike:
+        return [_of_explanation(target, explanation, scene) for explanation in (verdict.best, *verdict.alike)]
+    if not verdict.explained or not any(CAUSES[name].family for name in verdict.best.ids):
+        return []
+    return [_of_explanation(target, each, scene) | {"further_scene": ONE_SCHEME} for each in verdict.aliases]
 
 
 def _of_explanation(target: Target, explanation: Explanation, scene: Variant) -> dict[str, Any]:
@@ -72,17 +73,6 @@ def _of_explanation(target: Target, explanation: Explanation, scene: Variant) ->
     ids = causes_of(target.column, explanation.ids, v, scene)
     further = next(filter(None, (CAUSES[name].further_scene for name in ids)), ANY_SCENE)
     return _relative(ids, values_of(target.column, ids, v), further)
-
-
-def other_names(target: Target, verdict: Verdict) -> list[dict[str, Any]]:
-    """Return the other causes that the best explanation, a time scheme, is called by."""
-    if not verdict.explained or not any(CAUSES[name].family for name in verdict.best.ids):
-        return []
-    names = []
-    for explanation in verdict.aliases:
-        ids = causes_of(target.column, explanation.ids, explanation.fit.variant, verdict.scene_fit.variant)
-        names.append(_relative(ids, values_of(target.column, ids, explanation.fit.variant), ONE_SCHEME))
-    return names
 
 
 def _relative(ids: list[str], values: dict[str, float], scene: str) -> dict[str, Any]:

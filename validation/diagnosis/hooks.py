@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.numbers import AVERAGE, Law, Number, Values
+from validation.diagnosis.numbers import AVERAGE, CandidateChange, Number, Values
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
 from validation.scenes.kinds import Hooks
@@ -31,7 +31,7 @@ class DiagnosisHooks(Hooks):
         """Yield the densities of layers, where they differ, each by itself."""
         yield from ()
 
-    def laws(self, scene: Scene) -> Iterator[Law]:
+    def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:
         """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
         yield from ()
 

@@ -11,20 +11,26 @@ import numpy as np
 
 from validation.diagnosis import causes, evidence, families, schemes, sentences, slopes
 from validation.diagnosis.answer import Answer
+from validation.diagnosis.beside import RunVerdict, answer_of
 from validation.diagnosis.causes import CAUSES, DIVERGED, SINGLE_ROWS, SWAPPED, UNEXPLAINED, all_benign
-from validation.diagnosis.evidence import Departure, Stage
+from validation.diagnosis.evidence import Stage
 from validation.diagnosis.fits.fit import Fit, explains, fit_one, intervals, untold
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.hooks import DiagnosisHooks
-from validation.diagnosis.other_solvers import RivalVerdict, judged, not_installed
-from validation.diagnosis.reading import SIDEWAYS, Foreign, steppings
+from validation.diagnosis.other_solvers import (
+    DDA,
+    judged_without_rectangle,
+    not_installed,
+    rivals_of,
+    verdict_of_solvers,
+)
+from validation.diagnosis.reading import SIDEWAYS, Foreign
 from validation.diagnosis.readings import (
     Reading,
     exchanged,
     has_swapped_columns,
     readings_of,
     remedy_of,
-    slips,
     words_of_slips,
 )
 from validation.diagnosis.scene_keys import assignments
@@ -38,10 +44,8 @@ from validation.runs.numbers import remainder_text, significant
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
-DDA = "dda"
-RIVALS = ("bar", "continuum")
-MODEL_WORDS = {DDA: "one strain per block (DDA)", "bar": "the exact bar, which fine finite elements converge to"}
 SAME_SPLIT = 1e-4  # of a composite scheme
+NAMES = (DISPLACEMENT, PRESSURE)
 PLAIN = 0.3  # relative L2 that one cause leaves, below which no other sign or unit is looked for
 RIVAL = 0.25  # share of DDA's misfit below which another solver is the model
 
@@ -55,28 +59,25 @@ class Case:
     reading: Reading
     column: Rectangle
     scene_variant: Variant
-    left_out: Flags | None = None  # single rows, of all columns below one another, that are none of the motion's
+    left_out: Flags | None = None  # single rows of each column that are none of the motion's
     as_read: Reading | None = None  # with those rows as the file has them; in `reading` they are as explained
 
     @cached_property
     def target(self) -> Target:
         """What is to be explained."""
         r = self.reading
-        columns = r.displacement, r.pressure, r.rounding, r.pressure_rounding
-        return Target(self.column, r.stepping.steps, r.stepping.rows, *columns, self.left_out)
+        return Target(self.column, r.stepping.steps, r.stepping.rows, r.recorded, r.rounding, self.left_out)
 
     @property
     def single_rows(self) -> list[tuple[str, int, float]]:
         """Column, step and error over the largest value of each row that is none of the motion's."""
+        rows: list[tuple[str, int, float]] = []
         if self.left_out is None or self.as_read is None:
-            return []
-        rows = []
-        pairs = (DISPLACEMENT, self.as_read.displacement), (PRESSURE, self.as_read.pressure)
-        flags_of_columns = self.left_out.reshape(-1, len(self.target.rows))
-        for flags, (name, values), mended in zip(flags_of_columns, pairs, self.target.recorded, strict=False):
-            for row in np.flatnonzero(flags):
-                error = abs(float(values[row] - mended[row])) / largest(mended) if values is not None else 0.0
-                rows.append((name, int(self.target.rows[row]) + 1, error))
+            return rows
+        for column, row in np.argwhere(self.left_out).tolist():
+            mended = self.target.recorded[column]
+            error = abs(float(self.as_read.recorded[column, row] - mended[row])) / largest(mended)
+            rows.append((NAMES[column], int(self.target.rows[row]) + 1, error))
         return rows
 
     def without_single_rows(self, explanation: Fit) -> Case | None:
@@ -85,15 +86,9 @@ class Case:
         left_out = target.outlying(explanation.residual)
         if left_out is None:
             return None
-        remainder = target.parts(np.where(left_out, explanation.residual, 0.0))
-        mended = [values - rest for values, rest in zip(target.recorded, remainder, strict=True)]
-        reading = replace(
-            self.reading,
-            displacement=mended[0],
-            pressure=None if target.pressure is None else mended[1],
-            rounding=target.bars[0].rounding,
-            pressure_rounding=None if target.pressure is None else target.bars[1].rounding,
-        )
+        mended = target.recorded - np.where(left_out, target.parts(explanation.residual), 0.0)
+        rounding = np.array([bar.rounding for bar in target.bars])
+        reading = replace(self.reading, recorded=mended, rounding=rounding)
         return replace(self, reading=reading, left_out=left_out, as_read=self.reading)
 
     @property
@@ -111,16 +106,6 @@ class Case:
         """Displacement [m] and pressure [Pa] of the scene's own run at the recorded rows."""
         rows = self.target.rows
         return self.scene_run.displacement[rows, 0], self.scene_run.pressure[rows, 0]
-
-    @property
-    def rivals(self) -> tuple[str, ...]:
-        """Names of the other solvers of the scene."""
-        return rivals_of(self.scene)
-
-
-def rivals_of(scene: Scene) -> tuple[str, ...]:
-    """Return the names of the solvers that a history of a scene is held against beside DDA."""
-    return RIVALS if scene.block.poisson == 0 and rectangle_of(scene) is not None else ("fem",)
 
 
 def compare(scene: Scene, foreign: Foreign, tolerance: float = 0.0) -> Answer:
@@ -168,10 +153,18 @@ def _refuse_what_is_not_known(scene: Scene) -> None:
 
 def check_block(scene: Scene) -> None:
     """Refuse a block that compare does not step, or the solvers beside it, by its scheme."""
-    if scene.time.scheme != "newmark":
-        _refuse_other_schemes(scene)
     is_frictional = features.FRICTION in features.of(scene)
     is_rectangle = rectangle_of(scene) is not None
+    by_newmark_only = {
+        "blocks with friction": is_frictional,
+        "blocks that are no upright rectangle under a centred load": not is_rectangle,
+        "contact that opens under a block with Poisson's ratio": scene.contact.law == "unilateral"
+        and scene.block.poisson,
+    }
+    for what, holds in by_newmark_only.items():
+        if holds and scene.time.scheme != "newmark":
+            rule = f"compare takes {what} with Newmark's scheme only"
+            raise InputError(rule, source=scene.name, field="time.scheme", value=f'"{scene.time.scheme}"')
     if is_frictional or not is_rectangle:
         features.refuse_ramp(scene, "compare, but for upright rectangles without friction,")
     if not (is_frictional or is_rectangle or features.linear(scene)):
@@ -184,46 +177,27 @@ def check_block(scene: Scene) -> None:
         slopes.refuse_other_scenes(scene)
 
 
-def _refuse_other_schemes(scene: Scene) -> None:
-    """Refuse a scene that is stepped here, or by the solvers beside it, by Newmark's scheme only."""
-    what = ""
-    if features.FRICTION in features.of(scene):
-        what = "blocks with friction"
-    elif rectangle_of(scene) is None:
-        what = "blocks that are no upright rectangle under a centred load"
-    elif scene.contact.law == "unilateral" and scene.block.poisson:
-        what = "contact that opens under a block with Poisson's ratio"
-    if what:
-        raise InputError(
-            f"compare takes {what} with Newmark's scheme only",
-            source=scene.name,
-            field="time.scheme",
-            value=f'"{scene.time.scheme}"',
-        )
-
-
 def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     """Judge a history of a block that `compare` steps."""
     if features.FRICTION in features.of(scene):
         pair = (DISPLACEMENT, SIDEWAYS)
-        reading = slopes.read(scene, foreign)
-        if not slopes.is_scene(scene, reading):
-            swapped = slopes.read(scene, exchanged(foreign, *pair))
-            if slopes.is_scene(scene, swapped):
+        search = slopes.search_of(scene, foreign)
+        if search.reading.corrected or not search.is_scene():
+            swapped = slopes.search_of(scene, exchanged(foreign, *pair))
+            if swapped.is_scene() and not swapped.reading.corrected:
                 return _of_swapped(scene, foreign, pair, tolerance)
-        return slopes.answer_of(scene, foreign, reading)
+        return slopes.answer_on(search, foreign)
     column = rectangle_of(scene)
     unloaded = scene.load.gravity and not scene.load.pressure  # nothing moves where a program leaves gravity out
     if not (np.any(foreign.displacement) or (unloaded and column is not None)):
         raise InputError("must not be zero throughout", source=scene.name, field="displacement", value="zeros only")
     if column is None:
-        return _without_rectangle(scene, foreign)
+        return judged_without_rectangle(scene, foreign)
     scene_variant = own_variant(scene)
     read = readings_of(scene, column, scene_variant, foreign)
     cases = [Case(scene, foreign, reading, column, scene_variant) for reading in read]
-    pairs = zip((read[0].displacement, read[0].pressure), cases[0].expected, strict=True)
-    for values, expected in pairs:
-        factor = None if values is None else evidence.growth(values, expected)
+    for values, expected in zip(read[0].recorded, cases[0].expected, strict=False):
+        factor = evidence.growth(values, expected)
         if factor is not None:
             return _diverged(cases[0], factor)
     case, verdict = _best(cases)
@@ -233,9 +207,9 @@ def judged_block(scene: Scene, foreign: Foreign, tolerance: float) -> Answer:
     if not verdict.explains:
         case, verdict = _without_single_rows(case, verdict)
     if not verdict.explains and scene.contact.law == "locked" and scene.time.scheme == "newmark":
-        theirs = judged(scene, case.reading, RIVAL * verdict.best.fit.misfit, case.rivals)
-        if theirs is not None and theirs.explained:
-            return _answer_of_rival(foreign, case.reading, theirs, _stages(case), case.scene_run.displacement[:, 0])
+        theirs = verdict_of_solvers(scene, [case.reading], rivals_of(scene)) if np.ptp(case.target.steps) == 0 else None
+        if theirs is not None and theirs.explained and theirs.left <= RIVAL * verdict.best.fit.misfit:
+            return _of_rival(case, theirs)
     if not verdict.explains:
         verdict = twofold(case.target, scene_variant, verdict)
     return _answer(case, verdict)
@@ -319,7 +293,7 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     ends = causes.intervals_of(target, best_fit, ids) if verdict.explained else {}
     limits = [name for name in causes.BAND_FIELDS if name in ends]
     values |= {name: causes.roundest(*ends[name]) for name in limits}
-    alike = either or families.as_good(target, verdict) or families.other_names(target, verdict)
+    alike = either or families.as_good(target, verdict)
     alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
     nearest: dict[str, Any] | None = None
     if not (verdict.explained or alike):
@@ -349,12 +323,11 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         sentence = sentences.sentence(subject)
     best = histories(target.column, [best_fit.variant], target.steps)
     as_read = case.as_read or case.reading
-    curves = {
-        "the file": as_read.displacement,
-        DDA: expected[0][target.rows],
-        "best": best.displacement[target.rows, 0],
+    columns: dict[str, Sequence[Array]] = {
+        "the file": list(as_read.recorded),
+        DDA: [values[target.rows] for values in expected],
+        "best": [best.displacement[target.rows, 0], best.pressure[target.rows, 0]],
     }
-    pressures = {"the file": as_read.pressure, DDA: expected[1][target.rows], "best": best.pressure[target.rows, 0]}
     return Answer(
         scheme=schemes.scheme_numbers(v),
         departure=first_departure,
@@ -365,14 +338,14 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
         told=intervals(refitted) if verdict.explained else {},
         untold=untold(refitted) if verdict.explained else [],
         misfit=best_fit.misfit,
-        curves={name: (case.time, curve) for name, curve in curves.items()},
+        curves={name: (case.time, run[0]) for name, run in columns.items()},
         values=values,
         unexplained=unexplained,
         nearest=nearest,
         alike=alike,
         evidence=tuple(stages),
         slips=corrected if verdict.explained else (),
-        pressures={name: p for name, p in pressures.items() if p is not None} if target.pressure is not None else {},
+        pressures={name: run[1] for name, run in columns.items()} if target.pressure is not None else {},
         intervals=ends,
         remedy=assignments(ids, v, scene_variant) if verdict.explained else "",
     )
@@ -441,86 +414,11 @@ def _diverged(case: Case, factor: float) -> Answer:
     )
 
 
-def _answer_of_rival(
-    foreign: Foreign,
-    reading: Reading,
-    verdict: RivalVerdict,
-    stages: Sequence[Stage] = (),
-    own_run: Array | None = None,
-) -> Answer:
-    """Return the answer where another solver than DDA, or the linear DDA of any polygon, explains it best.
-
-    Parameters
-    ----------
-    own_run
-        Displacement of DDA's own run of the scene, where another solver explains the history [m].
-    """
-    best, rows = verdict.best, reading.stepping.rows
-    without_scheme = verdict.explained and own_run is not None and best.alpha is None
-    ids = [*reading.slips, *(["exact-in-time"] if without_scheme else []), *verdict.causes]
-    ids = ids if verdict.explained else [UNEXPLAINED]
-    first_departure = None
-    if any(not CAUSES[name].benign for name in ids):
-        expected = own_run if without_scheme and own_run is not None else verdict.scene_run
-        first_departure = evidence.measured(expected[rows], reading.displacement, rows, 0.0)
-    sentence = rival_sentence(verdict, ids, first_departure)
-    if verdict.explained and own_run is not None:
-        off = float(np.linalg.norm(own_run[rows] - reading.displacement) / np.linalg.norm(reading.displacement))
-        sentence = f"{sentence[:-1]}; the scene's own run by DDA is {remainder_text(off, 2)} % off."
-        stages = [evidence.surrounded(stage, "another model") for stage in stages]
-    time = np.cumsum(reading.stepping.steps)[rows]
-    return Answer(
-        scheme={"alpha": best.alpha, "delta": best.delta, "gg": best.gg},
-        departure=first_departure,
-        causes=ids,
-        sentence=sentence,
-        notes=(*foreign.notes, *reading.notes),
-        misfit=best.misfit,
-        curves={"the file": (time, reading.displacement), best.model: (time, best.displacement[rows])},
-        values=verdict.values if verdict.explained else {},
-        unexplained=0.0 if verdict.explained else verdict.left,
-        evidence=tuple(stages),
-        model="" if best.model == DDA else best.model,
-    )
-
-
-def rival_sentence(verdict: RivalVerdict, ids: Sequence[str], departure: Departure | None) -> str:
-    """Return the first line of the answer where another solver explains the history best."""
-    best = verdict.best
-    scheme_of_best = sentences.scheme_words(best.alpha, best.delta, best.gg)
-    model = f"{best.model} ({MODEL_WORDS.get(best.model, best.model)})"
-    remainder = sentences.remaining(best.misfit)
-    if not verdict.explained:
-        return (
-            f"Departs, not explained: nearest is {model} with {scheme_of_best}, "
-            f"{remainder_text(verdict.left, 2)} % of the difference left; {remainder}."
-        )
-    numbers = {name: f" ({value:.4g})" for name, value in verdict.values.items()}
-    faults = sentences.listed([CAUSES[name].words + numbers.get(name, "") for name in ids])
-    faults = f"; {faults}" if faults else ""
-    if departure is None:
-        return f"Same model as {model}, same scheme: {scheme_of_best}{faults}; {remainder}."
-    where = f"departs from step {departure.step} on, mainly in {departure.kind}"
-    scheme = "a different scheme" if {"scheme", "exact-in-time"} & set(ids) else "same scheme"
-    return f"Closest match: {model}, {scheme}: {scheme_of_best}; {where}{faults}; {remainder}."
-
-
-def _without_rectangle(scene: Scene, foreign: Foreign) -> Answer:
-    """Return the answer for a block that is no upright rectangle, or that turns: linear models alone are tried."""
-    from validation.solvers.registry import get_solver
-
-    verdicts = []
-    for stepping in steppings(foreign, scene.time.step):
-        if np.ptp(stepping.steps) > 0:
-            continue
-        plain = Reading(stepping, foreign.displacement, foreign.pressure, ())
-        run = get_solver(DDA).solve(plain.scene_of(scene))
-        rows = stepping.rows
-        for reading in slips(foreign, stepping, run.displacement[rows], run.contact_pressure[rows]):
-            verdict = judged(scene, reading, 1.0, (DDA, "fem"), DDA)
-            verdicts += [(reading, verdict)] if verdict is not None else []
-    if not verdicts:
-        raise InputError("the times of the history are not uniform, which this scene needs", source=scene.name)
-    reading, verdict = min(verdicts, key=lambda pair: (not pair[1].explained, pair[1].best.misfit))
-    note = "the block is not an upright rectangle: opening and updated geometry are not tried"
-    return _answer_of_rival(replace(foreign, notes=(*foreign.notes, note)), reading, verdict)
+def _of_rival(case: Case, verdict: RunVerdict) -> Answer:
+    """Return the answer where another solver than DDA explains a history."""
+    answer = answer_of(case.foreign, verdict)
+    displacement = case.reading.displacement
+    off = float(np.linalg.norm(case.expected[0] - displacement) / np.linalg.norm(displacement))
+    sentence = f"{answer.sentence[:-1]}; the scene's own run by DDA is {remainder_text(off, 2)} % off."
+    stages = tuple(evidence.surrounded(stage, "another model") for stage in _stages(case))
+    return replace(answer, sentence=sentence, evidence=stages)

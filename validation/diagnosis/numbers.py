@@ -9,15 +9,16 @@ from __future__ import annotations
 import math
 import tomllib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from validation.scenes import features
 from validation.scenes.scene import Scene
 
 Values = dict[str, Any]
 TABLE = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+Change = TypeVar("Change")  # what a candidate gives
 AVERAGE: Values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 MORE_BLOCKS = 4
 EVERYWHERE, WITHOUT_JOINT = "everywhere", "without a joint"  # of a column's contacts
@@ -114,6 +115,43 @@ def with_more_blocks(scene: Scene) -> Values:
     return AVERAGE | {"column.layer": [one | {"blocks": MORE_BLOCKS * one.get("blocks", 1)} for one in layers_of_scene]}
 
 
+@dataclass(frozen=True, eq=False)
+class CandidateChange(Generic[Change]):
+    """One thing changed; with `starts` it has a number u that is fitted.
+
+    Attributes
+    ----------
+    id
+        Of the cause.
+    words
+        The sentence of the cause by its number.
+    value
+        The number that people understand, of u.
+    changed
+        What the change gives, of u.
+    starts
+        Values of u that a fit begins from.
+    nudge
+        Of u, for the first derivative.
+    """
+
+    id: str
+    words: Callable[[float], str]
+    value: Callable[[float], float]
+    changed: Callable[[float], Change]
+    starts: tuple[float, ...] = ()
+    nudge: float = 1e-3
+
+    def giving(self, changed: Callable[[float], Any]) -> CandidateChange[Any]:
+        """Return the same change with another thing that it gives."""
+        return replace(self, changed=changed)
+
+
+def fixed(name: str, words: str, values: Values, number: float = math.nan) -> CandidateChange[Values]:
+    """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
+    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: values)
+
+
 @dataclass(frozen=True)
 class Number:
     """A number of a scene that may be wrong by a factor."""
@@ -201,30 +239,21 @@ def _impedance(scene: Scene, factor: float) -> dict[str, Any]:
     return {"column.base_density": base["base_density"] * (factor if "base_speed" in base else factor**2)}
 
 
-@dataclass(frozen=True)
-class Law:
-    """Another law of the contact."""
-
-    id: str
-    words: str
-    values: dict[str, Any]
-
-
 GLUED = 89.0  # deg: no block slips on such friction
 
 
-def laws(scene: Scene) -> Iterator[Law]:
+def laws(scene: Scene) -> Iterator[CandidateChange[Values]]:
     """Yield the laws of contact that a program may have in place of a scene's, and what it may have forgotten."""
     if features.ROTATION in features.of(scene):
         return
     for row in TABLE["forgotten"]:
         if _stated(scene, row["key"]):
             _, _, entry = row["key"].partition(".")
-            yield Law(f"no-{entry}", f"{row['name']} is forgotten", row["values"])
+            yield fixed(f"no-{entry}", f"{row['name']} is forgotten", row["values"])
     if scene.contact.law == "locked":
-        yield Law("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
+        yield fixed("contact-opened", "the contact opens, where the scene's is locked", {"contact.law": "unilateral"})
     elif scene.contact.friction is None:
-        yield Law("contact-locked", "the contact pulls, where the scene's opens", {"contact.law": "locked"})
+        yield fixed("contact-locked", "the contact pulls, where the scene's opens", {"contact.law": "locked"})
     if scene.contact.friction:
-        yield Law("no-friction", "there is no friction", {"contact.friction": 0.0})
-        yield Law("no-slip", "the contact does not slip", {"contact.friction": GLUED})
+        yield fixed("no-friction", "there is no friction", {"contact.friction": 0.0})
+        yield fixed("no-slip", "the contact does not slip", {"contact.friction": GLUED})

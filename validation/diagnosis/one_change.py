@@ -10,19 +10,18 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 import numpy as np
 
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.fits.fit import NAMED
 from validation.diagnosis.hooks import DiagnosisHooks
-from validation.diagnosis.numbers import Values
+from validation.diagnosis.numbers import CandidateChange, Change, Values, fixed
 from validation.diagnosis.sentences import scheme_words
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
-Change = TypeVar("Change")  # what a candidate gives
 Explanation = TypeVar("Explanation")
 Residual = Callable[[float], Array]  # of a candidate's u: what it leaves of a history
 UNITS = (1e-3, 1e3)  # factors of a datum in other units: mm, g, kPa, or MPa for Pa
@@ -33,43 +32,6 @@ BESIDE_NOTHING = 1e-12  # u that a step of the fit's own length has brought to z
 TOLD_APART = 1.5e-8  # step of a derivative there, the root of a rounding
 FIRST_ROUNDS = 3  # after which a fit that gets nowhere is given up
 HALVED = 0.5  # of the remainder at the start
-
-
-@dataclass(frozen=True, eq=False)
-class CandidateChange(Generic[Change]):
-    """One thing changed; with `starts` it has a number u that is fitted.
-
-    Attributes
-    ----------
-    id
-        Of the cause.
-    words
-        The sentence of the cause by its number.
-    value
-        The number that people understand, of u.
-    changed
-        What the change gives, of u.
-    starts
-        Values of u that a fit begins from.
-    nudge
-        Of u, for the first derivative.
-    """
-
-    id: str
-    words: Callable[[float], str]
-    value: Callable[[float], float]
-    changed: Callable[[float], Change]
-    starts: tuple[float, ...] = ()
-    nudge: float = 1e-3
-
-    def giving(self, changed: Callable[[float], Any]) -> CandidateChange[Any]:
-        """Return the same change with another thing that it gives."""
-        return replace(self, changed=changed)
-
-
-def fixed(name: str, words: str, values: Values, number: float = math.nan) -> CandidateChange[Values]:
-    """Return a change without a fitted number; `number` is what it stands for, nan where there is none."""
-    return CandidateChange(name, lambda _: words, lambda _: number, lambda _: values)
 
 
 def of_schemes(scene: Scene) -> Iterator[CandidateChange[Values]]:

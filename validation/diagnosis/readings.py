@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
@@ -97,11 +97,14 @@ class Reading:
     """A history as it is read: its steps, with errors of sign and unit corrected."""
 
     stepping: Stepping
-    displacement: Array  # [m]
-    pressure: Array | None  # [Pa]
-    corrected: tuple[Slip, ...]
-    rounding: Array | None = None  # [m]
-    pressure_rounding: Array | None = None  # [Pa]
+    recorded: Array  # the displacement [m] and, if given, another column, (columns, rows)
+    rounding: Array | None = None  # units of their last digits, seen from the values if not given
+    corrected: tuple[Slip, ...] = ()
+
+    @property
+    def displacement(self) -> Array:
+        """The displacement [m]."""
+        return np.asarray(self.recorded[0])
 
     @property
     def slips(self) -> tuple[str, ...]:
@@ -145,37 +148,42 @@ def slips(
     furthest
         Times its first row, beyond which the scene's own history counts as unbounded.
     """
-    time = (Slip("unit", "time", stepping.factor),) if stepping.factor != 1 else ()
-    readings = []
     of_pressure = [(1.0, 1.0)]
     if foreign.pressure is not None and np.any(foreign.pressure):
         first = _factors(foreign.pressure, contact, furthest)[0]
         of_pressure = list(dict.fromkeys([first, (first[0], 1.0), (1.0, 1.0)]))
-    for (sign, factor), (turned, scale) in product(_factors(foreign.displacement, reference, furthest), of_pressure):
-        pressure = foreign.pressure
-        rounding = None if pressure is None else _rounding_of(pressure, foreign.pressure_rounding) / scale
-        corrected = list(time)
-        corrected += _column_slips(DISPLACEMENT, sign, factor)
-        if pressure is not None:
-            pressure = pressure * turned / scale
-            corrected += _column_slips(PRESSURE, turned, scale)
-        unit = _rounding_of(foreign.displacement, foreign.rounding) / factor
-        moved = foreign.displacement * sign / factor
-        readings.append(Reading(stepping, moved, pressure, tuple(corrected), unit, rounding))
+    of_displacement = _factors(foreign.displacement, reference, furthest)
+    readings = [
+        without_slips(foreign, stepping, {DISPLACEMENT: own, PRESSURE: other})
+        for own, other in product(of_displacement, of_pressure)
+    ]
     # readings with the one that corrects least among the first two: wrong data look like wrong units
     plain = min(readings, key=lambda reading: len(reading.corrected))
     others = [reading for reading in readings if reading is not plain]
     return [plain, *others] if readings[0] is plain else [others[0], plain, *others[1:]]
 
 
-def _rounding_of(values: Array, rounding: Array | None) -> Array:
-    """Return the units of the last digits as the file has them: in other units they are not seen any more."""
-    return last_digits(values) if rounding is None else rounding
+AS_IT_IS = dict.fromkeys((DISPLACEMENT, PRESSURE), (1.0, 1.0))
 
 
-def _column_slips(column: str, sign: float, factor: float) -> list[Slip]:
-    signs = [Slip("sign", column, -1.0)] if sign < 0 else []
-    return signs + ([Slip("unit", column, factor)] if factor != 1 else [])
+def without_slips(
+    foreign: Foreign, stepping: Stepping, factors: Mapping[str, tuple[float, float]] = AS_IT_IS
+) -> Reading:
+    """Return a history without a sign and a power of ten in each of some columns."""
+    corrected = [Slip("unit", "time", stepping.factor)] if stepping.factor != 1 else []
+    columns = []
+    units = []
+    for name, (sign, factor) in factors.items():
+        values, stated = (getattr(foreign, place) for place in FIELDS[name])
+        if values is None:
+            continue
+        # the units of the last digits as the file has them: in other units they are not seen any more
+        unit = last_digits(values) if stated is None else stated
+        columns.append(values * sign / factor)
+        units.append(unit / factor)
+        corrected += [Slip("sign", name, -1.0)] if sign < 0 else []
+        corrected += [Slip("unit", name, factor)] if factor != 1 else []
+    return Reading(stepping, np.array(columns), np.array(units), tuple(corrected))
 
 
 def _factors(values: Array, reference: Array, furthest: float) -> list[tuple[float, float]]:

@@ -199,7 +199,7 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     )
 
 
-def score(target: Target, deviations: Sequence[Array], explanation: Explanation) -> float:
+def score(target: Target, deviations: Array, explanation: Explanation) -> float:
     """Return the information criterion of an explanation.
 
     Parameters
@@ -208,7 +208,7 @@ def score(target: Target, deviations: Sequence[Array], explanation: Explanation)
         Standard deviation of each row of each column.
     """
     remainder = target.inner(explanation.fit.residual, explanation.fit.variant)
-    shares = np.concatenate([part / each for part, each in zip(target.parts(remainder), deviations, strict=True)])
+    shares = np.ravel(target.parts(remainder) / deviations)
     n = len(shares)
     rare = sum(_is_rare(move, len(explanation.moves)) for move in explanation.moves)
     v = explanation.fit.variant
@@ -256,8 +256,8 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
     if not (verdict.explained and best.moves):
         return []
     run = histories(target.column, [best.fit.variant], target.steps)
-    pressure = None if target.pressure is None else run.pressure[target.rows, 0]
-    clean = Target(target.column, target.steps, target.rows, run.displacement[target.rows, 0], pressure)
+    both = np.array([run.displacement[target.rows, 0], run.pressure[target.rows, 0]])
+    clean = Target(target.column, target.steps, target.rows, both[: len(target.recorded)])
     same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= SAME_PROGRAM]
     if set(best.ids) <= {*FACTORS}:
         factors = {move.id: move for move in moves(target, scene) if move.id in FACTORS}

@@ -73,6 +73,8 @@ class Subject:
         What is left, in words.
     alike
         Causes that give the same rows.
+    model
+        The solver that gives the history, where it is another one than `dda`.
     """
 
     scheme: str
@@ -80,6 +82,7 @@ class Subject:
     departure: Departure | None
     remainder: str
     alike: Sequence[Mapping[str, Any]] = ()
+    model: str = ""
 
     @property
     def where(self) -> str:
@@ -98,17 +101,18 @@ def sentence(subject: Subject) -> str:
     benign = [words for name, words in subject.words.items() if CAUSES[name].benign]
     allowed = f", allowing for {listed(benign)}" if benign else ""
     same = f" (the same rows: {_family(subject.alike[0])})" if subject.alike else ""
+    of_model = f" as {subject.model}" if subject.model else ""
     if not faults:
-        return f"Same model, same scheme: {subject.scheme}{allowed}{same}; {subject.remainder}."
+        return f"Same model{of_model}, same scheme: {subject.scheme}{allowed}{same}; {subject.remainder}."
     words = listed([subject.words[name] for name in faults])
     if len(faults) == 1 and faults[0] in ("pressure-shift", "pressure-factor"):
         words += ", the displacement is right"
     if any(CAUSES[name].integrator for name in faults):
         return (
-            f"Departs{subject.where}: {words}{same}; the history matches {subject.scheme}{allowed}; "
+            f"Departs{subject.where}: {words}{same}; the history matches {subject.scheme}{of_model}{allowed}; "
             f"{subject.remainder}."
         )
-    model = ", same model" if all(CAUSES[name].output for name in faults) else ""
+    model = f", same model{of_model}" if of_model or all(CAUSES[name].output for name in faults) else ""
     return (
         f"Same scheme{model}: {subject.scheme}, but departs{subject.where}: {words}{same}{allowed}; "
         f"{subject.remainder}."

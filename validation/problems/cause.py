@@ -16,16 +16,14 @@ from typing import TypeAlias
 import numpy as np
 
 from validation.diagnosis.causes import UNEXPLAINED
-from validation.diagnosis.columns import laws as laws_of_contacts
 from validation.diagnosis.families import ONE_SCHEME
 from validation.diagnosis.fits.bar import norm
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import Values
+from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import (
     NEAR_UNIT,
     UNITS,
-    CandidateChange,
     Residual,
     alike,
     fitted,
@@ -320,17 +318,11 @@ class Search:
         """Yield other laws of the contact under which a base gives the answer back."""
         scene = self.runs.scene
         for law in DiagnosisHooks.of(scene).laws(scene):
-            remainder = self._left(self.runs.sampled(base, law.values))
+            remainder = self._left(self.runs.sampled(base, law.changed(0.0)))
             if remainder <= BAR:
-                yield _with(law.id, law.words, {}, remainder, base, scene)
-        if not features.OF_MOVING_COLUMN & {*features.of(scene)}:
-            return
-        for change in laws_of_contacts(scene):
-            remainder = self._left(self.runs.sampled(base, change.changed(0.0)))
-            if remainder <= BAR:
-                number = change.value(0.0)
-                values = {} if math.isnan(number) else {change.id: number}
-                yield _with(change.id, change.words(number), values, remainder, base, scene)
+                number = law.value(0.0)
+                values = {} if math.isnan(number) else {law.id: number}
+                yield _with(law.id, law.words(number), values, remainder, base, scene)
 
     def _changes(self, base: Base, cheap: bool) -> Iterable[Cause]:
         """Yield the changes by one number that give the answer back, of those that come nearest along their slope."""

@@ -16,7 +16,7 @@ from validation.report.chapters.gates import band_cell, value_cell
 from validation.report.chapters.text import some
 from validation.report.references import named
 from validation.report.texts import Texts
-from validation.runs.numbers import DASH, power, short, significant
+from validation.runs.numbers import DASH, decimal, power, short, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
 from validation.solvers.registry import is_solver
@@ -152,7 +152,7 @@ def noted_value(gate: Gate, value: Value) -> str:
 
 def margin_cell(margin: float | None) -> str:
     """Return a margin in per cent of the way from target to edge, a dash where there is none."""
-    return DASH if margin is None else f"{100 * margin:.0f} %".replace("-", "−")
+    return DASH if margin is None else f"{decimal(100 * margin, 0)} %"
 
 
 def missing_table() -> Table:

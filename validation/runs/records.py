@@ -47,20 +47,17 @@ class AlarmRecord(TypedDict):
     values: NotRequired[dict[str, float]]
 
 
-BudgetRecord = TypedDict(
-    "BudgetRecord",
-    {
-        "scene": str,  # name of the first case
-        "steps": list[float],  # dt of the cases [s]
-        "gg": float,
-        "gg_rate": float | None,  # 1/s
-        "dt": list[float | None],  # s
-        "modes": dict[str, dict[str, list[float | None]]],  # name to total, algorithmic and kinetic xi, |lambda|
-        "limits": dict[str, float],  # s
-        "real roots at": float,  # w dt of the first axial mode
-        "floor": float | None,  # first frequency of DDA over that of the bar
-    },
-)
+class BudgetRecord(TypedDict):
+    """The damping of a scene's modes over dt."""
+
+    scene: str  # name of the first case
+    steps: list[float]  # dt of the cases [s]
+    gg: float
+    gg_rate: float | None  # 1/s
+    dt: list[float]  # s
+    modes: dict[str, dict[str, list[float | None]]]  # name to total xi and its parts
+    transit: float  # of a wave from top to base [s]
+    floor: float | None  # first frequency of DDA over that of the bar
 
 
 class Annotations(TypedDict):

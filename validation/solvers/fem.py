@@ -105,6 +105,8 @@ def opening_frequency(problem: fem_reference.Problem, full: bool) -> float:
 class Mesh(Prepared):
     """A block meshed and assembled once."""
 
+    has_fields = True
+
     def __init__(self, scene: Scene, full: bool) -> None:
         self.scene = scene
         self.full = full
@@ -123,29 +125,29 @@ class Mesh(Prepared):
         self.building = time.perf_counter() - began
         return model
 
-    @property
-    def has_fields(self) -> bool:  # type: ignore[override]
-        """Whether it can write fields: with a constant discount."""
-        return features.ADAPTIVE not in features.of(self.scene)
-
     def highest_frequency(self) -> float:
         """Return the mesh's largest frequency [rad/s]."""
         return locked_frequency(self.problem, self.model)
 
     def history_run(self) -> Run:
         """Run the scene."""
-        steps = self.scene.time.steps
-        columns = self.scene.run.columns
-        result: fem_reference.Result | fem_reference.AdaptiveResult
-        if features.ADAPTIVE in features.of(self.scene):
-            check_columns(self.scene, (*fem_reference.COLUMNS, *fem_reference.ADAPTIVE_COLUMNS))
-            floor = self.scene.damping.floor
-            result = fem_reference.solve_adaptive(self.problem, self.scheme, steps, columns, floor, model=self.model)
-        else:
-            check_columns(self.scene, fem_reference.COLUMNS)
-            result = fem_reference.solve(
-                self.problem, self.scheme, steps, columns, full=self.full, fields=self.fields, model=self.model
-            )
+        scene = self.scene
+        columns: tuple[str, ...] = fem_reference.COLUMNS
+        floor = None
+        if features.ADAPTIVE in features.of(scene):
+            columns = (*columns, *fem_reference.ADAPTIVE_COLUMNS)
+            floor = scene.damping.floor
+        check_columns(scene, columns)
+        result = fem_reference.solve(
+            self.problem,
+            self.scheme,
+            scene.time.steps,
+            scene.run.columns,
+            full=self.full,
+            fields=self.fields,
+            model=self.model,
+            floor=floor,
+        )
         return to_run(self.scene, result, built=self.building)
 
     def static(self) -> Mapping[str, float]:

@@ -22,25 +22,23 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.history import History
-from validation.runs.modes import Switch
 from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.record import base_record
 from validation.scenes.scene import Scene
-from validation.solvers.contract import LineStyle, NotReported, Prepared, Role, Solver
+from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.fem import (
     MESH_SECTIONS,
     OF_CUTS,
     OF_SUB_BLOCKS,
     locked_frequency,
     missing_reader,
-    opening_frequency,
     points_and_cells_of_file,
     problem_of,
 )
 from validation.solvers.hooks import SolvingHooks
 from validation.solvers.processes.worker import ask
-from validation.solvers.translation import check_columns, switches_between_steps, tension_note
+from validation.solvers.translation import check_columns, tension_note
 
 VARIABLE = "DDA_VALIDATE_FENICSX_PYTHON"
 INSTALL_HINT = (
@@ -48,16 +46,6 @@ INSTALL_HINT = (
 )
 HAS_DOLFINX = "import importlib.util as u, sys; sys.exit(not all(map(u.find_spec, ('dolfinx', 'petsc4py', 'mpi4py'))))"
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
-OPENING_COLUMNS = (
-    *COLUMNS,
-    "base_shear",
-    "open_share",
-    "largest_gap",
-    "largest_penetration",
-    "largest_slide",
-    "solves",
-    "cuts",
-)
 WORKER = Path(importlib.util.find_spec("fem_reference").origin).with_name("fenicsx")  # type: ignore[union-attr,arg-type]
 MOST_RANKS = 256  # processes on one machine
 # One thread a rank; more ranks than cores and root in a container are the user's own choice. dolfinx stops at a path
@@ -145,13 +133,7 @@ class FEniCSx(Solver):
     """The same block by FEniCSx, in another interpreter, on one rank or more."""
 
     name = "fenicsx"
-    handles = features.LOADS | {
-        features.SUB_BLOCKS,
-        features.UNILATERAL,
-        features.SLOPE,
-        features.FRICTION,
-        features.PLANE,
-    }
+    handles = features.LOADS | {features.SUB_BLOCKS, features.SLOPE, features.PLANE}
     sections = MESH_SECTIONS
     unread = (*OF_SUB_BLOCKS, *OF_CUTS)
     sources = ("fem_reference.fenicsx",)
@@ -161,7 +143,7 @@ class FEniCSx(Solver):
     role = Role.SECOND_CODE
     rank = 3.0
     line = LineStyle("#56b4e9", (1.0, 1.5), 1.2, 4)
-    own_columns = OPENING_COLUMNS  # those beyond the first three are of contact that opens
+    own_columns = COLUMNS
 
     def __init__(self) -> None:
         self.ranks = 1
@@ -180,8 +162,6 @@ class FEniCSx(Solver):
         """Return None, or which springs this solver does not take."""
         if scene.fem.foundation == "nodes":
             return "it takes springs spread over edges or at the corners, and none at nodes"
-        if features.UNILATERAL in features.of(scene) and scene.fem.foundation == "patch":
-            return "it takes unilateral contact on the whole base or at the corners, and none on patches"
         return None
 
     def missing(self, scene: Scene) -> str | None:
@@ -222,19 +202,15 @@ class RemoteMesh(Prepared):
         self.scene = scene
 
     def highest_frequency(self) -> float | None:
-        """Return the largest frequency of the same mesh, every point of its base closed [rad/s]."""
+        """Return the largest frequency of the same mesh [rad/s]."""
         if (prepared := SolvingHooks.of(self.scene).build(self.scene, "fem", True)) is not None:
             return prepared.highest_frequency()
-        problem = problem_of(self.scene)
-        if features.UNILATERAL in features.of(self.scene):
-            return opening_frequency(problem, full=True)
-        return locked_frequency(problem)
+        return locked_frequency(problem_of(self.scene))
 
     def history_run(self) -> Run:
         """Run the scene."""
         scene = self.scene
-        opens = features.UNILATERAL in features.of(scene)
-        check_columns(scene, OPENING_COLUMNS if opens else COLUMNS)
+        check_columns(scene, COLUMNS)
         if "refused" in self.answer:
             raise InputError(self.answer["refused"], source=scene.name)
         for word, outcome in (("raised", Outcome.RAISED), ("inapplicable", Outcome.NOT_APPLICABLE)):
@@ -250,20 +226,11 @@ class RemoteMesh(Prepared):
         work |= {"steps": len(answer["time"]), "ranks": self.solver.ranks}
         seconds = {part: float(answer[f"{part}_seconds"]) for part in ("setup", "stepping")}
         where = f"dolfinx {answer['version']}, {answer['memory'] / 1e6:.0f} MB at the peak over all ranks"
-        return Run(Outcome(answer["outcome"]), history, work, seconds, (where, *tension_note(history)))
-
-    def switches(self) -> tuple[Switch, ...]:
-        """Return the switches of the whole base between the steps: no point of it presses, or some do."""
-        if "pressed" not in self.answer:
-            raise NotReported("fenicsx has no switches of a locked base")
-        is_open = ~np.asarray(self.answer["pressed"], bool)
-        return switches_between_steps({"base": is_open}, np.asarray(self.answer["time"], float))
+        return Run(Outcome.COMPLETED, history, work, seconds, (where, *tension_note(history)))
 
     def static(self) -> Mapping[str, float]:
         """Return the static solution, which the worker gives with every history."""
-        if "static" in self.answer:
-            return dict(self.answer["static"])
-        raise NotReported("fenicsx has no static solution here")
+        return dict(self.answer["static"])
 
     @functools.cached_property
     def answer(self) -> dict[str, Any]:
@@ -285,31 +252,20 @@ def request(scene: Scene) -> dict[str, Any]:
     if (body := SolvingHooks.of(scene).request(scene)) is not None:
         return stepping | body
     problem = problem_of(scene)
-    c = scene.contact
     record = base_record(scene)
     displacement_of_steps = None
-    table = None
     if record is not None:
         instants = t.step * np.arange(t.steps + 1.0)
         displacement_of_steps = np.column_stack(
             [np.interp(instants, record.time, part) for part in (record.x, record.y)]
         ).tolist()
-        table = [part.tolist() for part in (record.time, record.x, record.y)]
     names = [field.name for field in fields(problem) if field.name not in ("motion", "mesh")]
     return {
         **{name: getattr(problem, name) for name in names},
         "moved": displacement_of_steps,
-        "record": table,
         "last": (0.0, 0.0) if record is None else (float(record.x[-1]), float(record.y[-1])),
         **stepping,
         "columns": scene.run.columns,
-        "law": c.law,
-        "gap": c.gap,
-        "friction": c.friction,
-        "cohesion": c.cohesion,
-        "velocity": scene.block.velocity,
-        "solve_limit": c.solve_limit,
-        "cut": c.cut,
         **(_mesh_of(scene) if problem.mesh else {}),
     }
 

@@ -69,12 +69,12 @@ class Evidence:
         value = self.finished.rows[case, solver].metrics.get(metric)
         return float(value) if isinstance(value, float | int) else np.nan
 
-    def scaled(self, case: str, quantity: str, solver: str = "dda") -> Array:
+    def scaled(self, case: str, quantity: str) -> Array:
         """Return a history over its static value."""
-        history = self.finished.history(case, solver)
+        history = self.finished.history(case, "dda")
         if history is None:
             return np.zeros(0)
-        return history.columns[QUANTITIES[quantity]] / self.number(case, f"{quantity}.static", solver)
+        return history.columns[QUANTITIES[quantity]] / self.number(case, f"{quantity}.static")
 
     def settles(self, case: str, quantity: str, tolerance: float = 0.01) -> float:
         """Return the first step from which a quantity stays within a tolerance of static; NaN if never."""

@@ -132,7 +132,9 @@ class StudyTable:
             declared["measures"] = tuple(declared["measures"])
         if "expects" in declared and isinstance(self.fields["expects"], list):
             declared["expects"] = tuple(Outcome[name] for name in declared["expects"])
-        return Study(**(declared | {"scenes": self.scenes(), "gates": self.gates, "derived": self.derived}))
+        # Who judges asks for them at every gate: bands are formulas, of seconds where a limit is searched.
+        functions = {"gates": cache(self.gates), "derived": cache(self.derived)}
+        return Study(**(declared | {"scenes": self.scenes()} | functions))
 
     def scenes(self) -> Sequence[str | Scene]:
         """Return the scenes, names of built-in ones or generated."""

@@ -12,6 +12,7 @@ one strain moves its far face the wrong way: the contact above opens before any 
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 
@@ -151,19 +152,9 @@ def ring_down(omega: float, stepping: Stepping, share: float = 1e-3) -> float:
     return 0.0 if radius == 0 else stepping.step * math.log(1 / share) / -math.log(radius)
 
 
-def static_forces(weights: Sequence[float], pressure: float = 0.0) -> list[float]:
-    """Return the forces of the contacts of a column at rest [Pa], from the base upwards.
+def static_forces(weights: Sequence[float]) -> list[float]:
+    """Return the forces of the contacts of a column at rest [Pa], from the base upwards, of the weights of its blocks.
 
-    Each carries the weights above it and the pressure on the top, whatever happened before.
-
-    Parameters
-    ----------
-    weights
-        Of the blocks per unit of area [Pa], from the base upwards.
+    Each carries the weights above it [Pa, per unit of area, from the base upwards], whatever happened before.
     """
-    forces = []
-    above = pressure
-    for weight in reversed(weights):
-        above += weight
-        forces.append(above)
-    return forces[::-1]
+    return [*itertools.accumulate(reversed(weights))][::-1]

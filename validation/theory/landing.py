@@ -24,7 +24,6 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
@@ -35,16 +34,16 @@ PHASES = np.linspace(0.0, 1.0, 33)
 """Landings within a step: e is continuous in the phase and made of straight lines, so that ends and kinks count."""
 SAMPLES = 60
 """Samples of the shorter period, between which the end of a contact or of a flight is looked for."""
-WINDOW = 128
-"""Steps, or strides, that are looked at together for the first that changes the contact state; a power of two."""
-REST = 1e-6
-"""Speed in flight, over V, below which nothing of the landing is left."""
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
 SOFTEST = 1e-6
 """k below which the block lands as a rigid mass, to k / 2; its strain would ring 1 / sqrt(k) times in the contact."""
+STIFFEST = 1e18
+"""k above which the landing is that on a rigid stop, to 0.6 / sqrt(k); from 1e20 on rounding hides the gap."""
 FEWEST = 32
 """Steps that are made beyond those: a contact takes two or more however long they are."""
+MOST = 20_000
+"""Steps beyond which a landing is not stepped: a contact of so many is followed by every scheme."""
 
 GAP = np.array([1.0, -0.5])  # w over (x, e)
 MASS = np.array([1.0, 1 / 12])
@@ -52,10 +51,19 @@ STRAIN = np.array([0.0, 1.0])  # diagonal of the stiffness without springs
 
 
 def stiffness_ratio(scene: Scene, stiffness: float | None = None) -> float:
-    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-]."""
+    """Return k = 2 p h / (E' a), the stiffness of the springs over that of the block [-].
+
+    Raises
+    ------
+    FloatingPointError
+        It is below the smallest number of double precision.
+    """
     modulus, _ = statics.moduli(scene)
     p = scene.contact.stiffness if stiffness is None else stiffness
-    return 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
+    ratio = 2 * p * statics.height(scene) / (modulus * scene.block.base_length)
+    if ratio == 0:
+        raise FloatingPointError("stiffness of the springs over that of the block: 0")
+    return ratio
 
 
 # ---- the block's own landing --------------------------------------------------------------------------------------
@@ -121,6 +129,9 @@ def own_landing(ratio: float) -> OwnLanding:
         raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
     if ratio < SOFTEST:
         return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
+    if ratio > STIFFEST:
+        *speeds, rebound = rigid_stop()
+        return OwnLanding(rebound, 1.0, max(speeds), math.pi / (2 * math.sqrt(ratio)), len(speeds))
     closed = np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
     depths: list[float] = []
@@ -258,8 +269,8 @@ def hidden_from(scene: Scene) -> float | None:
 
         dt^2 < h^2 / (6 alpha c^2) (1 - r/2) / (1 + r),   r = rho g h / q
 
-    whatever p and gg. None where it does not rise at all, or does not start on its springs at rest, and of schemes
-    other than Newmark's.
+    whatever p and gg. None where it does not rise at all, where a weight that lifts it makes it rise at every step
+    (r <= -1), where it does not start on its springs at rest, and of schemes other than Newmark's.
     """
     t = scene.time
     if t.scheme != "newmark":
@@ -268,7 +279,7 @@ def hidden_from(scene: Scene) -> float | None:
     height = statics.height(scene)
     weight = scene.block.density * load.gravity * height / load.pressure if load.pressure > 0 else 2.0
     from_zero = t.alpha > 0 and (t.start == "zero" or t.alpha == 0.5)
-    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and weight < 2):
+    if not (from_zero and scene.contact.gap == 0 == scene.block.velocity and -1 < weight < 2):
         return None
     free = spectra.transit(scene) / math.sqrt(6 * t.alpha)
     return free * math.sqrt((1 - weight / 2) / (1 + weight))
@@ -284,7 +295,6 @@ class SteppedLanding:
     mean: float
     low: float
     high: float
-    energy: float  # mean of e^2, the share of the kinetic energy that is left to the centre of mass
     own: float  # the block's own restitution
 
     @property
@@ -293,8 +303,10 @@ class SteppedLanding:
         return max(abs(self.low - self.own), abs(self.high - self.own))
 
 
-def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: float) -> SteppedLanding:
+def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: float) -> SteppedLanding | None:
     """Return what a time step makes of the block's landing on springs of the stiffness ratio k.
+
+    None where it takes more than `MOST` steps.
 
     Parameters
     ----------
@@ -305,133 +317,45 @@ def stepped_landing(stepping: Stepping, ratio: float, step: float, transit: floa
     step, transit
         dt and h / c [s].
     """
+    is_rigid = math.isinf(ratio)
+    if _steps(0.0 if is_rigid else own_landing(ratio).duration, step / transit) > MOST:
+        return None
     values = restitutions(stepping, ratio, step, transit, PHASES)
-    own_restitution = rigid_stop()[-1] if math.isinf(ratio) else own_landing(ratio).restitution
+    own_restitution = rigid_stop()[-1] if is_rigid else own_landing(ratio).restitution
     # any phase is as likely: its ends are half an interval each
     mean = np.trapezoid(values, PHASES)
-    energy = np.trapezoid(values**2, PHASES)
-    return SteppedLanding(float(mean), float(values.min()), float(values.max()), float(energy), own_restitution)
+    return SteppedLanding(float(mean), float(values.min()), float(values.max()), own_restitution)
 
 
 def restitutions(stepping: Stepping, ratio: float, step: float, transit: float, phases: Array) -> Array:
     """Return the greatest speed of the centre of mass in flight after the landing, over V, for each phase.
 
     The step in which the springs are first pressed begins above them by (1 - phase) of the distance of that step. A
-    step is linear in (D, V, A) while the contact state stays; the free gap of the next step, f (D, V, A), decides on
-    its state. So the rows f T^n of many steps are applied at once, and the first that changes its sign ends a stretch.
+    step is linear in (D, V, A) while the contact state stays; the free gap, f (D, V, A), decides on its state.
     """
     tau = step / transit
     gg = stepping.at(step).gg
-    if not math.isinf(ratio) and (1 - gg) * own_landing(ratio).duration / (4 * math.pi * tau) > 1:
-        return np.zeros(len(phases))  # the discount damps the contact at twice the critical rate: it does not rebound
+    duration = 0.0 if math.isinf(ratio) else own_landing(ratio).duration
+    greatest_speed = np.zeros(len(phases))
+    if (1 - gg) * duration / (4 * math.pi * tau) > 1:
+        return greatest_speed  # the discount damps the contact at twice the critical rate: it does not rebound
     opened, closed, free_gap = _step_matrices(stepping, gg, tau, ratio)
     state = np.zeros((len(phases), 6))
     state[:, 0] = gg * tau * (1 - phases)
     state[:, 2] = -1.0
-    duration = 0.0 if math.isinf(ratio) else own_landing(ratio).duration
-    limit = FEWEST + math.ceil((2 * duration + FLIGHT) / tau)
-    # the highest frequencies of the two states, over c/h: that of the closed block is below the sum of its parts
-    flight = _Stretch.of(opened, free_gap, math.sqrt(12) * tau, contact=False)
-    contact = _Stretch.of(closed, free_gap, math.sqrt(12 + 4 * ratio) * tau, contact=True)
-
-    passed = np.zeros(len(phases))
-    greatest_speed = np.zeros(len(phases))
-    active = np.arange(len(phases), dtype=np.intp)
-    while active.size:
-        contact.advance(state, passed, active, limit)
-        active = active[passed[active] < limit]
-        # the first step of a flight has the contact force of its start behind it
-        greatest_speed[active] = np.maximum(greatest_speed[active], state[active] @ opened[2])
-        flight.advance(state, passed, active, limit)
-        active = active[passed[active] < limit]
+    was_pressed = np.zeros(len(phases), dtype=bool)
+    for _ in range(_steps(duration, tau)):
+        is_pressed = state @ free_gap < 0
+        state = np.where(is_pressed[:, None], state @ closed.T, state @ opened.T)
+        lifted = was_pressed & ~is_pressed  # the first step of a flight has the contact force of its start behind it
+        greatest_speed[lifted] = np.maximum(greatest_speed[lifted], state[lifted, 2])
+        was_pressed = is_pressed
     return greatest_speed
 
 
-def _is_over(state: Array) -> Array:
-    """Return which flights are the last: clear of the springs by more than their strain, or at rest by a discount."""
-    strain = 1.05 * np.hypot(state[:, 1], state[:, 3] / math.sqrt(12))
-    clear = (state[:, 2] > 0) & (state[:, 0] > strain / 2)
-    return np.asarray(clear | (np.abs(state[:, 2]) < REST))
-
-
-@dataclass(frozen=True)
-class _Stretch:
-    """Steps of one contact state, and how to find the first that no longer has it.
-
-    Steps are looked at in strides, from about a sixtieth of the shortest period down to one step, so that the work of
-    a stretch does not depend on the number of its steps.
-    """
-
-    contact: bool
-    levels: tuple[tuple[int, Array, Array], ...]  # stride [steps]; f T^(stride n); T^(stride n), n = 0 to WINDOW
-    settling: _Settling | None  # of a contact
-
-    @classmethod
-    def of(cls, matrix: Array, free_gap: Array, phase: float, contact: bool) -> _Stretch:
-        """Return the tables; `phase` is the highest frequency times the step."""
-        levels = []
-        stride = 1
-        first = matrix
-        while True:
-            powers = _powers(matrix, WINDOW)
-            levels.append((stride, np.einsum("i,nij->nj", free_gap, powers), powers))
-            if not stride * WINDOW * phase * SAMPLES < 2 * math.pi:
-                break
-            stride *= WINDOW
-            matrix = powers[WINDOW]
-        return cls(contact, tuple(reversed(levels)), _Settling.of(first, free_gap) if contact else None)
-
-    def advance(self, state: Array, passed: Array, chosen: NDArray[np.intp], limit: float) -> None:
-        """Advance the chosen rows of states to the last step of the stretch; `passed` is infinite where there is none.
-
-        A flight has none where it is the last, a contact where it settles; one of more steps than the limit is none.
-        """
-        for stride, rows, powers in self.levels:
-            pending = chosen[passed[chosen] < limit]
-            while pending.size:
-                stays = (rows @ state[pending].T < 0) == self.contact
-                ends = ~stays.all(axis=0)
-                count = np.where(ends, np.argmin(stays, axis=0), WINDOW)
-                if stride > 1:  # the change lies before the first sample that shows it
-                    count = np.where(ends, np.maximum(count - 1, 0), count)
-                state[pending] = np.einsum("nij,nj->ni", powers[count], state[pending])
-                passed[pending] += stride * count
-                pending = pending[~ends]
-                if not self.contact:
-                    passed[pending[_is_over(state[pending])]] = math.inf
-                elif self.settling is not None:
-                    passed[pending[self.settling.stays(state[pending])]] = math.inf
-                pending = pending[passed[pending] < limit]
-
-
-@dataclass(frozen=True)
-class _Settling:
-    """Contacts that end no more: a discount takes the speed, and the block creeps back to the springs' ends.
-
-    The free gap after n steps is a sum of terms c_j z_j^n. Where the z of greatest modulus is real and positive, and
-    its c is negative and outweighs all others together, the gap keeps its sign for ever.
-    """
-
-    slowest: Array  # c of that z, over the state
-    others: NDArray[np.complex128]  # c of the others, one a row
-
-    @classmethod
-    def of(cls, matrix: Array, free_gap: Array) -> _Settling | None:
-        """Return the terms of a map; None where the greatest z is not real and positive, or there is no basis."""
-        z, vectors = np.linalg.eig(matrix)
-        top = int(np.argmax(np.abs(z)))
-        if z[top].imag != 0 or z[top].real <= 0:
-            return None
-        try:
-            terms = (free_gap @ vectors)[:, None] * np.linalg.inv(vectors)
-        except np.linalg.LinAlgError:
-            return None
-        return cls(np.asarray(terms[top].real), np.asarray(np.delete(terms, top, axis=0)))
-
-    def stays(self, state: Array) -> NDArray[np.bool_]:
-        """Return which rows of states stay in contact for ever."""
-        others = np.abs(state @ self.others.T).sum(axis=1)
-        return np.asarray(state @ self.slowest < -1.01 * others)  # a little more than all others, for rounding
+def _steps(duration: float, tau: float) -> int:
+    """Return the steps after which a block has landed for the last time."""
+    return FEWEST + math.ceil((2 * duration + FLIGHT) / tau)
 
 
 def _step_matrices(stepping: Stepping, gg: float, tau: float, ratio: float) -> tuple[Array, Array, Array]:
@@ -460,16 +384,6 @@ def _step_matrices(stepping: Stepping, gg: float, tau: float, ratio: float) -> t
     force = -free_gap / (1 / ratio + GAP @ by_displacement)
     closed = opened + np.outer(np.concatenate([by_displacement, by_velocity, by_acceleration]), force)
     return opened, closed, free_gap
-
-
-def _powers(matrix: Array, count: int) -> Array:
-    """Return matrix^0 to matrix^count, a power of two, shape (count + 1, 6, 6)."""
-    powers = np.eye(6)[None]
-    top = matrix
-    while len(powers) < count:
-        powers = np.concatenate([powers, powers @ top])
-        top = top @ top
-    return np.concatenate([powers, top[None]])
 
 
 def springs_for(scene: Scene, speed: float, penetration: float) -> float:

@@ -9,10 +9,9 @@ x_f and v_f those of the stage without N1, C and D what a unit of it adds. It is
 gap at the end there is no answer where the dashpot alone stops the mass. W = inf is the rigid stop in displacements
 (a linear complementarity problem, LCP), N1 = max(0, -x_f / C), and the limit of augmented Lagrangian passes.
 
-The phase theta is the overshoot of the first step that would end below the contact, over V dt: uniform from 0 to gg,
-as that step covers gg V dt and starts above the contact. The rebound e is the speed after it over that before it.
-Under generalised alpha v goes on changing in flight, by the powers of am/(am - 1): it is read `FLIGHT` steps after the
-last force. With gg < 1 flight loses speed, and e is read at the end of the first step without force instead.
+The phase theta is the overshoot of the first step that would end below the contact, over V dt: uniform from 0 to 1.
+The rebound e is the speed after it over that before it. Under generalised alpha v goes on changing in flight, by the
+powers of am/(am - 1): it is read `FLIGHT` steps after the last force. There is no discount: it would change flights.
 
 Kane's rule is Newmark's (1/2, 1) here (a rigid mass has nothing but the contact's force), symplectic Euler is
 leapfrog, and a soft constraint is implicit Euler with zeta.
@@ -31,7 +30,7 @@ from validation.runs.history import Array
 from validation.theory.stages import Stages
 
 FLIGHT = 80
-"""Steps without force after which e is read where gg = 1."""
+"""Steps without force after which e is read."""
 LONGEST = 200_000
 """Steps after which a mass that is still pressed counts as stuck."""
 REST = 1e-18
@@ -60,12 +59,12 @@ class ReboundStatistics(NamedTuple):
 Advance = Callable[[Motion], Motion]
 
 
-def midpoints(count: int, gg: float = 1.0) -> Array:
-    """Return the phases at the middles of equal parts, (i + 1/2) gg / count."""
-    return gg * (np.arange(count) + 0.5) / count
+def midpoints(count: int) -> Array:
+    """Return the phases at the middles of equal parts, (i + 1/2) / count."""
+    return (np.arange(count) + 0.5) / count
 
 
-def spring_steps(stages: Stages, omega: float, gg: float = 1.0, zeta: float = 0.0) -> Advance:
+def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
     """Return the step on a spring, with a dashpot if zeta > 0, or on a rigid stop if omega is infinite.
 
     Parameters
@@ -80,12 +79,12 @@ def spring_steps(stages: Stages, omega: float, gg: float = 1.0, zeta: float = 0.
     ValueError
         If a number is out of its range, or an explicit stage meets the rigid stop.
     """
-    check(omega, gg, zeta)
+    check(omega, zeta)
     if math.isinf(omega) and any(stage.beta == 0 for stage in stages):
         raise ValueError("omega: must be finite in an explicit scheme, got inf")
 
     def advance(start: Motion) -> Motion:
-        u = gg * start.v
+        u = start.v
         before = start._replace(pressed=np.zeros_like(start.N))
         for stage in stages:
             x, v = stage.ahead(start.x, u, start.a, before.v, before.a)
@@ -115,7 +114,7 @@ def pressing_force(omega: float, zeta: float, x: Array, v: Array, C: float, D: f
     return np.where(x < 0, np.maximum(force, 0.0), 0.0)
 
 
-def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
+def conserving_steps(omega: float) -> Advance:
     """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0).
 
     Raises
@@ -123,13 +122,13 @@ def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
     ValueError
         If a number is out of its range; a rigid stop stores no energy.
     """
-    check(omega, gg, 0.0)
+    check(omega)
     if math.isinf(omega):
         raise ValueError("omega: must be finite with energy-conserving contact, got inf")
     k = omega * omega
 
     def advance(start: Motion) -> Motion:
-        u = gg * start.v
+        u = start.v
         w0 = start.x
         free = w0 + u
         # pressed before and after, then lifting off, then landing with the penetration d
@@ -147,10 +146,8 @@ def conserving_steps(omega: float, gg: float = 1.0) -> Advance:
     return advance
 
 
-def rebounds(advance: Advance, theta: ArrayLike, gg: float = 1.0) -> Array:
+def rebounds(advance: Advance, theta: ArrayLike) -> Array:
     """Return e at the phases theta; 0 where the mass comes to rest on the contact.
-
-    Beyond gg a phase starts below the contact, which no flight does.
 
     Raises
     ------
@@ -163,17 +160,13 @@ def rebounds(advance: Advance, theta: ArrayLike, gg: float = 1.0) -> Array:
     e = np.zeros_like(phases)
     index = np.arange(len(phases))
     rest = np.zeros_like(phases)
-    motion = Motion(gg - phases, rest - 1, rest, rest, rest)
+    motion = Motion(1 - phases, rest - 1, rest, rest, rest)
     flight = np.full(len(phases), -1)  # steps without force since the last one with it; -1 before the first
     for _ in range(LONGEST):
         motion = advance(motion)
         flight = np.where(motion.pressed > 0, 0, np.where(flight >= 0, flight + 1, -1))
-        if gg < 1:
-            released = flight == 1
-            e[index[released]] = motion.v[released]
         over = (flight >= FLIGHT) & (motion.v >= 0)
-        if gg == 1:
-            e[index[over]] = motion.v[over]
+        e[index[over]] = motion.v[over]
         over |= np.max(np.abs(motion), axis=0) < REST
         if over.any():
             motion = Motion(*(part[~over] for part in motion))
@@ -184,17 +177,15 @@ def rebounds(advance: Advance, theta: ArrayLike, gg: float = 1.0) -> Array:
     return e
 
 
-def rebound_statistics(advance: Advance, gg: float = 1.0, count: int = 100) -> ReboundStatistics:
+def rebound_statistics(advance: Advance, count: int = 100) -> ReboundStatistics:
     """Return the statistics of the rebound over `count` phases at the middles of equal parts."""
-    e = rebounds(advance, midpoints(count, gg), gg)
+    e = rebounds(advance, midpoints(count))
     return ReboundStatistics(float(e.mean()), float(e.min()), float(e.max()), float((e * e).mean()))
 
 
-def check(omega: float, gg: float, zeta: float) -> None:
+def check(omega: float, zeta: float = 0.0) -> None:
     """Raise ValueError where a number is out of its range."""
     if not omega > 0:
         raise ValueError(f"omega: must be positive, got {omega!r}")
-    if not 0 < gg <= 1:
-        raise ValueError(f"gg: must be above 0 and at most 1, got {gg!r}")
     if not (math.isfinite(zeta) and zeta >= 0):
         raise ValueError(f"damping_ratio: must be finite and not negative, got {zeta!r}")

@@ -81,12 +81,6 @@ def print_lines(lines: Iterable[StyledLine]) -> None:
         printer.print(styled_text, soft_wrap=True)
 
 
-def in_minutes(seconds: float) -> str:
-    """Return a duration in words, "36 s" or "2 m 6 s"."""
-    minutes, rest = divmod(round(seconds), 60)
-    return f"{minutes} m {rest} s" if minutes else f"{rest} s"
-
-
 @contextmanager
 def tolerate_closed_pipe() -> Iterator[None]:
     """Go on where the reader of the output has gone: what is left to say decides nothing."""

@@ -26,98 +26,99 @@ def norm(values: Array) -> float:
     return size_of(values) or 1.0
 
 
-def joined(recorded: tuple[Array, Array | None], displacement: Array, pressure: Array | None) -> Array:
-    """Return two columns over the norms of recorded ones, below one another; their own squares sum to one."""
-    first = displacement / norm(recorded[0])
-    if recorded[1] is None or pressure is None:
-        return np.asarray(first)
-    return np.concatenate([first, pressure / norm(recorded[1])]) / math.sqrt(2)
-
-
 @dataclass(frozen=True, eq=False)
 class Target:
-    """What is to be explained: recorded rows of one or two columns."""
+    """What is to be explained: recorded rows of one or two columns.
+
+    Joined rows are those of all columns, one below the other, over their norms: the squares of the recorded ones sum to
+    one.
+    """
 
     column: Rectangle
     steps: Array  # every step of the program [s], shape (n,)
     rows: np.ndarray  # indices of the recorded steps
-    displacement: Array  # [m], one value a recorded step
-    pressure: Array | None = None  # [Pa]
-    rounding: Array | None = None  # of the displacement [m], seen from the values if not given
-    pressure_rounding: Array | None = None  # [Pa]
-    left_out: NDArray[np.bool_] | None = None  # which of the joined rows are not to be explained
+    recorded: Array  # the displacement [m] and, if given, the pressure [Pa], (columns, rows)
+    rounding: Array | None = None  # of each of them, seen from the values if not given
+    left_out: NDArray[np.bool_] | None = None  # which of them are not to be explained
 
     @property
-    def recorded(self) -> list[Array]:
-        """The displacement and, if given, the pressure."""
-        return [self.displacement] if self.pressure is None else [self.displacement, self.pressure]
+    def displacement(self) -> Array:
+        """The recorded displacement [m]."""
+        return np.asarray(self.recorded[0])
+
+    @property
+    def pressure(self) -> Array | None:
+        """The recorded pressure, if given [Pa]."""
+        return np.asarray(self.recorded[1]) if len(self.recorded) > 1 else None
+
+    @cached_property
+    def scales(self) -> Array:
+        """By which columns are divided where rows are joined, (columns, 1)."""
+        norms = np.array([[norm(values)] for values in self.recorded])
+        return norms * math.sqrt(len(norms))
 
     @property
     def values(self) -> Array:
-        """The columns over their norms, one below the other: its squares sum to one."""
-        return self.join(self.displacement, self.pressure)
+        """The joined rows of the history."""
+        return self.join(self.recorded[..., None])[:, 0]
 
-    def join(self, displacement: Array, pressure: Array | None) -> Array:
-        """Return columns of the recorded rows scaled as `values` is, shape (rows, ...) to (all rows, ...)."""
-        rows = joined((self.displacement, self.pressure), displacement, pressure)
+    def join(self, columns: Array) -> Array:
+        """Return columns of histories, (columns, rows, histories), as joined rows, (all rows, histories)."""
+        rows = columns / self.scales[..., None]
         if self.left_out is not None:
             rows[self.left_out] = 0.0
-        return rows
+        return np.asarray(rows.reshape(-1, rows.shape[-1]))
 
     def responses(self, variants: Sequence[Variant]) -> Array:
-        """Return the variants' histories scaled as `values` is, one column each."""
-        columns = [np.empty((len(self.values), 0))]
+        """Return the variants' histories as joined rows, one column each."""
+        columns = [np.empty((self.recorded.size, 0))]
         for first in range(0, len(variants), CHUNK):
             stepped = histories(self.column, variants[first : first + CHUNK], self.steps)
+            both = [stepped.displacement[self.rows], stepped.pressure[self.rows]]
             with np.errstate(all="ignore"):  # variants that grow beyond what a double holds are far from any history
-                columns.append(self.join(stepped.displacement[self.rows], stepped.pressure[self.rows]))
+                columns.append(self.join(np.array(both[: len(self.recorded)])))
         return np.nan_to_num(np.hstack(columns), nan=1e6, posinf=1e6, neginf=-1e6).clip(-1e6, 1e6)
 
-    def parts(self, joined: Array) -> list[Array]:
-        """Return joined rows as those of the displacement and, if given, of the pressure, in their units."""
-        if self.pressure is None:
-            return [joined * norm(self.displacement)]
-        n = len(self.rows)
-        scale = math.sqrt(2)
-        return [joined[:n] * scale * norm(self.displacement), joined[n:] * scale * norm(self.pressure)]
+    def parts(self, joined: Array) -> Array:
+        """Return joined rows as columns in their units, (columns, rows)."""
+        return np.asarray(joined.reshape(len(self.recorded), -1) * self.scales)
 
     @cached_property
     def bars(self) -> list[Bar]:
-        """What digits and noise may leave of the displacement and, if given, of the pressure."""
-        bars = [Bar.of(self.displacement, self.rounding)]
-        return bars if self.pressure is None else [*bars, Bar.of(self.pressure, self.pressure_rounding)]
+        """What digits and noise may leave of each column."""
+        roundings = [None] * len(self.recorded) if self.rounding is None else list(self.rounding)
+        return [Bar.of(values, rounding) for values, rounding in zip(self.recorded, roundings, strict=True)]
 
     def explained(self, joined: Array) -> bool:
         """Whether nothing but digits and noise remains in every column."""
         return all(bar.holds(part) for bar, part in zip(self.bars, self.parts(joined), strict=True))
 
     def outlying(self, joined: Array) -> NDArray[np.bool_] | None:
-        """Return the joined rows that stand out of what remains; None where there are none, or not as single rows.
+        """Return the rows of each column that stand out of what remains; None where none do, or not as single rows.
 
         Single rows are few, no more than two beside one another, and not the first ones, where any motion begins.
         """
-        outlying = [bar.outlying(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)]
-        counts = [int(np.sum(rows)) for rows in outlying]
-        if not any(counts) or max(counts) > max(1, len(self.rows) // LOST_ROWS):
+        rows = np.array([bar.outlying(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)])
+        most = int(np.max(np.sum(rows, axis=1)))
+        if not 0 < most <= max(1, len(self.rows) // LOST_ROWS):
             return None
-        if any(np.any(rows[:AROUND]) or np.any(rows[2:] & rows[1:-1] & rows[:-2]) for rows in outlying):
+        if np.any(rows[:, :AROUND]) or np.any(rows[:, 2:] & rows[:, 1:-1] & rows[:, :-2]):
             return None
-        return np.concatenate(outlying)
+        return rows
 
     def inner(self, joined: Array, variant: Variant) -> Array:
         """Return joined rows without those that a shift leaves open: a program may write anything there."""
         late, n = math.ceil(max(abs(variant.shift), abs(variant.late))), len(self.rows)
         if not late or n < LEAST_ROWS:
             return joined
-        inner_rows = joined.copy()
-        for start in range(0, len(joined), n):
-            inner_rows[start : start + late] = 0
-            inner_rows[start + n - late : start + n] = 0
-        return inner_rows
+        inner_rows = joined.reshape(-1, n).copy()
+        inner_rows[:, :late] = 0
+        inner_rows[:, n - late :] = 0
+        return inner_rows.ravel()
 
-    def deviations(self, joined: Array) -> list[Array]:
+    def deviations(self, joined: Array) -> Array:
         """Return the standard deviation of every row of each column, their noise no larger than a remainder has it."""
-        return [bar.deviation(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)]
+        return np.array([bar.deviation(part) for bar, part in zip(self.bars, self.parts(joined), strict=True)])
 
     @cached_property
     def floor(self) -> float:
@@ -128,12 +129,7 @@ class Target:
     def until(self, steps: int) -> Target:
         """Return the rows up to a step, at least a few."""
         length = max(int(np.searchsorted(self.rows, steps)), min(LEAST_ROWS, len(self.rows)))
-        last = int(self.rows[length - 1]) + 1
-        pressure, rounding, other = (
-            None if c is None else c[:length] for c in (self.pressure, self.rounding, self.pressure_rounding)
-        )
-        columns = self.displacement[:length], pressure, rounding, other
-        left_out = self.left_out
-        if left_out is not None:
-            left_out = left_out.reshape(-1, len(self.rows))[:, :length].ravel()
-        return Target(self.column, self.steps[:last], self.rows[:length], *columns, left_out)
+        rounding = None if self.rounding is None else self.rounding[:, :length]
+        left_out = None if self.left_out is None else self.left_out[:, :length]
+        steps_of_rows = self.steps[: int(self.rows[length - 1]) + 1]
+        return Target(self.column, steps_of_rows, self.rows[:length], self.recorded[:, :length], rounding, left_out)

@@ -5,9 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.columns import compare_column
+from validation.diagnosis.columns import compare_column, laws
 from validation.diagnosis.hooks import DiagnosisHooks, unread
-from validation.diagnosis.numbers import Number, Values, numbers_of_column, numbers_of_layers, with_more_blocks
+from validation.diagnosis.numbers import (
+    CandidateChange,
+    Number,
+    Values,
+    numbers_of_column,
+    numbers_of_layers,
+    with_more_blocks,
+)
 from validation.diagnosis.reading import Foreign
 from validation.scenes.scene import Scene
 
@@ -22,6 +29,10 @@ class HOOKS(DiagnosisHooks):
     def numbers_of_layers(self, scene: Scene) -> Iterator[Number]:
         """Yield the densities of layers, where they differ, each by itself."""
         return numbers_of_layers(scene)
+
+    def laws(self, scene: Scene) -> Iterator[CandidateChange[Values]]:
+        """Yield contacts that hold or are not there, and what may be forgotten; none of a bonded column."""
+        yield from () if scene.column.law == "bonded" else laws(scene)
 
     def accurate(self, scene: Scene) -> Values:
         """Return average acceleration and more blocks in each layer."""

@@ -14,7 +14,7 @@ import numpy as np
 from validation.models.plane.assembly import TOUCHING
 from validation.models.plane.blocks import PlacedBlock
 from validation.models.plane.history import POSE, pair_column
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import BODIES, PlaneSection
 from validation.runs.history import Array
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene
@@ -175,7 +175,7 @@ def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
     ValueError
         It states something else.
     """
-    others = [name for name in ("observe", "pair", "bond", "load", "touch") if getattr(plane, name)]
+    others = [name for name in (*BODIES, "observe", "pair", "bond", "load", "touch") if getattr(plane, name)]
     if others or plane.ramp:
         raise ValueError(f"boxes on a ground must have one contact and weight alone, got {', '.join(others) or 'ramp'}")
     contact = plane.contact

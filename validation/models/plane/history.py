@@ -14,7 +14,6 @@ from validation.runs.columns import ColumnKind
 
 POSE = ("x", "y", "angle")
 MOMENTUM, ENERGY = "momentum", "energy"
-RATES = ("vx", "vy", "spin")  # that a block has which moves by itself
 GAP = "gap"  # of a contact
 RESERVED = (MOMENTUM, ENERGY)  # no block is called so
 OF_BLOCK: Mapping[str, tuple[str, str]] = {

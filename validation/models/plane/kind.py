@@ -6,7 +6,7 @@ import difflib
 from typing import Any, ClassVar
 
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.history import RATES, PlaneColumns, numbers_of, place_of
+from validation.models.plane.history import PlaneColumns, numbers_of, place_of
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.kinds import Kind
 
@@ -65,8 +65,7 @@ def _is_column(column: str, assembly: Assembly) -> bool:
         return not stated or numbers_of(place.contact, [*corners]) in stated
     if place.pair is not None:
         return {*place.pair} <= {*corners} and len({*place.pair}) == len(place.pair)
-    rate_of_driven = place.part in RATES and place.block in {block.name for block in assembly.blocks if block.motion}
-    return bool(place.whole) or (place.block in corners and not rate_of_driven)
+    return bool(place.whole) or place.block in corners
 
 
 KIND = BlocksInThePlane

@@ -39,20 +39,21 @@ class ContactPoint(NamedTuple):
 def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
     """Yield every corner on an edge: inside of it, or at its end where two faces lie on each other."""
     corners = [np.array(outline) for outline in outlines]
+    lows = [points.min(axis=0) - NEAR for points in corners]
+    highs = [points.max(axis=0) for points in corners]
     for block, points in enumerate(corners):
         for on, others in enumerate(corners):
-            if block == on or np.any(points.min(axis=0) > others.max(axis=0) + NEAR):
+            if block == on or np.any(lows[block] > highs[on]) or np.any(lows[on] > highs[block]):
                 continue
             for start, end in zip(others, np.roll(others, -1, axis=0), strict=True):
                 length = float(np.hypot(*(end - start)))
                 along = (end - start) / length
                 normal = np.array([along[1], -along[0]])
-                for number, point in enumerate(points):
-                    before = float((point - start) @ along)
-                    if abs(float((point - start) @ normal)) > NEAR or not -NEAR <= before <= length + NEAR:
-                        continue
-                    if NEAR < before < length - NEAR or _lies_on(points, number, along):
-                        yield ContactPoint(block, on, point, normal)
+                before = (points - start) @ along
+                is_on_line = np.abs((points - start) @ normal) <= NEAR
+                for number in np.flatnonzero(is_on_line & (before >= -NEAR) & (before <= length + NEAR)):
+                    if NEAR < before[number] < length - NEAR or _lies_on(points, int(number), along):
+                        yield ContactPoint(block, on, points[number], normal)
 
 
 def _lies_on(points: Array, number: int, along: Array) -> bool:

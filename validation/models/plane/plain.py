@@ -11,7 +11,7 @@ import numpy as np
 from validation.errors import InputError
 from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, second_moments
 from validation.models.plane.joints import PlaneContactSection, PlaneTouchSection
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import BODIES, PlaneSection
 from validation.scenes.outline import area
 from validation.scenes.plain import PlainHooks
 from validation.scenes.record import read_record
@@ -40,7 +40,7 @@ class HOOKS(PlainHooks):
             The scene has more than that.
         """
         plane = scene.table(PlaneSection)
-        if more := [name for name in ("observe", "bond", "load", "ramp") if getattr(plane, name)]:
+        if more := [name for name in (*BODIES, "observe", "bond", "load", "ramp") if getattr(plane, name)]:
             rule = "plain data hold blocks and contacts under weight"
             raise InputError(rule, source=scene.name, field=f"plane.{more[0]}")
         blocks = plane.assembly.blocks

@@ -12,7 +12,7 @@ import numpy as np
 
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.geometry import inside
-from validation.models.plane.tables import PlaneSection, Segment
+from validation.models.plane.tables import BODIES, PlaneSection, Segment
 from validation.report.scene.drawing import body_height, body_width, box_rows
 from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
 from validation.report.texts import Texts
@@ -34,7 +34,7 @@ class HOOKS(ShowingHooks):
 
     def bodies(self, scene: Scene, varied: Collection[str]) -> Iterator[str]:
         """Yield the number of blocks."""
-        if not {"plane.block", "plane.subdivide"} & {*varied}:
+        if not {"plane.block", "plane.subdivide", "plane.plate.cells", "plane.disc.cells"} & {*varied}:
             yield f"{len(scene.table(PlaneSection).polygons)} blocks"
 
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
@@ -70,7 +70,8 @@ def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
         beside.append(TEXTS.text("stress", plane))
     if any(plane.gravity):
         beside.append(TEXTS.text("gravity", *plane.gravity))
-    beside += [TEXTS.text("traction", *traction, _segment(edge)) for edge, traction in plane.tractions]
+    beside += [TEXTS.text(name, getattr(plane, name)) for name in BODIES if getattr(plane, name)]
+    beside += [TEXTS.text("traction", *(load.traction or ()), _segment(load.edge)) for load in plane.load if load.edge]
     return across, box_rows(across, body_height(across, slenderness), beside)
 
 

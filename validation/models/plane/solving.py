@@ -74,6 +74,8 @@ class HOOKS(SolvingHooks):
         if not elements:
             unknowns = 12.0 * blocks  # six of a block, and the forces of its joints
             field = "plane.block" if plane.rectangle is None else "plane.subdivide"
+            if plane.body is not None:
+                field = "plane.plate.cells" if plane.plate else "plane.disc.cells"
             states = float(STATE * NUMBER) * blocks * scene.time.steps if plane.moves else 0.0
             return states + sparse(unknowns), field
         sides = plane.rectangle or (1.0, 1.0)

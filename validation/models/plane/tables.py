@@ -16,58 +16,33 @@ from pydantic import model_validator
 from validation.models.plane import assembly, geometry
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import Point as Point
-from validation.models.plane.blocks import Vertices, cells, thickness
+from validation.models.plane.blocks import Vertices as Vertices
+from validation.models.plane.blocks import cells, thickness
 from validation.models.plane.contents import GENERATORS, PlaneContents
 from validation.models.plane.generators import MOST_BLOCKS
+from validation.models.plane.glued import BodySection, ClampSection, DiscSection, ObserveSection
+from validation.models.plane.glued import Loads as Loads
+from validation.models.plane.glued import PlateSection as PlateSection
 from validation.models.plane.joints import Segment as Segment
-from validation.scenes.keys import Key, Section
+from validation.scenes.keys import Key
 from validation.scenes.tables import Count, Positive, Real
 
 OWN_STIFFNESS = 1.0e9  # N/m, of a corner: DDA's springs where a scene has rigid contact
 OWN_STEP = 2.0e-3  # s: and its longest step there, that of the damping study that this suite began with
 OF_MOTION = ("contact", "pair", "touch", "bond", "ramp", *GENERATORS)  # keys that go with moving blocks only
 OF_GLUED = ("stress", "clamp", "clamp_glue", "width", "height", "subdivide", "pattern")  # with glued ones only
+BODIES = ("plate", "disc")  # keys that draw a glued body
 OF_MOVING_BLOCK = ("velocity", "spin", "fixed", "motion", "density", "young", "poisson", "subdivide")
-
-
-class ClampSection(Section):
-    """A straight part of the outline that does not move."""
-
-    edge: Annotated[Segment, Key("m", "from a point to a point of the outline")]
-
-
-class ObserveSection(Section):
-    """The displacement that a history holds: the mean of an edge, or that of a point, less what others move by."""
-
-    edge: Annotated[Segment | None, Key("m", "of whose displacement the mean is taken")] = None
-    point: Annotated[Point | None, Key("m", "in its place")] = None
-    direction: Annotated[tuple[Real, Real], Key("", "of the displacement, a unit vector")]
-    less: Annotated[tuple[Segment, ...], Key("m", "edges, the mean of whose displacements is subtracted")] = ()
-    stress: Annotated[Point | None, Key("m", "where the mean stress of the blocks is observed that meet there")] = None
-
-    @model_validator(mode="after")
-    def _check(self) -> Self:
-        if (self.edge is None) == (self.point is None):
-            raise ValueError(f"needs an edge or a point, got {'neither' if self.edge is None else 'both'}")
-        if abs(math.hypot(*self.direction) - 1) > 1e-9:
-            raise ValueError(f"direction must be of length 1, got {math.hypot(*self.direction):g}")
-        return self
-
-    @property
-    def place(self) -> Segment:
-        """Where it is: an edge, or a point twice."""
-        if self.edge is not None:
-            return self.edge
-        return (self.point, self.point)  # type: ignore[return-value]  # one of the two is stated
 
 
 class PlaneSection(PlaneContents):
     """Blocks in the plane, of unit thickness: rigid, or of one strain each.
 
     Glued (with `[plane.observe]`): blocks of one strain, glued along all edges that they share, and the elastic body of
-    their outline. They are stated one by one, or as an upright rectangle with its lower left corner at the origin that
-    is cut into equal blocks (`width`, `height`, `subdivide`). At each end of a shared edge stand a normal and a shear
-    spring of `glue` times Young's modulus.
+    their outline. They are stated one by one, as an upright rectangle with its lower left corner at the origin that is
+    cut into equal blocks (`width`, `height`, `subdivide`), or drawn as a body with a load of its own (`[plane.plate]`,
+    `[plane.disc]`), of which the table says what is observed if the scene does not. At each end of a shared edge stand
+    a normal and a shear spring of `glue` times Young's modulus.
 
     Moving: blocks stated one by one (`[[plane.block]]`) or generated (`[[plane.wall]]` and others), which touch by
     `[plane.contact]` where they meet, or by the corners of `[[plane.touch]]` alone. A history holds ``NAME.x``,
@@ -86,14 +61,17 @@ class PlaneSection(PlaneContents):
         Literal["squares", "triangles"],
         Key("", "of its blocks; triangles: each cell cut from lower left to upper right", "", ("subdivide",)),
     ] = "squares"
+    plate: PlateSection | None = None
+    disc: DiscSection | None = None
     clamp: tuple[ClampSection, ...] = ()
     observe: ObserveSection | None = None
 
     @model_validator(mode="after")
     def _check(self) -> Self:
         stated = [name for name in ("width", "height", "subdivide") if getattr(self, name) is not None]
-        if self.block and stated:
-            raise ValueError(f"block and {stated[0]} exclude each other, got both")
+        sources = [name for name in ("block", *BODIES) if getattr(self, name)] + stated[:1]
+        if len(sources) > 1:
+            raise ValueError(f"{sources[0]} and {sources[1]} exclude each other, got both")
         if self.is_glued:
             self._check_glued(stated)
         else:
@@ -109,8 +87,9 @@ class PlaneSection(PlaneContents):
     def _check_glued(self, stated: list[str]) -> None:
         if apart := [name for name in OF_MOTION if name in self.model_fields_set]:
             raise ValueError(f"{apart[0]} does not go with observe, got it of blocks that are glued")
-        if not self.block and len(stated) < 3:
-            raise ValueError(f"needs blocks, or width, height and subdivide, got {' and '.join(stated) or 'none'}")
+        if not self.block and self.body is None and len(stated) < 3:
+            rule = "needs blocks, a plate, a disc, or width, height and subdivide"
+            raise ValueError(f"{rule}, got {' and '.join(stated) or 'none'}")
         for number, block in enumerate(self.block):
             if apart := sorted({*OF_MOVING_BLOCK} & block.model_fields_set):
                 raise ValueError(f"block.{number}: {apart[0]} does not go with observe, got it of a glued block")
@@ -122,15 +101,22 @@ class PlaneSection(PlaneContents):
         for number, load in enumerate(self.load):
             if load.traction is None or load.edge is None or load.ramp or load.block is not None:
                 raise ValueError(f"load.{number}: must be a traction on an edge at once with observe, got another load")
-        if not self.load and not any(self.stress) and not any(self.gravity):
+        if not self.tractions and not any(self.stress) and not any(self.gravity):
             raise ValueError("needs a load: stress, gravity or [[plane.load]], got none")
 
     @property
     def observed(self) -> ObserveSection:
         """What is observed of glued blocks."""
-        if self.observe is None:
+        if self.observe is not None:
+            return self.observe
+        if self.body is None:
             raise ValueError("observe: is needed for what is asked, got blocks that move")
-        return self.observe
+        return self.body.observed
+
+    @property
+    def body(self) -> BodySection | None:
+        """The body that one table draws."""
+        return self.plate or self.disc
 
     @property
     def stressed_blocks(self) -> list[int]:
@@ -142,9 +128,10 @@ class PlaneSection(PlaneContents):
         return [number for number, distance in enumerate(apart) if distance <= near]
 
     @property
-    def tractions(self) -> tuple[tuple[Segment, tuple[float, float]], ...]:
+    def tractions(self) -> Loads:
         """The loads of glued blocks: edge [m] and traction [Pa]."""
-        return tuple((load.edge, load.traction) for load in self.load if load.edge and load.traction)
+        stated = tuple((load.edge, load.traction) for load in self.load if load.edge and load.traction)
+        return stated if self.body is None else (*self.body.tractions, *stated)
 
     @property
     def present(self) -> bool:
@@ -154,7 +141,7 @@ class PlaneSection(PlaneContents):
     @property
     def is_glued(self) -> bool:
         """Whether the blocks are glued along all edges that they share, and observed as they deform."""
-        return self.observe is not None
+        return self.observe is not None or self.body is not None
 
     @property
     def moves(self) -> bool:
@@ -174,6 +161,8 @@ class PlaneSection(PlaneContents):
     @cached_property
     def polygons(self) -> tuple[Vertices, ...]:
         """Corners of every block, of a rectangle row by row from below."""
+        if self.body is not None:
+            return tuple(self.body.triangles())
         if self.rectangle is None or self.subdivide is None:
             return tuple(block.vertices for block in assembly.placed_blocks(self)[0])
         return tuple(outline for _, outline in cells(*self.rectangle, self.subdivide, self.pattern))

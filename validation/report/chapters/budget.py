@@ -19,6 +19,7 @@ from validation.report.figures.histories import Margins
 from validation.runs.history import Array
 from validation.runs.records import BudgetRecord
 
+FIRST = "first axial"
 OVER = ("time.step", "time.steps", "fem.elements")  # what a budget is drawn over or does not depend on
 IN_A_ROW = 4  # settings
 MARGINS = Margins(right=24.0, top=9.5, bottom=9.5)
@@ -53,6 +54,8 @@ def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
         if ends.size and ends[0] < dt.size - 1:
             lines.append(ChartLine("", dt[ends], line.y[ends], line.color, width=0, dots=2.6, hollow=True))
     steps = np.array(budget["steps"])
+    at_least_step = budget["modes"][FIRST]["total"][0]
+    is_overdamped = at_least_step is not None and at_least_step >= 1
     lines.append(ChartLine("", steps, np.full(steps.size, LEAST_RATIO), "black", width=0, dots=3.4))
     return ChartPanel(
         title,
@@ -62,14 +65,14 @@ def budget_panel(title: str, budget: BudgetRecord) -> ChartPanel:
         (dt[0], dt[-1]),
         (LEAST_RATIO, 1e3),
         (True, True),
-        {"a/c": budget["limits"]["wave transit"]},
-        {"overdamped": 100.0} if budget["limits"].get("overdamped below") else {},
+        {"a/c": budget["transit"]},
+        {"overdamped": 100.0} if is_overdamped else {},
     )
 
 
 def budget_lines(budget: BudgetRecord) -> list[ChartLine]:
     """Return the damping ratios [%] of both modes, parts of the first only where it has more than one."""
-    colors = {"first axial": style_of("dda").color, "contact": CONTACT_COLOR}
+    colors = {FIRST: style_of("dda").color, "contact": CONTACT_COLOR}
     lines = []
     for name, curves in budget["modes"].items():
         parts: dict[str, Array] = {}
@@ -80,7 +83,7 @@ def budget_lines(budget: BudgetRecord) -> list[ChartLine]:
         lines.append(line)
         least = min(np.nanmax(parts[part], initial=0.0) for part in ("algorithmic", "kinetic"))
         is_split = least > LEAST_RATIO
-        for part, dash in DASHES.items() if name == "first axial" else ():
+        for part, dash in DASHES.items() if name == FIRST else ():
             if part in parts and (is_split or ("viscous" in parts and part != "kinetic")):
                 lines.append(replace(line, name=f"{part} part", y=parts[part], width=0.9, dash=dash))
     return lines

@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator, MaxNLocator, NullFormatter, NullLocato
 
 from validation.report.figures.curves import GREY, HAIR, dash_style, style_of, thin
 from validation.report.figures.histories import (
+    WIDTH,
     EndLabel,
     Margins,
     axes_grid,
@@ -85,48 +86,55 @@ class ChartPanel:
 
 
 def chart_figure(
-    panels: Sequence[ChartPanel],
+    panels: Sequence[ChartPanel | None],
     height: float | Sequence[tuple[float, float]] = 48.0,
     margins: Margins | None = None,
     shared: bool = False,
+    width: float = WIDTH,
 ) -> Figure:
     """Draw panels from left to right and from above.
 
     Parameters
     ----------
     panels
-        The panels; as many in each row.
+        The panels; as many in each row, of which the last may be None: these places stay empty.
     height
         Height of one row [mm], or height of each row and gap below it.
     margins
         Margins [mm]; by default there is room for the names of the lines at the right of each panel.
     shared
-        Whether the panels have one y axis, labelled at the left.
+        Whether the panels of a row have one y axis, labelled at the left.
+    width
+        Width of the figure [mm].
     """
     rows = [(height, 0.0)] if isinstance(height, float | int) else list(height)
-    is_marked = margins is None or any(panel.marks for panel in panels)
+    drawn = [panel for panel in panels if panel is not None]
+    is_marked = margins is None or any(panel.marks for panel in drawn)
     if margins is None:
-        margins = _margins_for(panels)
+        margins = _margins_for(drawn)
     across = len(panels) // len(rows)
     has_marked_top = is_marked and margins.top >= MARKED
     with house_style():
-        figure, grid = axes_grid(rows, across, margins)
-        for line, (row, (_, gap)) in enumerate(zip(grid, rows, strict=True)):
-            row_panels = panels[line * across : (line + 1) * across]
-            for axes, panel in zip(row, row_panels, strict=True):
+        figure, grid = axes_grid(rows, across, margins, width)
+        lines = [panels[first : first + across] for first in range(0, len(panels), across)]
+        for row, line in zip(grid, lines, strict=True):
+            pairs = [(axes, panel) for axes, panel in zip(row, line, strict=True) if panel is not None]
+            for axes, panel in pairs:
                 _draw_lines(axes, panel)
             if shared:
-                _share_y(row)
-            for axes, panel in zip(row, row_panels, strict=True):
+                _share_y([axes for axes, _ in pairs])
+            for axes, panel in pairs:
                 _draw_frame(axes, panel, has_marked_top)
-                if not shared or axes is row[-1]:
+                if not shared or axes is pairs[-1][0]:
                     _write_names(axes, panel)
-                if row is not grid[-1] and gap < MARKED:  # the axis below has the same numbers
-                    axes.tick_params(labelbottom=False)
             if shared:
-                share_left(row, across, row_panels[0].y_label)
-                for axes in row[1:]:
+                share_left(row, len(pairs), pairs[0][1].y_label)
+                for axes, _ in pairs[1:]:
                     axes.set_ylabel("")
+        for row, following, (_, gap) in zip(grid, grid[1:], rows, strict=False):
+            for axes, below in zip(row, following, strict=True):
+                if gap < MARKED and axes.get_xlim() == below.get_xlim():  # the axis below has the same numbers
+                    axes.tick_params(labelbottom=False)
     return figure
 
 
@@ -224,7 +232,8 @@ def _draw_hairlines(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None
     for words, y in panel.levels.items():
         axes.axhline(y, **look)
         place = axes.get_yaxis_transform()
-        axes.text(0.01, y, words, transform=place, color=GREY, fontsize=6, ha="left", va="bottom")
+        if words:
+            axes.text(0.01, y, words, transform=place, color=GREY, fontsize=6, ha="left", va="bottom")
 
 
 def _write_names(axes: Axes, panel: ChartPanel) -> None:

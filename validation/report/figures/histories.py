@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -23,7 +22,6 @@ from validation.runs.files import write_atomically
 
 HOUSE_STYLE = mpl.rc_params_from_file(str(Path(__file__).with_name("house.mplstyle")), use_default_template=False)
 EndLabel = tuple[float, str, str]  # value at the end of a line, its name, its colour
-P = TypeVar("P", bound=Any)  # a dataclass with a title
 WIDTH = 166.0  # mm, text width of the report
 SLIDE = (136.0, 76.5)  # mm, width and height of a figure for a slide of 16 to 9, on which its letters have 13 pt
 LABEL_GAP = 3.0  # mm between the names of two lines
@@ -108,27 +106,6 @@ def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> No
         where: dict[str, Any] = {"transform": axes.transAxes, "color": color}
         axes.plot([1, 1 + 2.5 / width], [start, place], lw=HAIR, clip_on=False, **where)
         axes.text(1 + 3.1 / width, place, name, va="center_baseline", ha="left", **where)
-
-
-def small_multiples(
-    panels: Sequence[P], columns: int, margins: Margins, rows: Sequence[tuple[float, float]], width: float = WIDTH
-) -> tuple[Figure, list[tuple[Sequence[P], list[list[Axes]]]]]:
-    """Return a figure of titled panels in bands, and for each band its panels and its rows of axes.
-
-    Titles are broken so that they stay above their panel; bands and margin grow by the lines that this takes.
-    """
-    across = (width - margins.left - margins.right) / columns - COLUMN_GAP
-    titles = []
-    for panel in panels:
-        # A setting such as "q = 5 MPa" stays on one line: textwrap breaks at plain spaces only.
-        title = ", ".join(part.replace(" ", "\u00a0") for part in panel.title.split(", "))
-        titles.append(textwrap.fill(title, max(8, int(across / TITLE_LETTER)), break_long_words=False))
-    extra = TITLE_LINE * max((title.count("\n") for title in titles), default=0)
-    titled = [replace(panel, title=title) for panel, title in zip(panels, titles, strict=True)]
-    row_heights = [*rows[:-1], (rows[-1][0], rows[-1][1] + extra)]
-    bands = [titled[i : i + columns] for i in range(0, len(titled), columns)]
-    figure, grid = axes_grid(row_heights * len(bands), columns, replace(margins, top=margins.top + extra), width)
-    return figure, [(band, grid[len(rows) * i : len(rows) * (i + 1)]) for i, band in enumerate(bands)]
 
 
 def share_left(row: Sequence[Axes], count: int, label: str) -> None:

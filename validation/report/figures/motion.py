@@ -8,42 +8,23 @@ from __future__ import annotations
 
 import itertools
 import math
+import textwrap
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, MaxNLocator, NullLocator
 
-from validation.report.figures.charts import ChartLine, draw_chart_line
-from validation.report.figures.curves import (
-    HAIR,
-    HistoryPanel,
-    HistoryPanels,
-    common_range,
-    differences,
-    engineering,
-    style_of,
-)
-from validation.report.figures.histories import (
-    LETTER,
-    SLIDE,
-    WIDTH,
-    Margins,
-    house_style,
-    label_ends,
-    outer_ticks,
-    share_left,
-    size_of,
-    small_multiples,
-)
+from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
+from validation.report.figures.curves import HistoryPanel, HistoryPanels, common_range, differences, engineering
+from validation.report.figures.histories import LETTER, SLIDE, TITLE_LETTER, TITLE_LINE, WIDTH, Margins, size_of
 from validation.runs.columns import NO_OWN, axis_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
 
 ROW = 20.0  # mm, height of a column
+NARROW = 40.0  # mm, width of a panel below which its time has three numbers
 TWIN = 2e-3  # of the largest value: closer lines cannot be told apart on axes that begin at zero
 SWINGS = 150  # crossings of the mean; more of them in a panel are a filled rectangle
 START = 24  # swings that the start shows
@@ -63,12 +44,17 @@ def history_figure(
     on a logarithmic axis; those of lines that lie on one another are left out.
     """
     on_one = twins(panels, columns)
-    drawn = [_with_lines(panel, on_one) for panel in panels]
+    notes = {name: "".join(f", {other}" for other in others) for name, others in on_one.items()}
+    longest = max((len(name + note) for name, note in notes.items()), default=0)
+    across = _columns(len(panels))
+    width = SLIDE[0] if slide else WIDTH
+    margins = Margins(left=15.0, right=max(14.0, 5.0 + LETTER * longest))
+    room = (width - margins.left - margins.right) / across - margins.between
+    drawn = [replace(_with_lines(panel, on_one), title=_broken(panel.title, room)) for panel in panels]
+    extra = TITLE_LINE * max((panel.title.count("\n") for panel in drawn), default=0)
+    margins = replace(margins, top=margins.top + extra)
     span = start_of(drawn, columns[0])
     apart = apart and any(differences(panel, columns[0]) for panel in drawn)
-    names = {name: ", ".join([name, *others]) for name, others in on_one.items()}
-    room = max(14.0, 5.0 + LETTER * max(map(len, names.values()), default=0))
-    margins = Margins(left=15.0, right=room)
     below = [(14.0, 3.0)] * apart
     gap = 3.0
     if span is not None:  # whose own times stand below the rows above
@@ -79,24 +65,32 @@ def history_figure(
         room_for_columns = SLIDE[1] - margins.top - margins.bottom - sum(map(sum, rest)) + rest[-1][1]
         height = room_for_columns / len(columns)
     rows = [*[(height, 3.0)] * (len(columns) - 1), (height, gap), *below]
-    rows[-1] = (rows[-1][0], 13.0)
-    width = SLIDE[0] if slide else WIDTH
-    with house_style():
-        figure, bands = small_multiples(drawn, _columns(len(panels)), margins, rows, width)
-        for band, lines in bands:
-            for row, column in zip(lines, columns, strict=False):
-                _history_row(row, band, column, common_range(drawn, column))
-                _row_labels(row, len(band), _label(drawn, column), _ends(band, drawn, column), names)
-            for axes, panel in zip(lines[0], band, strict=False):
-                axes.set_title(panel.title)
-            if span is not None:
-                start = [_until(panel, span) for panel in band]
-                _history_row(lines[len(columns)], start, columns[0], common_range(drawn, columns[0]))
-                _row_labels(lines[len(columns)], len(band), "its start", {}, names)
-            if apart:
-                _difference_row(lines[-1], band, columns[0], names)
-            _name_time(lines[-1], len(band), lines)
+    rows[-1] = (rows[-1][0], 13.0 + extra)
+    ticks = 3 if room < NARROW else 5
+    charts: list[ChartPanel | None] = []
+    bands = [drawn[first : first + across] for first in range(0, len(drawn), across)]
+    for band in bands:
+        in_rows = [_history_row(band, drawn, column, notes) for column in columns]
+        if span is not None:
+            start = [_until(panel, span) for panel in band]
+            row = _history_row(start, drawn, columns[0], notes)
+            in_rows.append([replace(chart, y_label="its start", names="none") for chart in row])
+        if apart:
+            in_rows.append(_difference_row(band, columns[0], notes))
+        in_rows[0] = [replace(chart, title=panel.title) for chart, panel in zip(in_rows[0], band, strict=True)]
+        in_rows[-1] = [replace(chart, x_label="Time [s]") for chart in in_rows[-1]]
+        for row in in_rows:
+            charts += [replace(chart, x_ticks=ticks) for chart in row] + [None] * (across - len(row))
+    figure = chart_figure(charts, rows * len(bands), margins, shared=True, width=width)
+    for axes in figure.axes[::across]:
+        axes.yaxis.set_label_coords(-9.0 / size_of(axes)[0], 0.5)
     return figure
+
+
+def _broken(title: str, room: float) -> str:
+    """Return a title in lines that stay above its panel; a setting such as "q = 5 MPa" stays on one line."""
+    whole = ", ".join(part.replace(" ", "\u00a0") for part in title.split(", "))  # textwrap breaks at plain spaces only
+    return textwrap.fill(whole, max(8, int(room / TITLE_LETTER)), break_long_words=False)
 
 
 # ---- lines that lie on one another --------------------------------------------------------------------------------
@@ -192,60 +186,54 @@ def _columns(count: int) -> int:
     return -(-count // rows)
 
 
-def _scale(panels: HistoryPanels, column: str) -> tuple[float, str]:
-    """Return the factor and the unit that a column is drawn in."""
+def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes: Mapping[str, str]) -> list[ChartPanel]:
+    """Return a column of the histories of some panels, in the range that it has in all."""
     low, high = common_range(panels, column)
-    return engineering(max(abs(low), abs(high)), _axis(panels, column)[1])
-
-
-def _axis(panels: HistoryPanels, column: str) -> tuple[str, str]:
-    return axis_of(column, panels[0].own if panels else NO_OWN)
-
-
-def _label(panels: HistoryPanels, column: str) -> str:
-    name, _ = _axis(panels, column)
-    _, unit = _scale(panels, column)
-    return f"{name}\n[{unit}]" if unit else name
-
-
-def _ends(band: HistoryPanels, panels: HistoryPanels, column: str) -> dict[str, float]:
-    """Return where each line ends, in the last panel of a band that has it."""
-    factor, _ = _scale(panels, column)
-    ends = {}
-    for panel in band:
-        for solver, history in panel.drawn(column).items():
-            ends[solver] = factor * float(np.nan_to_num(history.columns[column][-1]))
-    return ends
-
-
-def _history_row(row: list[Axes], panels: HistoryPanels, column: str, limits: tuple[float, float]) -> None:
-    low, high = limits
-    factor, _ = engineering(max(abs(low), abs(high)), _axis(panels, column)[1])
+    name, unit = axis_of(column, panels[0].own if panels else NO_OWN)
+    factor, unit = engineering(max(abs(low), abs(high)), unit)
     pad = 0.05 * (high - low) or 1.0
-    for axes, panel in zip(row, panels, strict=False):
-        axes.set_ylim(factor * (low - pad), factor * (high + pad))
+    label = f"{name}\n[{unit}]" if unit else name
+    charts = []
+    for panel in band:
+        lines: list[ChartLine] = []
         for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
-            _draw(axes, solver, history.time, values, swings(history, column) > SWINGS)
-        _time_axis(axes, panel)
-        axes.yaxis.set_major_locator(MaxNLocator(5))
-        if column in panel.static:
-            axes.axhline(factor * panel.static[column], color="#bbbbbb", lw=HAIR, zorder=1)
+            line = ChartLine(solver, history.time, values, note=notes.get(solver, ""))
+            lines += _filled(line) if swings(history, column) > SWINGS else [line]
+        levels = {"": factor * panel.static[column]} if column in panel.static else {}
+        y_range = (factor * (low - pad), factor * (high + pad))
+        charts.append(ChartPanel("", "", label, lines, _span(panel), y_range, levels=levels, y_ticks=5))
+    return _with_all_names(charts)
 
 
-def _draw(axes: Axes, solver: str, x: Array, y: Array, dense: bool) -> None:
-    if not dense:
-        draw_chart_line(axes, ChartLine(solver, x, y))
-        return
-    style = style_of(solver)
-    middles, low, high = band(x, y)
-    axes.fill_between(middles, low, high, color=style.color, alpha=0.3, lw=0, zorder=1 + style.layer)
-    for edge in (low, high):
-        axes.plot(middles, edge, color=style.color, lw=0.6, zorder=2 + style.layer)
+def _filled(line: ChartLine) -> list[ChartLine]:
+    """Return a line of more swings than can be seen as the band that it fills."""
+    middles, low, high = band(line.x, line.y)
+    shade = line.shade
+    edges = [
+        ChartLine("", middles, low, shade, width=0.6, shaded=(low, high)),
+        ChartLine("", middles, high, shade, width=0.6),
+    ]
+    return [*edges, _named(line)]
 
 
-def _difference_row(row: list[Axes], panels: HistoryPanels, column: str, names: Mapping[str, str]) -> None:
-    curves = [differences(panel, column) for panel in panels]
+def _named(line: ChartLine) -> ChartLine:
+    """Return the end of a line, of which no more is seen than the name."""
+    return ChartLine(line.name, line.x[-1:], line.y[-1:], line.shade, width=0, note=line.note)
+
+
+def _with_all_names(charts: list[ChartPanel]) -> list[ChartPanel]:
+    """Return panels of which the last, beside which the names stand, has those of lines that end in another too."""
+    last = charts[-1]
+    present = {line.name for line in last.lines}
+    missing: dict[str, ChartLine] = {}
+    for chart in charts[:-1]:
+        missing |= {line.name: _named(line) for line in chart.lines if line.name and line.name not in present}
+    return [*charts[:-1], replace(last, lines=[*last.lines, *missing.values()])]
+
+
+def _difference_row(band: HistoryPanels, column: str, notes: Mapping[str, str]) -> list[ChartPanel]:
+    curves = [differences(panel, column) for panel in band]
     values = np.zeros(0)
     for lines in curves:
         values = np.concatenate([values, *(y for _, y in lines.values())])
@@ -253,40 +241,17 @@ def _difference_row(row: list[Axes], panels: HistoryPanels, column: str, names: 
     least, largest = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
     low = 10.0 ** math.floor(math.log10(least))
     high = 10.0 ** min(2, math.ceil(math.log10(largest) + 0.05))
-    for axes, panel, lines in zip(row, panels, curves, strict=False):
-        axes.set(yscale="log", ylim=(min(low, high / 10), high))
-        axes.yaxis.set_major_locator(LogLocator(numticks=5))
-        axes.yaxis.set_minor_locator(NullLocator())
-        for solver, (x, y) in lines.items():
+    scale = "static" if any(panel.static.get(column) for panel in band) else "largest"
+    charts = []
+    for panel, of_panel in zip(band, curves, strict=True):
+        drawn = []
+        for solver, (x, y) in of_panel.items():
             visible = np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan)
-            draw_chart_line(axes, ChartLine(solver, x, visible))
-        _time_axis(axes, panel)
-    ends: dict[str, float] = {}
-    for lines in curves:
-        ends |= {solver: float(np.clip(y[-1], low, high)) for solver, (_, y) in lines.items()}
-    scale = "static" if any(panel.static.get(column) for panel in panels) else "largest"
-    _row_labels(row, len(panels), f"|Δ| / {scale}", ends, names)
+            drawn.append(ChartLine(solver, x, visible, note=notes.get(solver, "")))
+        y_range = (min(low, high / 10), high)
+        charts.append(ChartPanel("", "", f"|Δ| / {scale}", drawn, _span(panel), y_range, (False, True)))
+    return _with_all_names(charts)
 
 
-def _row_labels(row: list[Axes], count: int, label: str, ends: Mapping[str, float], names: Mapping[str, str]) -> None:
-    share_left(row, count, label)
-    row[0].yaxis.set_label_coords(-9.0 / size_of(row[0])[0], 0.5)
-    labels = [(y, names.get(solver, solver), style_of(solver).color) for solver, y in ends.items()]
-    label_ends(row[count - 1], labels)
-
-
-def _name_time(last: Sequence[Axes], count: int, rows: Sequence[Sequence[Axes]]) -> None:
-    """Name the time under the last row; other rows keep their numbers only where their time is another."""
-    for axes in last[:count]:
-        axes.set_xlabel("Time [s]", labelpad=1.5)
-    for row in rows[:-1]:
-        for axes, below in zip(row[:count], last, strict=False):
-            axes.tick_params(labelbottom=axes.get_xlim() != below.get_xlim())
-
-
-def _time_axis(axes: Axes, panel: HistoryPanel) -> None:
-    longest = max((float(h.time[-1]) for h in panel.histories.values()), default=1.0)
-    axes.set_xlim(0, longest)
-    count = 3 if size_of(axes)[0] < 40 else 5
-    ticks = MaxNLocator(count, steps=[1, 2, 5, 10]).tick_values(0, longest)
-    outer_ticks(axes, longest, {float(tick): f"{tick:g}" for tick in ticks if 0 <= tick <= longest * (1 + 1e-9)})
+def _span(panel: HistoryPanel) -> tuple[float, float]:
+    return 0.0, max((float(history.time[-1]) for history in panel.histories.values()), default=1.0)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +17,6 @@ from validation.runs.columns import axis_of
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 
-COLORS = ("#d55e00", "#0072b2", "#009e73")
 DASHED = (4.0, 1.6)
 BETWEEN = 12.0  # two panels [mm]: the powers of ten of the right one stand there
 HALF_TURNS = {-np.pi: "−π", 0.0: "0", np.pi: "π"}
@@ -60,16 +58,6 @@ def _line(curve: ResponseCurve, values: Array) -> ChartLine:
     style = style_of(curve.solver)
     width = 0.6 * style.width if curve.dashed else style.width
     return ChartLine(curve.name, curve.frequency, values, style.color, DASHED if curve.dashed else (), width)
-
-
-def ratio_figure(frequency: Array, values_by_name: Mapping[str, Array]) -> Figure:
-    """Draw damping ratios over frequency, the first line solid and the others dashed."""
-    lines: list[ChartLine] = []
-    for (name, values), color in zip(values_by_name.items(), itertools.cycle(COLORS), strict=False):
-        lines.append(ChartLine(name, frequency, 100 * values, color, DASHED if lines else (), 1.0))
-    limits = (frequency[0], frequency[-1])
-    panel = ChartPanel("", "frequency [Hz]", "steady ratio [%]", lines, limits, (0.0, None), (True, False))
-    return chart_figure([panel], 46.0, Margins(14.0, 46.0, 3.0, 9.5))
 
 
 def save_as(figure: Figure, path: Path) -> Path:

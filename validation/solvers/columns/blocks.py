@@ -7,11 +7,11 @@ from collections.abc import Mapping
 import numpy as np
 
 import dda
-from dda.bodies.bonded_column import Drive, solve_column
 from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
+from dda.bodies.column_history import ColumnOptions, ColumnResult, solve_column
+from dda.bodies.column_march import Drive
 from dda.bodies.column_step import DEEPEST, FURTHEST, KINETIC, MOMENTUM, OPEN_SHARE, WIDEST
-from dda.bodies.contact_column import ColumnContactResult, ColumnOptions, solve_contact_column
 from dda.contact.unilateral import OPEN, SLIP
 from validation.models.column.tables import ColumnSection
 from validation.runs.contact import ContactRecord
@@ -81,18 +81,18 @@ class BlockColumn(Prepared):
 class ContactColumn(BlockColumn):
     """A column of DDA blocks whose contacts open or slip; forces and energies are per unit of area."""
 
-    result: ColumnContactResult | None = None
+    result: ColumnResult | None = None
 
     def history_run(self) -> Run:
         """Run the scene."""
         self.result = self.solved(self.keeps_contact_record)
         return to_run(self.scene, self.result)
 
-    def solved(self, energies: bool) -> ColumnContactResult:
+    def solved(self, energies: bool) -> ColumnResult:
         """Make the steps; the energies take longer than these."""
         names = list(dict.fromkeys((*self.scene.run.columns, PRESSURE)))
         options = ColumnOptions(self.section.solve_limit, self.section.settled, states=True, energies=energies)
-        return solve_contact_column(self.column, self.scheme, self.drive(), names, self.section.heights, options)
+        return solve_column(self.column, self.scheme, self.drive(), names, self.section.heights, options)
 
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Raise: what opens or slips has no frequency response."""

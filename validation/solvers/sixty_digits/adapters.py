@@ -65,6 +65,10 @@ class PreciseDDA(DDA):
     line = None
     libraries = extras.EXACT
 
+    def applicable(self, scene: Scene) -> str | None:
+        """Return None, or that the block is no rectangle."""
+        return super().applicable(scene) if scene.block.rectangle else "the block is not an upright rectangle"
+
     def columns(self) -> tuple[str, ...] | None:
         """Return the columns that this solver has."""
         return (DISPLACEMENT, PRESSURE)

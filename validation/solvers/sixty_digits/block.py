@@ -25,7 +25,6 @@ from validation.scenes.scene import Scene
 DIGITS = 60
 WORKING = 120  # digits carried: thirty decades of stiffness and thirty of w dt cancel before sixty are left
 BITS_A_DIGIT = 3.33
-Point = tuple[arb, arb]
 
 
 @contextmanager
@@ -68,47 +67,29 @@ class NewmarkNumbers:
 
 
 def equations(scene: Scene) -> Equations:
-    """Assemble the block on its corner springs; call it with `WORKING` digits set."""
-    points = [(arb(x), arb(y)) for x, y in scene.block.outline]
-    area, centroid, moments = _integrals(points)
-    centred = [(x - centroid[0], y - centroid[1]) for x, y in points]
-    M = _inertia(scene, area, moments)
+    """Assemble the upright rectangle on its corner springs; call it with `WORKING` digits set."""
+    b = scene.block
+    width, height = (arb(length) for length in b.rectangle or (0.0, 0.0))
+    area = width * height
+    s1 = area * width * width / 12  # central second moments
+    s2 = area * height * height / 12
+    M = arb_mat(6, 6)  # equation (16) with (3, 6) and (6, 6) corrected
+    for i, value in enumerate((area, area, s1 + s2, s1, s2, (s1 + s2) / 4)):
+        M[i, i] = value
+    M[2, 5] = M[5, 2] = (s1 - s2) / 2
     K = _elastic(scene, area)
-    base = _edge(centred, scene.block.base)
-    (x1, y1), (x2, y2) = _edge(centred, scene.block.top)
-    pressure = _add_springs(scene, K, base)
-    length = _length(x2 - x1, y2 - y1)
-    _, fall = _rows_of_T((x1 + x2) / 2, (y1 + y2) / 2)
-    F = [-arb(scene.load.pressure) * length * value for value in fall]
+    pressure = [arb(0)] * 6
+    for x in (-width / 2, width / 2):
+        shear, normal = _rows_of_T(x, -height / 2)
+        for i in range(6):
+            pressure[i] -= arb(scene.contact.stiffness) * normal[i] / width
+            for j in range(6):
+                K[i, j] += arb(scene.contact.stiffness) * normal[i] * normal[j]
+                K[i, j] += arb(scene.contact.shear) * shear[i] * shear[j]
+    _, fall = _rows_of_T(arb(0), height / 2)
+    F = [-arb(scene.load.pressure) * width * value for value in fall]
     displacement = [arb(int(i == 1)) for i in range(6)]
-    return _reached(Equations(M, K, F, {"displacement": displacement, "contact_pressure": pressure}))
-
-
-def _edge(points: list[Point], index: int) -> tuple[Point, Point]:
-    return points[index], points[(index + 1) % len(points)]
-
-
-def _length(x: arb, y: arb) -> arb:
-    return (x * x + y * y).sqrt()
-
-
-def _integrals(points: list[Point]) -> tuple[arb, Point, tuple[arb, arb, arb]]:
-    """Return area, centroid and the central second moments s1 (x x), s2 (y y), s3 (x y)."""
-    s = sx = sy = sxx = syy = sxy = arb(0)
-    x0, y0 = points[0]
-    local = [(x - x0, y - y0) for x, y in points]
-    for (x, y), (X, Y) in zip(local, local[1:] + local[:1], strict=True):
-        c = x * Y - X * y
-        s += c / 2
-        sx += c * (x + X) / 6
-        sy += c * (y + Y) / 6
-        sxx += c * (x * x + x * X + X * X) / 12
-        syy += c * (y * y + y * Y + Y * Y) / 12
-        sxy += c * (x * Y + 2 * x * y + 2 * X * Y + X * y) / 24
-    s1 = sxx - sx * sx / s
-    s2 = syy - sy * sy / s
-    s3 = sxy - sx * sy / s
-    return s, (x0 + sx / s, y0 + sy / s), (s1, s2, s3)
+    return _reached(Equations(M * arb(b.density), K, F, {"displacement": displacement, "contact_pressure": pressure}))
 
 
 def _rows_of_T(x: arb, y: arb) -> tuple[list[arb], list[arb]]:
@@ -116,20 +97,6 @@ def _rows_of_T(x: arb, y: arb) -> tuple[list[arb], list[arb]]:
     unit = arb(1)
     zero = arb(0)
     return [unit, zero, -y, x, zero, y / 2], [zero, unit, x, zero, y, x / 2]
-
-
-def _inertia(scene: Scene, area: arb, moments: tuple[arb, arb, arb]) -> arb_mat:
-    """Return the mass matrix, equation (16) with (3, 6) and (6, 6) corrected."""
-    s1, s2, s3 = moments
-    M = arb_mat(6, 6)
-    M[0, 0] = M[1, 1] = area
-    M[2, 2] = s1 + s2
-    M[3, 3] = s1
-    M[4, 4] = s2
-    M[5, 5] = (s1 + s2) / 4
-    for i, j, value in ((2, 3, -s3), (2, 4, s3), (2, 5, (s1 - s2) / 2), (3, 5, s3 / 2), (4, 5, s3 / 2)):
-        M[i, j] = M[j, i] = value
-    return M * arb(scene.block.density)
 
 
 def _elastic(scene: Scene, area: arb) -> arb_mat:
@@ -144,26 +111,6 @@ def _elastic(scene: Scene, area: arb) -> arb_mat:
     K[3, 4] = K[4, 3] = area * lam
     K[5, 5] = area * G
     return K
-
-
-def _add_springs(scene: Scene, K: arb_mat, base: tuple[Point, Point]) -> list[arb]:
-    """Add the corner springs to K in place and return the row of the contact pressure."""
-    (x1, y1), (x2, y2) = base
-    a = _length(x2 - x1, y2 - y1)
-    tx = (x2 - x1) / a
-    ty = (y2 - y1) / a
-    normal_k = arb(scene.contact.stiffness)
-    shear_k = arb(scene.contact.shear)
-    pressure = [arb(0)] * 6
-    for x, y in base:
-        u, v = _rows_of_T(x, y)
-        normal = [tx * b - ty * c for b, c in zip(v, u, strict=True)]
-        shear = [tx * c + ty * b for b, c in zip(v, u, strict=True)]
-        for i in range(6):
-            pressure[i] -= normal_k * normal[i] / a
-            for j in range(6):
-                K[i, j] += normal_k * normal[i] * normal[j] + shear_k * shear[i] * shear[j]
-    return pressure
 
 
 def _reached(full: Equations) -> Equations:

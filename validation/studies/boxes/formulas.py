@@ -56,9 +56,10 @@ def stack(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
 
 
 def land(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
-    """Return the greatest force over the exact one, less one."""
+    """Return the greatest force over the exact one, less one, and the size of that."""
     force = "box-ground.normal"
-    return {"peak force": float(np.max(own.columns[force]) / np.max(exact.columns[force]) - 1)}
+    error = float(np.max(own.columns[force]) / np.max(exact.columns[force]) - 1)
+    return {"peak force": error, "peak size": abs(error)}
 
 
 AGAINST: Mapping[str, Against] = {

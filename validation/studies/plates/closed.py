@@ -17,8 +17,6 @@ import math
 
 import numpy as np
 
-from validation.runs.history import Array
-
 TERMS = 20_000  # of the disc's series on its rim, which falls as 1/n^2 and alternates
 
 
@@ -29,28 +27,6 @@ def hole_displacement(radius: float, angle: float, tension: float, young: float,
     double = math.cos(2 * angle)
     sum_of_terms = radius * (k - 1 + 2 * double) + 2 * radius * (1 + k * double)
     return tension * sum_of_terms / (8 * shear)
-
-
-def hole_stress(points: Array, radius: float, tension: float) -> Array:
-    """Return s_xx, s_yy, s_xy at points about a hole [Pa], shape (n, 3)."""
-    x, y = points.T
-    r = np.hypot(x, y)
-    t = np.arctan2(y, x)
-    q = (radius / r) ** 2
-    radial = tension / 2 * ((1 - q) + (1 - 4 * q + 3 * q**2) * np.cos(2 * t))
-    around = tension / 2 * ((1 + q) - (1 + 3 * q**2) * np.cos(2 * t))
-    shear = -tension / 2 * (1 + 2 * q - 3 * q**2) * np.sin(2 * t)
-    c = np.cos(t)
-    s = np.sin(t)
-    stress: Array = np.stack(
-        [
-            c**2 * radial + s**2 * around - 2 * s * c * shear,
-            s**2 * radial + c**2 * around + 2 * s * c * shear,
-            s * c * (radial - around) + (c**2 - s**2) * shear,
-        ],
-        axis=-1,
-    )
-    return stress
 
 
 def disc_widening(pressure: float, half_angle: float, young: float, poisson: float) -> float:

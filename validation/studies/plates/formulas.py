@@ -11,124 +11,37 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import Loads, PlaneSection, PlateSection, Vertices
 from validation.runs.row import Value
 from validation.scenes.outline import area
-from validation.scenes.scene import Scene, parse_scene
-from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement, hole_stress
+from validation.scenes.scene import Scene
+from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
 from validation.studies.plates.elements import displacements, stress
-from validation.studies.plates.shapes import Point, Triangle, disc, outline, ring
-from validation.suite.bands import Band, about, near
+from validation.suite.bands import Band, about, cases, near
 
-YOUNG = 1e9
-POISSON = 0.25
-DENSITY = 2700.0
-TENSION = 1e6  # Pa, along x
-PRESSURE = 1e6  # Pa, on two arcs
-HALF_ARC = math.pi / 8
-INNER, OUTER = 1.0, 4.0  # radii of the plate [m]
 FIRM = 1e9  # m, glue over Young's modulus
-HOLES = (4, 8, 12)  # cells of a quarter
-DISCS = (4, 8, 12)
-GLUES = (10.0, 100.0, 1000.0)
 ROUNDING = 1e-9  # of a sparse solution: 1e4 eps times the condition of triangles and glue
 STATIC = "displacement.static"
 STRESS = ("stress.xx", "stress.yy")
-STRESSED = {"hole": (0.0, INNER), "disc": (0.0, 0.0)}  # where the stress is looked at: its peak, and the middle [m]
-POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
-Loads = list[tuple[tuple[Point, Point], tuple[float, float]]]
-
-
-def hole(n: int, glue: float = FIRM) -> Scene:
-    """Return a plate with a hole: on its outer edges the mean of the exact tractions there."""
-    triangles = ring(INNER, OUTER, n)
-    loads: Loads = []
-    for start, end in outline(triangles, OUTER):
-        (x0, y0), (x1, y1) = start, end
-        middle = np.array([x0 + x1, y0 + y1]) / 2
-        half = np.array([x1 - x0, y1 - y0]) / 2
-        s_xx, s_yy, s_xy = WEIGHTS / 2 @ hole_stress(middle + POINTS[:, None] * half, INNER, TENSION)
-        nx, ny = _normal(start, end)
-        loads.append(((start, end), (float(s_xx * nx + s_xy * ny), float(s_xy * nx + s_yy * ny))))
-    return _scene("hole", n, glue, triangles, loads)
-
-
-def brazilian(n: int) -> Scene:
-    """Return a disc under a pressure on two arcs, whose ends are nodes."""
-    triangles = disc(1.0, n)
-    loads: Loads = []
-    for start, end in outline(triangles, 1.0):
-        if math.atan2(abs(start[0] + end[0]), abs(start[1] + end[1])) < HALF_ARC:
-            nx, ny = _normal(start, end)
-            loads.append(((start, end), (-PRESSURE * nx, -PRESSURE * ny)))
-    return _scene("disc", n, FIRM, triangles, loads)
-
-
-def _normal(start: Point, end: Point) -> tuple[float, float]:
-    length = math.hypot(end[0] - start[0], end[1] - start[1])
-    return (end[1] - start[1]) / length, (start[0] - end[0]) / length
-
-
-def _scene(shape: str, n: int, glue: float, triangles: Sequence[Triangle], loads: Loads) -> Scene:
-    """Return a scene that observes by how much the rim's points on the x axis part."""
-    firm = glue == FIRM
-    data: dict[str, Any] = {
-        "name": f"plates-{shape}-{n}" if firm else f"plates-glue-{glue:g}",
-        "title": {"hole": "Plate with a hole", "disc": "Disc between two arcs"}[shape],
-        "plane": {
-            "young": YOUNG,
-            "density": DENSITY,
-            "poisson": POISSON,
-            "glue": glue,
-            "block": [{"vertices": [list(point) for point in triangle]} for triangle in triangles],
-            "load": [{"edge": [list(start), list(end)], "traction": list(value)} for (start, end), value in loads],
-            "observe": {
-                "point": [1.0, 0.0],
-                "less": [[[-1.0, 0.0], [-1.0, 0.0]]],
-                "direction": [1.0, 0.0],
-                "stress": list(STRESSED[shape]),
-            },
-        },
-        "time": {"step": 100.0, "steps": 1},  # of statics: implicit, far beyond the first period
-        "run": {"solvers": ["dda", "fem"] if firm else ["dda"], "columns": ["displacement"]},
-        "fem": {"elements": 1},  # along each side of a triangle
-    }
-    if firm and n == min(HOLES):
-        data["run"]["solvers"].append("fenicsx")
-    return parse_scene(data, data["name"])
-
-
-@functools.cache
-def by_shape() -> Mapping[str, tuple[Scene, ...]]:
-    """Return the scenes of each shape, by the number of their cells, and those of softer glue."""
-    return {
-        "hole": tuple(hole(n) for n in HOLES),
-        "disc": tuple(brazilian(n) for n in DISCS),
-        "glue": tuple(hole(8, glue) for glue in GLUES),
-    }
-
-
-def scenes() -> tuple[Scene, ...]:
-    """Return all scenes."""
-    return tuple(scene for group in by_shape().values() for scene in group)
+FIRM_SCENES = ("plates-hole", "plates-disc")
+SOFT_SCENE = "plates-glue"
 
 
 def firm() -> tuple[Scene, ...]:
-    """Return those that are glued firmly."""
-    return (*by_shape()["hole"], *by_shape()["disc"])
+    """Return the cases that are glued firmly, which elements and a second program of elements run too."""
+    return tuple(cases(*FIRM_SCENES))
 
 
-def with_fenicsx() -> list[Scene]:
-    """Return those that a second program of elements runs."""
-    return [scene for scene in firm() if "fenicsx" in scene.run.solvers]
+def scenes() -> tuple[Scene, ...]:
+    """Return all cases."""
+    return (*firm(), *cases(SOFT_SCENE))
 
 
 # ---- what is exact --------------------------------------------------------------------------------------------------
@@ -137,17 +50,27 @@ def with_fenicsx() -> list[Scene]:
 def exact(case: Scene) -> float:
     """Return by how much the points part in closed form [m]."""
     plane = case.table(PlaneSection)
-    if "disc" in case.name:
-        return 2 * disc_widening(PRESSURE, HALF_ARC, plane.young, plane.poisson)
-    return 2 * hole_displacement(INNER, 0.0, TENSION, plane.young, plane.poisson)
+    if disc := plane.disc:
+        half_arc = math.radians(disc.half_arc)
+        return 2 * disc.radius * disc_widening(disc.pressure, half_arc, plane.young, plane.poisson)
+    plate = _plate(case)
+    return 2 * hole_displacement(plate.hole, 0.0, plate.tension, plane.young, plane.poisson)
 
 
 def exact_stress(case: Scene) -> tuple[float, float]:
     """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
-    if "disc" in case.name:
-        return disc_centre(PRESSURE, HALF_ARC)
-    s_xx, s_yy, _ = hole_stress(np.array([STRESSED["hole"]]), INNER, TENSION)[0]
+    plane = case.table(PlaneSection)
+    if disc := plane.disc:
+        return disc_centre(disc.pressure, math.radians(disc.half_arc))
+    s_xx, s_yy, _ = _plate(case).stresses(np.array([plane.observed.stress]))[0]
     return float(s_xx), float(s_yy)
+
+
+def _plate(case: Scene) -> PlateSection:
+    plate = case.table(PlaneSection).plate
+    if plate is None:
+        raise ValueError(f"must be a plate with a hole or a disc, got {case.name}")
+    return plate
 
 
 def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
@@ -157,21 +80,18 @@ def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
     """
     plane = case.table(PlaneSection)
     spring = math.inf if firm or plane.glue == FIRM else plane.glue * plane.young
-    stressed = STRESSED["disc" if "disc" in case.name else "hole"]
-    return _linear(plane.polygons, plane.tractions, plane.young, plane.poisson, spring, stressed)
+    observe = plane.observed
+    places = observe.place[0], observe.less[0][0], observe.stress
+    return _linear(plane.polygons, plane.tractions, plane.young, plane.poisson, spring, places)
 
 
 @functools.cache
 def _linear(
-    polygons: tuple[Triangle, ...],
-    tractions: tuple[tuple[tuple[Point, Point], Point], ...],
-    young: float,
-    poisson: float,
-    spring: float,
-    stressed: Point,
+    polygons: tuple[Vertices, ...], tractions: Loads, young: float, poisson: float, spring: float, observed: Vertices
 ) -> tuple[float, float]:
+    *apart, stressed = observed
     triangles = [triangle for triangle in polygons if stressed in triangle]
-    places = [(1.0, 0.0), (-1.0, 0.0), *(corner for triangle in triangles for corner in triangle)]
+    places = [*apart, *(corner for triangle in triangles for corner in triangle)]
     loads = []
     for (start, end), traction in tractions:
         length = math.dist(start, end)
@@ -183,9 +103,10 @@ def _linear(
     return float(right[0] - left[0]), float(np.mean(stresses))
 
 
-def cells(case: Scene) -> int:
+def cells_of(case: Scene) -> int:
     """Return the cells of a quarter."""
-    return 8 if "glue" in case.name else int(case.name.rpartition("-")[2])
+    body = case.table(PlaneSection).body
+    return body.cells if body else 0
 
 
 # ---- rows and bands -------------------------------------------------------------------------------------------------
@@ -195,7 +116,7 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(finished.rows[case.name, "dda"].metrics[STATIC])
     values: dict[str, Value] = {
-        "cells": float(cells(case)),
+        "cells": float(cells_of(case)),
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
@@ -205,7 +126,7 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
     exact_xx, exact_yy = exact_stress(case)
     values["stress"] = stress_xx / exact_xx - 1
     values["stress size"] = abs(stress_xx / exact_xx - 1)
-    if "disc" in case.name:  # at the hole it is none
+    if case.table(PlaneSection).disc:  # at the hole it is none
         values["stress along"] = stress_yy / exact_yy - 1
     if (case.name, "fem") in finished.rows:
         elements = or_nan(finished.rows[case.name, "fem"].metrics[STATIC])
@@ -217,9 +138,9 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
     return values
 
 
-def orders(shape: str, finished: Finished) -> Mapping[str, Value]:
-    """Return the order of the error by the two scenes of most cells."""
-    coarse, fine = (parts(case, finished) for case in by_shape()[shape][-2:])
+def orders(scene: str, finished: Finished) -> Mapping[str, Value]:
+    """Return the order of the error by the two cases of most cells."""
+    coarse, fine = (parts(case, finished) for case in [*cases(scene)][-2:])
     values: dict[str, Value] = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
@@ -231,9 +152,11 @@ def orders(shape: str, finished: Finished) -> Mapping[str, Value]:
 def glue_order(finished: Finished) -> Mapping[str, Value]:
     """Return the order with which glue's error falls with its stiffness."""
     softs = []
-    for case in by_shape()["glue"][-2:]:
+    glues = []
+    for case in [*cases(SOFT_SCENE)][-2:]:
         softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(case, firm=True)[0] - 1)
-    return {"order": math.log(abs(softs[0] / softs[1])) / math.log(GLUES[-1] / GLUES[-2])}
+        glues.append(case.table(PlaneSection).glue)
+    return {"order": math.log(abs(softs[0] / softs[1])) / math.log(glues[1] / glues[0])}
 
 
 def second_program(case: Scene, finished: Finished) -> Mapping[str, Value]:
@@ -249,12 +172,12 @@ def derived() -> tuple[Derived, ...]:
         solvers = [solver for solver in case.run.solvers if solver != "fenicsx"]
         needs = tuple((case.name, solver) for solver in solvers)
         rows.append(Derived(case.name, "parts", needs, partial(parts, case), (STATIC, *STRESS)))
-    for shape in ("hole", "disc"):
-        needs = tuple((case.name, "dda") for case in by_shape()[shape])
-        rows.append(Derived(f"plates-{shape}", "order", needs, partial(orders, shape), (STATIC, *STRESS)))
-    needs = tuple((case.name, "dda") for case in by_shape()["glue"])
-    rows.append(Derived("plates-glue", "order", needs, glue_order, (STATIC,)))
-    for case in with_fenicsx():
+    for scene in FIRM_SCENES:
+        needs = tuple((case.name, "dda") for case in cases(scene))
+        rows.append(Derived(scene, "order", needs, partial(orders, scene), (STATIC, *STRESS)))
+    needs = tuple((case.name, "dda") for case in cases(SOFT_SCENE))
+    rows.append(Derived(SOFT_SCENE, "order", needs, glue_order, (STATIC,)))
+    for case in firm():
         needs = ((case.name, "fem"), (case.name, "fenicsx"))
         rows.append(Derived(case.name, "fenicsx over fem", needs, partial(second_program, case), (STATIC,)))
     return tuple(rows)
@@ -291,11 +214,11 @@ def gives_way(case: Scene) -> float:
 
 def sagitta(case: Scene) -> Band:
     """Return what a polygon in place of the circle changes: its sagitta over the radius, 1 - cos(pi/4n)."""
-    half = 1 - math.cos(math.pi / (4 * cells(case)))
+    half = 1 - math.cos(math.pi / (4 * cells_of(case)))
     return -half, half
 
 
 def first_order_in_glue() -> Band:
     """Return 1 -/+ C/g, the next term, with the softer of both glues."""
-    _, soft, _ = by_shape()["glue"]
+    _, soft, _ = cases(SOFT_SCENE)
     return about(1.0, linear(soft)[0] / linear(soft, firm=True)[0] - 1)

@@ -11,9 +11,7 @@ from validation.suite.bands import APART, OTHER, cases, gate, near
 
 SQUARES = ("two-codes-constant", "two-codes-average")
 POLYGONS = ("quadrilateral", "pentagon")  # on meshes made by Gmsh
-OPENING = "two-codes-opening"
-FRICTION = "two-codes-friction"
-SCENES = (*SQUARES, *POLYGONS, OPENING, FRICTION)
+SCENES = (*SQUARES, *POLYGONS)
 SAME = 1e-10  # of the maximum
 
 

@@ -15,6 +15,7 @@ from validation.runs.history import PRESSURE
 from validation.runs.numbers import share_text
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.suite.matrix import JUDGED
 from validation.suite.own_solver import block_data, gates
 from validation.suite.own_solver.block_data import AtRest, Misreading
 from validation.suite.own_solver.gates import BLOCK_DATA, BLOCK_DATA_WORDS, GROUPS
@@ -134,7 +135,7 @@ def _headline(judged: Sequence[GateReport], failed: Sequence[GateReport], plain:
 
 def _follows(result: GateReport, misread: Collection[Misreading]) -> bool:
     """Whether a gate is on a scene that a solver misreads."""
-    case = gates.cases(result.study).get((result.scene, gates.JUDGED)) if misread else None
+    case = gates.cases(result.study).get((result.scene, JUDGED)) if misread else None
     return case is not None and any(block_data.is_misread(case.scene, one) for one in misread)
 
 
@@ -176,7 +177,7 @@ def _block_data(
 
 def _is_discounted(result: GateReport) -> bool:
     """Whether a gate is on a scene whose velocities are discounted."""
-    case = gates.cases(result.study).get((result.scene, gates.JUDGED))
+    case = gates.cases(result.study).get((result.scene, JUDGED))
     return case is not None and case.scene.time.discount < 1
 
 
@@ -241,7 +242,7 @@ def _not_run(results: Sequence[GateReport]) -> Iterator[str]:
 
 def _unseen(judged: Sequence[GateReport]) -> Iterator[str]:
     """Yield what no gate has seen of the solver: a pass says nothing of it."""
-    judged_cases = {(t.study, t.scene): gates.cases(t.study).get((t.scene, gates.JUDGED)) for t in judged}
+    judged_cases = {(t.study, t.scene): gates.cases(t.study).get((t.scene, JUDGED)) for t in judged}
     kinds = gates.unseen(case.scene for case in judged_cases.values() if case is not None)
     if judged and kinds:
         yield f"\nno gate saw: {', '.join(kinds)}; what passed says nothing of it"
@@ -279,7 +280,7 @@ def diagnosis(failed: Sequence[GateReport], groups: Sequence[str]) -> Iterator[s
     if chosen is None or history is None:
         return
     yield f"\ncompare, {chosen.scene} ({chosen.steps} steps)"
-    scene = gates.cases(chosen.study)[chosen.scene, gates.JUDGED].scene
+    scene = gates.cases(chosen.study)[chosen.scene, JUDGED].scene
     try:
         answer = compare(scene, Foreign(history.time, history.displacement, history.columns.get(PRESSURE)))
     except Exception as error:  # numbers of anybody's code: the rest of the block stands without it

@@ -21,12 +21,12 @@ from validation.scenes import features
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import about, near
 from validation.suite.folders import get_study, judged_studies
+from validation.suite.matrix import JUDGED
 from validation.suite.own_solver import block_data
 from validation.suite.own_solver.history import FREQUENCY, PENCIL
 from validation.theory import spectra
 from validation.theory.spectra import rounding
 
-JUDGED = "dda"  # whose place a user's solver takes
 GROUPS = {  # in the order in which a person looks: a fault in one shows in those after it
     "statics": "displacement at rest: load, springs, Young's modulus, size",
     "frequency": "natural frequency, whatever damps it: mass, springs, alpha",

@@ -1,7 +1,8 @@
-"""A user's solver through the gates: every case once, each verdict with what it tells."""
+"""Gates one by one, of the suite or with a user's solver in the place of `dda`: each case once, and what each tells."""
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterable
 from dataclasses import asdict, dataclass, replace
 from functools import cached_property
 
@@ -13,6 +14,7 @@ from validation.engine.run import finish
 from validation.gates.gate import Gate, Status, Verdict, judge
 from validation.metrics.sameness import is_identical, largest_difference
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
+from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
@@ -20,6 +22,7 @@ from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
 from validation.solvers.user import PARTS, UserSolver
+from validation.suite.matrix import JUDGED, CaseInPlace
 from validation.suite.own_solver import gates, history
 
 REPEATED, SHORT = 2, 1000  # scenes that are run twice, and the most steps of one
@@ -52,18 +55,54 @@ class GateReport:
     apart: float = 0.0  # by how much: relative L2 [1]
 
 
-class Session:
-    """The cases that one process has run of a user's solver and of its references."""
+class GateRuns:
+    """The cases that one process has run for gates, each when a gate first asks for it."""
+
+    def __init__(self, results: Results, solver: str = JUDGED) -> None:
+        self.results = results
+        self.solver = solver  # which answers in the place of `JUDGED`
+        self.rows: dict[tuple[str, str], Row] = {}
+        self._finished: dict[str, Finished] = {}  # by study: what is derived is computed once for all gates
+
+    def verdict(self, study: str, gate: Gate) -> Verdict:
+        """Run what a gate needs and has not been run, and judge it."""
+        self.run(study, gates.study_of(study).needs(gate))
+        return evaluate(gate, self.finished(study))
+
+    def finished(self, study: str) -> Finished:
+        """Return the cases that have been run, with what is derived from them in a study."""
+        if study not in self._finished:
+            self._finished[study] = Finished(self.rows, self.results, gates.recipes(study))
+        return self._finished[study]
+
+    def run(self, study: str, names: Iterable[tuple[str, str]]) -> None:
+        """Run those of some cases of a study that have not been run."""
+        missing = [gates.cases(study)[name] for name in names if name not in self.rows]
+        if missing:
+            kept = self.results.rows()
+            answered = [self._case(case, kept) for case in missing]
+            self.rows.update(finish(answered, gates.study_of(study), self.results).rows)
+
+    def _case(self, case: Case, kept: Container[str]) -> Case:
+        """Return a case with who answers it; the suite's own with the metrics that gates ask for, or of a kept row."""
+        if self.solver != JUDGED:
+            return CaseInPlace(**vars(case), answered_by=self.solver) if case.solver == JUDGED else case
+        required_metrics = gates.asked().get((case.scene.name, case.solver), frozenset())
+        return case if case.key() in kept else replace(case, only=required_metrics)
+
+
+class Session(GateRuns):
+    """A user's solver in the place of `dda`, and what each gate tells of it."""
 
     def __init__(self, user: str, results: Results) -> None:
-        self.user, self.finished = user, Finished({}, results)
+        super().__init__(results, user)
         self._differences: dict[str, tuple[str, float]] = {}  # of the scenes that were run twice
         self._same: dict[tuple[str, str], bool] = {}  # by scene and solver of the suite
 
     @cached_property
     def parts(self) -> frozenset[str]:
         """What the solver reports beside its history, among "modes" and "static"."""
-        solver = get_solver(self.user)
+        solver = get_solver(self.solver)
         return solver.parts() if isinstance(solver, UserSolver | Outside) else PARTS
 
     def judge(self, name: str) -> tuple[Verdict, GateReport]:
@@ -71,7 +110,7 @@ class Session:
         study, gate = gates.applying()[name]
         case = gates.cases(study)[gate.cases[0]]
         verdict = self._verdict(study, gate, case)
-        row = self.finished.rows.get((case.scene.name, self.user))
+        row = self.rows.get((case.scene.name, JUDGED))
         apart_in, apart = self._differences.get(case.scene.name, ("", 0.0))
         return verdict, GateReport(
             gate.id,
@@ -87,7 +126,7 @@ class Session:
             verdict.why,
             "" if row is None else str(row.outcome),
             "" if row is None else row.key,
-            str(self.finished.results.directory),
+            str(self.results.directory),
             self._same_as(case.scene.name),
             case.scene.name in self._differences,
             apart_in,
@@ -95,7 +134,7 @@ class Session:
         )
 
     def _verdict(self, study: str, gate: Gate, case: Case) -> Verdict:
-        judged = replace(gate, pair=(self.user, *gate.pair[1:]))
+        judged = replace(gate, pair=(self.solver, *gate.pair[1:]))
         if part := gates.lacking(gate, case.scene, self.parts):
             return Verdict(judged, None, Status.NOT_RUN, f"the solver does not report {ASKED_FOR[part]}")
         row = self._row(study, case)
@@ -106,62 +145,57 @@ class Session:
             why = row.notes[-1] if row.notes else row.outcome.sentence  # what came before is said of a history
             absent = row.outcome in (Outcome.NOT_APPLICABLE, Outcome.NOT_RUN)
             return Verdict(judged, None, Status.NOT_RUN if absent else Status.FAIL, why)
-        return self._judged(study, gate, judged, case, row)
+        own_history = self._history(case.scene.name)
+        if own_history is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
+            return judge(*history.shown(judged, case.scene, own_history))
+        verdict = replace(self.verdict(study, gate), gate=judged)
+        if verdict.value == NOT_REPORTED:
+            return replace(verdict, status=Status.NOT_RUN, why=f"the solver does not report {gate.metric}")
+        return verdict
+
+    def _history(self, scene: str, solver: str = JUDGED) -> History | None:
+        return Finished(self.rows, self.results).history(scene, solver)
 
     def _row(self, study: str, case: Case) -> Row | None:
         """Return the row of the user's solver, None where it is not tried any more."""
-        rows, name = self.finished.rows, (case.scene.name, self.user)
-        if name not in rows:
-            if sum(row.outcome is Outcome.TIMEOUT for row in rows.values()) >= PATIENCE:
+        name = (case.scene.name, JUDGED)
+        if name not in self.rows:
+            answered = [row for (_, solver), row in self.rows.items() if solver == JUDGED]
+            if sum(row.outcome is Outcome.TIMEOUT for row in answered) >= PATIENCE:
                 return None
-            self._finish(study, [replace(case, solver=self.user)])
+            self.run(study, [name])
             self._repeat(case)
-        return rows[name]
+        return self.rows[name]
 
     def _repeat(self, case: Case) -> None:
         """Run the first short scenes again and keep how far the two runs are apart."""
-        history = self.finished.history(case.scene.name, self.user)
-        if history is None or case.scene.time.steps > SHORT or len(self._differences) >= REPEATED:
+        own_history = self._history(case.scene.name)
+        if own_history is None or case.scene.time.steps > SHORT or len(self._differences) >= REPEATED:
             return
-        again = completed(get_solver(self.user), case.scene)
+        again = completed(get_solver(self.solver), case.scene)
         if again.history is not None:
-            self._differences[case.scene.name] = largest_difference(history, again.history)
+            self._differences[case.scene.name] = largest_difference(own_history, again.history)
 
     def _same_as(self, scene: str) -> str:
         """Return the solvers of the suite whose history of a scene is the user's bit for bit.
 
         `dda` is compared where the run is checked; of the others those that gates have needed.
         """
-        row = self.finished.rows.get((scene, self.user))
+        row = self.rows.get((scene, JUDGED))
         if row is None:
             return ""
         same = [note.removeprefix(SAME_AS) for note in row.notes if note.startswith(SAME_AS)]
-        for name, solver in self.finished.rows:
-            if name != scene or solver == self.user:
+        for name, solver in self.rows:
+            if name != scene or solver == JUDGED:
                 continue
             if (name, solver) not in self._same:
-                history = self.finished.history(name, self.user)
-                other = self.finished.history(name, solver)
-                self._same[name, solver] = history is not None and other is not None and is_identical(history, other)
+                own_history = self._history(name)
+                other = self._history(name, solver)
+                is_same = own_history is not None and other is not None and is_identical(own_history, other)
+                self._same[name, solver] = is_same
             if self._same[name, solver]:
                 same.append(solver)
         return " ".join(same)
-
-    def _finish(self, study: str, missing: list[Case]) -> None:
-        finished = finish(missing, gates.study_of(study), self.finished.results)
-        self.finished.rows.update(finished.rows)
-
-    def _judged(self, study: str, gate: Gate, judged: Gate, case: Case, row: Row) -> Verdict:
-        """Judge a sound run, by its history where the solver reports nothing; references are run here."""
-        own_history = self.finished.history(case.scene.name, self.user)
-        if own_history is not None and gates.shown_by_history(gate, case.scene) and self._by_history(study, gate, row):
-            return judge(*history.shown(judged, case.scene, own_history))
-        needed = [pair for pair in gates.study_of(study).needs(gate) if pair != gate.cases[0]]
-        self._finish(study, [gates.cases(study)[pair] for pair in needed if pair not in self.finished.rows])
-        verdict = evaluate(judged, replace(self.finished, derived=gates.recipes(study)))
-        if verdict.value == NOT_REPORTED:
-            return replace(verdict, status=Status.NOT_RUN, why=f"the solver does not report {gate.metric}")
-        return verdict
 
     def _by_history(self, study: str, gate: Gate, row: Row) -> bool:
         measured = study == gates.START.name or "measured" in gate.metric

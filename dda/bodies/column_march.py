@@ -1,39 +1,116 @@
-"""A column whose contacts open or slip: its modes and rows, what is prescribed, and how it starts."""
+"""A column of blocks: its modes and rows, what is prescribed, and how it starts."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from dda.bodies.bonded_column import Drive
 from dda.bodies.column import Column, Spring
-from dda.bodies.column_step import ABSENT, HALF_SPACE, ROW, SWEEPS, WELDED, Blocks, Observed, of_top
+from dda.bodies.column_step import (
+    ABSENT,
+    CARRIED,
+    HALF_SPACE,
+    ROW,
+    SPRUNG,
+    SWEEPS,
+    WELDED,
+    Blocks,
+    ColumnState,
+    Observed,
+)
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
-from dda.march.step import Body, Course, Length, March, State, moved_row, write_flexibility
+from dda.march.step import Body, Course, Length, March, moved_row, write_flexibility
 from dda.model.arrays import Array
 from dda.scheme.newmark import Scheme, late_momentum
+
+ROUNDING = 1e-12  # of the fastest row: what a common velocity of welded blocks leaves of a difference
+
+
+@dataclass(frozen=True, eq=False)
+class Drive:
+    """What drives a column, at t = 0 and at every step, each (steps + 1,).
+
+    Of a scheme of several stages it holds the end of each stage, `dda.Scheme.instants`.
+
+    The base's motion is that of the base itself or, above a half-space, the particle motion of the wave that comes up.
+
+    Raises
+    ------
+    ValueError
+        If the lengths differ or a number is not finite.
+    """
+
+    displacement: Array  # of the base [m]
+    velocity: Array  # of the base, or of the incident wave [m/s]
+    acceleration: Array  # of the base [m/s^2]
+    pressure: Array  # on the top, towards the base where positive (in shear: against the displacement) [Pa]
+
+    def __post_init__(self) -> None:
+        """Check lengths and numbers."""
+        parts = [np.asarray(part) for part in vars(self).values()]
+        if len({part.shape for part in parts}) != 1 or parts[0].ndim != 1:
+            raise ValueError(f"drive: must hold arrays of one length, got {[part.shape for part in parts]}")
+        if not all(np.all(np.isfinite(part)) for part in parts):
+            raise ValueError("drive: must hold finite numbers only, got NaN or infinity")
 
 
 def base_of(column: Column) -> int:
     """Return what is below the lowest block."""
-    if not column.rests_on_base:
-        return ABSENT if column.impedance is None else HALF_SPACE
-    return WELDED if column.contacts[0] is None else ROW
+    welded = column.springs[0] is None
+    if column.rests_on_base:
+        on_base = CARRIED if math.isinf(column.moduli[0]) else WELDED
+        return on_base if welded else ROW
+    if column.impedance is None:
+        return ABSENT
+    return HALF_SPACE if welded else SPRUNG
 
 
 def springs_of(column: Column) -> list[Spring]:
-    """Return the spring at the foot of every block, rigid and inseparable where there is no joint."""
-    return [Spring(0.0, math.inf) if spring is None else spring for spring in column.contacts]
+    """Return the spring at the foot of every block, rigid and inseparable where faces move alike."""
+    glue = math.inf if column.glue is None else column.glue
+    return [Spring(0.0, glue) if spring is None else spring for spring in column.contacts]
+
+
+def inertia(column: Column) -> Array:
+    """Return the mass of every block [kg/m^2]."""
+    return column.densities * column.heights
+
+
+def stiffness(column: Column) -> Array:
+    """Return 12 E / h of every block, over its mass the w^2 of its strain; none where its faces move alike [Pa/m]."""
+    return np.where(np.isinf(column.moduli), 0.0, 12 * column.moduli / column.heights)
+
+
+def compliances(column: Column) -> Array:
+    """Return that of the row below every block, none where faces move alike [m/Pa]."""
+    compliance = np.array([1 / spring.stiffness for spring in springs_of(column)])
+    base = base_of(column)
+    if base == WELDED:
+        compliance[0] = 12 / stiffness(column)[0]
+    elif base in (ABSENT, CARRIED):
+        compliance[0] = 1.0  # of a row that feels nothing
+    return compliance
+
+
+def impedance(column: Column) -> float:
+    """Return that of the half-space below [Pa s/m], zero where there is none."""
+    return column.impedance or 0.0
 
 
 def blocks_of(column: Column, observed: Observed) -> Blocks:
     """Return what modes and rows are of a column."""
-    root = np.sqrt(column.densities * column.heights)
+    masses = inertia(column)
+    base = base_of(column)
+    root = np.sqrt(masses)
     half = np.where(np.isinf(column.moduli), 0.0, math.sqrt(3) / root)
+    if base == WELDED:  # the motion of its top alone
+        root[0] /= math.sqrt(3)
+        half[0] = 0.0
     gaps = np.array([spring.gap for spring in springs_of(column)])
-    return Blocks(root, half, gaps, base_of(column), column.impedance or 0.0, observed)
+    return Blocks(root, half, gaps, base, float(masses[0]), column.gravity, impedance(column), observed)
 
 
 def body_of(column: Column, blocks: Blocks) -> Body:
@@ -41,18 +118,24 @@ def body_of(column: Column, blocks: Blocks) -> Body:
     n = len(blocks.root)
     width = min(4, 2 * n)
     mean = 1 / blocks.root
-    mass = blocks.root * blocks.root
     k = np.zeros(2 * n)
-    k[1::2] = np.where(blocks.half > 0, 12 * column.moduli / column.heights / mass, 0.0)
+    k[1::2] = np.where(blocks.half > 0, stiffness(column) / (blocks.root * blocks.root), 0.0)
     weight = np.zeros((n, width))
-    if blocks.base != ABSENT:
-        weight[0, :2] = mean[0], -blocks.half[0]
+    weight[0, :2] = mean[0], -blocks.half[0]
     weight[1:] = np.column_stack([-mean[:-1], -blocks.half[:-1], mean[1:], -blocks.half[1:]])[:, :width]
     ground = np.zeros((n, 2))
     ground[0, 1] = column.rests_on_base
-    loads = np.zeros((4 if blocks.base in (HALF_SPACE, WELDED) else 2, 2 * n))  # the motion below is no modal load
+    if blocks.base in (ABSENT, CARRIED):
+        weight[0] = 0.0
+    if blocks.base == CARRIED:
+        weight[1:2, :2] = 0.0
+        ground[:2, 1] = np.arange(min(n, 2))
+    loads = np.zeros((2 if blocks.base in (ROW, ABSENT) else 4, 2 * n))  # the motion below is no modal load
     loads[0, ::2] = -column.gravity * blocks.root
     loads[1, -2:] = -mean[-1], -blocks.half[-1]
+    if blocks.base == WELDED:
+        loads[0, 0] /= 2 * blocks.root[0] * blocks.root[0] / blocks.mass
+        loads[3, 0] = -blocks.mass / 6 * mean[0]
     first = np.maximum(2 * np.arange(n) - 2, 0)
     return Body(k, loads, np.zeros(len(loads)), first, weight, ground, np.ones(len(k)))
 
@@ -65,13 +148,10 @@ def laws_of(column: Column, solve_limit: int | None, bonded: bool) -> Laws:
     if column.law == "unilateral" and not bonded:
         opens[:] = [spring is not None for spring in column.contacts]
     strength = np.array([math.inf if bonded else spring.strength for spring in springs])
-    compliance = np.array([1 / spring.stiffness for spring in springs])
-    if base_of(column) == ABSENT:
-        compliance[0] = 1.0  # of a row that feels nothing
     return Laws(
         contacts=n,
         rows=n,
-        compliance=compliance,
+        compliance=compliances(column),
         lower=np.where(opens == 1, 0.0, -strength),
         upper=strength,
         opens=opens,
@@ -98,25 +178,22 @@ def course_of(drive: Drive, scheme: Scheme, loads: int) -> Course:
 # ---- start -----------------------------------------------------------------------------------------------------------
 
 
-def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march: March) -> State:
+def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march: March) -> ColumnState:
     """Return the state at t = 0: unstrained with the gaps of the contacts, or under static forces."""
     blocks = march.method
     laws = march.laws
     body = march.body
-    rests = blocks.base in (ROW, WELDED)
     B = matrix_of(body)
     dt = scheme.step
     opens = laws.opens == 1
     rigid = laws.compliance == 0
-    rigid[0] &= rests
+    rigid[0] &= column.rests_on_base
     speed = np.zeros(len(body.k))
     speed[::2] = blocks.root * column.velocities
-    base_speed = float(drive.velocity[0]) if rests else 0.0
+    base_speed = float(drive.velocity[0]) if column.rests_on_base else 0.0
     welds = rigid & ~opens & np.isinf(laws.upper)  # their blocks get a common velocity at once
     speed += B.T @ rigid_forces(march, speed, base_speed, welds, np.zeros(len(opens)))
-    opening = blocks.gap.copy()
-    if blocks.base == ROW:
-        opening[0] -= drive.displacement[0]
+    opening = blocks.gap - body.ground[:, 1] * drive.displacement[0]
     # springs have the forces of the gaps; rigid contacts, and welds, have none before the accelerations are known
     spring = laws.compliance > 0
     force = np.clip(np.where(spring, -opening / np.where(spring, laws.compliance, 1.0), 0.0), laws.lower, laws.upper)
@@ -131,15 +208,19 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
     a = np.zeros(len(z))
     if scheme.start == "consistent":
         unknown = rigid & (~opens | (opening == 0))
-        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown, force)
+        rate = row_rates(march, speed, base_speed)
+        nothing = ROUNDING * np.max(np.abs(rate), initial=0.0)
+        parts = unknown & (rate > nothing)
+        returns = unknown & ~opens & (rate < -nothing)
+        # a contact that slips has its strength against the slip, one whose faces part has none
+        force = np.where(parts, laws.lower, np.where(returns, laws.upper, force))
+        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown & ~parts & ~returns, force)
         a = own + B.T @ force
-    if blocks.base == WELDED:
-        force[0] = move_foot(blocks, drive, own, B[1:].T @ force[1:], speed, a)
     R = own + B.T @ force
     rows = rows_of(opening, initial_states(laws, force))
     rows.force[:] = force
     p = late_momentum(scheme, dt * speed, dt * dt * a)
-    return State(z, p, dt * dt * a, dt * dt * R, np.zeros(len(opening)), rows)
+    return ColumnState(z, p, dt * dt * a, dt * dt * R, np.zeros(len(opening)), rows, np.zeros(2))
 
 
 def matrix_of(body: Body) -> Array:
@@ -181,32 +262,29 @@ def rigid_forces(march: March, rates: Array, base: float, unknown: Array, force:
     )
     length = Length(np.zeros(4), np.ones(len(rates)), flexibility_for(n, True))
     write_flexibility(march, 1.0, length)
-    for r in range(n):  # no product of a library, whose fused sums tear apart blocks that fall alike
-        march.work.q[r] = moved_row(march.body, r, rates) - march.body.ground[r, 1] * base
+    march.work.q[:] = row_rates(march, rates, base)
     after = rows_of(force, unknown)
     find_in_band(laws, rows_of(force, np.where(unknown, INSIDE, LOWER)), length.flexible, after, march.work)
     return np.asarray(after.force)
 
 
+def row_rates(march: March, rates: Array, base: float) -> Array:
+    """Return how fast each row opens or slips, (rows,), for velocities or accelerations of the modes."""
+    # no product of a library, whose fused sums tear apart blocks that fall alike
+    moved = [moved_row(march.body, r, rates) for r in range(len(march.body.first))]
+    return np.asarray(np.array(moved) - march.body.ground[:, 1] * base)
+
+
 def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> tuple[Array, Array]:
     """Return modes and forces at rest: every contact carries the weight above it; a pressure acts from t = 0 on."""
-    weights = column.gravity * blocks.root**2
+    weights = column.gravity * inertia(column)
     carried = np.append(np.cumsum(weights[::-1])[::-1], 0.0)
     stretch = -(carried[:-1] + carried[1:]) / 2 * column.heights / column.moduli
+    if blocks.base in (WELDED, CARRIED):
+        carried[0] = (carried[0] + carried[1]) / 2 if blocks.base == WELDED else 0.0
+        stretch[0] = 0.0
     tops = base + np.cumsum(stretch - carried[:-1] * laws.compliance - blocks.gap)
     z = np.zeros(2 * len(weights))
     z[::2] = blocks.root * (tops - stretch / 2)
     z[1::2] = blocks.root / math.sqrt(12) * stretch
     return z, carried[:-1]
-
-
-def move_foot(blocks: Blocks, drive: Drive, own: Array, pushed: Array, speed: Array, a: Array) -> float:
-    """Give the foot of the lowest block the motion of the base; return the force that the base needs for it."""
-    root = blocks.root[0]
-    for rates, foot in ((speed, drive.velocity[0]), (a, drive.acceleration[0])):
-        top = of_top(blocks, rates) if blocks.half[0] > 0 else foot
-        rates[:2] = root * (foot + top) / 2, root / math.sqrt(12) * (top - foot)
-    if blocks.half[0] == 0:
-        return float(root * (a[0] - own[0] - pushed[0]))
-    missing = a[:2] - own[:2] - pushed[:2]
-    return float(root / 2 * (missing[0] - missing[1] / math.sqrt(3)))

@@ -1,4 +1,4 @@
-"""Histories of a column whose contacts open or slip: what comes in is put into numbers, what comes out is named."""
+"""Histories of a column: what comes in is put into numbers, what comes out is named."""
 
 from __future__ import annotations
 
@@ -11,10 +11,12 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import NDArray
 
-from dda.bodies.bonded_column import Drive, column_names
 from dda.bodies.column import NEAR, Column
-from dda.bodies.column_equations import DISPLACEMENT, PRESSURE
+from dda.bodies.column_march import Drive, base_of, blocks_of, body_of, course_of, laws_of, start_of
 from dda.bodies.column_step import (
+    ABSENT,
+    CARRIED,
+    FOOT,
     FORCES,
     GAP,
     HALF_SPACE,
@@ -22,16 +24,15 @@ from dda.bodies.column_step import (
     MODES,
     RATES,
     RECORDED,
-    ROW,
     SLIDE,
     SPRINGS,
+    SPRUNG,
     STRAINED,
     SWITCHES,
     WELDED,
     Observed,
     make_column_steps,
 )
-from dda.bodies.open_column import base_of, blocks_of, body_of, course_of, laws_of, springs_of, start_of
 from dda.contact.rows import INSIDE
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
@@ -42,6 +43,8 @@ from dda.model.checks import check_columns, check_count
 from dda.result.contact_result import MarchResult, run_fields
 from dda.scheme.newmark import Scheme
 
+DISPLACEMENT = "displacement"  # of the top [m]
+PRESSURE = "contact_pressure"  # on the base [Pa]
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 
 
@@ -70,7 +73,7 @@ class ColumnOptions:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ColumnContactResult(MarchResult):
+class ColumnResult(MarchResult):
     """Histories of a column; forces act on the block above a contact."""
 
     step_switches: NDArray[np.int64]  # contacts whose state changed in a step, (steps,)
@@ -90,15 +93,15 @@ class ColumnContactResult(MarchResult):
         return np.asarray(self.states[contact])
 
 
-def solve_contact_column(
+def solve_column(
     column: Column,
     scheme: Scheme,
     drive: Drive,
     columns: Sequence[str] = (DISPLACEMENT, PRESSURE),
     heights: Sequence[float] = (),
     options: ColumnOptions | None = None,
-) -> ColumnContactResult:
-    """Step a column of contacts from its starting velocities.
+) -> ColumnResult:
+    """Step a column from its starting velocities.
 
     A numerical failure is an outcome, not an exception: the history then ends with the last step that was reached.
 
@@ -123,7 +126,7 @@ def solve_contact_column(
         other.
     """
     options = options or ColumnOptions()
-    check_contact_column(column, scheme, options)
+    check_column(column, scheme, options)
     began = perf_counter()
     steps = (len(drive.pressure) - 1) // len(scheme.stages)
     n = len(column.heights)
@@ -133,6 +136,7 @@ def solve_contact_column(
     march = march_of(body, laws_of(column, options.solve_limit, options.bonded), scheme, blocks.gap, blocks)
     march.room.end[:] = course.value[0]
     start = start_of(column, scheme, drive, options.settled, march)
+    march = march._replace(between=deepcopy(start))
     history = history_of(steps, len(columns) + (RECORDED if options.energies else 1), 0, 0, options.energies)
     history = history._replace(state=np.zeros((steps + 1 if options.states else 0, n), dtype=np.int8))
     ready = perf_counter()
@@ -153,9 +157,10 @@ def solve_contact_column(
         load = np.full_like(kinetic, -(strain[0] + springs[0]))
         return energies_of((kinetic, strain, springs, load), history.sums, scheme.table is not None)
 
-    lowest = int(blocks.base != ROW)
-    note = f"stepped, {how}: contacts {'open and close' if column.law == 'unilateral' else 'slip'}"
-    return ColumnContactResult(
+    lowest = int(blocks.base in (ABSENT, CARRIED, HALF_SPACE))
+    contacts = {"unilateral": "contacts open and close", "frictional": "contacts slip", "bonded": "bonded"}
+    note = f"stepped, {how}: {contacts[column.law]}"
+    return ColumnResult(
         **run_fields(history, outcome, scheme, [note], (began, ready)) | {"solves": solves},
         columns=dict(zip(columns, history.motion[1:, : len(columns)].T + 0.0, strict=True)),
         unknowns=n + int(np.count_nonzero(blocks.half)),
@@ -174,19 +179,19 @@ def states_of(states: NDArray[np.int8], opens: Array) -> NDArray[np.int8]:
     return np.where(states == INSIDE, STICK, slipping).astype(np.int8)
 
 
-def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions) -> None:
+def check_column(column: Column, scheme: Scheme, options: ColumnOptions) -> None:
     """Raise ValueError where column, scheme and options exclude each other."""
-    if column.law == "bonded":
-        raise ValueError("law: must be unilateral or frictional, got 'bonded', which solve_column steps")
     if scheme.damped:
         values = f"{scheme.mass_damping:g}, {scheme.stiffness_damping:g}"
-        raise ValueError(f"mass_damping, stiffness_damping: must be 0 where a column has contacts, got {values}")
+        raise ValueError(f"mass_damping, stiffness_damping: must be 0 of a column, got {values}")
     base = base_of(column)
-    if scheme.lag and base in (HALF_SPACE, WELDED):
-        below = "half-space" if base == HALF_SPACE else "base welded to the lowest block"
-        raise ValueError(f"scheme: {scheme.name} takes contacts on a base or none, got a {below}")
-    if scheme.explicit and any(math.isinf(spring.stiffness) for spring in springs_of(column)[int(base != ROW) :]):
-        raise ValueError("stiffness: must be finite and no faces welded in an explicit scheme (alpha = 0), got inf")
+    if scheme.lag and base in (HALF_SPACE, SPRUNG):
+        raise ValueError(f"impedance: a half-space does not go with {scheme.name}, got {column.impedance!r}")
+    if base == SPRUNG and (scheme.start == "consistent" or scheme.delta == 0):
+        field, needed = ("start", "'zero'") if scheme.start == "consistent" else ("delta", "positive")
+        raise ValueError(f"{field}: must be {needed} where a spring lies between half-space and column")
+    if scheme.explicit and any(math.isinf(joint.stiffness) for joint in column.joints):
+        raise ValueError("stiffness: must be finite in an explicit scheme (alpha = 0), got inf")
     if options.settled and not (column.law == "unilateral" and column.rests_on_base):
         foot = "such a base" if column.rests_on_base else "another base"
         raise ValueError(
@@ -199,7 +204,8 @@ def check_contact_column(column: Column, scheme: Scheme, options: ColumnOptions)
 
 def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[float]) -> Observed:
     """Return what the columns read."""
-    check_columns(column_names(heights, AT_HEIGHTS), columns)
+    names = [f"{part}_{number + 1}" for part in AT_HEIGHTS for number in range(len(heights))]
+    check_columns((DISPLACEMENT, PRESSURE, *names), columns)
     rows = np.array([_observed_column(column, name, heights) for name in columns]).reshape(-1, 4)
     kind, place, lower, upper = rows.T.copy()
     return Observed(kind.astype(np.int64), place.astype(np.int64), lower, upper)
@@ -208,7 +214,7 @@ def observed_columns(column: Column, columns: Sequence[str], heights: Sequence[f
 def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tuple[int, int, float, float]:
     """Return what is read, of which block, and its two weights."""
     if name == PRESSURE:
-        return FORCES, 0, 1.0, 0.0
+        return FOOT, 0, 0.0, 0.0
     if name == DISPLACEMENT:
         return MODES, *of_block(column, len(column.heights) - 1, 1.0)
     part, _, number = name.rpartition("_")
@@ -218,6 +224,8 @@ def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tup
         return (MODES if part == DISPLACEMENT else RATES), *of_block(column, block, share)
     modulus = column.moduli[block]
     if part == "stress":
+        if block == 0 and base_of(column) == WELDED:
+            return FORCES, 0, 1.0, 0.0
         if math.isinf(modulus):
             return FORCES, block, 0.5, 0.5
         top = of_block(column, block, 1.0)[2]
@@ -232,5 +240,7 @@ def _observed_column(column: Column, name: str, heights: Sequence[float]) -> tup
 def of_block(column: Column, block: int, share: float) -> tuple[int, float, float]:
     """Return the weights of the modes of a block in the displacement at a share of its height."""
     root = math.sqrt(column.densities[block] * column.heights[block])
+    if block == 0 and base_of(column) in (WELDED, CARRIED):  # the weight of its top, and of the base
+        return (0, share * math.sqrt(3) / root, 1 - share) if base_of(column) == WELDED else (0, 0.0, 1.0)
     stretch = 0.0 if math.isinf(column.moduli[block]) else math.sqrt(12) / root
     return block, 1 / root, (share - 0.5) * stretch
