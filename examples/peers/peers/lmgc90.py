@@ -89,7 +89,7 @@ class AsItComes(LMGC90):
 
 def refuse(pile: BoxesOnGround) -> None:
     """Refuse what this part of LMGC90 cannot express."""
-    tilted = [box.angle for box in pile.boxes if box.angle]
+    tilted = [math.degrees(box.angle) for box in pile.boxes if box.angle]
     if tilted:
         why = "compas_lmgc90 seeks contact between parallel faces only, and a tilted box falls through the ground"
         raise NotImplementedError(f"plane.block.turned: {why}, got {tilted[0]:g} deg")
