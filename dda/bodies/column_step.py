@@ -247,12 +247,18 @@ def hold_welds(march: March, length: Length, before: AnyState) -> None:
     for r in range(len(q) - 1):
         W[1][r] = 0.0
         beside = h2 * coupling(body, length.inverse, r, r + 1)
-        for weld, spring in ((r, r + 1), (r + 1, r)):
-            if laws.compliance[weld] == 0 and laws.compliance[spring] == 0:
-                W[1][r] = beside
-            elif laws.compliance[weld] == 0:
-                force = 0.0 - q[spring] / laws.compliance[spring]
-                q[weld] += beside * min(max(force, laws.lower[spring]), laws.upper[spring])
+        if laws.compliance[r] == 0 and laws.compliance[r + 1] == 0:
+            W[1][r] = beside
+        elif laws.compliance[r] == 0:
+            q[r] += beside * known_force(march, r + 1)
+        elif laws.compliance[r + 1] == 0:
+            q[r + 1] += beside * known_force(march, r)
+
+
+def known_force(march: March, r: int) -> float:
+    """Return the force of a spring that no force of the stage moves [Pa]."""
+    laws = march.laws
+    return float(min(max(0.0 - march.work.q[r] / laws.compliance[r], laws.lower[r]), laws.upper[r]))
 
 
 def of_top(blocks: Blocks, x: Vector, i: int) -> Any:
