@@ -233,10 +233,10 @@ class Equations:
 
     def largest(self) -> float:
         """Return the highest natural frequency, joints included [rad/s]."""
-        from scipy.sparse import diags_array, eye_array
+        from scipy.sparse import diags_array
 
         K = diags_array(self.k) + self.B.T @ self.kappa @ self.B
-        return elimination.largest_frequency(K.tocsr(), eye_array(len(self.k), format="csr"))
+        return elimination.largest_frequency(K.tocsr())
 
     def reduced(self) -> Equations:
         """Return the equations without the modes and gaps that no load can reach.

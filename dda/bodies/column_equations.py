@@ -133,18 +133,25 @@ class Equations:
         Rigid contacts that may open or slip are left out: they only lower it. So is the dashpot of a half-space, which
         leaves the foot of a column free, or a spring below it on a base at rest.
         """
-        from scipy.sparse import csr_array, eye_array
+        from scipy.sparse import diags_array
+        from scipy.sparse.linalg import LinearOperator, splu
 
-        B = self.B.toarray()
         compliance = compliances(self.column)
         closed = compliance > 0
         alike = np.array([spring is None for spring in self.column.springs])
         alike[0] = False  # a foot on a half-space is free, one on a base has a spring for its block
-        springs = B[closed] / np.sqrt(compliance[closed])[:, None]
-        K = np.diag(self.body.k) + springs.T @ springs
-        welds = B[alike]
-        free = np.eye(len(K)) - welds.T @ np.linalg.solve(welds @ welds.T, welds)  # of motions that keep faces together
-        return largest_frequency(csr_array(free @ K @ free), eye_array(len(K), format="csr"))
+        springs = diags_array(1 / np.sqrt(compliance[closed])) @ self.B[closed]
+        K = diags_array(self.body.k) + springs.T @ springs
+        if not alike.any():
+            return largest_frequency(K.tocsr())
+        welds = self.B[alike]
+        forces = splu((welds @ welds.T).tocsc())
+
+        def free(z: Array) -> Array:
+            """Return the part of a motion that keeps the faces together."""
+            return np.asarray(z - welds.T @ forces.solve(welds @ z))
+
+        return largest_frequency(LinearOperator(K.shape, dtype=float, matvec=lambda z: free(K @ free(z))))
 
 
 def equations(column: Column) -> Equations:

@@ -12,6 +12,7 @@ from dda.scheme.harmonic import Complex
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
+    from scipy.sparse.linalg import LinearOperator
 
 DENSE = 300  # unknowns up to which frequencies are found by a dense solver
 BAND = 2e5  # unknowns times the square of their band's width up to which every frequency is solved by itself
@@ -62,25 +63,25 @@ class Elimination:
         return values
 
 
-def largest_frequency(K: csr_array, M: csr_array) -> float:
-    """Return the largest w of K phi = w^2 M phi [rad/s], zero where nothing moves.
+def largest_frequency(stiffness: csr_array | LinearOperator) -> float:
+    """Return the largest w of K phi = w^2 phi [rad/s], zero where nothing moves.
 
     Raises
     ------
     OverflowError
-        If an entry leaves the range of double precision.
+        If a product leaves the range of double precision.
     """
-    from scipy.linalg import eigh
+    from scipy.linalg import eigvalsh
     from scipy.sparse.linalg import eigsh
 
-    n = K.shape[0]
+    n = stiffness.shape[0]
     if n == 0:
         return 0.0
-    if not (np.isfinite(M.data).all() and np.isfinite(K.data).all()):
-        raise OverflowError("mass or stiffness is out of range")
+    start = np.random.default_rng(0).standard_normal(n)
+    if not np.isfinite(stiffness @ start).all():
+        raise OverflowError("stiffness is out of range")
     if n <= DENSE:
-        squares = eigh(K.toarray(), M.toarray(), eigvals_only=True, subset_by_index=[n - 1, n - 1])
+        squares = eigvalsh(stiffness @ np.eye(n), subset_by_index=[n - 1, n - 1])
     else:
-        start = np.random.default_rng(0).standard_normal(n)
-        squares = eigsh(K.tocsc(), 1, M.tocsc(), which="LA", v0=start, return_eigenvectors=False)
+        squares = eigsh(stiffness, 1, which="LA", v0=start, return_eigenvectors=False)
     return math.sqrt(max(float(squares[0]), 0.0))
