@@ -144,8 +144,8 @@ def _at_once(
     rows = system.rows
     speed = system.B @ V - system.ground[:, 0] * system.start_parts[1]
     no_speed = AT_REST * np.max(np.abs(speed))
-    leaves = speed > no_speed
-    returns = (speed < -no_speed) & rows.slips
+    leaves = (speed > no_speed) & np.isfinite(rows.lower)  # what never slips cannot move
+    returns = (speed < -no_speed) & rows.slips & np.isfinite(rows.upper)
     moving = np.zeros(len(speed), dtype=bool)
     moving[touching] = (leaves | returns)[touching]
     borne = np.where(moving, np.where(leaves, rows.lower, rows.upper), 0.0)

@@ -92,10 +92,3 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case, lowe
     switches = prepared.switches()
     assert {switch.opens for switch in switches} == {None}
     assert {switch.slips for switch in switches} == {True, False}
-
-
-def test_an_explicit_step_of_welded_faces_is_refused():
-    joint = {"height": 2.0, "stiffness": 1e9}
-    scene = scene_of({"stiffness": None, "joint": [joint]}, ["displacement"]).with_values({"time.alpha": 0.0})
-    with pytest.raises(ValueError, match="stiffness: must be finite"):
-        get_solver("dda").prepare(scene).history_run()

@@ -92,12 +92,12 @@ def test_contacts_that_are_found_are_those_that_a_scene_may_state():
     assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)
 
 
-@pytest.mark.parametrize(("scheme", "step", "seed"), [("newmark", 0.03, 5), ("composite", 0.1, 7)])
+@pytest.mark.parametrize(("scheme", "step", "seed"), [("newmark", 0.03, 7), ("newmark", 0.02, 7)])
 def test_a_step_that_does_not_end_names_the_contacts_that_flip(scheme, step, seed):
-    """Stones on springs whose period is a tenth of the step land with friction: no state of one corner agrees."""
+    """Stones on springs whose period is a hundredth of the step land with friction: no state of one corner agrees."""
     floor = {"name": "floor", "rectangle": [9.0, 1.0], "at": [2.0, -0.5], "fixed": True}
     stones = {"name": "stone", "count": 4, "seed": seed, "radii": [0.4, 0.5], "across": 4, "at": [0.0, 0.02]}
-    contact = {"stiffness": 1e10, "shear_stiffness": 4e9, "friction": 60.0}
+    contact = {"stiffness": 1e12, "shear_stiffness": 4e11, "friction": 60.0}
     plane = {"young": "inf", "density": MASS, "gravity": [0.0, -9.81], "contact": contact}
     time = {"step": step, "steps": 20, "scheme": scheme}
     tables = {"plane": plane | {"block": [floor], "random": [stones]}, "time": time}
