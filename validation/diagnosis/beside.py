@@ -253,7 +253,12 @@ class SceneSearch:
         return [float(gap / size) if size else 0.0 for gap, size in zip(apart, sizes, strict=True)]
 
     def left(self, columns: Array) -> float:
-        """Return what columns leave up to the horizon: root mean square over the largest value, the worse column."""
+        """Return what columns leave up to the horizon: root mean square over the largest value, the worse column.
+
+        Infinite where the horizon comes before the first row.
+        """
+        if not self.rows:
+            return math.inf
         recorded = self.recorded[:, : self.rows]
         sizes = np.maximum(np.max(np.abs(recorded), axis=1), np.finfo(float).tiny)
         return float(np.max(np.sqrt(np.mean((recorded - columns[:, : self.rows]) ** 2, axis=1)) / sizes))
