@@ -255,6 +255,12 @@ def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPat
     assert answer.causes != ["scheme", "start"]
 
 
+def test_a_solver_that_parts_before_the_first_row_explains_nothing() -> None:
+    """The horizon of `bar` beside this history is its first row."""
+    case = made(108)
+    assert verdict(case, case.judged()) != "wrong"
+
+
 @pytest.mark.long
 def test_no_made_history_is_given_a_wrong_cause_and_most_are_named() -> None:
     cases = [(case, case.judged()) for case in map(made, range(80, 140))]
