@@ -210,11 +210,11 @@ def start_of(column: Column, scheme: Scheme, drive: Drive, settled: bool, march:
         unknown = rigid & (~opens | (opening == 0))
         rate = row_rates(march, speed, base_speed)
         nothing = ROUNDING * np.max(np.abs(rate), initial=0.0)
-        parts = unknown & (rate > nothing) & np.isfinite(laws.lower)
-        returns = unknown & ~opens & (rate < -nothing) & np.isfinite(laws.upper)
+        forwards = unknown & (rate > nothing) & np.isfinite(laws.lower)
+        backwards = unknown & ~opens & (rate < -nothing) & np.isfinite(laws.upper)
         # a contact that slips has its strength against the slip, one whose faces part has none
-        force = np.where(parts, laws.lower, np.where(returns, laws.upper, force))
-        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown & ~parts & ~returns, force)
+        force = np.where(forwards, laws.lower, np.where(backwards, laws.upper, force))
+        force = rigid_forces(march, own, float(drive.acceleration[0]), unknown & ~forwards & ~backwards, force)
         a = own + B.T @ force
     R = own + B.T @ force
     rows = rows_of(opening, initial_states(laws, force))

@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, ClassVar, TypeAlias
 
 import numpy as np
@@ -222,7 +222,7 @@ class SceneSearch:
             shares = (self.recorded[:, :rows] - columns[:, :rows]) / (self.allowed[:, :rows] + spread)
         return np.nan_to_num(np.clip(shares, -FARTHEST, FARTHEST), nan=FARTHEST)
 
-    @property
+    @cached_property
     def departing(self) -> np.ndarray:
         """Indices of the rows that are not the scene's own."""
         return np.flatnonzero(np.any(np.abs(self.over(self.scene_run, self.rows)) > 1, axis=0))
@@ -422,7 +422,7 @@ class RunVerdict:
     best: Values = field(default_factory=dict)
     alike: Sequence[Mapping[str, Any]] = ()
 
-    @property
+    @cached_property
     def columns(self) -> Array:
         """Columns of the run that explains the history, or comes nearest."""
         search = self.search

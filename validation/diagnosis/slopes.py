@@ -201,8 +201,8 @@ class SlopeSearch(SceneSearch):
             surroundings = {key: value for key, value in verdict.best.items() if key not in LAW}
             run = self.run(surroundings, self.rows)
         unit = self.allowed
-        if is_base and (best := self.run(verdict.best, self.rows)) is not None:
-            unit = unit + self.left(best) * np.max(np.abs(self.recorded), axis=1, keepdims=True)
+        if is_base:
+            unit = unit + verdict.left * np.max(np.abs(self.recorded), axis=1, keepdims=True)
         apart = np.abs(self.recorded - (self.scene_run if run is None else run))[:, : self.rows]
         return Departure(int(np.argmax(np.any(apart > unit, axis=0))) + 1, "offset")
 

@@ -16,13 +16,10 @@ from pydantic import model_validator
 from validation.models.plane import assembly, geometry
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import Point as Point
-from validation.models.plane.blocks import Vertices as Vertices
-from validation.models.plane.blocks import cells, thickness
+from validation.models.plane.blocks import Vertices, cells, thickness
 from validation.models.plane.contents import GENERATORS, PlaneContents
 from validation.models.plane.generators import MOST_BLOCKS
-from validation.models.plane.glued import BodySection, ClampSection, DiscSection, ObserveSection
-from validation.models.plane.glued import Loads as Loads
-from validation.models.plane.glued import PlateSection as PlateSection
+from validation.models.plane.glued import BodySection, ClampSection, DiscSection, Loads, ObserveSection, PlateSection
 from validation.models.plane.joints import Segment as Segment
 from validation.scenes.keys import Key
 from validation.scenes.tables import Count, Positive, Real

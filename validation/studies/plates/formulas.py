@@ -18,7 +18,9 @@ import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
-from validation.models.plane.tables import Loads, PlaneSection, PlateSection, Vertices
+from validation.models.plane.blocks import Vertices
+from validation.models.plane.glued import Loads, PlateSection
+from validation.models.plane.tables import PlaneSection
 from validation.runs.row import Value
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
