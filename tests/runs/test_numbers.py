@@ -23,6 +23,7 @@ NUMBERS = [  # function, value, text
     (bound, 1e-15, "<10⁻¹²"), (bound, -1e-12, "<10⁻¹²"), (bound, 0.0, "<10⁻¹²"), (bound, 0, "as it is"),
     (bound, 2e-12, "as it is"),
     (numbers.tick_text, 0.1, "0.1"), (numbers.tick_text, 1000.0, "1000"), (numbers.tick_text, 1e5, "$10^{5}$"),
+    (numbers.tick_text, 5e-5, r"$5{\times}10^{-5}$"), (numbers.tick_text, 2e4, r"$2{\times}10^{4}$"),
     (numbers.measured_text, 0, "0"), (numbers.measured_text, 2e-12, "2e-12"), (numbers.measured_text, None, "-"),
     (numbers.measured_text, -0.0363249, "-0.03632"), (numbers.measured_text, "undefined", "undefined"),
     (numbers.measured_text, -9e-13, "below 1e-12"), (numbers.band_text, (0.5, 2 / 3), "0.5 .. 0.6667"),

@@ -126,12 +126,14 @@ def milliseconds(seconds: float) -> str:
 
 
 def tick_text(value: float) -> str:
-    """Return the number at a tick, as a power of ten where it is long."""
+    """Return the number at a tick, as a power of ten, or some of it, where it is long."""
     return f"{value:g}" if 1e-3 < value < 1e4 else _decade(value)
 
 
 def _decade(value: float) -> str:
-    return f"$10^{{{round(math.log10(value))}}}$"
+    share, _, exponent = f"{value:.0e}".partition("e")
+    mantissa = "" if share == "1" else share + r"{\times}"  # in braces, without the spaces of an operator
+    return f"${mantissa}10^{{{int(exponent)}}}$"
 
 
 def _brief(value: float) -> str:

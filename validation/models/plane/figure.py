@@ -91,7 +91,8 @@ def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
         speed = math.hypot(*block.velocity)
         if speed:
             vector = length * np.array(block.velocity) / speed
-            sketch.arrow(centroid(block.vertices), vector, f"{speed:.3g} m/s")
+            va = "top" if block.velocity[1] < 0 else "bottom"  # of an arrow downwards the name stands above
+            sketch.arrow(centroid(block.vertices), vector, f"{speed:.3g} m/s", va=va)
 
 
 def _name_blocks(axes: Any, assembly: Assembly) -> None:

@@ -62,13 +62,13 @@ class Sketch:
         """Draw a line through points."""
         self.axes.plot(*self._placed(points).T, color="black", lw=width, **look)  # type: ignore[arg-type]
 
-    def arrow(self, tail: ArrayLike, vector: ArrayLike, words: str = "", head: str = "-|>") -> None:
-        """Draw an arrow, with words at its tail."""
+    def arrow(self, tail: ArrayLike, vector: ArrayLike, words: str = "", head: str = "-|>", va: str = "bottom") -> None:
+        """Draw an arrow, with words at its tail: above it, or below with `va` "top"."""
         start, end = self._placed(np.array([tail, np.add(tail, vector)]))
         look = {"arrowstyle": f"{head},head_width=0.12,head_length=0.28", "lw": 0.6, "shrinkA": 0, "shrinkB": 0}
         self.axes.annotate("", end, start, arrowprops=look, zorder=4)
         if words:
-            self.axes.annotate(words, start, (2.5, 1.0), textcoords="offset points", fontsize=6.5, va="bottom")
+            self.axes.annotate(words, start, (2.5, 1.0), textcoords="offset points", fontsize=6.5, va=va)
 
     def dot(self, point: Sequence[float]) -> None:
         """Draw a dot at a point."""
