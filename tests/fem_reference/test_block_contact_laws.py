@@ -5,13 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
-from oracles.block_by_integration import Integrated, random_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_impacts import Hops
 from fem_reference.events.block_model import BlockProblem
-from fem_reference.events.contacts import STICKS
 from fem_reference.events.switches import AccumulationError, TooManySwitchesError
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
@@ -72,23 +69,6 @@ def test_a_rigid_block_rebounds_with_the_closed_form(zeta: float) -> None:
     assert np.all(history.normal_force >= 0)
     released = history.gap[0, np.flatnonzero(history.closed[0] == 0)[0]]
     assert released < 0  # it lets go before the spring has come back
-
-
-# -- an independent program
-
-
-@pytest.mark.parametrize(("seed", "zeta"), thinned([(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)], 2))
-def test_rocking_on_dashpots_agrees_with_an_integration(seed: int, zeta: float) -> None:
-    problem = dashpot(replace(random_problem(seed), shear_stiffness=0.0), zeta)
-    end = 8 * transit(problem)
-    motion = solve(problem, end)
-    switches, y = Integrated(problem).run(list(map(int, motion.closed_at_start)), end)
-    assert switches
-    kinds = [(corner, "closes" if state == STICKS else "opens") for _, corner, state in switches]
-    assert [(switch.corner, switch.kind) for switch in motion.switches] == kinds
-    assert [switch.time for switch in motion.switches] == pytest.approx([time for time, _, _ in switches], rel=1e-8)
-    history = motion.at([end])
-    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-7 * np.abs(y[:6]).max())
 
 
 # -- identities

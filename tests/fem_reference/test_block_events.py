@@ -1,15 +1,17 @@
 """The exact motion of the block with no-tension corners: known histories, an independent integration, a long flight."""
 
+import math
 from dataclasses import replace
 
 import mpmath
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import Integrated, random_problem
+from oracles.block_by_integration import Integrated, random_problem, slipping_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import BlockProblem
+from fem_reference.events.contacts import OPEN, RELEASED
 from fem_reference.events.switches import TooManySwitchesError
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
@@ -73,18 +75,33 @@ def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
     assert history.contact_pressure == pytest.approx(pressure, rel=5e-12)  # printed with twelve digits
 
 
-@pytest.mark.parametrize("seed", thinned([5, 0, 2, 1, 3, 4], 3))
-def test_an_independent_integration_with_events_agrees(seed: int) -> None:
-    problem = random_problem(seed)
-    end = 10 * travel(problem)
+def dashpot(seed: int, zeta: float) -> BlockProblem:
+    """A random block with the dashpot of each corner for c = 2 zeta sqrt(k m) of both, k = 2p."""
+    problem = replace(random_problem(seed), shear_stiffness=0.0)
+    m = problem.density * problem.width * problem.height
+    return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
+
+
+SLIPPING = [(seed, moved) for seed in (*range(1, 6), 8, 0) for moved in (False, True)]
+INTEGRATED = [
+    *thinned([(random_problem(seed), 10) for seed in (5, 0, 2, 1, 3, 4)], 3),
+    *thinned([(dashpot(*one), 8) for one in [(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)]], 2),
+    *(pytest.param(slipping_problem(*one), 5, marks=pytest.mark.long) for one in SLIPPING),
+]
+
+
+@pytest.mark.parametrize(("problem", "travels"), INTEGRATED)
+def test_an_independent_integration_with_events_agrees(problem: BlockProblem, travels: int) -> None:
+    end = travels * travel(problem)
     motion = solve(problem, end)
     # DOP853 at rtol 1e-13 is good to about 1e-11 here; every switch amplifies that, by up to ten in these problems
-    switches, y = Integrated(problem).run(list(map(int, motion.closed_at_start)), end)
-    times = [time for time, _, _ in switches]
-    assert len(times) > 1
-    assert [s.time for s in motion.switches] == pytest.approx(times, rel=1e-8)
+    switches, y = Integrated(problem).run([int(state) for state in motion.nodes[0].states], end)
+    assert switches
+    opened = [(corner, state in (OPEN, RELEASED)) for _, corner, state in switches]
+    assert [(s.corner, s.kind == "opens") for s in motion.switches] == opened
+    assert [s.time for s in motion.switches] == pytest.approx([time for time, _, _ in switches], abs=1e-8 * end)
     history = motion.at([end])
-    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-7 * np.abs(y[:6]).max())
+    assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-8 * np.abs(y[:6]).max())
     assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
 
 
