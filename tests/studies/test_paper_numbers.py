@@ -13,7 +13,8 @@ from scipy.linalg import eigh
 from dda.scheme import spectral
 from fem_reference import Scheme as FemScheme
 from fem_reference.mesh.model import build
-from fem_reference.scheme.newmark import State, Stepper
+from fem_reference.scheme.newmark import Stepper
+from fem_reference.scheme.stage import Motion
 from validation import load_scene, solve
 from validation.metrics.columns import settling_step
 from validation.solvers.registry import get_solver
@@ -111,7 +112,7 @@ def test_energy_identity_of_the_elements(alpha, delta):
     M, K, c = model.M, model.K, alpha - delta / 2
     rng = np.random.default_rng(5)
     D, V = rng.normal(size=(2, len(model.F)))
-    state = State(D, V * highest, -np.linalg.solve(M.toarray(), K @ D))
+    state = Motion(D, V * highest, -np.linalg.solve(M.toarray(), K @ D))
 
     def energy(s):
         return float(s.V @ (M @ s.V) + s.D @ (K @ s.D) + c * dt**2 * s.A @ (M @ s.A)) / 2
