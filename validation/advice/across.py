@@ -119,7 +119,13 @@ def advise_across(
     check_ratio(damping, LEAST_RATIO)
     Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
-    block = _closed_block(scene)
+    # A block whose contact stays closed, which has modes; one that opens must be a rectangle on springs.
+    features.refuse_column(scene, "advise")
+    is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
+    if scene.contact.law == "unilateral" and not is_known:
+        rule = "must be a rectangle on springs of finite stiffness where contact opens"
+        raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
+    block = closed(scene)
     modes = dda_modes(block)
     highest = highest_frequency(block)
     impact = highest if scene.block.rectangle is None else landing.contact_frequency(scene)
@@ -137,16 +143,6 @@ def advise_across(
     ranked = sorted(offers, key=rank)
     answer = SchemeAdvice(scene.name, float(damping), hertz, wish, tuple(ranked), unreachable, "")
     return replace(answer, sentence=_sentence(answer))
-
-
-def _closed_block(scene: Scene) -> Scene:
-    """Return a block whose contact stays closed, which has modes; one that opens must be a rectangle on springs."""
-    features.refuse_column(scene, "advise")
-    is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
-    if scene.contact.law == "unilateral" and not is_known:
-        rule = "must be a rectangle on springs of finite stiffness where contact opens"
-        raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
-    return closed(scene)
 
 
 # ---- candidates -----------------------------------------------------------------------------------------------------

@@ -179,7 +179,20 @@ def recommend(
     block = closed(at_rest(sprung))
     slides = sliding(scene)
     if goal == "static" and slides is not None and not slides.stands:
-        return (_slide(scene, error),)
+        # The longest step with which a block slides as far as a rigid one, on its own springs.
+        duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
+        finest = duration / FINEST_SLIDE
+        plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+
+        def run(every: int) -> Candidate:
+            settings = CONSTANT | {"time.step": every * finest}
+            steps = FINEST_SLIDE // every
+            errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
+            return Candidate(settings, steps, *errors)
+
+        best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
+        condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
+        return (recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration),)
     if goal == "static":
         return (_static(sprung, block, error),)
     if goal == "impact":
@@ -241,23 +254,6 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     return recommendation(scene, "static", condition, best, error, reference, duration)
 
 
-def _slide(scene: Scene, error: float) -> Recommendation:
-    """Return the longest step with which a block slides as far as a rigid one, on its own springs."""
-    duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
-    finest = duration / FINEST_SLIDE
-    plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
-
-    def run(every: int) -> Candidate:
-        settings = CONSTANT | {"time.step": every * finest}
-        steps = FINEST_SLIDE // every
-        errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
-        return Candidate(settings, steps, *errors)
-
-    best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
-    condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
-    return recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration)
-
-
 def slide_errors(scene: Scene) -> tuple[float, float] | None:
     """Return how far `dda` is from a rigid block that slides: of the distance, and of the mean contact pressure [-].
 
@@ -280,7 +276,12 @@ def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple
     finest = 1 / (frequency * COARSEST * 2 ** (REFINEMENTS - 1))
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "wavelet.csv"
-        _write_wavelet(record, frequency, duration, finest, axes)
+        # Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base.
+        times = np.arange(round(duration / finest) + 2) * finest
+        a = (np.pi * (frequency * times - ONSET)) ** 2
+        motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
+        table = np.column_stack([times, *[motion - motion[0]] * len(axes)])
+        np.savetxt(record, table, delimiter=",", header=",".join(("time", *axes)), comments="")
         columns = [DISPLACEMENT, PRESSURE, *([ALONG] if "x" in axes else [])]
         driven = block.with_values(NO_LOADS | {"load.base_motion": str(record), "run.columns": columns})
         fine = AVERAGE | {"time.step": finest, "time.steps": round(duration / finest)}
@@ -293,15 +294,6 @@ def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple
         condition = f"base moves {along} as Ricker's wavelet of {frequency:.4g} Hz, contact closed"
         reference = ("elements, fine in time", uncertainty)
         return recommendation(driven, goal, condition, best, error, reference, duration)
-
-
-def _write_wavelet(path: Path, frequency: float, duration: float, step: float, axes: tuple[str, ...]) -> None:
-    """Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base."""
-    times = np.arange(round(duration / step) + 2) * step
-    a = (np.pi * (frequency * times - ONSET)) ** 2
-    motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
-    table = np.column_stack([times, *[motion - motion[0]] * len(axes)])
-    np.savetxt(path, table, delimiter=",", header=",".join(("time", *axes)), comments="")
 
 
 def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Candidate:

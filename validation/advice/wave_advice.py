@@ -99,7 +99,9 @@ class _WavePath:
 
     def passage(self, stepping: Stepping) -> Passage:
         loss, delay = self.passed(stepping.squared_frequency([self.omega]))
-        values = (loss[0], delay[0], _steady_ratio(stepping, self.frequency))
+        # The damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz.
+        W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(self.frequency, float)))
+        values = (loss[0], delay[0], float(-W.imag / np.abs(W)))
         rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
         return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *rounded)
 
@@ -271,12 +273,6 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
         return step * highest <= scheme.at(step).critical_omega
 
     return is_stable
-
-
-def _steady_ratio(stepping: Stepping, frequency: float) -> float:
-    """Return the damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz."""
-    W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(frequency, float)))
-    return float(-W.imag / np.abs(W))
 
 
 def _check_sampled(frequency: float, step: float) -> None:

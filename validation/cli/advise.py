@@ -61,10 +61,16 @@ def everything(
     check(goal, error, frequency)
     case = one_case(scene, assignments)
     with _progress("advise") as progress:
+        # The options that a page on all goals was asked for with, as one on a goal takes them.
+        options = [] if error == ERROR else ["--error", f"{error:g}"]
+        if frequency is not None:
+            options += ["--frequency", f"{frequency:g}"]
+        if keep_springs:
+            options.append("--keep-springs")
         question = Question(
             source=_words(scene, assignments),
             error=error,
-            stated=_stated(error, frequency, keep_springs),
+            stated=" ".join(["", *options]),
             goals=GOALS if goal is None else (goal,),
             frequency=frequency,
             keep_springs=keep_springs,
@@ -77,16 +83,6 @@ def everything(
 def _words(scene: str, assignments: list[str] | None) -> str:
     """Return a scene with values set as a command line has it."""
     return shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
-
-
-def _stated(error: float, frequency: float | None, keep_springs: bool) -> str:
-    """Return the options that a page on all goals was asked for with, as one on a goal takes them."""
-    options = [] if error == ERROR else ["--error", f"{error:g}"]
-    if frequency is not None:
-        options += ["--frequency", f"{frequency:g}"]
-    if keep_springs:
-        options.append("--keep-springs")
-    return " ".join(["", *options])
 
 
 @parts.command()

@@ -358,7 +358,10 @@ def solve(
     if ended.outcome is not Outcome.COMPLETED:
         echo(f"{case.name} {solver}: {ended.outcome}: {ended.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
-    _print_run(case, solver, ended)
+    work = ", ".join(f"{count} {name}" for name, count in ended.work.items())
+    last = {name: float(values[-1]) for name, values in ended.history.columns.items()} if ended.history else {}
+    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
+    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 class _Abandoned(Exception):
@@ -386,13 +389,6 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None, watc
         if part.stat().st_size == 0:
             raise InputError(f"{solver.name} has written none", field="--fields", value=repr(str(fields)))
     return run
-
-
-def _print_run(case: Scene, solver: str, run: Run) -> None:
-    work = ", ".join(f"{count} {name}" for name, count in run.work.items())
-    last = {name: float(values[-1]) for name, values in run.history.columns.items()} if run.history else {}
-    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
-    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 def _status(

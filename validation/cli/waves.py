@@ -14,7 +14,6 @@ from validation.cli.printing.output import columns, echo
 
 if TYPE_CHECKING:
     from validation.advice.response import Peak, Response
-    from validation.runs.history import Array
     from validation.scenes.scene import Scene
 
 FigureOption = Annotated[
@@ -46,18 +45,7 @@ def response(
     from validation.runs.files import check_ending
 
     case = one_case(scene, assignments)
-    frequencies = _frequencies(low, high, points, logarithmic)
-    check_ending(figure, "--figure")
-    answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
-    if csv is not None:
-        _write(answers[EXACT if exact else solver], csv)
-    if figure is not None:
-        _draw(case, answers, logarithmic, figure)
-    _print_peaks(case, answers)
-
-
-def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
-    """Return the frequencies of a sweep [Hz], or refuse its ends."""
+    # The frequencies of a sweep [Hz], or refuse its ends.
     import numpy as np
 
     from validation.errors import InputError
@@ -69,17 +57,21 @@ def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Arr
     if logarithmic and low == 0:
         raise InputError("must be greater than 0 with --log", field="--from", value="0")
     spaced = np.geomspace if logarithmic else np.linspace
-    return np.asarray(spaced(low, high, points), dtype=np.float64)
+    frequencies = np.asarray(spaced(low, high, points), dtype=np.float64)
+    check_ending(figure, "--figure")
+    answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
+    if csv is not None:
+        # Write the table with all digits.
+        response = answers[EXACT if exact else solver]
+        from validation.advice.response import HEADER
+        from validation.runs.files import write_atomically
 
-
-def _write(response: Response, path: Path) -> None:
-    """Write the table with all digits."""
-    from validation.advice.response import HEADER
-    from validation.runs.files import write_atomically
-
-    lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
-    write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
-    echo(f"wrote {path}: {len(lines) - 1} frequencies")
+        lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
+        write_atomically(csv, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
+        echo(f"wrote {csv}: {len(lines) - 1} frequencies")
+    if figure is not None:
+        _draw(case, answers, logarithmic, figure)
+    _print_peaks(case, answers)
 
 
 def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Path) -> None:

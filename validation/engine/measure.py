@@ -69,7 +69,12 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver = case.make_solver()
     scene = case.scene
-    prepared, run = attempt(solver, scene, case.full, contact_record=_reads_contact_record(case))
+    prepared, run = attempt(
+        solver,
+        scene,
+        case.full,
+        contact_record=any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only)),
+    )
     run = checked(run, scene)
     failed: list[str] = []
     metrics: dict[str, Value] = {}
@@ -297,11 +302,6 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {error_text(error)}")
     return metrics
-
-
-def _reads_contact_record(case: Case) -> bool:
-    """Tell whether a metric that a run of the case may have is one of its contacts."""
-    return any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only))
 
 
 def _reported(name: str, part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:

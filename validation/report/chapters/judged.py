@@ -137,7 +137,28 @@ def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
         if answer.cause.would_tell:
             half = "" if answer.cause.alike else f"; half the step is {_step(time, 2)}"
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}{half}."))
-    blocks += [Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."), _criteria(answer)]
+    criteria = answer.judgement.criteria
+    caption = "Relative L2 error of each column."
+    notes = [ALLOWED]
+    if answer.problem.numbers:
+        caption = "Errors of the numbers that are judged, as shares of their scales."
+        notes = list(dict.fromkeys(f"{criterion.name}: {criterion.reason}." for criterion in criteria))
+    rows = []
+    for criterion in criteria:
+        name = answer.problem.named(criterion.name)
+        error, allowed = map(error_percent, (criterion.error, criterion.allowed))
+        rows.append((name, str(criterion.status), error, allowed, criterion.datum or DASH, plain(criterion.until)))
+        if criterion.allowed is None:
+            notes.append(f"{name}: {criterion.reason}.")
+    blocks += [
+        Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
+        table(
+            ("Judged", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
+            rows,
+            caption,
+            tuple(notes),
+        ),
+    ]
     if judgement.quantities:
         blocks.append(numbers_table(judgement.quantities))
     return blocks
@@ -191,28 +212,6 @@ def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
     _, uppermost = split(answer.problem.columns[-1])
     poses = [name for name in answer.problem.columns if split(name)[1] == uppermost]
     return [(name, None) for name in poses if name in columns and np.ptp(columns[name]) >= STILL]
-
-
-def _criteria(answer: JudgedAnswer) -> Table:
-    criteria = answer.judgement.criteria
-    caption = "Relative L2 error of each column."
-    notes = [ALLOWED]
-    if answer.problem.numbers:
-        caption = "Errors of the numbers that are judged, as shares of their scales."
-        notes = list(dict.fromkeys(f"{criterion.name}: {criterion.reason}." for criterion in criteria))
-    rows = []
-    for criterion in criteria:
-        name = answer.problem.named(criterion.name)
-        error, allowed = map(error_percent, (criterion.error, criterion.allowed))
-        rows.append((name, str(criterion.status), error, allowed, criterion.datum or DASH, plain(criterion.until)))
-        if criterion.allowed is None:
-            notes.append(f"{name}: {criterion.reason}.")
-    return table(
-        ("Judged", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
-        rows,
-        caption,
-        tuple(notes),
-    )
 
 
 def numbers_table(numbers: Sequence[Quantity]) -> Table:

@@ -224,7 +224,13 @@ def value_of_case(case: CaseResults, group: CaseGroup | None, expression: str) -
         return case.label
     source, _, metric = expression.partition(" ")
     if not metric:
-        return _datum(case, source)
+        try:
+            value = operator.attrgetter(source)(case.scene)
+        except AttributeError:  # of a table that the scene has not
+            return None
+        if isinstance(value, bool) or not isinstance(value, int | float | str | None):
+            return str(value)
+        return value
     solver, _, reference = source.partition("|")
     if reference:
         return group.number_of_pair(case, solver, reference, metric) if group else None
@@ -284,16 +290,6 @@ def _is_among(value: Value, wanted: Sequence[Value]) -> bool:
         elif value == one:
             return True
     return False
-
-
-def _datum(case: CaseResults, path: str) -> Value:
-    try:
-        value = operator.attrgetter(path)(case.scene)
-    except AttributeError:  # of a table that the scene has not
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float | str | None):
-        return str(value)
-    return value
 
 
 def _of_solver(case: CaseResults, solver: str, metric: str) -> Value:

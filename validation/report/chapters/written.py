@@ -225,7 +225,7 @@ class WrittenChapter:
         previous: list[str] = []
         for group in self.table.grouped(self.table.lines(described), described.get("group_by", ())):
             cells = [self._cell(column, group) for column in columns]
-            numbers = [text for text, column in zip(cells, columns, strict=True) if _is_measured(column)]
+            numbers = [text for text, column in zip(cells, columns, strict=True) if " " in column.get("of", "")]
             if described.get("measured") and set(numbers) == {DASH}:
                 continue
             pairs = zip(cells, columns, previous or [""] * len(cells), strict=True)
@@ -490,11 +490,6 @@ def _shade(shade: Query, value: float) -> float:
         value, low, high = (math.log(max(one, 1e-300)) for one in (value, low, high))
     share: float = (value - low) / (high - low)
     return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share))
-
-
-def _is_measured(column: Query) -> bool:
-    """Whether a column shows a number of a run, not a datum or a word."""
-    return " " in column.get("of", "")
 
 
 def _column(column: Query) -> CaseColumn:

@@ -124,7 +124,12 @@ def chart_figure(
             if shared:
                 _share_y([axes for axes, _ in pairs])
             for axes, panel in pairs:
-                _draw_frame(axes, panel, has_marked_top)
+                # Write the title, label and number the axes, draw hairlines.
+                axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
+                axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
+                _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
+                _number_axis(axes, axes.yaxis, panel.logarithmic[1], panel.y_ticks)
+                _draw_hairlines(axes, panel, has_marked_top)
                 if not shared or axes is pairs[-1][0]:
                     _write_names(axes, panel)
             if shared:
@@ -166,15 +171,6 @@ def _share_y(row: Sequence[Axes]) -> None:
     limits = [axes.get_ylim() for axes in row]
     for axes in row:
         axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
-
-
-def _draw_frame(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
-    """Write the title, label and number the axes, draw hairlines."""
-    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
-    axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
-    _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
-    _number_axis(axes, axes.yaxis, panel.logarithmic[1], panel.y_ticks)
-    _draw_hairlines(axes, panel, has_marked_top)
 
 
 def draw_chart_line(axes: Axes, line: ChartLine) -> None:

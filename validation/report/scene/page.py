@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from validation.advice.plain import Line
-from validation.report.blocks import Blocks, Callout, Listing, Table, TableColumn, table
+from validation.report.blocks import Blocks, Callout, Listing, TableColumn, table
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing
 from validation.report.scene.hooks import Number, ShowingHooks
@@ -82,7 +82,7 @@ class SceneDescription:
             rows.append((name, " .. ".join(ends), number.unit, number.says))
         return [
             Listing("\n".join(drawing(self.cases[0], width))),
-            _fact_table(list(self._facts())),
+            table(("", TableColumn("", "fill")), list(self._facts()), ruled=False),
             table(("", TableColumn("value"), "", TableColumn("what it is", "fill")), rows, caption, ruled=False),
             *(
                 Callout(f"{text} (in {count} of {sample} cases)" if sample > 1 else text, "warn")
@@ -105,10 +105,6 @@ class SceneDescription:
         yield "solvers", f"{', '.join(self.solvers)}{case_count}"
         if self.gates:
             yield "gates", f"{self.gates} in the scene"
-
-
-def _fact_table(facts: Sequence[Line]) -> Table:
-    return table(("", TableColumn("", "fill")), facts, ruled=False)
 
 
 def _other_keys(scene: Scene) -> Iterator[str]:

@@ -90,15 +90,11 @@ def order(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     errors = []
     for case in levels:
         history, exact = (finished.needed_history(case.name, solver) for solver in (DDA, EVENTS))
-        errors.append(_error(history, exact))
+        # The largest error of the blocks' displacements over the largest displacement.
+        names = [name for name in exact.columns if name.startswith("displacement")]
+        differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
+        errors.append(float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names)))
     return {"displacement": fitted_order([case.time.step for case in levels], errors)}
-
-
-def _error(history: History, exact: History) -> float:
-    """Return the largest error of the blocks' displacements over the largest displacement."""
-    names = [name for name in exact.columns if name.startswith("displacement")]
-    differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
-    return float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names))
 
 
 def pieces(scene: Scene, history: History) -> Mapping[str, Value]:

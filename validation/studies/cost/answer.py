@@ -28,7 +28,10 @@ def answer(manifest: Manifest) -> Blocks:
                 "of Python, ranks; ms are the least of some repeats, by the processor."
             )
         if "who" in metrics:
-            rows.append(_line(metrics))
+            numbers = []
+            for name, factor in (("step", 1e3), ("seconds", 1e3), ("setup", 1e3), ("work", 1.0)):
+                numbers.append(short(factor * metrics[name], 3) if name in metrics else DASH)
+            rows.append([metrics["quantity"], metrics["accuracy"], WHO[metrics["who"]], metrics["way"], *numbers])
     return [table([*COLUMNS, *(TableColumn(title, "decimal") for title in NUMBERS)], rows), Paragraph(measured)]
 
 
@@ -39,10 +42,3 @@ def _uncertainty(metrics: Mapping[str, Any]) -> str:
         if key.startswith("uncertainty."):
             values.append(f"{100 * value:.2g} % in {key.removeprefix('uncertainty.')}")
     return f", uncertain by {' and '.join(values)}" if values else ""
-
-
-def _line(metrics: Mapping[str, Any]) -> list[str]:
-    numbers = []
-    for name, factor in (("step", 1e3), ("seconds", 1e3), ("setup", 1e3), ("work", 1.0)):
-        numbers.append(short(factor * metrics[name], 3) if name in metrics else DASH)
-    return [metrics["quantity"], metrics["accuracy"], WHO[metrics["who"]], metrics["way"], *numbers]

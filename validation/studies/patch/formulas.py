@@ -33,7 +33,17 @@ def elongation_of_the_continuum(case: Scene) -> Band | None:
 
 def elongation(case: Scene) -> Band | None:
     """Return the same of glued blocks: with the openings of the joints between its ends [m]."""
-    return _about(_elastic(case) + _opening(case), case)
+    # The mean opening in x of the joints on a way from the left to the right end: at a height between the ends it
+    # crosses one joint of two blocks, two of four blocks about a crossing, and n - 1 of a strip of n.
+    plane = case.table(PlaneSection)
+    s_xx, _, s_xy = plane.stress
+    opening = 0.0
+    for (x0, y0), (x1, y1) in _joints(plane):
+        # s n l, n from the left to the right: (y1 - y0, x0 - x1) of a joint that runs upwards
+        force = s_xx * (y1 - y0) + s_xy * (x0 - x1)
+        height = y1 - y0
+        opening += force / (2 * plane.glue * plane.young) * height
+    return _about(_elastic(case) + opening, case)
 
 
 def _about(value: float, case: Scene) -> Band | None:
@@ -54,23 +64,6 @@ def _elastic(case: Scene) -> float:
         modulus /= 1 - ratio**2
         ratio /= 1 - ratio
     return length * (s_xx - ratio * s_yy) / modulus
-
-
-def _opening(case: Scene) -> float:
-    """Return the mean opening in x of the joints that a way from the left to the right end crosses [m].
-
-    At a height between the ends a way crosses one joint of two blocks, two of four blocks about a crossing, and n - 1
-    of a strip of n; what the ends observe is the mean over the height.
-    """
-    plane = case.table(PlaneSection)
-    s_xx, _, s_xy = plane.stress
-    opening = 0.0
-    for (x0, y0), (x1, y1) in _joints(plane):
-        # s n l, n from the left to the right: (y1 - y0, x0 - x1) of a joint that runs upwards
-        force = s_xx * (y1 - y0) + s_xy * (x0 - x1)
-        height = y1 - y0
-        opening += force / (2 * plane.glue * plane.young) * height
-    return opening
 
 
 def _joints(plane: PlaneSection) -> list[tuple[tuple[float, float], tuple[float, float]]]:
