@@ -18,6 +18,7 @@ from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.spectra import FLIPPING, steps_to
+from validation.runs.aliases import NamedNumbers
 from validation.runs.row import Row
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
@@ -30,7 +31,7 @@ RINGING = "contact ringing"
 def block_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
     # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
-    values: dict[str, float] = {}
+    values: NamedNumbers = {}
     parts = []
     for solver, row in rows.items():
         minimum = number(row, "pressure.minimum")

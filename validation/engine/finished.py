@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from validation.runs.aliases import NamePair, Words
 from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.runs.run import Outcome
 from validation.runs.text import error_text
 from validation.scenes.scene import Scene
@@ -37,9 +38,9 @@ class Derived:
 
     scene: str
     name: str
-    needs: tuple[tuple[str, str], ...]
-    compute: Callable[[Finished], Mapping[str, Value]]
-    reads: tuple[str, ...] = ()
+    needs: tuple[NamePair, ...]
+    compute: Callable[[Finished], Metrics]
+    reads: Words = ()
     linear: bool = False
 
 
@@ -47,10 +48,10 @@ class Derived:
 class Finished:
     """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""
 
-    rows: dict[tuple[str, str], Row]
+    rows: dict[NamePair, Row]
     results: Results
-    derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
-    _computed: dict[tuple[str, str], Row] = field(default_factory=dict, init=False, repr=False, compare=False)
+    derived: Mapping[NamePair, Derived] = field(default_factory=dict)
+    _computed: dict[NamePair, Row] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def row(self, scene: str, name: str) -> Row | None:
         """Return the row of a case, or the derived row of that name, which is computed once: many gates may ask."""
@@ -96,9 +97,7 @@ class Finished:
         return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)
 
 
-def from_history(
-    case: Scene, solver: str, name: str, compute: Callable[[Scene, History], Mapping[str, Value]]
-) -> Derived:
+def from_history(case: Scene, solver: str, name: str, compute: Callable[[Scene, History], Metrics]) -> Derived:
     """Return a row that is computed from the history of one case.
 
     Parameters
@@ -111,15 +110,13 @@ def from_history(
         Function of the case and its history that returns metrics.
     """
 
-    def compute_row(finished: Finished) -> Mapping[str, Value]:
+    def compute_row(finished: Finished) -> Metrics:
         return compute(case, finished.needed_history(case.name, solver))
 
     return Derived(case.name, name, ((case.name, solver),), compute_row)
 
 
-def from_metrics(
-    case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Mapping[str, Value]]
-) -> Derived:
+def from_metrics(case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Metrics]) -> Derived:
     """Return a row that is computed from the metrics of some solvers of a case, or from the case alone.
 
     Parameters
@@ -132,7 +129,7 @@ def from_metrics(
         Function of the case and of the rows that returns metrics.
     """
 
-    def compute_row(finished: Finished) -> Mapping[str, Value]:
+    def compute_row(finished: Finished) -> Metrics:
         return compute(case, *(finished.rows[case.name, solver] for solver in solvers))
 
     return Derived(case.name, name, tuple((case.name, solver) for solver in solvers), compute_row)

@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
+from validation.runs.aliases import Words
 from validation.runs.numbers import stated_text
 
 _REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w -]+"(?: or "[\w -]+")*))?$')
@@ -27,7 +28,7 @@ class Key:
     unit: str  # "" of numbers without one, and of words
     text: str  # what it is, in words
     symbol: str | None = None  # that of the text and the figures; "" where the value says enough, None: its name
-    needs: tuple[str, ...] = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
+    needs: Words = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
     feature: str = ""  # of a key of the loads: what a scene has where it is not at its default
 
 
@@ -113,7 +114,7 @@ def is_fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) ->
 
 
 @functools.cache
-def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
+def _parsed(requirement: str) -> tuple[str, str, Words]:
     """Return table, key and words of a requirement."""
     parts = _REQUIREMENT.match(requirement)
     if parts is None:

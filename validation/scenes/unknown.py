@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
+from validation.runs.aliases import Data
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
@@ -20,7 +21,7 @@ CLOSE = 0.6  # similarity of two names from which on one may be meant for the ot
 NAMED = 30  # unknown keys that are named in full
 
 
-def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Section]], source: str) -> None:
+def refuse_unknown_keys(data: Data, tables: Mapping[str, type[Section]], source: str) -> None:
     """Refuse all keys that are none, in one error.
 
     Parameters
@@ -79,7 +80,7 @@ def _names(place: str, tables: Mapping[str, type[Section]]) -> list[str]:
 
 
 def _unknown_keys(
-    data: Mapping[str, Any], place: str, stated_at: str, tables: Mapping[str, type[Section]]
+    data: Data, place: str, stated_at: str, tables: Mapping[str, type[Section]]
 ) -> Iterator[tuple[str, str, str, Any]]:
     """Yield table, its place in the file, name and value of the unknown keys of a table and of those in it."""
     names = _names(place, tables)

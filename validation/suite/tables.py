@@ -42,7 +42,7 @@ An entry ``[[row]]`` is a row that a function computes from each history of a ``
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -51,6 +51,7 @@ from typing import Any
 from validation.engine.finished import Derived, from_history, from_metrics
 from validation.errors import InputError
 from validation.gates.gate import Gate
+from validation.runs.aliases import Data, Fields
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -62,12 +63,12 @@ NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 
-def read(module: str) -> dict[str, Any]:
+def read(module: str) -> Fields:
     """Return the table beside a module, by the module's file."""
     return tomllib.loads(Path(module).with_name("study.toml").read_text(encoding="utf-8"))
 
 
-def declare(folder: Path, fields: Mapping[str, Any], formulas: Any = None) -> Study:
+def declare(folder: Path, fields: Data, formulas: Any = None) -> Study:
     """Return the study of a folder.
 
     Parameters
@@ -97,8 +98,8 @@ class StudyTable:
     """
 
     folder: Path
-    fields: Mapping[str, Any]
-    formulas: Mapping[str, Any]
+    fields: Data
+    formulas: Data
 
     def function(self, name: str) -> Any:
         """Return what ``formulas.py`` calls so.
@@ -113,13 +114,13 @@ class StudyTable:
         return self.formulas[name]
 
     @property
-    def entries(self) -> dict[str, Any]:
+    def entries(self) -> Fields:
         """The whole table, read anew: its entries are taken apart."""
         return tomllib.loads((self.folder / "study.toml").read_text(encoding="utf-8"))
 
     def study(self) -> Study:
         """Return the study."""
-        declared: dict[str, Any] = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
+        declared: Fields = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
         for key in FUNCTIONS:
             if isinstance(declared.get(key), str):
                 declared[key] = self.function(declared[key])
@@ -169,7 +170,7 @@ class StudyTable:
         function: Callable[[], Iterable[Any]] = self.function(self.fields[field]) if field in self.fields else tuple
         return function()
 
-    def _printed(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    def _printed(self, entry: Fields) -> Iterator[Fields]:
         """Yield the fields of the gates on printed numbers; keys that are no field of a gate are taken out."""
         numbers = entry.pop("numbers")
         given_half = entry.pop("half", None)
@@ -195,7 +196,7 @@ class StudyTable:
         (case,) = named_cases([scene])
         return float(self.function(term)(case))
 
-    def _banded(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    def _banded(self, entry: Fields) -> Iterator[Fields]:
         """Yield the fields of the gates whose band is a formula or given."""
         band = entry.pop("band")
         metrics = entry.pop("metrics", ())
@@ -214,7 +215,7 @@ class StudyTable:
                 low, high = by_metric[metric]
                 yield {"scene": scene, "metric": metric, "low": low, "high": high, "reason": reason}
 
-    def declared_cases(self, entry: dict[str, Any]) -> list[Scene]:
+    def declared_cases(self, entry: Fields) -> list[Scene]:
         """Return the cases that an entry names, and take them out of it."""
         if "cases" in entry:
             return list(self.function(entry.pop("cases"))())

@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -162,7 +163,7 @@ def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | Non
     return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
 
 
-def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
+def _end(motion: _Motion, longest: float, opens: bool) -> NumberPair:
     """Return when a stretch ends, infinite where it does not, and its greatest penetration on the way."""
     sample = 2 * math.pi / float(motion.frequencies.max()) / SAMPLES
     depth = 0.0

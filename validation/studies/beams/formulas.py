@@ -12,14 +12,14 @@ P L^3 / (3 EI) + P L (1/G + 1/(g E)) / w, since squares keep plane rows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished, NothingToDerive
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
 
@@ -50,18 +50,18 @@ def over_elements() -> tuple[Derived, ...]:
 READ = ("displacement.static", *FREQUENCIES)
 
 
-def _blocks(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def _blocks(case: Scene, finished: Finished) -> Metrics:
     """Return the blocks across the beam, and the glue over n / sqrt(24)."""
     plane = case.table(PlaneSection)
     across = min(plane.subdivide or (1, 1))
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
 
-def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
+def _ratios(name: str, solver: str, finished: Finished) -> Metrics:
     row, elements = (finished.row(name, each) for each in (solver, "fem"))
     if row is None or elements is None:
         raise NothingToDerive(f"needs {solver} and fem")
-    ratios: dict[str, Value] = {}
+    ratios: NewMetrics = {}
     for metric, value in row.metrics.items():
         other = elements.metrics.get(metric)
         if metric in READ and isinstance(value, float) and isinstance(other, float):
@@ -69,10 +69,10 @@ def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
     return ratios
 
 
-def _orders(names: Sequence[str], finished: Finished) -> Mapping[str, Value]:
+def _orders(names: Sequence[str], finished: Finished) -> Metrics:
     """Return the order of the last halving of the block, by metric."""
     coarse, fine = (_ratios(name, "dda", finished) for name in names[-2:])
-    orders: dict[str, Value] = {}
+    orders: NewMetrics = {}
     for metric, ratio in fine.items():
         before = coarse[metric]
         if isinstance(ratio, float) and isinstance(before, float):

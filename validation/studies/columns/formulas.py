@@ -9,14 +9,14 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
+from validation.runs.aliases import Fields
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
 from validation.suite import tables
@@ -65,9 +65,9 @@ def derived() -> tuple[Derived, ...]:
     return tuple(rows)
 
 
-def samples(scene: Scene, history: History) -> Mapping[str, Value]:
+def samples(scene: Scene, history: History) -> Metrics:
     """Return the values of a history that were printed, each named as ``displacement_1 at 0.02 s``."""
-    values: dict[str, Value] = {}
+    values: NewMetrics = {}
     for name in printed("samples")[scene.name]:
         column, _, time = name.removesuffix(" s").partition(" at ")
         row = int(np.argmin(np.abs(history.time - float(time))))
@@ -76,16 +76,16 @@ def samples(scene: Scene, history: History) -> Mapping[str, Value]:
 
 
 @functools.cache
-def printed(row: str) -> dict[str, dict[str, Any]]:
+def printed(row: str) -> dict[str, Fields]:
     """Return the printed numbers of a row, by case and metric."""
-    numbers: dict[str, dict[str, Any]] = {}
+    numbers: dict[str, Fields] = {}
     for entry in tables.read(__file__)["gate"]:
         if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
             numbers |= entry["numbers"]
     return numbers
 
 
-def order(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+def order(levels: tuple[Scene, ...], finished: Finished) -> Metrics:
     """Return the order in the time step, fitted to the displacement's error of the blocks over the whole history."""
     errors = []
     for case in levels:
@@ -97,7 +97,7 @@ def order(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
     return {"displacement": fitted_order([case.time.step for case in levels], errors)}
 
 
-def pieces(scene: Scene, history: History) -> Mapping[str, Value]:
+def pieces(scene: Scene, history: History) -> Metrics:
     """Return the velocities of the equal pieces of a column over the last 2 h / c, in which their waves average out."""
     column = column_of(scene)
     layer = column.layer[0]
@@ -105,14 +105,14 @@ def pieces(scene: Scene, history: History) -> Mapping[str, Value]:
     speed = math.sqrt(column.modulus(layer) / layer.density)
     rows = round(2 * column.height / len(middles) / speed / scene.time.step)
     elapsed = rows * scene.time.step
-    values: dict[str, Value] = {}
+    values: NewMetrics = {}
     for number, name in enumerate(middles, start=1):
         before, after = history.columns[name][[-1 - rows, -1]]
         values[f"piece {number}"] = float(after - before) / elapsed
     return values
 
 
-def parts(scene: Scene, history: History) -> Mapping[str, Value]:
+def parts(scene: Scene, history: History) -> Metrics:
     """Return transmitted, reflected and absorbed parts of the energy of a sine at a joint, as square roots.
 
     Above the joint there is the transmitted wave alone, below it the incident one, which is known, and the reflected
@@ -137,7 +137,7 @@ def parts(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def rest(scene: Scene, history: History) -> Mapping[str, Value]:
+def rest(scene: Scene, history: History) -> Metrics:
     """Return the time after which the top stays within a thousandth of its settlement."""
     moved = history.displacement
     settled = settlement(scene)
@@ -159,29 +159,29 @@ def settlement(scene: Scene) -> float:
     return -sum(force / contact.stiffness for force, contact in zip(forces, column.contacts, strict=True))
 
 
-def residual(scene: Scene, history: History) -> Mapping[str, Value]:
+def residual(scene: Scene, history: History) -> Metrics:
     """Return the slips that remain of the lowest and the highest joint [m]."""
     return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
 
 
-def exact_joint(case: Scene) -> Mapping[str, Value]:
+def exact_joint(case: Scene) -> Metrics:
     """Return the strength of a joint over the stress of the wave, and its parts in closed form."""
     strength = float(case.name.rpartition("-")[2])
     return {"strength": strength} | dict(zip(PART_NAMES, exact_parts()[strength], strict=True))
 
 
-def stiffness_of_steps(case: Scene) -> Mapping[str, Value]:
+def stiffness_of_steps(case: Scene) -> Metrics:
     """Return w dt of the stiffest mode of a stack of rigid blocks."""
     return {"omega dt": round(STIFF * case.time.step, 3)}
 
 
-def blocks_of_pieces(case: Scene) -> Mapping[str, Value]:
+def blocks_of_pieces(case: Scene) -> Metrics:
     """Return how many blocks stand for a piece."""
     column = column_of(case)
     return {"blocks a piece": column.layer[0].blocks // len(column.heights)}
 
 
-def settling(case: Scene) -> Mapping[str, Value]:
+def settling(case: Scene) -> Metrics:
     """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
     column = column_of(case)
     layer = column.layer[0]

@@ -35,11 +35,11 @@ import operator
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs.aliases import Fields, NamedNumbers
 from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
@@ -80,12 +80,12 @@ class Method:
     id: str
     label: str
     solver: str
-    time: dict[str, Any]
+    time: Fields
     levels: tuple[int, ...]
-    fem: dict[str, Any] = field(default_factory=dict)
+    fem: Fields = field(default_factory=dict)
     per_element: int = 0
     cut: str = ""
-    scaled: dict[str, float] = field(default_factory=dict)
+    scaled: NamedNumbers = field(default_factory=dict)
     is_choice: bool = False
 
 
@@ -218,7 +218,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, dict[str, Any]] = {}
+        tables: dict[str, Fields] = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -232,7 +232,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: dict[str, Any] = {"mode": "zip", "time.steps": counts}
+        sweep: Fields = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

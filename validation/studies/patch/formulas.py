@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NumberPair
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 from validation.theory.spectra import EPS
@@ -66,7 +67,7 @@ def _elastic(case: Scene) -> float:
     return length * (s_xx - ratio * s_yy) / modulus
 
 
-def _joints(plane: PlaneSection) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _joints(plane: PlaneSection) -> list[tuple[NumberPair, NumberPair]]:
     """Return the shared edges that do not lie level, each from below."""
     edges = set()
     joints = []

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
@@ -21,7 +20,8 @@ from validation.metrics.values import or_nan
 from validation.models.plane.blocks import Vertices
 from validation.models.plane.glued import Loads, PlateSection
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Value
+from validation.runs.aliases import NumberPair
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
@@ -59,7 +59,7 @@ def exact(case: Scene) -> float:
     return 2 * hole_displacement(plate.hole, 0.0, plate.tension, plane.young, plane.poisson)
 
 
-def exact_stress(case: Scene) -> tuple[float, float]:
+def exact_stress(case: Scene) -> NumberPair:
     """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
     plane = case.table(PlaneSection)
     if disc := plane.disc:
@@ -75,7 +75,7 @@ def _plate(case: Scene) -> PlateSection:
     return plate
 
 
-def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
+def linear(case: Scene, firm: bool = False) -> NumberPair:
     """Return what linear elements on its triangles have, joined by springs if glued softly and not asked for firm glue.
 
     By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
@@ -90,7 +90,7 @@ def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
 @functools.cache
 def _linear(
     polygons: tuple[Vertices, ...], tractions: Loads, young: float, poisson: float, spring: float, observed: Vertices
-) -> tuple[float, float]:
+) -> NumberPair:
     *apart, stressed = observed
     triangles = [triangle for triangle in polygons if stressed in triangle]
     places = [*apart, *(corner for triangle in triangles for corner in triangle)]
@@ -114,10 +114,10 @@ def cells_of(case: Scene) -> int:
 # ---- rows and bands -------------------------------------------------------------------------------------------------
 
 
-def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def parts(case: Scene, finished: Finished) -> Metrics:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(finished.rows[case.name, "dda"].metrics[STATIC])
-    values: dict[str, Value] = {
+    values: NewMetrics = {
         "cells": float(cells_of(case)),
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
@@ -140,10 +140,10 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
     return values
 
 
-def orders(scene: str, finished: Finished) -> Mapping[str, Value]:
+def orders(scene: str, finished: Finished) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
     coarse, fine = (parts(case, finished) for case in [*cases(scene)][-2:])
-    values: dict[str, Value] = {}
+    values: NewMetrics = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
             errors = abs(float(str(coarse[name])) / float(str(fine[name])))
@@ -151,7 +151,7 @@ def orders(scene: str, finished: Finished) -> Mapping[str, Value]:
     return values
 
 
-def glue_order(finished: Finished) -> Mapping[str, Value]:
+def glue_order(finished: Finished) -> Metrics:
     """Return the order with which glue's error falls with its stiffness."""
     softs = []
     glues = []
@@ -161,7 +161,7 @@ def glue_order(finished: Finished) -> Mapping[str, Value]:
     return {"order": math.log(abs(softs[0] / softs[1])) / math.log(glues[1] / glues[0])}
 
 
-def second_program(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def second_program(case: Scene, finished: Finished) -> Metrics:
     """Return the displacement of the second program of elements over that of the first."""
     first, second = (or_nan(finished.rows[case.name, solver].metrics[STATIC]) for solver in ("fem", "fenicsx"))
     return {STATIC: second / first}

@@ -7,11 +7,12 @@ discount; beside it every other datum is driven to its extremes alone.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from validation.gates.gate import Gate
 from validation.metrics.growth import Stability
+from validation.runs.aliases import Data, Fields
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import gate
 from validation.theory import spectra
@@ -41,10 +42,10 @@ def conditional(alpha: float, delta: float) -> bool:
     return not 2 * alpha >= delta >= 0.5
 
 
-def scheme_scene(alpha: float, delta: float, start: str, sweep: Mapping[str, Any]) -> Scene:
+def scheme_scene(alpha: float, delta: float, start: str, sweep: Data) -> Scene:
     """Return the base scene under a scheme, swept."""
     limited = conditional(alpha, delta)
-    values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+    values: Fields = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
     base = load_scene("extremes")
     if limited:
         values["time.allow_unstable"] = True
@@ -66,7 +67,7 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
     """Yield the one-factor extremes of constant acceleration at rest and of average acceleration, consistent."""
     for name, start in itertools.product(names, STARTS):
         ((alpha, delta),) = STARTS[start]
-        values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+        values: Fields = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
         if name.startswith("plane"):
             values["block.hypothesis"] = name.replace("-", " ")
         scene = load_scene("extremes").with_values(values)
@@ -139,6 +140,6 @@ def gates_of_corners() -> Iterator[Gate]:
     return gates_of(corners())
 
 
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return what the ends of runs are, in words."""
     return {"kinds": [f"{kind}: {kind.sentence}" for kind in Stability]}
