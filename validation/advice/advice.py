@@ -232,8 +232,7 @@ def _settling(case: Scene) -> tuple[int | None, str]:
         rough = ramp + max(steps_to(0.01 / share, radius) for radius, share in modes if share > 0)
         return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
     steps = max(10, math.ceil(ramp + max(last)) + 10)
-    run = solve(case.with_values({"time.steps": steps}), "dda")
-    step = settling_step(run.displacement, static)
+    step = settling_step(solve(case.with_values({"time.steps": steps}), "dda").displacement, static)
     return (int(step) if isinstance(step, float) else None), "history"
 
 

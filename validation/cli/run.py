@@ -348,8 +348,7 @@ def solve(
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}") as show:
         show(0, 1, "")
-        watch = partial(_watch, show)
-        ended = _run_case(adapter, case, is_full, fields, watch)
+        ended = _run_case(adapter, case, is_full, fields, partial(_watch, show))
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)

@@ -97,8 +97,7 @@ def transit(scene: Scene) -> float:
 def elements_per_front(scene: Scene) -> float:
     """Elements per distance c dt that the wave runs in one step."""
     E, _ = moduli(scene)
-    c = math.sqrt(E / scene.block.density)
-    return c * scene.time.step * scene.fem.per_side / size(scene)[1]
+    return math.sqrt(E / scene.block.density) * scene.time.step * scene.fem.per_side / size(scene)[1]
 
 
 def bar_modes(scene: Scene, count: int) -> Array:

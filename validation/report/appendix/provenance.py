@@ -22,8 +22,7 @@ def parameter_table(groups: Groups) -> Blocks:
     groups_by_data: dict[str, list[CaseGroup]] = {}
     first_items: set[str] = set()
     for group in groups.values():
-        varied = varied_fields(group)
-        items = parameter_items(group.cases[0].scene, varied)
+        items = parameter_items(group.cases[0].scene, varied_fields(group))
         differing = [item for item in items if item not in first_items]
         groups_by_data.setdefault(", ".join(differing), []).append(group)
         first_items = first_items or set(items)

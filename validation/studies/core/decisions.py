@@ -124,8 +124,7 @@ def _stepped(step: float, _: Finished) -> Metrics:
 
 def stepped_frequency(scene: Scene) -> float:
     """Return the undamped frequency of DDA's first axial mode as stepped [rad/s]: |ln lambda| / dt."""
-    root = spectra.roots(scene, spectra.dda_frequency(scene))[0]
-    return abs(cmath.log(root)) / scene.time.step
+    return abs(cmath.log(spectra.roots(scene, spectra.dda_frequency(scene))[0])) / scene.time.step
 
 
 def _discount(gg: float, _: Finished) -> Metrics:

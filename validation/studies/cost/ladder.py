@@ -114,8 +114,7 @@ def one_strain(scene: Scene) -> tuple[Array, Array]:
 def first_period(scene: Scene) -> float:
     """Return the period of the first mode of one strain on its springs [s]."""
     mass, stiffness = one_strain(scene)
-    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-    return 2 * math.pi / math.sqrt(min(squares))
+    return 2 * math.pi / math.sqrt(min(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
 
 
 def landing(scene: Scene) -> float:
@@ -126,8 +125,7 @@ def landing(scene: Scene) -> float:
     InputError
         It never comes down.
     """
-    width = scene.block.base_length
-    acceleration = scene.load.gravity + scene.load.pressure * width / scene.block.mass
+    acceleration = scene.load.gravity + scene.load.pressure * scene.block.base_length / scene.block.mass
     speed = scene.block.velocity
     gap = scene.contact.gap
     if gap == 0 and speed <= 0:

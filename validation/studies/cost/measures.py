@@ -66,8 +66,7 @@ def errors(ladder: Ladder, history: History, reference: History) -> NamedNumbers
     for quantity, column in QUANTITIES.items():
         smooth = []
         for motion in (history, reference):
-            mean = running_mean(on_grid(motion, column, grid), count)
-            smooth.append(running_mean(mean, count))
+            smooth.append(running_mean(running_mean(on_grid(motion, column, grid), count), count))
         error_of[quantity] = or_nan(relative_l2(*smooth))
     return error_of
 
@@ -128,8 +127,7 @@ class BlockRows:
             for accuracy in ACCURACIES:
                 for who in (ANY, OWN, ELEMENTS):
                     name = f"cheapest {quantity} {accuracy} {who}"
-                    compute = self._cheapest(quantity, accuracy, who)
-                    yield Derived(self.ladder.base.name, name, every, compute)
+                    yield Derived(self.ladder.base.name, name, every, self._cheapest(quantity, accuracy, who))
             yield Derived(self.ladder.base.name, f"facts of {quantity}", every, self._facts(quantity))
 
     def _reference(self, finished: Finished) -> Metrics:

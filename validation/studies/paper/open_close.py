@@ -60,8 +60,7 @@ def bonded_corners(case: str, alpha: float, step: float) -> BondedCorners:
     fits where the closed ones press, w < 0, and the open ones do not.
     """
     block_model = model(case)
-    stiffness = block_model.block.elastic()
-    system = block_model.mass + alpha * step**2 * stiffness
+    system = block_model.mass + alpha * step**2 * block_model.block.elastic()
     corners = np.array([CORNER_M, CORNER_N, SHEAR_M, SHEAR_N])
     flexibility = alpha * step**2 * corners @ np.linalg.solve(system, corners.T)
     free_gaps = np.random.default_rng(0).standard_normal((STATES, 4))

@@ -52,8 +52,7 @@ def settling_tolerance(e: Evidence, case: str, quantity: str, count: int) -> flo
     t, and that from step n - 1 on is greater: so the tolerances of a count are one interval, of which only the part
     from 1e-4 to 0.5 counts.
     """
-    distance = np.abs(e.scaled(case, quantity) - 1)
-    remaining = np.maximum.accumulate(distance[::-1])[::-1]
+    remaining = np.maximum.accumulate(np.abs(e.scaled(case, quantity) - 1)[::-1])[::-1]
     least = max(remaining[count - 1], TOLERANCES[0])
     greatest = min(remaining[count - 2], TOLERANCES[1])
     return float(greatest) if least < greatest else whole(0.0)
@@ -270,8 +269,7 @@ def high_frequencies(e: Evidence) -> NamedNumbers:
 
 def boundary(e: Evidence) -> NamedNumbers:
     """Return alpha - (1/2 + delta)^2 / 4 of both schemes, and how far a stiff contact's roots are from real."""
-    cases = named("figure-8")
-    margins = [s.time.alpha - (0.5 + s.time.delta) ** 2 / 4 for s in cases.values()]
+    margins = [s.time.alpha - (0.5 + s.time.delta) ** 2 / 4 for s in named("figure-8").values()]
     root, radius = (e.number(STIFFEST, f"contact.{part}") for part in ("least_root", "spectral_radius"))
     return {
         "margin of (14), average": margins[0],

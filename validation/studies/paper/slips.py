@@ -26,8 +26,7 @@ def model(case: str, **values: float) -> Any:
     """Return the DDA model of a built-in case, with values set."""
     from validation.solvers.dda import model_of
 
-    scene = named(scene_of(case))[case]
-    return model_of(scene.with_values(dict(values)))
+    return model_of(named(scene_of(case))[case].with_values(dict(values)))
 
 
 def radius(e: Evidence) -> NamedNumbers:

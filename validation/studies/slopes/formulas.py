@@ -61,8 +61,7 @@ def derived() -> tuple[Derived, ...]:
 def sliding(scene: Scene, history: History) -> np.ndarray:
     """Return u_t + tan(phi) u_n of the centroid [m]."""
     along = history.columns["horizontal_displacement"]
-    across = history.displacement
-    return np.asarray(along + friction.coefficient(scene) * across)
+    return np.asarray(along + friction.coefficient(scene) * history.displacement)
 
 
 def acceleration(scene: Scene, history: History) -> float:

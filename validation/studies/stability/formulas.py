@@ -51,8 +51,7 @@ def scheme_scene(alpha: float, delta: float, start: str, sweep: Data) -> Scene:
         values["time.allow_unstable"] = True
     name = f"extremes-{alpha:.4g}-{delta:g}" + ("-consistent" if start == "consistent" else "")
     title = f"Stiffness and step, alpha = {alpha:.4g}, delta = {delta:g}, {start} start"
-    scene = base.with_values(values)
-    return scene.model_copy(update={"name": name, "title": title, "sweep": dict(sweep)})
+    return base.with_values(values).model_copy(update={"name": name, "title": title, "sweep": dict(sweep)})
 
 
 def matrix() -> Iterator[Scene]:
@@ -111,8 +110,7 @@ def digits(case: Scene) -> Iterator[Gate]:
 def grown(case: Scene) -> Iterator[Gate]:
     """Yield the gate on the growth of a run beyond its limit."""
     rate = spectra.spectral_radius(case, spectra.contact_frequency(case))
-    slower = spectra.spectral_radius(case, spectra.dda_frequency(case))
-    if slower > 0.9 * rate:
+    if spectra.spectral_radius(case, spectra.dda_frequency(case)) > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
     why = "beyond the limit the history grows by the spectral radius of its stiffest mode, from trace and determinant"
     yield gate(case, "dda", "stability.growth", ((1 - 1e-6) * rate, (1 + 1e-6) * rate), why)

@@ -281,8 +281,7 @@ def second_correction() -> Band:
 def at_rest(scene: Scene, history: History) -> Metrics:
     """Return turn and forces at the end over those of the closed form, less one; and the load over its limit."""
     truss = half_truss(scene)
-    loads = scene.table(PlaneSection).load
-    load = -2 * sum(one.force[1] for one in loads if one.force)
+    load = -2 * sum(one.force[1] for one in scene.table(PlaneSection).load if one.force)
     weight = truss.mass * truss.gravity
     _, most = truss.limit
     turn = -float(history.columns["half.angle"][-1])

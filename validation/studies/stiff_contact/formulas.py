@@ -14,8 +14,7 @@ from validation.theory import spectra
 
 def contact_root(case: Scene) -> Band:
     """Return the spectral radius of the contact mode, to the rounding of a root near -1."""
-    radius = spectra.spectral_radius(case, spectra.contact_frequency(case))
-    return about(radius, 1e-11)
+    return about(spectra.spectral_radius(case, spectra.contact_frequency(case)), 1e-11)
 
 
 def springs(case: Scene) -> Metrics:

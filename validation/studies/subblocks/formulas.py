@@ -42,8 +42,7 @@ def rocking_frequency(case: Scene) -> Band:
     M = case.block.density * np.diag([a**2, a**4 / 6, a**4 / 24])
     K = case.contact.stiffness * np.array([[2.0, a, -a / 2], [a, a * a, 0.0], [-a / 2, 0.0, a * a / 4]])
     K[2, 2] += a * a * case.block.young / 2
-    squares = eigh(K, M, eigvals_only=True)
-    return near(float(np.sqrt(squares[0])), 1e-12)
+    return near(float(np.sqrt(eigh(K, M, eigvals_only=True)[0])), 1e-12)
 
 
 def cut(case: Scene) -> Metrics:
