@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
@@ -97,39 +98,41 @@ class Finished:
         return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)
 
 
-def from_history(case: Scene, solver: str, name: str, compute: Callable[[Scene, History], Metrics]) -> Derived:
-    """Return a row that is computed from the history of one case.
+def derived_row(
+    owner: str,
+    name: str,
+    cases: Sequence[Scene],
+    compute: Callable[..., Metrics],
+    histories: Sequence[str] = (),
+    rows: Sequence[str] = (),
+    reads: Sequence[str] = (),
+    whole: bool = False,
+) -> Derived:
+    """Return a row that is computed from the histories and the rows of some solvers, of one case or of several.
 
     Parameters
     ----------
-    case, solver
-        The case whose history is read.
-    name
-        Of the row.
+    owner, name
+        Where gates find it.
+    cases
+        The case, all of those that the row is computed from, or none.
     compute
-        Function of the case and its history that returns metrics.
+        Function of a case, its histories and its rows that returns metrics; where it is of the `whole`, of a list of
+        these.
+    histories, rows
+        The solvers whose histories, and whose rows, are read of each case.
+    reads
+        The metrics that are read of the rows.
+    whole
+        Whether the row is one of several cases.
     """
 
     def compute_row(finished: Finished) -> Metrics:
-        return compute(case, finished.needed_history(case.name, solver))
+        read = []
+        for case in cases:
+            of_histories = (finished.needed_history(case.name, solver) for solver in histories)
+            read.append((case, *of_histories, *(finished.rows[case.name, solver] for solver in rows)))
+        return compute(read) if whole else compute(*itertools.chain(*read))
 
-    return Derived(case.name, name, ((case.name, solver),), compute_row)
-
-
-def from_metrics(case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Metrics]) -> Derived:
-    """Return a row that is computed from the metrics of some solvers of a case, or from the case alone.
-
-    Parameters
-    ----------
-    case, solvers
-        The case, and the solvers whose rows are read.
-    name
-        Of the row.
-    compute
-        Function of the case and of the rows that returns metrics.
-    """
-
-    def compute_row(finished: Finished) -> Metrics:
-        return compute(case, *(finished.rows[case.name, solver] for solver in solvers))
-
-    return Derived(case.name, name, tuple((case.name, solver) for solver in solvers), compute_row)
+    needs = itertools.product((case.name for case in cases), (*histories, *rows))
+    return Derived(owner, name, tuple(needs), compute_row, tuple(reads))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
@@ -16,12 +16,15 @@ from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
 from validation.runs.aliases import NamePair, Words
+from validation.runs.history import History
 from validation.runs.numbers import significant
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 
 Band = tuple[float, float]
 """Lower and upper edge."""
+Runs = Sequence[tuple[Scene, History]]
+"""Cases of a scene, each with the history of a solver: what a row of a sweep is computed from."""
 OTHER = "other code"  # the kind of a reference that an independent program computed
 APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
 

@@ -35,8 +35,10 @@ which is the half width of the band and the uncertainty of the reference; a numb
 ``rounding`` times the value, and ``slack``, widen the band alone, ``above`` its upper edge. Scale, start, slack and
 above are numbers or functions of the case. All other keys are those of a `Gate`.
 
-An entry ``[[row]]`` is a row that a function computes from each history of a ``solver``, from the metrics of some
-``solvers``, or without either from the case alone: closed forms that stand beside the runs.
+An entry ``[[row]]`` is a row that a function computes from each case, the ``histories`` of some solvers and the
+``rows`` of some, of whose metrics it ``reads`` these; or without either from the case alone: closed forms that stand
+beside the runs. Of ``sweeps`` in place of ``scenes`` it is one row of all cases, and the function takes a list of
+these; of ``owners`` it is one without a case.
 """
 
 from __future__ import annotations
@@ -48,7 +50,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Derived, from_history, from_metrics
+from validation.engine.finished import Derived, derived_row
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, Fields
@@ -158,12 +160,14 @@ class StudyTable:
         """Return the derived rows: those of the table, and those of the function that it names."""
         declared: list[Derived] = []
         for entry in self.entries.get("row", ()):
+            read = {key: entry[key] for key in ("histories", "rows", "reads") if key in entry}
             compute = self.function(entry["compute"])
+            for owner in entry.get("sweeps", ()):
+                declared.append(derived_row(owner, entry["name"], [*cases(owner)], compute, whole=True, **read))
+            for owner in entry.get("owners", ()):
+                declared.append(derived_row(owner, entry["name"], [], compute))
             for case in self.declared_cases(entry):
-                if "solver" in entry:
-                    declared.append(from_history(case, entry["solver"], entry["name"], compute))
-                else:
-                    declared.append(from_metrics(case, entry.get("solvers", ()), entry["name"], compute))
+                declared.append(derived_row(case.name, entry["name"], [case], compute, **read))
         return (*declared, *self._further("derived"))
 
     def _further(self, field: str) -> Iterable[Any]:

@@ -9,26 +9,22 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.runs.aliases import Fields
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
 from validation.suite import tables
-from validation.suite.bands import Band, cases, fitted_order
+from validation.suite.bands import Band, fitted_order
 from validation.theory import columns
 from validation.theory.stepping import Stepping
 
-DDA = "dda"
-EVENTS = "column-events"
 BARS = "bars-events"
 SAMPLES, PIECES, PARTS, REST = "samples", "pieces", "parts", "rest"
-DROPS = ("columns-drop-average", "columns-drop-constant")
 SPALL_BARS, SPALL_BLOCKS = "columns-spall-bars", "columns-spall-pieces"
 JOINT = "columns-joint"
 SLIPS = "columns-slips-steps"
@@ -54,17 +50,6 @@ def jointed() -> Iterator[Scene]:
 # ---- rows that are computed from finished cases ---------------------------------------------------------------------
 
 
-@functools.cache
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that are computed from finished cases."""
-    rows = []
-    for name in DROPS:
-        levels = tuple(cases(name))
-        needs = tuple((case.name, solver) for case in levels for solver in (DDA, EVENTS))
-        rows.append(Derived(name, "order", needs, functools.partial(order, levels)))
-    return tuple(rows)
-
-
 def samples(scene: Scene, history: History) -> Metrics:
     """Return the values of a history that were printed, each named as ``displacement_1 at 0.02 s``."""
     values: NewMetrics = {}
@@ -85,16 +70,15 @@ def printed(row: str) -> dict[str, Fields]:
     return numbers
 
 
-def order(levels: tuple[Scene, ...], finished: Finished) -> Metrics:
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
     """Return the order in the time step, fitted to the displacement's error of the blocks over the whole history."""
     errors = []
-    for case in levels:
-        history, exact = (finished.needed_history(case.name, solver) for solver in (DDA, EVENTS))
+    for _, history, exact in runs:
         # The largest error of the blocks' displacements over the largest displacement.
         names = [name for name in exact.columns if name.startswith("displacement")]
         differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
         errors.append(float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names)))
-    return {"displacement": fitted_order([case.time.step for case in levels], errors)}
+    return {"displacement": fitted_order([case.time.step for case, *_ in runs], errors)}
 
 
 def pieces(scene: Scene, history: History) -> Metrics:
@@ -204,7 +188,8 @@ def proven_solves(case: Scene) -> Band:
 def scenes() -> tuple[str | Scene, ...]:
     """Return the scenes: those of files, and joints of every strength."""
     return (
-        *DROPS,
+        "columns-drop-average",
+        "columns-drop-constant",
         "columns-domino",
         "columns-spall",
         "columns-weight",

@@ -7,12 +7,11 @@ correction is the band of what is exact for rigid blocks.
 
 from __future__ import annotations
 
+import itertools
 import math
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import ACTIVE, PASSIVE, wedges_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NumberPair
@@ -21,9 +20,8 @@ from validation.runs.row import Metrics
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.pushing.exact import Pushing, at
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 
-PUSHING = ("pushing-both", "pushing-held")
 LOCKED = "pushing-locked"
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
@@ -98,28 +96,16 @@ def against_rest(scene: Scene, history: History) -> Metrics:
     return {"push": push, "exact": exact, "over exact": push / exact - 1}
 
 
-def order_of_push(finished: Finished) -> Metrics:
+def order_of_push(runs: Runs) -> Metrics:
     """Return the error of the push that is left over twice that of half the step."""
-    pushes = [push_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(LOCKED)]
-    coarse, fine = (push - exact for push, exact in pushes)
+    coarse, fine = (push - exact for push, exact in itertools.starmap(push_at_end, runs))
     return {"push": coarse / (2 * fine)}
 
 
-def orders(name: str, finished: Finished) -> Metrics:
+def orders(runs: Runs) -> Metrics:
     """Return the error of each block over twice that of half the step."""
-    coarse, fine = (errors_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(name))
+    coarse, fine = itertools.starmap(errors_at_end, runs)
     return {block: coarse[number] / (2 * fine[number]) for number, block in enumerate(("upper", "lower"))}
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare two steps, and two stiffnesses."""
-    rows = []
-    for name in PUSHING:
-        needs = tuple((case.name, "dda") for case in cases(name))
-        rows.append(Derived(name, "order", needs, partial(orders, name)))
-    locked = tuple((case.name, "dda") for case in cases(LOCKED))
-    rows.append(Derived(LOCKED, "order", locked, order_of_push))
-    return tuple(rows)
 
 
 def first_correction(case: Scene) -> float:
@@ -146,7 +132,7 @@ def first_order() -> Band:
 
     Both scenes have the same blocks, spring and steps.
     """
-    return _first_order(PUSHING[0])
+    return _first_order("pushing-both")
 
 
 def first_order_of_push() -> Band:

@@ -7,13 +7,11 @@ So the run-out, what a discount takes of it and the slope at which a block begin
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
 from validation.runs.aliases import Data
 from validation.runs.history import History
@@ -21,7 +19,7 @@ from validation.runs.row import Metrics, NewMetrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.slopes import closed as closed_forms
-from validation.suite.bands import APART, Band, about, cases, near, short
+from validation.suite.bands import APART, Band, Runs, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -44,18 +42,6 @@ RIGID = "sliding block"
 STANDS = 1e-9  # m/s of slip, below which a block stands
 CYCLES = 4
 RATE = 2.0  # Hz
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that are computed from finished cases."""
-    pair = tuple(cases(THRESHOLD))
-    needs = tuple((case.name, "dda") for case in pair)
-    return (
-        Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)),
-        Derived(FACTS, "ringing of a rigid block", (), rigid_ringing),
-        Derived(FACTS, "friction of the step before", (), late_friction),
-        Derived(FACTS, "discount", (), discounted),
-    )
 
 
 def sliding(scene: Scene, history: History) -> np.ndarray:
@@ -94,7 +80,7 @@ def ringing(scene: Scene, history: History) -> Metrics:
     return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
 
 
-def rigid_ringing(finished: Finished) -> Metrics:
+def rigid_ringing() -> Metrics:
     """Return the error of a rigid block that slides and stays closed, over penalty and step."""
     scene = next(iter(cases(STIFFNESS)))
     numbers: NewMetrics = {}
@@ -103,13 +89,13 @@ def rigid_ringing(finished: Finished) -> Metrics:
     return numbers
 
 
-def late_friction(finished: Finished) -> Metrics:
+def late_friction() -> Metrics:
     """Return the error after a second of a sliding block whose friction is that of the step before."""
     scene = next(iter(cases(STIFFNESS)))
     return {f"dt = {1e3 * step:g} ms": closed_forms.lagging_friction_error(scene, step, 1.0) for step in FACT_STEPS}
 
 
-def discounted(finished: Finished) -> Metrics:
+def discounted() -> Metrics:
     """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
     gg = 0.98
     numbers: NewMetrics = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
@@ -132,10 +118,10 @@ def against_rigid(scene: Scene, history: History) -> Metrics:
     return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
 
 
-def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Metrics:
+def threshold(runs: Runs) -> Metrics:
     """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
-    below, above = (acceleration(case, finished.needed_history(case.name, "dda")) for case in pair)
-    low, high = (case.load.slope for case in pair)
+    below, above = itertools.starmap(acceleration, runs)
+    low, high = (case.load.slope for case, _ in runs)
     return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
 
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import moving_blocks, slide_of, spinning_of, stiffness_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers, NumberPair
@@ -15,12 +14,10 @@ from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases, fitted_order, near
+from validation.suite.bands import Band, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
 
 STRAINS = ("ex", "ey", "gxy")
-SPINNING = ("spin-square", "spin-rectangle")
-TIPPING = ("spin-ledge", "spin-ledge-smooth")
 
 
 # ---- blocks that spin -----------------------------------------------------------------------------------------------
@@ -58,12 +55,11 @@ def against_steady(scene: Scene, history: History) -> Metrics:
     }
 
 
-def orders(name: str, finished: Finished) -> Metrics:
+def orders(runs: Runs) -> Metrics:
     """Return the order of the errors of angle and strains."""
-    levels = list(cases(name))
-    errors = [errors_of(case, finished.needed_history(case.name, "dda")) for case in levels]
-    steps = [case.time.step for case in levels]
-    names = ("angle", "ex") if name == "spin-square" else ("angle", *STRAINS)
+    errors = list(itertools.starmap(errors_of, runs))
+    steps = [case.time.step for case, _ in runs]
+    names = ("angle", "ex") if runs[0][0].name.startswith("spin-square") else ("angle", *STRAINS)
     return {name: fitted_order(steps, [error[name] for error in errors]) for name in names}
 
 
@@ -186,15 +182,14 @@ def against_ledge(scene: Scene, history: History) -> Metrics:
     return accounted | {"turn": turn / exact - 1, "rigid turn": exact}
 
 
-def extrapolated(name: str, finished: Finished) -> Metrics:
+def extrapolated(runs: Runs) -> Metrics:
     """Return what two stiffnesses extrapolate to, over the rigid block's turn and less one; also over the next term.
 
     The turn is that of the rigid block and a term in 1/p, which both stiffnesses tell; the next term is its square.
     """
-    soft, stiff = cases(name)
-    turns = [turn_at_end(case, finished.needed_history(case.name, "dda")) for case in (soft, stiff)]
-    (first, exact), (second, _) = turns
-    ratio = stiffness_of(stiff) / stiffness_of(soft)
+    (first, exact), (second, _) = itertools.starmap(turn_at_end, runs)
+    soft, stiff = (stiffness_of(case) for case, _ in runs)
+    ratio = stiff / soft
     error = (ratio * second - first) / (ratio - 1) / exact - 1
     term = (first - second) / exact
     return {"turn": error, "over the next term": error / term**2}
@@ -204,16 +199,3 @@ def stops(case: Scene) -> Band:
     """Return how far from the rigid block's place it comes to rest [m]: no more than it sinks, W/2p."""
     half = weight_over_stiffness(case) / 2
     return -half, half
-
-
-# ---- rows -----------------------------------------------------------------------------------------------------------
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare steps, and two stiffnesses."""
-    rows = []
-    for names, row, compute in ((SPINNING, "order", orders), (TIPPING, "rigid limit", extrapolated)):
-        for name in names:
-            needs = tuple((case.name, "dda") for case in cases(name))
-            rows.append(Derived(name, row, needs, partial(compute, name)))
-    return tuple(rows)

@@ -7,6 +7,7 @@ falling: no speed is left of what stands, and what is beyond its limit by a shar
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -14,7 +15,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import friction_of, half_truss, stiffness_of
 from validation.models.plane.limits import (
     flat_height,
@@ -31,7 +31,7 @@ from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 
 REST = 1e-6  # of the weight: what is left of oscillations after a second of a damping of 5/s and more, exp(-c t)
 LEVER = 0.1  # least share of an unbalanced weight that moves the centroid which moves most
@@ -240,9 +240,9 @@ def overlap_of_turning(case: Scene) -> Band:
 # ---- three blocks that overhang -------------------------------------------------------------------------------------
 
 
-def seats(finished: Finished) -> Metrics:
+def seats(runs: Runs) -> Metrics:
     """Return the forces at the inner corner of each seat over rigid ones, less one: soft, stiff, in the limit."""
-    soft, stiff, *_ = cases(OVERHANG)
+    (soft, softer), (stiff, stiffer), *_ = runs
     pile = soft.table(PlaneSection).stack[0]
     share = (sum(pile.offsets) + pile.rectangle[0] / 2) / harmonic(pile.count, pile.rectangle[0])
     weight = soft.table(PlaneSection).density * math.prod(pile.rectangle) * 9.81
@@ -250,12 +250,11 @@ def seats(finished: Finished) -> Metrics:
     for number, (_, inner) in enumerate(seat_forces(pile.count, pile.rectangle[0], share), start=1):
         upper = pile.count + 1 - number
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
-        forces = [float(finished.needed_history(case.name, "dda").columns[column][-1]) for case in (soft, stiff)]
-        ratios = [force / (weight * inner) - 1 for force in forces]
-        stiffer = stiffness_of(stiff) / stiffness_of(soft)
+        ratios = [float(history.columns[column][-1]) / (weight * inner) - 1 for history in (softer, stiffer)]
+        times = stiffness_of(stiff) / stiffness_of(soft)
         values[f"soft {number}"] = ratios[0]
         values[f"stiff {number}"] = ratios[1]
-        values[f"rigid {number}"] = (stiffer * ratios[1] - ratios[0]) / (stiffer - 1)
+        values[f"rigid {number}"] = (times * ratios[1] - ratios[0]) / (times - 1)
     return values
 
 
@@ -331,9 +330,9 @@ def against_motion(scene: Scene, history: History) -> Metrics:
     return {**errors, **{f"size {name}": abs(error) for name, error in errors.items()}, "balance": balance}
 
 
-def drop_orders(finished: Finished) -> Metrics:
+def drop_orders(runs: Runs) -> Metrics:
     """Return the orders of the errors from the second finest step to the finest."""
-    errors = [motion_errors(case, finished.needed_history(case.name, "dda")) for case in cases(DROP)]
+    errors = list(itertools.starmap(motion_errors, runs))
     return {name: math.log2(abs(errors[-2][name] / errors[-1][name])) for name in errors[-1]}
 
 
@@ -347,13 +346,3 @@ def second_order() -> Band:
     frequency = math.sqrt(4 * (truss.abutment + truss.crown) / truss.mass)
     half = (frequency * case.time.step) ** 2
     return 2 - half, 2 + half
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare two stiffnesses, and two steps."""
-    soft, stiff, *_ = (case.name for case in cases(OVERHANG))
-    drops = tuple((case.name, "dda") for case in cases(DROP))
-    return (
-        Derived(OVERHANG, "seats", ((soft, "dda"), (stiff, "dda")), seats),
-        Derived(DROP, "order", drops, drop_orders),
-    )

@@ -11,7 +11,6 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import TOGETHER, falling, polygons
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers, NumberPair
@@ -20,7 +19,7 @@ from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.solvers.plane.blocks import first_contact
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 from validation.theory.corner_impact import FallingRectangle, Rebound, on_springs, rigid_impulse
 from validation.theory.first_touch import FirstTouch, first_touches, normals
 
@@ -200,13 +199,10 @@ def rigid(scene: Scene) -> NamedNumbers:
     return {"rigid J_t": along, "rigid J_n": across}
 
 
-def in_the_limit(finished: Finished) -> Metrics:
+def in_the_limit(runs: Runs) -> Metrics:
     """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
-    soft, stiff = (
-        float(str(against_springs(case, finished.needed_history(case.name, "dda"))["J_n"])) / smooth_limit() - 1
-        for case in cases(STIFF)
-    )
-    first, second = (case.table(PlaneSection).contact for case in cases(STIFF))
+    soft, stiff = (float(str(against_springs(*run)["J_n"])) / smooth_limit() - 1 for run in runs)
+    first, second = (case.table(PlaneSection).contact for case, _ in runs)
     root = math.sqrt(second.stiffness / first.stiffness) if first and second else math.nan
     return {"soft": soft, "stiff": stiff, "rigid": (root * stiff - soft) / (root - 1)}
 
@@ -221,12 +217,6 @@ def square_of_the_first() -> Band:
     _, exact = rebound(next(iter(cases(STIFF))))
     half = (exact.impulse[1] / smooth_limit() - 1) ** 2
     return -half, half
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the row that compares two stiffnesses."""
-    stiff = tuple((case.name, "dda") for case in cases(STIFF))
-    return (Derived(STIFF, "limit", stiff, in_the_limit),)
 
 
 def events_in_steps(case: Scene) -> Band:

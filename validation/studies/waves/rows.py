@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished, from_history
+from validation.engine.finished import Derived, Finished, derived_row
 from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.row import Metrics
@@ -66,7 +66,9 @@ class Wave:
 
     def row(self, compute: Callable[[Wave, History], Metrics]) -> Derived:
         """Return the derived row that a function of the wave and its history computes."""
-        return from_history(self.scene, self.solver, self.name, lambda _, history: compute(self, history))
+        return derived_row(
+            self.scene.name, self.name, [self.scene], lambda _, history: compute(self, history), [self.solver]
+        )
 
 
 @functools.cache
