@@ -23,7 +23,7 @@ from dda.contact.unilateral import OPEN
 from dda.march import compiled
 from dda.scheme.newmark import Scheme
 
-AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
+AVERAGE, CONSTANT, LEAP = (0.25, 0.5), (0.5, 1.0), (0.0, 0.5)
 RIGID = math.inf
 
 
@@ -205,6 +205,30 @@ def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch):
         column = unilateral(layers([1.0], [2500.0], [1e9], [0.0]), [1e9], [0.0])
         solve_column(column, Scheme(0.5, 1.0, 1.0, 1e-3), still(1), options=ColumnOptions(repeats=repeats))
     assert steps == [1, 50]
+
+
+@pytest.mark.parametrize(
+    ("impedance", "foot", "weights"),
+    [
+        (None, 1e10, AVERAGE),
+        (None, None, AVERAGE),
+        (3e6, None, CONSTANT),
+        (3e6, 1e10, CONSTANT),
+        (None, None, (0.0, 0.5)),
+    ],
+)
+def test_a_long_column_whose_rows_never_open_steps_in_arrays_as_others_do(impedance, foot, weights):
+    """What keeps its energies is searched on lists."""
+    t = 2e-5 * np.arange(201)
+    drive = Drive(1e-3 * np.sin(200 * t), 0.2 * np.cos(200 * t), -40 * np.sin(200 * t), 1e5 * np.cos(90 * t))
+    names = ["displacement", "contact_pressure", "displacement_1", "velocity_1", "stress_1"]
+    joints = [Spring(float(k), 1e9 * (1 + k % 3)) for k in range(1, 14, 2)] + [Spring(0.0, foot or RIGID)][: bool(foot)]
+    column = Column([Layer(14.0, 2500.0, 1e8, blocks=14)], "shear", None, joints, impedance)
+    options = [ColumnOptions(energies=energies) for energies in (True, False)]
+    scheme = Scheme(*weights, 0.99, 2e-5)
+    lists, arrays = (solve_column(column, scheme, drive, names, [0.4], given).columns for given in options)
+    for name in names:
+        assert np.max(np.abs(arrays[name] - lists[name])) < 1e-11 * np.max(np.abs(lists[name]))
 
 
 def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
