@@ -21,15 +21,15 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="NOT RUN: Cal
 class Quick(CalculiX):
     """The chosen settings with fewer increments."""
 
-    def increments(self, scene: Scene) -> int:
+    def increments(self, scene):
         return 8 if scene.column is None else 4
 
 
-def scene_of(name: str, **values: object) -> Scene:
+def scene_of(name, **values):
     return problem(name).scene.with_values({key.replace("__", "."): value for key, value in values.items()})
 
 
-def column_scene(**column: object) -> Scene:
+def column_scene(**column):
     scene = problem("column").scene
     return scene.with_values({f"column.{key}": value for key, value in column.items()})
 
@@ -66,7 +66,7 @@ def test_the_momentum_of_a_base_is_kept_though_it_start_with_a_jump(moved):
     assert abs(reached - (moved(1.0) - moved(0.98)) / 0.02) < 0.02 * abs(reached)
 
 
-def hht(scene: Scene, alpha: float) -> np.ndarray:
+def hht(scene, alpha):
     """Return the centroid of a block on locked springs by HHT [m].
 
     M a1 + (1 + alpha) K u1 - alpha K u0 = F with beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha (Hilber, Hughes and
@@ -97,7 +97,7 @@ def test_its_default_is_hht_with_alpha_of_a_twentieth():
     assert np.max(np.abs(found - expected)) <= 1e-6 * np.max(np.abs(expected))  # seven digits are printed
 
 
-def differences(scene: Scene) -> dict[str, float]:
+def differences(scene):
     known, found = exact(scene, problem_of(scene).truth).columns, Quick().solve(scene)
     return {name: float(np.linalg.norm(found[name][: len(v)] - v) / np.linalg.norm(v)) for name, v in known.items()}
 

@@ -35,7 +35,7 @@ def program():
         pytest.skip("NOT RUN: siconos is not installed")
 
 
-def test_a_python_without_numpy_has_no_siconos() -> None:
+def test_a_python_without_numpy_has_no_siconos():
     """Debian's own Python where the package is absent: -S leaves out what is installed beside the standard library."""
     done = subprocess.run([sys.executable, "-I", "-S", str(siconos.PROGRAM), "none", "none"], capture_output=True)
     assert done.returncode == siconos.ABSENT, done.stderr
