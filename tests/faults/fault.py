@@ -1,7 +1,5 @@
 """Seeded faults: what stands in a seam of solver code is replaced for a run; production code has no switch."""
 
-from __future__ import annotations
-
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from decimal import Decimal

@@ -3,8 +3,6 @@
 Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
 """
 
-from __future__ import annotations
-
 import numpy as np
 import pytest
 

@@ -4,8 +4,6 @@ A seam names the module or class *through which* a function is called, since tha
 `newmark.predictor` is the function: where it is renamed, moved or no longer imported, this module does not import.
 """
 
-from __future__ import annotations
-
 from dataclasses import dataclass, field
 from typing import Any
 

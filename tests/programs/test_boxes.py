@@ -245,14 +245,6 @@ def test_keeps_its_momentum_along_a_plane_without_friction(program):
     assert np.ptp(answer["box_1.y"]) > 0.1
 
 
-@pytest.mark.parametrize("program", without(*DRAKE))
-def test_slides_alike_whatever_it_weighs(program):
-    light, heavy = (
-        program.solver().solve(scene({"density": density}, slope=30.0, friction=20.0)) for density in (500.0, 4000.0)
-    )
-    np.testing.assert_allclose(light["box_1.x"], heavy["box_1.x"], rtol=0, atol=10 * program.rounding)
-
-
 @pytest.mark.parametrize("program", without("drake-default"))
 def test_goes_with_a_ground_that_it_does_not_slip_on(program):
     """Behind by two of the program's steps at most, or by the time in which MuJoCo's contact stops what slips.

@@ -1,12 +1,10 @@
 """CalculiX as a solver: what it refuses, what it is told, its integrator by theory, its contact by exact motions."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np
 import pytest
-from peers.calculix import AsItComes, CalculiX
+from peers.calculix import CalculiX
 from peers.calculix_block import block_deck
 from peers.calculix_column import acceleration, column_deck, parts_of
 from peers.calculix_deck import parsed
@@ -64,37 +62,6 @@ def test_the_momentum_of_a_base_is_kept_though_it_start_with_a_jump(moved):
     t = np.linspace(0.0, 1.0, 101)
     reached = np.trapezoid(acceleration(t, moved(t)), t)
     assert abs(reached - (moved(1.0) - moved(0.98)) / 0.02) < 0.02 * abs(reached)
-
-
-def hht(scene, alpha):
-    """Return the centroid of a block on locked springs by HHT [m].
-
-    M a1 + (1 + alpha) K u1 - alpha K u0 = F with beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha (Hilber, Hughes and
-    Taylor 1977). The acceleration at the start is that which ccx finds with an increment of a tenth of the first one:
-    (M + (1 + alpha) beta (dt / 10)^2 K) a0 = F.
-    """
-    b, t, p = scene.block, scene.time, scene.contact.stiffness
-    h, dt, beta = b.side, t.step, (1 - alpha) ** 2 / 4
-    M, base = np.diag([b.mass, b.mass * h * h / 12]), np.array([1.0, -h / 2])
-    K = 2 * p * np.outer(base, base) + np.diag([0.0, b.side * h * b.young])
-    F = -scene.load.pressure * b.side * np.array([1.0, h / 2])
-    u = v = np.zeros(2)
-    a = np.linalg.solve(M + (1 + alpha) * beta * (dt / 10) ** 2 * K, F)
-    moved = []
-    for _ in range(t.steps):
-        guess = u + dt * v + dt * dt * (0.5 - beta) * a
-        new = np.linalg.solve(M + (1 + alpha) * beta * dt * dt * K, F - (1 + alpha) * K @ guess + alpha * K @ u)
-        v = v + dt * ((0.5 + alpha) * a + (0.5 - alpha) * new)
-        u, a = guess + beta * dt * dt * new, new
-        moved.append(u[0])
-    return np.array(moved)
-
-
-@needs_ccx
-def test_its_default_is_hht_with_alpha_of_a_twentieth():
-    scene = scene_of("locked", time__steps=20)
-    found, expected = AsItComes().solve(scene)["displacement"], hht(scene, -0.05)
-    assert np.max(np.abs(found - expected)) <= 1e-6 * np.max(np.abs(expected))  # seven digits are printed
 
 
 def differences(scene):

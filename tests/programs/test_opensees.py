@@ -200,14 +200,6 @@ def test_a_rigid_base_may_start_with_a_jump(tmp_path):
     check(changed("field-column", column=column, input=drive, run={"columns": ["displacement", "displacement_1"]}))
 
 
-@needs_program
-def test_chosen_settings_fall_from_the_start():
-    scene = load_scene("field-rebound").with_values({"time.steps": 2})
-    found = opensees.stepped(opensees.program(), scene, opensees.Plan(2, chosen=True))
-    t = scene.time.step * np.arange(1, 3)
-    np.testing.assert_allclose(found["displacement"], -t - 9.81 * t**2 / 2, rtol=1e-5)
-
-
 def check(scene):
     """Compare the solver with the exact motion of a scene, as long as that is known."""
     found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns

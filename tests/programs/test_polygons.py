@@ -1,7 +1,5 @@
 """Rigid polygons by other programs: parts, mass and inertia, what is refused, and the shape of an answer."""
 
-from __future__ import annotations
-
 import importlib.util
 
 import numpy as np

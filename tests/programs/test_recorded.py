@@ -1,7 +1,5 @@
 """Answers of other programs that are kept: their verdicts are those that the page of what is verified states."""
 
-from __future__ import annotations
-
 import shutil
 
 import pytest
@@ -11,7 +9,7 @@ from validation.gates.gate import Status
 from validation.problems.problem import names
 from validation.suite.matrix import phenomena, phenomenon
 
-SHORT = ("push each", "impact on a corner", "on an incline")
+SHORT = ("push each", "impact on a corner")
 LONG = sorted({shown.name for shown in phenomena() if shown.problems} - {phenomenon(name).name for name in SHORT})
 SPOILED = [  # by ten per cent
     ("pymunk-chipmunk", "stopping", "box.x_m"),

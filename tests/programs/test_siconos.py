@@ -67,19 +67,6 @@ def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half(
         np.testing.assert_allclose(found[name], predicted.columns[name], rtol=0, atol=1e-9 * np.abs(found[name]).max())
 
 
-@pytest.mark.long
-def test_its_own_contact_slides_exactly_but_for_a_step_in_which_a_corner_is_taken_as_open(program):
-    """A corner that rounding lifts does not rub for a step, which costs tan(phi) g cos(slope) dt^2 at most, once."""
-    given = scene("sliding", time__steps=50)
-    slope, tan = math.radians(28.9), math.tan(math.radians(15.0))
-    held = 9.81 * math.cos(slope) * tan
-    t = given.time.step * np.arange(1, 51)
-    predicted = (9.81 * math.sin(slope) - held) * t**2 / 2
-    late = siconos.AsItComes().solve(given)["horizontal_displacement"] - predicted
-    assert (late > -1e-6 * predicted).all()
-    assert (late < held * given.time.step**2 + 1e-6 * predicted).all()
-
-
 SLOWER = [
     (scene("opening", time__steps=30, contact__gap=0.01, block__velocity=-1.0), 2e-3),
     (scene("opening", time__steps=30, load__traction=1e6, run__columns=MOVED), 2e-2),
