@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.column_cases import CASES, column_of, course, error_of, layers, unilateral
-from oracles.column_oracle import Assembly, random_column
+from oracles.integrated import Assembly, random_column
 from oracles.scheme_cases import CASES as NAMED
 from oracles.scheme_cases import scheme_of, truth_of
 from oracles.staged import System, march

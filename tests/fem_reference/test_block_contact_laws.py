@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import Integrated, random_problem
+from oracles.integrated import integrated_block, random_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_impacts import Hops
@@ -82,7 +82,7 @@ def test_rocking_on_dashpots_agrees_with_an_integration(seed: int, zeta: float) 
     problem = dashpot(replace(random_problem(seed), shear_stiffness=0.0), zeta)
     end = 8 * transit(problem)
     motion = solve(problem, end)
-    switches, y = Integrated(problem).run(list(map(int, motion.closed_at_start)), end)
+    switches, y = integrated_block(problem, list(map(int, motion.closed_at_start)), end)
     assert switches
     kinds = [(corner, "closes" if state == STICKS else "opens") for _, corner, state in switches]
     assert [(switch.corner, switch.kind) for switch in motion.switches] == kinds
