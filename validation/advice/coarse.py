@@ -73,7 +73,7 @@ def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Calla
         if removal.by_damping >= REMOVED:
             continue
         values = {"frequency": motion.frequency, "omega_dt": removal.omega_dt, "removed": removal.by_scheme}
-        words: dict[str, object] = {"what": motion.name, "w": motion.frequency}
+        words = {"what": motion.name, "w": motion.frequency}
         damps = removal.by_scheme >= REMOVED
         if damps:
             scheme = _scheme(scene)

@@ -174,7 +174,7 @@ def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "
 
 def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return the runs side by side."""
-    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    lines = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     with_friction = features.FRICTION in features.of(scene)
@@ -187,7 +187,7 @@ def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
 
 def measured_lines(kind: str, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return a line of each metric of a kind of `LINES`, with its number in every run."""
-    lines: list[Line] = []
+    lines = []
     for line in LINES[kind]:
         numbers = (
             number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()

@@ -106,7 +106,7 @@ def _of_moving_blocks(kind: str, numbers: Data, material: Mapping[str, float]) -
     blocks = numbers["blocks"]
     count = blocks**2 if kind == "wall" else blocks
     size = width * height
-    places: Fields = {}
+    places = {}
     ramp = 0.1
     steps = 500
     if kind == "stack":

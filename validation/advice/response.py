@@ -95,7 +95,7 @@ class Response:
     def _follow(self, column: str, low: float, high: float) -> Peak | None:
         """Return the peak between two frequencies; None where the amplitude is highest at an end."""
         ends = (low, high)
-        sizes: list[float] = []
+        sizes = []
         while True:
             frequency = np.linspace(low, high, POINTS_A_ZOOM)
             values = self.answer(frequency)[column]

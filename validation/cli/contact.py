@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Annotated
 
@@ -58,7 +58,7 @@ def contact(
         if bounds is None:
             probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
             data = contact_page.answer(case, rows, penetration, probe)
-            lines: Iterable[str] = contact_page.page(case, data, absent)
+            lines = contact_page.page(case, data, absent)
         else:
             data = contact_page.column_answer(case, rows, bounds)
             lines = map(broken, contact_page.column_page(case, bounds, data, absent))
@@ -98,8 +98,8 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
 
-    rows: dict[str, Row] = {}
-    absent: dict[str, str] = {}
+    rows = {}
+    absent = {}
     for number, (name, scene) in enumerate(scenes.items()):
         progress(number, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
         row, _ = execute(Case(scene, name), "", "contact")

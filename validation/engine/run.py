@@ -26,7 +26,6 @@ from validation.runs.records import (
     Annotations,
     CaseRecord,
     DerivedRecord,
-    Manifest,
     VerdictRecord,
 )
 from validation.runs.results import Results
@@ -199,7 +198,7 @@ def judge_study(group: StudyCases, results: Results) -> JudgedStudy:
     finished = group.finished(results)
     scenes = list({case.scene.name: case.scene for case in group.cases}.values())
     annotations = _annotated(study, scenes, finished)
-    manifest: Manifest = {
+    manifest = {
         "study": study.name,
         "title": study.title,
         "purpose": study.purpose,

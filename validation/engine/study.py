@@ -73,8 +73,8 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        pairs: list[tuple[Scene, str]] = []
-        scenes_by_name: dict[str, Scene] = {}
+        pairs = []
+        scenes_by_name = {}
         for declared in self.scenes:
             scene = load_scene(declared) if isinstance(declared, str) else declared
             for case in scene.expand():

@@ -48,7 +48,7 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     InputError
         None of them can be read.
     """
-    reasons: dict[str, str] = {}
+    reasons = {}
     verdicts = results.unread_verdicts()
     for study in studies:
         try:
@@ -150,7 +150,7 @@ def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = No
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
-    paths: list[Path] = []
+    paths = []
     for study in studies:
         for block in figures_of(_chapter(results, study, out)):
             svg = out / block.file

@@ -202,7 +202,7 @@ def _excluded(field: str, value: object) -> Words:
 
 def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str, type[Section]]:
     """Return the tables that a scene may have, by their names; ``column.layer`` is an entry of a list in a table."""
-    tables: dict[str, type[Section]] = {}
+    tables = {}
     for name, field in model.model_fields.items():
         for table in (field.annotation, *get_args(field.annotation)):
             if isinstance(table, type) and issubclass(table, Section):
@@ -370,7 +370,7 @@ def named_files(tables: Data) -> Iterator[tuple[str, str, Any, str]]:
     """
     for field, role in _files().items():
         *parts, key = field.split(".")
-        holders: list[tuple[str, Any]] = [("", tables)]
+        holders = [("", tables)]
         for part in parts:
             inner = [(f"{place}.{part}".lstrip("."), _value(holder, part)) for place, holder in holders]
             holders = []

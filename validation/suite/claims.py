@@ -23,7 +23,7 @@ from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
 from validation.runs.aliases import Data, Fields
 from validation.runs.history import Array
-from validation.runs.row import Metrics, NewMetrics, Value
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import about, cases, gate
 
@@ -137,7 +137,7 @@ class Claim:
 
     def _compute(self, finished: Finished) -> Metrics:
         numbers = self.measure(Evidence(finished))
-        values: NewMetrics = {k: _plain(v) for k, v in numbers.items()}
+        values = {k: _plain(v) for k, v in numbers.items()}
         return {"verdict": float(self.finding(numbers))} | values
 
     def gate(self) -> Gate:

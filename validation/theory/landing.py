@@ -135,7 +135,7 @@ def own_landing(ratio: float) -> OwnLanding:
         return OwnLanding(rebound, 1.0, max(speeds), math.pi / (2 * math.sqrt(ratio)), len(speeds))
     closed = np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
-    depths: list[float] = []
+    depths = []
     duration, first_rate = 0.0, 0.0
     while True:
         contact = _Motion.of(closed, position, velocity)
@@ -200,7 +200,7 @@ def rigid_stop() -> tuple[float, ...]:
     Each impact is elastic for a quarter of the mass: J = m |w'|/2, x' += J/m, e' -= 6 J / (m h).
     """
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
-    speeds: list[float] = []
+    speeds = []
     while True:
         speed = float(-(GAP @ velocity))
         speeds.append(speed)

@@ -99,5 +99,4 @@ class HalfTruss:
         solution = solve_ivp(
             rate, (0.0, float(times[-1])), start, method="DOP853", rtol=1e-12, atol=1e-14, t_eval=times
         )
-        rows: Array = np.array([[*q[:3], *forces(q)] for q in solution.y.T])
-        return rows
+        return np.array([[*q[:3], *forces(q)] for q in solution.y.T])

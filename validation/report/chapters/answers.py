@@ -118,7 +118,7 @@ def _rows(judged: JudgedSet) -> list[Fields]:
     data = judged.answers.data
     rows = []
     for answer in judged.answers.answers:
-        row: Fields = {
+        row = {
             "program": data.program,
             "version": data.version,
             "settings_name": data.settings_name,

@@ -64,7 +64,7 @@ def page(
         What is filled: that of all pages, or one that extends it with parts of its own, which `values` fill.
     """
     data = [as_data(block, lambda text: _cleaned(unescaped(text, marked))) for block in blocks]
-    anchors: set[str] = set()
+    anchors = set()
     for block in data:
         if block["block"] == "Heading":
             place = anchor(block["text"])

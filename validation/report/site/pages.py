@@ -172,7 +172,7 @@ class Site:
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
         )
-        index: Blocks = [
+        index = [
             Heading("Discontinuous Deformation Analysis against finite elements"),
             Paragraph(lead, "lead"),
             Paragraph(f"The model is that of {PAPER}.", "small"),
@@ -206,8 +206,8 @@ def picture_of(page: str, blocks: Blocks) -> str:
 
 def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
     """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
-    pages: dict[str, str] = {}
-    used: set[str] = set()
+    pages = {}
+    used = set()
     for name in names:
         stem = f"{kind}-{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('-.') or 'unnamed'}"[:100]
         unique = stem

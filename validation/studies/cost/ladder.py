@@ -216,7 +216,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, Fields] = {}
+        tables = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -230,7 +230,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: Fields = {"mode": "zip", "time.steps": counts}
+        sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

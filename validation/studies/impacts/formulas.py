@@ -11,7 +11,7 @@ import math
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, about, cases, near
 
@@ -129,7 +129,7 @@ def derived() -> tuple[Derived, ...]:
 def rigid(levels: tuple[Scene, ...], finished: Finished) -> Metrics:
     """Return the times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
     a, b = (1 / stiffness_ratio(case) for case in levels)
-    times: NewMetrics = {}
+    times = {}
     for name, switch in SWITCHES.items():
         x, y = (or_nan(finished.rows[case.name, BAR].metrics.get(switch)) for case in levels)
         times[name] = finite((a * y - b * x) / (a - b))

@@ -24,7 +24,7 @@ from validation.engine.finished import Derived, Finished
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array, History
-from validation.runs.row import Metrics, NewMetrics, Value
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
 from validation.theory.spectra import EPS
@@ -111,7 +111,7 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Metrics:
         largest[quantity] = max(largest.get(quantity, 0.0), float(np.max(np.abs(values))))
         apart[quantity] = max(apart.get(quantity, 0.0), float(np.max(np.abs(ours - values))))
     size = largest_coordinate(case)
-    found: NewMetrics = {
+    found = {
         "place": apart["displacement"] / size,
         "force": apart["force"] / (stiffness_of(case) * size),
         "displacement": apart["displacement"] / largest["displacement"],

@@ -161,10 +161,10 @@ STOPS: Mapping[str, tuple[str, Fields]] = {  # what turns a block back at a rigi
 def rigid(stop: str) -> Scene:
     """Return the block on a rigid stop, over halved steps."""
     words, values = STOPS[stop]
-    rigid_stop: Fields = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     lists = halved(RIGID_COARSEST, RIGID_LEVELS)
-    sweep: Fields = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
+    sweep = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 

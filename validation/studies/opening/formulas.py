@@ -6,7 +6,7 @@ import math
 
 from validation.engine.finished import Derived
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import order_row
 
@@ -23,7 +23,7 @@ REFINED = {  # scene -> what converges to what, the step or mesh width that is r
 
 def samples(case: Scene, history: History) -> Metrics:
     """Return displacement and contact pressure at the instants."""
-    values: NewMetrics = {}
+    values = {}
     for n in INSTANTS:
         values[f"displacement.{n}"] = float(history.displacement[n - 1])
         values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])

@@ -89,7 +89,7 @@ def stiff_steps(e: Evidence) -> NamedNumbers:
 
 def stiff_alike(e: Evidence) -> NamedNumbers:
     """Return the difference of settling steps between p = 10E and 100E, at 1 % and at 1e-4."""
-    differences: NamedNumbers = {}
+    differences = {}
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
         for quantity, word in (("displacement", "displacement"), ("pressure", "contact force")):
             steps = [e.settles(case, quantity, tolerance) for case in (STIFF, STIFFEST)]
@@ -280,7 +280,7 @@ def boundary(e: Evidence) -> NamedNumbers:
 
 def discount_alone(e: Evidence) -> NamedNumbers:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
-    ratios: NamedNumbers = {}
+    ratios = {}
     squares = []
     for name, s in DISCOUNTS.items():
         ratios[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")

@@ -32,12 +32,12 @@ def displacements(
     edge, in all directions alike.
     """
     parts = range(len(triangles)) if math.isfinite(glue) else [0] * len(triangles)
-    nodes: list[list[Node]] = []
+    nodes = []
     for part, triangle in zip(parts, triangles, strict=True):
         nodes.append([(part, point) for point in triangle])
     numbers: dict[Node, int] = {}
     at_point: dict[Point, set[int]] = {}
-    on_edge: dict[tuple[Point, Point], tuple[int, int]] = {}
+    on_edge = {}
     for corners in nodes:
         own_numbers = [numbers.setdefault(node, len(numbers)) for node in corners]
         for k, number in enumerate(own_numbers):
@@ -45,9 +45,9 @@ def displacements(
             at_point.setdefault(corners[k][1], set()).add(number)
             on_edge[corners[k][1], corners[following][1]] = number, own_numbers[following]
     elastic = elasticity(young, poisson)
-    rows: list[Array] = []
-    columns: list[Array] = []
-    values: list[Array] = []
+    rows = []
+    columns = []
+    values = []
     for triangle, own_nodes in zip(triangles, nodes, strict=True):
         strain, double = _strain(triangle)
         own = np.ravel([[2 * numbers[node], 2 * numbers[node] + 1] for node in own_nodes])
@@ -79,8 +79,7 @@ def displacements(
 def stress(triangle: Sequence[Point], corners: Array, young: float, poisson: float) -> Array:
     """Return the stress of a triangle whose corners are displaced [m], shape (3, 2), as [Pa], shape (3,)."""
     strain, _ = _strain(triangle)
-    components: Array = elasticity(young, poisson) @ strain @ corners.ravel()
-    return components
+    return elasticity(young, poisson) @ strain @ corners.ravel()
 
 
 def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
@@ -99,7 +98,7 @@ def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
 
 def _joined(nodes: Sequence[Sequence[Node]]) -> Iterator[tuple[Node, Node]]:
     """Yield the nodes of two triangles that meet at an end of an edge which they share."""
-    edges: dict[frozenset[Point], list[Node]] = {}
+    edges = {}
     for corners in nodes:
         for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
             edge = frozenset((start[1], end[1]))

@@ -320,7 +320,7 @@ def curves() -> Data:
     }
     drawn = []
     for name, reported in responses.items():
-        curve: Fields = {"name": name, "frequency": short(DRAWN)}
+        curve = {"name": name, "frequency": short(DRAWN)}
         for column, values in reported.columns.items():
             size, phase = polar(values)
             curve |= {column: short(size), f"{column}_phase": short(phase)}

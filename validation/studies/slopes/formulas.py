@@ -15,7 +15,7 @@ import numpy as np
 from validation.metrics.values import or_nan
 from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.slopes import closed as closed_forms
@@ -83,7 +83,7 @@ def ringing(scene: Scene, history: History) -> Metrics:
 def rigid_ringing() -> Metrics:
     """Return the error of a rigid block that slides and stays closed, over penalty and step."""
     scene = next(iter(cases(STIFFNESS)))
-    numbers: NewMetrics = {}
+    numbers = {}
     for p, step in itertools.product((1e8, 1e9), FACT_STEPS):
         numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed_forms.normal_ringing_error(scene, p, step)
     return numbers
@@ -98,7 +98,7 @@ def late_friction() -> Metrics:
 def discounted() -> Metrics:
     """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
     gg = 0.98
-    numbers: NewMetrics = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
+    numbers = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
     for step in (1e-2, 5e-3, 2.5e-3, 1e-3):
         numbers[f"rate at dt = {1e3 * step:g} ms, 1/s"] = -math.log(gg) / step
     for step in (1e-2, 2.5e-3):

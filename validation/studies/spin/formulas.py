@@ -174,7 +174,7 @@ def turn_at_end(scene: Scene, history: History) -> NumberPair:
 def against_ledge(scene: Scene, history: History) -> Metrics:
     """Return the turn at the end over the rigid block's, less one, or where it stops [m]."""
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    accounted: NewMetrics = {"balance": float(balance), "stiffness": stiffness_of(scene)}
+    accounted = {"balance": float(balance), "stiffness": stiffness_of(scene)}
     slide = slide_of(scene)
     if slide.tips is None:
         return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}

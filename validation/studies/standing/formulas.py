@@ -246,7 +246,7 @@ def seats(runs: Runs) -> Metrics:
     pile = soft.table(PlaneSection).stack[0]
     share = (sum(pile.offsets) + pile.rectangle[0] / 2) / harmonic(pile.count, pile.rectangle[0])
     weight = soft.table(PlaneSection).density * math.prod(pile.rectangle) * 9.81
-    values: NewMetrics = {}
+    values = {}
     for number, (_, inner) in enumerate(seat_forces(pile.count, pile.rectangle[0], share), start=1):
         upper = pile.count + 1 - number
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
@@ -284,7 +284,7 @@ def at_rest(scene: Scene, history: History) -> Metrics:
     weight = truss.mass * truss.gravity
     _, most = truss.limit
     turn = -float(history.columns["half.angle"][-1])
-    values: NewMetrics = {"load": (load + weight) / (most + weight), "turned": turn}
+    values = {"load": (load + weight) / (most + weight), "turned": turn}
     u, _ = truss.limit
     values["beyond"] = turn - (math.atan2(truss.height, truss.length) - u)
     exact = truss.rest(load)

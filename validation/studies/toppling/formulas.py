@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 from validation.metrics.rotation import crossing, increments
 from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, about, cases, short
 from validation.theory.friction import coefficient, sliding_acceleration
@@ -57,7 +57,7 @@ def slide(scene: Scene, history: History) -> Metrics:
 def fall(scene: Scene, history: History) -> Metrics:
     """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
     rotation = -history.columns["rotation"]
-    values: NewMetrics = {"turned": float(np.max(np.abs(rotation)))}
+    values = {"turned": float(np.max(np.abs(rotation)))}
     if beyond(scene) > 0:
         exact = rectangle(scene).fall_time(beyond(scene), TURN)
         values["time"] = crossing(history.time, rotation, TURN) / exact
