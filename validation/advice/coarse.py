@@ -123,7 +123,7 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
     turns = np.geomspace(RESOLVED, beyond, TURNS)
     first = next((i for i, turn in enumerate(turns) if excess(turn) >= 0), 0)
-    return float(brentq(excess, turns[first - 1], turns[first], rtol=1e-6)) / beyond if first else 1.0
+    return brentq(excess, turns[first - 1], turns[first], rtol=1e-6) / beyond if first else 1.0
 
 
 def closed(scene: Scene) -> Scene:

@@ -117,7 +117,7 @@ class Response:
 
 def _are_real(values: Complex) -> NDArray[np.bool_]:
     """Whether amplitudes have no imaginary part but rounding."""
-    return np.asarray(np.abs(values.imag) <= ROUNDING * np.abs(values))
+    return np.abs(values.imag) <= ROUNDING * np.abs(values)
 
 
 def polar(amplitude: Complex) -> tuple[Array, Array]:

@@ -74,7 +74,7 @@ class Search:
         roots: list[float] = []
         for i in np.flatnonzero(is_passed):
             ends = coordinates[i : i + 2]
-            root = float(brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+            root = brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps)
             # a root at a sample belongs to both of its neighbours
             if not roots or not math.isclose(self.value(root), self.value(roots[-1]), rel_tol=1e-12):
                 roots.append(root)

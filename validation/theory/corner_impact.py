@@ -75,7 +75,7 @@ class FallingRectangle:
 
         times = np.linspace(0.0, until, SAMPLES + 1)
         below = next(k for k, time in enumerate(times) if lowest(time) < 0)
-        time = float(brentq(lowest, times[below - 1], times[below], xtol=1e-15))
+        time = brentq(lowest, times[below - 1], times[below], xtol=1e-15)
         landed = self.flown(time)
         return time, int(np.argmin(landed.arms(landed.angle)[:, 1]))
 

@@ -102,12 +102,12 @@ class _Motion:
         """Return x and e at times, shape (n, 2)."""
         phase = np.multiply.outer(time, self.frequencies)
         parts = self.cosines * np.cos(phase) + self.sines * np.multiply.outer(time, np.ones(2)) * np.sinc(phase / np.pi)
-        return np.asarray(parts @ self.shapes.T)
+        return parts @ self.shapes.T
 
     def velocity(self, time: float) -> Array:
         """Return their rates at one time, shape (2,)."""
         phase = time * self.frequencies
-        return np.asarray(self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase)))
+        return self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase))
 
     def gap(self, time: Array) -> Array:
         """Return w at times, shape (n,)."""

@@ -64,7 +64,7 @@ class HalfTruss:
         def left_over(u: float) -> float:
             return 2 * self.series * (self.diagonal * math.cos(u) - self.span) * math.tan(u) - whole
 
-        u = float(brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14))
+        u = brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14)
         thrust = self.series * (self.diagonal * math.cos(u) - self.span)
         return {
             "turn": math.atan2(self.height, self.length) - u,

@@ -128,7 +128,7 @@ def rest(scene: Scene, history: History) -> Metrics:
     outside = np.flatnonzero(np.abs(moved - settled) > 1e-3 * abs(settled))
     if outside.size == len(moved):
         return {"time": "undefined"}
-    return {"time": float(history.time[outside[-1]]) if outside.size else 0.0, "final": float(moved[-1] / settled)}
+    return {"time": history.time[outside[-1]] if outside.size else 0.0, "final": moved[-1] / settled}
 
 
 def settlement(scene: Scene) -> float:
@@ -145,7 +145,7 @@ def settlement(scene: Scene) -> float:
 
 def residual(scene: Scene, history: History) -> Metrics:
     """Return the slips that remain of the lowest and the highest joint [m]."""
-    return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
+    return {"lowest": history.columns["slip_1"][-1], "highest": history.columns["slip_5"][-1]}
 
 
 def exact_joint(case: Scene) -> Metrics:

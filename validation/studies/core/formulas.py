@@ -117,7 +117,7 @@ def drift(finished: Finished) -> Metrics:
     """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
     levels = tuple(cases(POINT_SPRINGS))
     settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
-    return {"halving": float(np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0])}
+    return {"halving": np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0]}
 
 
 def order(finished: Finished) -> Metrics:

@@ -54,7 +54,7 @@ def base(scene: Scene, history: History) -> Metrics:
     speed = (mean_slide[-1] - mean_slide[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
     mean_speed = mean_slide[-1] / history.time[-1]
     scale = friction.creep_scale(scene)
-    return values | {"speed": float(speed), "mean_speed": float(mean_speed), "share": float(mean_speed / scale)}
+    return values | {"speed": speed, "mean_speed": mean_speed, "share": mean_speed / scale}
 
 
 def _nearest(step: float) -> Derived:

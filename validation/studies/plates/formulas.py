@@ -118,8 +118,8 @@ def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(dda.metrics[STATIC])
     values = {
-        "cells": float(cells_of(case)),
-        "blocks": float(len(case.table(PlaneSection).polygons)),
+        "cells": cells_of(case),
+        "blocks": len(case.table(PlaneSection).polygons),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
         "glue": blocks / linear(case, firm=True)[0] - 1,

@@ -108,7 +108,7 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metri
 def _removed(_: Finished) -> Metrics:
     """Return the share of the displacement near the first frequency that the step takes."""
     exact, stepped, _average = (abs(one.reported("dda", RESONANCE).columns[DISPLACEMENT][0]) for one in answers())
-    return {"removed": float(1 - stepped / exact)}
+    return {"removed": 1 - stepped / exact}
 
 
 def loaded_gates() -> Iterator[Gate]:
@@ -148,7 +148,7 @@ def amplitudes() -> Iterator[Fields]:
             closed = answer.closed(solver, f)
             for column in COLUMNS:
                 size, phase = polar(getattr(closed, column))
-                row |= {column: float(size[0]), f"{column}_phase": float(phase[0])}
+                row |= {column: size[0], f"{column}_phase": phase[0]}
             yield row
 
 

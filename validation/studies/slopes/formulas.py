@@ -47,7 +47,7 @@ RATE = 2.0  # Hz
 def sliding(scene: Scene, history: History) -> np.ndarray:
     """Return u_t + tan(phi) u_n of the centroid [m]."""
     along = history.columns["horizontal_displacement"]
-    return np.asarray(along + friction.coefficient(scene) * history.displacement)
+    return along + friction.coefficient(scene) * history.displacement
 
 
 def acceleration(scene: Scene, history: History) -> float:
@@ -77,7 +77,7 @@ def ringing(scene: Scene, history: History) -> Metrics:
     """Return the largest error of a sliding block over its exact way, from a start on."""
     way = friction.sliding_acceleration(scene) * history.time**2 / 2
     late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
-    return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
+    return {"error": np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late])}
 
 
 def rigid_ringing() -> Metrics:
@@ -115,7 +115,7 @@ def against_rigid(scene: Scene, history: History) -> Metrics:
     """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
     rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
-    return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
+    return {"slide": slide[-1], "largest difference": np.max(np.abs(slide - rigid))}
 
 
 def threshold(runs: Runs) -> Metrics:
@@ -196,7 +196,7 @@ def closed(case: Scene) -> Metrics:
     """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
     acceleration = friction.sliding_acceleration(case)
     displacement, _ = friction.free_motion(case, acceleration)
-    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": float(displacement[-1])}
+    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": displacement[-1]}
 
 
 def beside_closed(case: Scene, dda: Row) -> Metrics:

@@ -33,7 +33,7 @@ def accounts(scene: Scene, history: History) -> NewMetrics:
     """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    return {"momentum": float(np.max(np.abs(momentum - 1))), "balance": float(balance)}
+    return {"momentum": np.max(np.abs(momentum - 1)), "balance": float(balance)}
 
 
 def against_motion(scene: Scene, history: History) -> Metrics:
@@ -135,7 +135,7 @@ def against_stop(scene: Scene, history: History) -> Metrics:
     way = history.columns["block.x"] - slide.start
     parabola = slide.speed * t - slowing * t**2 / 2
     sliding = t < 0.99 * slide.speed / slowing
-    return {"parabola": float(np.max(np.abs((way - parabola)[sliding]))), "distance": float(way[-1])}
+    return {"parabola": np.max(np.abs((way - parabola)[sliding])), "distance": way[-1]}
 
 
 def closed_stop(case: Scene) -> Metrics:

@@ -205,7 +205,7 @@ def turning(scene: Scene, history: History) -> Metrics:
 
     columns = [-history.columns[f"{name}.angle"] for name in moving(scene.table(PlaneSection))]
     ratios = [acceleration(column) / acceleration(exact) - 1 for column in columns]
-    return {"toe": ratios[0], "top": ratios[-1], "turn": float(exact[-1])}
+    return {"toe": ratios[0], "top": ratios[-1], "turn": exact[-1]}
 
 
 def turned_columns(scene: Scene, times: Array) -> Array:
@@ -292,7 +292,7 @@ def at_rest(scene: Scene, history: History) -> Metrics:
         return values
     measured = {
         "turn": turn,
-        "thrust": float(history.columns["half.0-abutment.1.normal"][-1]),
+        "thrust": history.columns["half.0-abutment.1.normal"][-1],
         "shear": abs(float(history.columns["half.0-abutment.1.shear"][-1])),
     }
     return values | {name: value / exact[name] - 1 for name, value in measured.items()}

@@ -49,15 +49,15 @@ def slide(scene: Scene, history: History) -> Metrics:
     v = history.displacement
     sliding_distance = sliding_acceleration(scene) * history.time**2 / 2
     return {
-        "identity": float(np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1]),
-        "run-out": float(u[-1] / sliding_distance[-1]),
+        "identity": np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1],
+        "run-out": u[-1] / sliding_distance[-1],
     }
 
 
 def fall(scene: Scene, history: History) -> Metrics:
     """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
     rotation = -history.columns["rotation"]
-    values = {"turned": float(np.max(np.abs(rotation)))}
+    values = {"turned": np.max(np.abs(rotation))}
     if beyond(scene) > 0:
         exact = rectangle(scene).fall_time(beyond(scene), TURN)
         values["time"] = crossing(history.time, rotation, TURN) / exact

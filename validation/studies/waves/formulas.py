@@ -101,6 +101,6 @@ def sites() -> Iterator[Scene]:
 def largest(case: Scene, history: History) -> Metrics:
     """Return the largest displacement of the surface [m] and the largest stress on the base [Pa]."""
     return {
-        "displacement": float(np.abs(history.displacement).max()),
-        "pressure": float(np.abs(history.contact_pressure).max()),
+        "displacement": np.abs(history.displacement).max(),
+        "pressure": np.abs(history.contact_pressure).max(),
     }

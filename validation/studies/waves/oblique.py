@@ -93,7 +93,7 @@ def energies(finished: Finished) -> Metrics:
         ("S", "S to", 32.0, 40.0),
         ("S", "S again from", 40.0, 60.0),
     ):
-        numbers[f"{name}, deg"] = float(brentq(_above_noticed, low, high, wave))
+        numbers[f"{name}, deg"] = brentq(_above_noticed, low, high, wave)
     return numbers
 
 
