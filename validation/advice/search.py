@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from validation.runs.aliases import NamedNumbers
-from validation.runs.history import Array
+from validation.runs.history import Array, ArrayPair
 
 FLAT = 1e-12  # relative; smaller turns of a function are rounding, not extrema
 HALVINGS = 100  # of an interval in which a function ends to be defined: to the last bit
@@ -27,7 +27,7 @@ class Search:
     flat: float = FLAT  # relative size of turns that are rounding
 
     @cached_property
-    def samples(self) -> tuple[Array, Array]:
+    def samples(self) -> ArrayPair:
         """Coordinates and xi: the grid, its extrema refined, and the last ones at which xi is defined."""
         ratios = self._ratios(self.grid)
         slopes = np.diff(ratios)

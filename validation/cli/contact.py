@@ -20,6 +20,7 @@ from validation.cli.app import (
     refuse_bad_input,
 )
 from validation.cli.printing.output import broken, echo_answer
+from validation.runs.aliases import NamedTexts
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
@@ -84,7 +85,7 @@ def _probe(scene: Scene, progress: Progress, before: int) -> Callable[[float], f
     return depth
 
 
-def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], dict[str, str]]:
+def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], NamedTexts]:
     """Return the rows of the runs that completed, and why the others have none.
 
     Raises

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass
 
 from validation.engine.case import MEASURES, Case
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, NamePair, Words
 from validation.runs.records import Annotations
@@ -63,7 +63,7 @@ class Study:
     extra: tuple[NamePair, ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False
-    derived: Callable[[], tuple[Derived, ...]] = tuple
+    derived: Callable[[], DerivedRows] = tuple
     data: Callable[[], Data] = dict
     measures: Words = MEASURES
     pairs: tuple[NamePair, ...] | None = None

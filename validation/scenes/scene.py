@@ -20,7 +20,7 @@ from typing import Any, Self, get_args
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
-from validation.runs.aliases import Data, Fields, NamePair, Words
+from validation.runs.aliases import Data, Fields, NamedTexts, NamePair, Words
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs, key_of_any_entry
 from validation.scenes.kinds import kinds
@@ -355,7 +355,7 @@ def _beside(directory: Path, data: Fields) -> None:
 
 
 @functools.cache
-def _files() -> dict[str, str]:
+def _files() -> NamedTexts:
     """Return the keys that name files, those of kinds too, and what these are."""
     files = dict(FILES)
     for kind in kinds().values():

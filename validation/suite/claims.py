@@ -9,19 +9,19 @@ from __future__ import annotations
 
 import enum
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.engine.judge import HORIZON
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
-from validation.runs.aliases import Data, Fields
+from validation.runs.aliases import Data, Fields, NumbersByName
 from validation.runs.history import Array
 from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
@@ -53,7 +53,7 @@ class Band:
     low: float
     high: float
 
-    def holds(self, numbers: Mapping[str, float]) -> bool:
+    def holds(self, numbers: NumbersByName) -> bool:
         """Whether the number was measured and lies inside."""
         return self.low <= numbers.get(self.number, np.nan) <= self.high
 
@@ -124,7 +124,7 @@ class Claim:
     numbers: tuple[tuple[str, float, float], ...] = ()
     misprint: bool = False
 
-    def finding(self, numbers: Mapping[str, float]) -> Finding:
+    def finding(self, numbers: NumbersByName) -> Finding:
         """Return the verdict on measured numbers."""
         if all(band.holds(numbers) for band in self.printed):
             return Finding.CONFIRMED
@@ -203,7 +203,7 @@ class Register:
                 gates.append(gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half))
         return tuple(gates)
 
-    def rows(self) -> tuple[Derived, ...]:
+    def rows(self) -> DerivedRows:
         """Return the rows of the register."""
         return tuple(claim.row() for claim in self.claims)
 

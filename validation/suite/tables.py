@@ -50,7 +50,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Derived, derived_row
+from validation.engine.finished import DerivedRows, derived_row
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, Fields
@@ -156,7 +156,7 @@ class StudyTable:
                 declared += [Gate(pair=tuple(pair), **(entry | fields)) for pair in pairs]
         return (*declared, *self._further("gates"))
 
-    def derived(self) -> tuple[Derived, ...]:
+    def derived(self) -> DerivedRows:
         """Return the derived rows: those of the table, and those of the function that it names."""
         declared = []
         for entry in self.entries.get("row", ()):

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.runs.aliases import NumberPair
-from validation.runs.history import Array
+from validation.runs.history import Array, ArrayPair
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
 from validation.theory.stepping import Stepping
@@ -152,7 +152,7 @@ def own_landing(ratio: float) -> OwnLanding:
     return OwnLanding(float(velocity[0]), first_rate, depth, duration, len(depths))
 
 
-def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | None:
+def _after_flight(position: Array, velocity: Array) -> ArrayPair | None:
     """Return position and velocity at the end of a flight; None of one that does not end."""
     strain = math.hypot(position[1], velocity[1] / math.sqrt(12))
     distance = strain / 2 - position[0] if velocity[0] > 0 else strain / 2 + position[0]

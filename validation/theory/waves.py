@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from validation.runs.history import ArrayPair
 from validation.theory.stepping import Complex, Stepping
 
 Array = NDArray[np.float64]
@@ -51,7 +52,7 @@ class Column:
         growing = wavenumber.imag * self.height > GROWTH
         return np.where(growing, 2 * np.pi / self.height - wavenumber, wavenumber)
 
-    def travelled(self, stepping: Stepping, omega: ArrayLike, distance: float) -> tuple[Array, Array]:
+    def travelled(self, stepping: Stepping, omega: ArrayLike, distance: float) -> ArrayPair:
         """Return the share of the amplitude left over a distance, and the error w / Re k / c - 1 of the phase speed."""
         omega = np.asarray(omega, float)
         k = self.wavenumber(stepping.squared_frequency(omega))

@@ -11,7 +11,7 @@ import functools
 import itertools
 from collections.abc import Sequence
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
@@ -138,7 +138,7 @@ def grid_convergence() -> Derived:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows of orders, of the grid-convergence index, and of the blocks."""
     times = map(order_in_time, IN_TIME)
     meshes = map(order_in_mesh, IN_MESH)

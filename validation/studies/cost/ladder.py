@@ -40,7 +40,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.aliases import Fields, NamedNumbers
-from validation.runs.history import Array
+from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
@@ -102,7 +102,7 @@ def methods() -> tuple[Method, ...]:
     return tuple(listed)
 
 
-def one_strain(scene: Scene) -> tuple[Array, Array]:
+def one_strain(scene: Scene) -> ArrayPair:
     """Return mass and stiffness of a block of one strain on closed springs, for displacement and strain."""
     height = scene.block.extent[1]
     k = min(2 * scene.contact.stiffness, RIGID * scene.block.young * scene.block.base_length / height)

@@ -11,7 +11,7 @@ import functools
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics
@@ -38,7 +38,7 @@ def slid(columns: Data) -> np.ndarray:
     return np.asarray((columns["slide_m"] + columns["slide_n"]) / 2)
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
     return (
         *(_nearest(step) for step in PROGRAM),

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import closed
@@ -114,7 +114,7 @@ def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finishe
     return errors
 
 
-def derived(runs: Mapping[str, Scene], exact: Mapping[str, Scene]) -> tuple[Derived, ...]:
+def derived(runs: Mapping[str, Scene], exact: Mapping[str, Scene]) -> DerivedRows:
     """Return the rows: runs of contact that opens by words for scheme and p, the exact ones by p."""
     computed = {
         "mean rebound": impacts,

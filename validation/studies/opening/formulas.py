@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from validation.engine.finished import Derived
+from validation.engine.finished import DerivedRows
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
@@ -40,6 +40,6 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-def orders() -> tuple[Derived, ...]:
+def orders() -> DerivedRows:
     """Return the rows of orders."""
     return tuple(order_row(name, *refined) for name, refined in REFINED.items())

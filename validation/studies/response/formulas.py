@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from validation.advice.response import Response, polar, response
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -287,7 +287,7 @@ def viscous_gates() -> Iterator[Gate]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows under the pressure, of the steps, and of the damping."""
     rows = []
     for answer in answers():

@@ -11,7 +11,7 @@ from validation.metrics.rotation import crossing, landing
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band
+from validation.suite.bands import Band, Bands
 from validation.theory.rocking import rectangle, settlement
 
 PULSED = "rocking-pulse"
@@ -84,7 +84,7 @@ def quarter_period(case: Scene) -> Band:
     return 1 - early, 1 + late
 
 
-def pulsed(case: Scene) -> dict[str, Band]:
+def pulsed(case: Scene) -> Bands:
     """Return what a pulse that is sampled does, over what the pulse does to a rigid block."""
     exact = after_pulse(case)
     off = (case.time.step / DURATION) ** 2

@@ -19,7 +19,7 @@ from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.slopes import closed as closed_forms
-from validation.suite.bands import APART, Band, Runs, about, cases, near, short
+from validation.suite.bands import APART, Band, Bands, Runs, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -163,7 +163,7 @@ def late_waves(case: Scene) -> Band:
     return about(0.0, 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration)
 
 
-def shaken(case: Scene) -> dict[str, Band]:
+def shaken(case: Scene) -> Bands:
     """Return the slide on a base that shakes, and its distance from that of a rigid mass [m]."""
     resisted = friction.coefficient(case) * friction.across(case)
     stretch = case.block.mass * resisted / (2 * case.contact.shear)
@@ -172,7 +172,7 @@ def shaken(case: Scene) -> dict[str, Band]:
     return _beside(rigid.at([rigid.end])[0][0], 2 * CYCLES * stretch + late)
 
 
-def in_an_earthquake(case: Scene) -> dict[str, Band]:
+def in_an_earthquake(case: Scene) -> Bands:
     """Return the same on a base that follows a record of several frequencies [m]."""
     rigid = rigid_motion(case, smooth=True)
     ends = [*(t for t, _ in rigid.switches[1:]), case.time.duration]
@@ -188,7 +188,7 @@ def lag(case: Scene) -> Band:
     return APART, friction.lag(case)
 
 
-def _beside(slide: float, allowed: float) -> dict[str, Band]:
+def _beside(slide: float, allowed: float) -> Bands:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
 
 

@@ -14,7 +14,7 @@ from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, Runs, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
 
 STRAINS = ("ex", "ey", "gxy")
@@ -63,7 +63,7 @@ def orders(runs: Runs) -> Metrics:
     return {name: fitted_order(steps, [error[name] for error in errors]) for name in names}
 
 
-def second_order() -> dict[str, Band]:
+def second_order() -> Bands:
     """Return 2 -/+ what the largest step departs from the leading term of its error.
 
     A mode of frequency w has in average acceleration the phase 2 atan(w h / 2) = w h - (w h)^3/12 + (w h)^5/80 a step:
@@ -85,7 +85,7 @@ def rounding(case: Scene) -> Band:
     return 0.0, case.time.steps * EPS
 
 
-def steady(case: Scene) -> dict[str, Band]:
+def steady(case: Scene) -> Bands:
     """Return strain, area and rate of a steady spin: each rounded once a step, the rate as a difference of angles."""
     exact = spinning_of(case)
     relative = case.time.steps * EPS

@@ -16,7 +16,7 @@ from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, about, cases, short
+from validation.suite.bands import Band, Bands, about, cases, short
 from validation.theory.friction import coefficient, sliding_acceleration
 from validation.theory.rocking import rectangle, settlement
 
@@ -103,7 +103,7 @@ def straight(scene: Scene) -> float:
     return (scene.time.step / rectangle(scene).fall_time(beyond(scene), TURN)) ** 2
 
 
-def let_go(case: Scene) -> dict[str, Band]:
+def let_go(case: Scene) -> Bands:
     """Return time, area and growth of a tower that is released on its lower corner, by its kind of rotation."""
     block = rectangle(case)
     grown = growth(case)

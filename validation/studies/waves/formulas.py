@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived
+from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
 from validation.runs.aliases import NamePair
 from validation.runs.history import History
@@ -36,7 +36,7 @@ def scenes() -> tuple[str | Scene, ...]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
     return (

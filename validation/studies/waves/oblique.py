@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.row import Metrics
 from validation.suite.bands import about, gate, half_unit, printed
@@ -101,7 +101,7 @@ def _above_noticed(angle: float, wave: str) -> float:
     return returned_energy(angle, wave) - NOTICED
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows."""
     return Derived(FACTS, "viscous base", (), reflections), Derived(FACTS, "oblique waves", (), energies)
 
