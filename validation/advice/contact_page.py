@@ -16,7 +16,7 @@ from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.aliases import Data, Fields
 from validation.runs.numbers import number_text, share_text
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -82,7 +82,7 @@ def scenes(scene: Scene) -> dict[str, Scene]:
 
 def answer(
     scene: Scene,
-    rows: Mapping[str, Row],
+    rows: RowsBySolver,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
 ) -> Fields:
@@ -130,7 +130,7 @@ def measured(row: Row) -> NewMetrics:
     return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}
 
 
-def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
+def landing_speed(scene: Scene, rows: RowsBySolver) -> float:
     """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
     for name in (exact(), own()):
         value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
@@ -174,7 +174,7 @@ def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "
 
 def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return the runs side by side."""
-    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    lines = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     with_friction = features.FRICTION in features.of(scene)
@@ -187,7 +187,7 @@ def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
 
 def measured_lines(kind: str, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return a line of each metric of a kind of `LINES`, with its number in every run."""
-    lines: list[Line] = []
+    lines = []
     for line in LINES[kind]:
         numbers = (
             number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()
@@ -274,7 +274,7 @@ def column_scenes(scene: Scene) -> dict[str, Scene]:
     return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
 
 
-def column_answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> Fields:
+def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> Fields:
     """Return everything as plain data."""
     return {
         "scene": scene.name,

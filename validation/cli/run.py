@@ -13,8 +13,6 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from validation.runs.aliases import NamedNumbers
-
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
@@ -266,8 +264,8 @@ def _run_studies(
 
     last = time.monotonic()
     groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    runs: dict[str, JudgedStudy] = {}
-    seconds: NamedNumbers = {}
+    runs = {}
+    seconds = {}
     with _running(groups, results, machine, judging) as ended:
         for group in ended:
             runs[group.study.name] = judge_study(group, results)

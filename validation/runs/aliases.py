@@ -8,6 +8,8 @@ from typing import Any
 Data = Mapping[str, Any]  # plain data, as of a table or a record
 Fields = dict[str, Any]  # the same, to be filled
 NamedNumbers = dict[str, float]
+NamedTexts = dict[str, str]
 NamePair = tuple[str, str]  # such as scene and solver
 NumberPair = tuple[float, float]  # such as lower and upper edge
+NumbersByName = Mapping[str, float]
 Words = tuple[str, ...]

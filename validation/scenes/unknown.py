@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
-from validation.runs.aliases import Data
+from validation.runs.aliases import Data, NamedTexts
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
@@ -132,7 +132,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
     return None
 
 
-def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> dict[str, str]:
+def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> NamedTexts:
     """Return fields by all that they are called, plainly: their names, symbols, and other programs' names."""
     by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
     for field in reversed(fields):

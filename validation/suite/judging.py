@@ -104,11 +104,11 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         There is no such solver, or what it reads is no history.
     """
     solver = get_solver(name)
-    about: Mapping[str, str] = {}
+    about = {}
     if isinstance(solver, UserSolver):
         solver.check_module()
         about = solver.about()
-    answers: list[Answer] = []
+    answers = []
     repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
     for number, problem in enumerate(problems):
         progress(number, len(problems), f"{name} {problem.name}")

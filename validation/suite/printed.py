@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.runs.aliases import Fields
+from validation.runs.aliases import Fields, NamedTexts
 from validation.scenes.scene import Scene
 
 
@@ -53,7 +53,7 @@ def printed_numbers(
     keys = entry.pop("by", ())
     metrics = entry.pop("metrics", ())
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-    numbers: dict[str, dict[str, str]] = {}
+    numbers: dict[str, NamedTexts] = {}
     for line in csv.DictReader(lines, skipinitialspace=True):
         words = {column: text.strip() for column, text in line.items() if text and text.strip()}
         name = pattern.format(**words)

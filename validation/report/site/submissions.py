@@ -108,7 +108,7 @@ class Site:
         asks = asks_of(sets)
         missing = [name for name in names() if name not in asks]
         unanswered = [Paragraph(f"Not answered by any of them: {', '.join(missing)}.", "small")] if missing else []
-        blocks: Blocks = [
+        blocks = [
             Paragraph(f"{LEAD} All verdicts as plain data: {VERDICTS}.", "lead"),
             answer_table(sets),
             *unanswered,

@@ -44,7 +44,7 @@ def ratios(case: Scene, row: Row, elements: Row) -> NewMetrics:
 def orders(levels: Sequence[tuple[Scene, Row, Row]]) -> Metrics:
     """Return the order of the last halving of the block, by metric."""
     coarse, fine = (ratios(*level) for level in levels[-2:])
-    orders: NewMetrics = {}
+    orders = {}
     for metric, ratio in fine.items():
         before = coarse[metric]
         if isinstance(ratio, float) and isinstance(before, float):

@@ -28,15 +28,15 @@ def slide(case: Scene, own: History, exact: History) -> Metrics:
     """Return how far the box is ahead at the end [m], and its normal force over the exact one, less one."""
     force = "box-ground.normal"
     return {
-        "lead": float(own.columns["box.x"][-1] - exact.columns["box.x"][-1]),
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "lead": own.columns["box.x"][-1] - exact.columns["box.x"][-1],
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 
 def rock(case: Scene, own: History, exact: History) -> Metrics:
     """Return the greatest rotation over the exact one, less one."""
     angle = "box.angle"
-    return {"rotation": float(np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1)}
+    return {"rotation": np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1}
 
 
 def stack(case: Scene, own: History, exact: History) -> Metrics:
@@ -46,7 +46,7 @@ def stack(case: Scene, own: History, exact: History) -> Metrics:
     force = "A-ground.normal"
     return {
         "sinking": float(exact.columns["E.y"][-1] - own.columns["E.y"][-1]) / springs - 1,
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.runs.row import Metrics, Row, Value
 from validation.scenes.scene import Scene
 from validation.suite import tables
@@ -33,7 +33,7 @@ def solvers(scene: Scene) -> list[str]:
     return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the derived row of every case."""
     rows = []
     for scene in compared_cases():

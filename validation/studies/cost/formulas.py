@@ -11,14 +11,14 @@ import functools
 import itertools
 from collections.abc import Sequence
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
 from validation.runs.aliases import Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.records import Annotations
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.studies.cost.ladder import Ladder
@@ -100,7 +100,7 @@ def order_in_time(name: str) -> Derived:
 
 
 def _orders(sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Metrics:
-    orders: NewMetrics = {}
+    orders = {}
     for quantity in QUANTITIES:
         errors = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in zip(solutions, exact, strict=True)]
         orders[f"order.{quantity}"] = fitted_order(sizes, errors)
@@ -126,7 +126,7 @@ def grid_convergence() -> Derived:
 
     def compute(finished: Finished) -> Metrics:
         histories = [_columns(finished, case.name, "fem") for case in levels]
-        metrics: NewMetrics = {}
+        metrics = {}
         for quantity in QUANTITIES:
             changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
             order = fitted_order([1 / n for n in MESHES[1:]], changes)
@@ -138,7 +138,7 @@ def grid_convergence() -> Derived:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows of orders, of the grid-convergence index, and of the blocks."""
     times = map(order_in_time, IN_TIME)
     meshes = map(order_in_mesh, IN_MESH)

@@ -40,7 +40,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs.aliases import Fields, NamedNumbers
-from validation.runs.history import Array
+from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
@@ -102,7 +102,7 @@ def methods() -> tuple[Method, ...]:
     return tuple(listed)
 
 
-def one_strain(scene: Scene) -> tuple[Array, Array]:
+def one_strain(scene: Scene) -> ArrayPair:
     """Return mass and stiffness of a block of one strain on closed springs, for displacement and strain."""
     height = scene.block.extent[1]
     k = min(2 * scene.contact.stiffness, RIGID * scene.block.young * scene.block.base_length / height)
@@ -216,7 +216,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, Fields] = {}
+        tables = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -230,7 +230,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: Fields = {"mode": "zip", "time.steps": counts}
+        sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

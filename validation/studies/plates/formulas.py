@@ -20,7 +20,7 @@ from validation.models.plane.blocks import Vertices
 from validation.models.plane.glued import Loads, PlateSection
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NumberPair
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
@@ -117,9 +117,9 @@ def cells_of(case: Scene) -> int:
 def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(dda.metrics[STATIC])
-    values: NewMetrics = {
-        "cells": float(cells_of(case)),
-        "blocks": float(len(case.table(PlaneSection).polygons)),
+    values = {
+        "cells": cells_of(case),
+        "blocks": len(case.table(PlaneSection).polygons),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
         "glue": blocks / linear(case, firm=True)[0] - 1,
@@ -143,7 +143,7 @@ def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
 def orders(levels: Levels) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
     coarse, fine = (parts(*level) for level in levels[-2:])
-    values: NewMetrics = {}
+    values = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
             errors = abs(float(str(coarse[name])) / float(str(fine[name])))

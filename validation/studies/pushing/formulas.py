@@ -77,8 +77,8 @@ def against_exact(scene: Scene, history: History) -> Metrics:
         "upper": upper,
         "lower": lower,
         "centre": (first * upper + second * lower) / (first + second),
-        "largest push": float(np.max(push)),
-        "balance": float(np.max(np.abs(history.columns["energy.balance"])) / np.max(energy)),
+        "largest push": np.max(push),
+        "balance": np.max(np.abs(history.columns["energy.balance"])) / np.max(energy),
     }
 
 

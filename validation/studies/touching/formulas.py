@@ -63,7 +63,7 @@ def motion(scene: Scene, history: History) -> Metrics:
     pressed = np.flatnonzero(np.hypot(u, v) > TOUCHED)
     touch = touch_of(scene)
     energy = columns["energy.kinetic"]
-    gain = {"gain": float(np.max(energy) / energy[0] - 1)}
+    gain = {"gain": np.max(energy) / energy[0] - 1}
     if touch is None or not len(pressed):
         return {"missed": float((touch is None) != (not len(pressed))), **gain}
     first = int(pressed[0])
