@@ -1,17 +1,10 @@
 """A step that is too long is told from the scheme alone, for every scene that has modes, and no other one."""
 
-import json
 import math
 
-import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
-from validation.cli.app import app
-from validation.report.chapters.alarms import alarm_lines
-from validation.report.chapters.data import groups_of_studies
-from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns
 
@@ -94,32 +87,3 @@ def test_the_first_frequency_of_a_column(column, frequency):
     section = scene(COLUMN, column=column | {"motion": "shear", "layer": layers}).column
     assert section is not None
     assert columns.first_frequency(section) == pytest.approx(frequency, rel=1e-4)
-
-
-@pytest.mark.parametrize("blocks", [1, 3, 8])
-def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks):
-    layer = {"thickness": 1.0 * blocks, "density": 2000.0, "young": math.inf, "blocks": blocks}
-    tables = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": [layer]}
-    section = Scene.model_validate({"name": "s", "column": tables, "time": COLUMN["time"]}).column
-    assert section is not None
-    expected = columns.lowest_frequency(1e9, 2000.0, blocks)
-    assert columns.first_frequency(section) == pytest.approx(expected, rel=1e-7)
-
-
-def test_run_show_and_the_report_warn(tmp_path):
-    """No gate is proposed that would pass by the step."""
-    source = tmp_path / "granite.toml"
-    lines = []
-    for name, table in GRANITE.items():
-        lines += [f"[{name}]", *(f"{key} = {value}" for key, value in table.items())]
-    source.write_text("\n".join(lines))
-    results = tmp_path / "results"
-    printed = CliRunner().invoke(app, ["run", str(source), "--results", str(results)])
-    assert printed.exit_code == 0 and all(kind in printed.output for kind in BOTH)
-    assert "[[gate]]" not in printed.output
-    first_page = alarm_lines(groups_of_studies(Results(results), [Results(results).manifest("granite")]))
-    assert all(any(kind in line.text for line in first_page) for kind in BOTH)
-    refined = CliRunner().invoke(app, ["run", str(source), "--results", str(results), "--set", "time.step=1e-5"])
-    assert "[[gate]]" in refined.output and not any(kind in refined.output for kind in BOTH)
-    shown = json.loads(CliRunner().invoke(app, ["show", str(source), "--json"]).output)
-    assert len(shown["remarks"]) == 3 and np.isclose(shown["numbers"]["w1 dt"]["low"], 6.0754, rtol=1e-4)

@@ -1,17 +1,15 @@
 """`list WORD`: one line for each metric, study, scene and solver."""
 
-import math
-
 import pytest
 from conftest import typed
 
 from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE
 from validation.scenes.keys import keys_of, range_of
-from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
+from validation.scenes.scene import scene_names, tables_of_scenes
 from validation.solvers import registry
-from validation.solvers.registry import get_solver, solver_names
-from validation.suite.folders import get_study, study_names
+from validation.solvers.registry import solver_names
+from validation.suite.folders import study_names
 
 
 def listed(word):
@@ -32,23 +30,6 @@ def test_every_metric_has_a_line_with_unit_needs_and_meaning():
         found[cells[0]] = cells[1:]
     for metric in CATALOGUE.values():
         assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
-def test_studies_scenes_and_solvers_have_a_line_each():
-    studies, scenes, solvers = (listed(word)[1:] for word in ("studies", "scenes", "solvers"))
-    assert [line.split()[0] for line in studies] == study_names()
-    assert [line.split()[0] for line in scenes] == list(scene_names())
-    assert [line.split()[0] for line in solvers] == solver_names()
-    for line, name in zip(studies, study_names(), strict=True):
-        assert line.split()[1] == str(len(get_study(name).scenes)) and line.endswith(get_study(name).title)
-    for line, name in zip(scenes, scene_names(), strict=True):
-        scene = load_scene(name)
-        axes = [len(values) for field, values in scene.sweep.items() if field != "mode"]
-        cases = axes[0] if scene.sweep.get("mode") == "zip" else math.prod(axes)
-        assert line.split()[1] == str(cases) and line.endswith(scene.title)
-        assert ", ".join(scene.run.solvers) in line
-    for line, name in zip(solvers, registry.BUILT_IN, strict=False):  # what is installed beside follows
-        assert f" {get_solver(name).role} " in line and all(word in line for word in get_solver(name).handles)
 
 
 def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch):

@@ -93,11 +93,6 @@ def test_settings_for_accuracy_come_near_to_the_exact_motion(program, given, bel
 
 
 @pytest.mark.long
-def test_its_own_rigid_contact_rocks(program):
-    assert differences(scene("rocking"), siconos.AsItComes())["rotation"] < 1e-2
-
-
-@pytest.mark.long
 def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does(program):
     with pytest.raises(NotImplementedError, match=r"contact\.cohesion: is lost"):
         siconos.Siconos().solve(scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))

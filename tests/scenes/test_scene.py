@@ -142,16 +142,3 @@ def test_assignments_are_toml_or_words():
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
     with pytest.raises(InputError, match="must be key=value"):
         parse_assignment("time.step")
-
-
-def test_the_papers_figures_are_there():
-    def values(name, field):
-        section, _, key = field.partition(".")
-        return [getattr(getattr(case, section), key) for case in load_scene(name).expand()]
-
-    assert values("figures-3-4", "time.step") == [0.01, 0.002, 0.001]
-    assert values("figures-5-6", "contact.stiffness") == values("figure-7", "contact.stiffness") == [1e9, 1e10, 1e11]
-    assert values("figure-7", "time.step") == [1e-5] * 3
-    assert values("figure-8", "time.alpha") == [0.25, 0.5]
-    assert values("figure-9", "time.gg") == [1.0, 0.98, 0.95, 0.90]
-    assert set(values("poisson", "block.poisson")) == {0.25}

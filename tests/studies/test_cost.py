@@ -345,13 +345,3 @@ def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
     cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
     assert cheapest["error.force"] <= 1e-3
     assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
-
-
-def test_a_seeded_fault_makes_the_gates_red(sound, tmp_path, monkeypatch):
-    fault = FAULTS[0]
-    fault.seam.wrap(monkeypatch, fault.replacement)
-    faulty = Results(tmp_path)
-    study = paper_alone()
-    run_study(study, faulty)
-    red = {verdict["metric"] for verdict in faulty.verdicts("cost") if verdict["verdict"] == "FAIL"}
-    assert red == {"reached.dda", "sub_blocks", "model"}

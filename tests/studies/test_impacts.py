@@ -5,11 +5,10 @@ import math
 import pytest
 from faults import seams
 from faults.fault import Fault, scaled, told
-from faults.kill_matrix import cases_of, check_kill_matrix
+from faults.kill_matrix import check_study
 
 from validation.studies.impacts import formulas as impacts
 from validation.suite.bands import cases
-from validation.suite.folders import get_study
 
 BLOCK, BAR = (impacts.BLOCK,), (impacts.BAR,)
 FAULTS = [
@@ -28,10 +27,7 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    gates = get_study("impacts").gates()
-    check_kill_matrix(
-        get_study("impacts"), cases_of(get_study("impacts"), gates), gates, FAULTS, tmp_path, finished_cases
-    )
+    check_study("impacts", FAULTS, tmp_path, finished_cases)
 
 
 @pytest.mark.parametrize(("ratio", "known"), [(10, 2.0839173495), (100, 2.00839173495)])

@@ -9,14 +9,13 @@ import pytest
 from conftest import thinned
 from faults import seams
 from faults.fault import Fault, scaled, told
-from faults.kill_matrix import check_kill_matrix
+from faults.kill_matrix import check_study
 
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.metrics.catalogue import pair
 from validation.suite.bands import half_unit
-from validation.suite.folders import get_study
 
 
 def pressed(found):
@@ -65,8 +64,7 @@ FAULTS = [  # of the data by parts in 1e11 and less, which move every number by 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    cases = get_study("opening").cases()
-    check_kill_matrix(get_study("opening"), cases, get_study("opening").gates(), FAULTS, tmp_path, finished_cases)
+    check_study("opening", FAULTS, tmp_path, finished_cases)
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault, of_first, scaled
-from faults.kill_matrix import check_kill_matrix
+from faults.kill_matrix import check_study
 from scipy.integrate import solve_ivp
 
 from dda.bodies import turning_step as step
@@ -17,7 +17,6 @@ from dda.march.step import steps_by
 from validation.studies.rocking import formulas as rocking
 from validation.studies.toppling import formulas as toppling
 from validation.suite.bands import cases
-from validation.suite.folders import get_study
 from validation.theory.rocking import Rectangle
 
 DDA = ("dda",)
@@ -119,9 +118,9 @@ FAULTS = {
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("study", [get_study("rocking"), get_study("toppling")], ids=lambda study: study.name)
+@pytest.mark.parametrize("study", FAULTS)
 def test_every_gate_is_bitten_and_every_fault_is_seen(study, tmp_path, finished_cases):
-    check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
+    check_study(study, FAULTS[study], tmp_path, finished_cases)
 
 
 PRECISELY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from faults.fault import Fault, told
-from faults.kill_matrix import cases_of, check_kill_matrix
+from faults.kill_matrix import check_study
 from faults.seams import Seam
 
 import dda
@@ -16,7 +16,6 @@ from validation.models.plane.generators import ColumnsSection
 from validation.scenes.scene import load_scene
 from validation.studies.standing.formulas import turned_columns
 from validation.suite.bands import cases
-from validation.suite.folders import get_study
 
 DIP = math.radians(30)
 COULOMB = [(35, 3, 2.33678219, 2.56823), (35, 5, 2.73726587, 3.32522), (40, 3, 3.12255634, 4.33108)]
@@ -164,6 +163,4 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    study = get_study("standing")
-    gates = study.gates()
-    check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)
+    check_study("standing", FAULTS, tmp_path, finished_cases)
