@@ -78,17 +78,6 @@ def solve_modes(scene):
     return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
 
 
-def test_the_running_mean_of_a_sudden_load_is_the_answer_to_one_that_rises():
-    """By linearity; both are stepped, and the steps differ in what they make of the rise."""
-    ladder = Ladder.of(PAPER)
-    scene = PAPER.with_values({"time.step": 1e-5, "time.steps": 2000} | AVERAGE)
-    sudden, rising = (solve(scene.with_values({"load.ramp": ramp}), "dda").history for ramp in (0.0, ladder.mean))
-    grid = np.append(0.0, sudden.time)
-    for name in ("displacement", "contact_pressure"):
-        mean = measures.running_mean(measures.on_grid(sudden, name, grid), round(ladder.mean / 1e-5))[1:]
-        assert np.abs(mean - rising.columns[name]).max() < 3e-3 * np.abs(mean).max()
-
-
 def test_a_history_of_long_steps_is_straight_between_them():
     values = measures.on_grid(made_history(0.5, [1.0, 1.0], [0.0, 2.0]), "displacement", np.linspace(0, 1, 5))
     assert measures.running_mean(values, 2) == pytest.approx([0, 0.125, 0.5, 0.875, 1.0])

@@ -12,9 +12,7 @@ from faults.kill_matrix import check_study
 from oracles.sliding_dda import Slider, run
 
 from validation import solve
-from validation.scenes.record import base_record
 from validation.scenes.scene import load_scene
-from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.creep import formulas as creep
 from validation.studies.slopes import formulas as sliding
 from validation.suite.bands import cases
@@ -59,16 +57,6 @@ FAULTS = [
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     # The facts are bitten in test_facts.py.
     check_study("slopes", FAULTS, tmp_path, finished_cases, lambda gate: gate.scene != sliding.FACTS)
-
-
-def test_the_record_of_the_shaking_is_its_formula():
-    record = base_record(next(cases(sliding.QUAKE)))
-    t = record.time
-    parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
-    swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
-    assert record.x == pytest.approx((t / 0.4) ** 3 * np.exp(3 - 3 * t / 0.4) * swings, rel=1e-9, abs=1e-12)
-    ways = [{way for _, way in rigid_slide(case, smooth=True).switches} for case in cases(sliding.QUAKE)]
-    assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
 
 
 def check_creep(faults, directory, finished_cases, scenes, is_checked=lambda gate: True):

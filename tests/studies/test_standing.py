@@ -12,7 +12,6 @@ from faults.seams import Seam
 import dda
 from validation.models.plane import limits
 from validation.models.plane.canon import half_truss
-from validation.models.plane.generators import ColumnsSection
 from validation.scenes.scene import load_scene
 from validation.studies.standing.formulas import turned_columns
 from validation.suite.bands import cases
@@ -44,28 +43,6 @@ def test_limits_are_those_of_another_program():
     assert limits.harmonic(8, 1.0) == pytest.approx(761 / 560)
     forces = 24525 * np.array(limits.seat_forces(3, 2.0, 0.95))
     assert forces == pytest.approx(np.array(OVERHANG_FORCES), abs=5e-4)
-
-
-def test_on_high_steps_the_recursion_is_the_limit_of_all_forces_but_those_of_risers(monkeypatch):
-    heights = (2.0, 4.0, 4.0, 4.0, 4.0)
-    all_points = limits.contact_points
-
-    def rests(dip, risers):
-        columns = ColumnsSection(name="column", width=1.0, heights=heights, dip=dip, rise=1.0)
-        outlines, held = limits.drawn(columns)
-        along = np.array([math.cos(math.radians(dip)), -math.sin(math.radians(dip))])
-
-        def points(given):
-            for point in all_points(given):
-                if risers or len(heights) not in (point.block, point.on) or abs(point.normal @ along) < 0.5:
-                    yield point
-
-        monkeypatch.setattr(limits, "contact_points", points)
-        return limits.can_rest(outlines, held, 0.8)
-
-    limit = math.degrees(limits.stepped_dip(heights, 1.0, 1.0, 0.8))
-    assert [rests(share * limit, risers=False) for share in (0.9999, 1.0001)] == [True, False]
-    assert [rests(dip, risers=True) for dip in (1.5 * limit, 30.0)] == [True, False]
 
 
 def test_the_columns_of_the_book_need_the_friction_that_is_printed():
