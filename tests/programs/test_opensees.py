@@ -4,11 +4,9 @@ import importlib.util
 
 import numpy as np
 import pytest
-from conftest import thinned
 from peers import opensees, opensees_models
 from peers.opensees import AsItComes, NotConverged, OpenSees
 
-from validation.problems.truth import exact, truth_of
 from validation.scenes.scene import load_scene
 from validation.solvers.dda import DDA
 
@@ -129,32 +127,3 @@ def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values):
     for column in OF_BLOCK:
         apart = np.linalg.norm(found[column] - expected[column])
         assert apart <= 1e-9 * max(np.linalg.norm(expected[column]), way), column
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("name", "values"),
-    thinned(
-        [
-            ("field-locked", {**PUSHED, "time.steps": 10, "run.columns": OF_BLOCK}),
-            ("field-opening", {"load.eccentricity": -0.2, "contact.shear_stiffness": 0.0, "time.steps": 4}),
-            ("field-rebound", {"time.steps": 100}),
-            ("field-sliding", {"time.steps": 3}),
-            ("field-creep", {"time.steps": 5, "contact.gap": 1e-4, "block.velocity": -0.2}),
-            ("field-rocking", {"block.tilt": -20.0}),
-            ("field-column", {"time.steps": 120}),
-        ],
-        3,
-    ),
-)
-def test_chosen_settings_are_exact_within_a_thousandth(name, values):
-    check(load_scene(name).with_values(values))
-
-
-def check(scene):
-    """Compare the solver with the exact motion of a scene, as long as that is known."""
-    found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns
-    for column in scene.run.columns:
-        told = expected[column]
-        assert found[column].shape == (scene.time.steps,)
-        assert np.linalg.norm(found[column][: len(told)] - told) <= 1e-3 * np.linalg.norm(told), column
