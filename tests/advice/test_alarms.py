@@ -19,6 +19,7 @@ def raised(scene, finished_cases, directory, *solvers):
     }
 
 
+@pytest.mark.long  # pages of `run` name this alarm
 def test_agreement_by_damping_is_told_beside_what_agrees(tmp_path, finished_cases):
     coarse, *_, fine = sorted(STEPS.expand(), key=lambda scene: -scene.time.step)
     alarms_of_coarse = raised(coarse, finished_cases, tmp_path)

@@ -303,7 +303,7 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
 # ---- gates ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("solver", "status"), [("dda", 0), ("dda-textbook", 1)])
+@pytest.mark.parametrize(("solver", "status"), [pytest.param("dda", 0, marks=pytest.mark.long), ("dda-textbook", 1)])
 def test_the_gates_of_a_study_are_put_to_a_solver(solver, status):
     done = typed("judge", solver, "--study", "own-solver")
     assert done.returncode == status, done.stdout

@@ -38,7 +38,9 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch):
     assert last == ["theirs", "other", "their_package.adapter:solve", "decides", "itself"]
 
 
-@pytest.mark.parametrize("word", ["keys", "metrics", "scenes", "schemes", "solvers", "studies"])
+@pytest.mark.parametrize(
+    "word", ["keys", "metrics", pytest.param("scenes", marks=pytest.mark.long), "schemes", "solvers", "studies"]
+)
 def test_lists_fit_a_terminal(word, monkeypatch):
     monkeypatch.setattr(output, "terminal_width", lambda: 80)
     assert max(map(len, listed(word))) <= 80

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from conftest import thinned, typed
+from conftest import typed
 
 from validation.scenes.scene import load_scene, scene_names
 
@@ -14,7 +14,8 @@ def shown(*arguments):
     return json.loads(done.stdout)
 
 
-@pytest.mark.parametrize("name", thinned(scene_names(), 13))
+@pytest.mark.long  # of some the pages are kept word by word
+@pytest.mark.parametrize("name", scene_names())
 def test_every_built_in_scene_is_shown(name):
     found = shown(name)
     assert found["numbers"] and found["cases"] == len(load_scene(name).expand())

@@ -56,16 +56,6 @@ def test_the_columns_of_the_book_need_the_friction_that_is_printed():
     assert 25 * limits.recursion(heights, 10.0, 1.0, dip, 0.65) == pytest.approx(4115.586, abs=5e-4)  # kN at the toe
 
 
-def test_a_program_of_forces_lets_a_key_stone_stand_that_falls_on_springs():
-    tangent = math.tan(math.radians(5))
-    half = [0.5 - y * tangent for y in (-0.5, 0.5, -1.0, 1.0)]
-    stone = ((-half[0], -0.5), (half[0], -0.5), (half[1], 0.5), (-half[1], 0.5))
-    right = ((half[2], -1.0), (2.0, -1.0), (2.0, 1.0), (half[3], 1.0))
-    left = ((-2.0, -1.0), (-half[2], -1.0), (-half[3], 1.0), (-2.0, 1.0))
-    stands = [limits.can_rest([stone, left, right], [False, True, True], math.tan(math.radians(phi))) for phi in (4, 6)]
-    assert stands == [False, True]
-
-
 def test_columns_begin_to_turn_as_another_program_has_them():
     scene = load_scene("standing-turning")
     assert 2e8 * turned_columns(scene, np.array([1e-4]))[0] == pytest.approx(0.442422153194, rel=1e-6)
