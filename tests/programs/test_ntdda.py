@@ -34,31 +34,6 @@ def test_a_block_on_a_slope_moves_sideways():
     np.testing.assert_allclose(found["horizontal_displacement"], told[:, 3] - 5, atol=2e-6)
 
 
-@pytest.mark.parametrize(
-    ("name", "values", "field"),
-    [
-        ("field-opening", {"block.young": 2e9}, "block.young = 1e.09, not 2e.09"),
-        ("field-opening", {"block.width": 2.0, "block.height": 2.1}, "block.outline"),
-        ("field-opening", {"block.velocity": -0.1}, "block.velocity"),
-        ("field-opening", {"contact.stiffness": 2e9}, "contact.stiffness"),
-        ("field-opening", {"contact.gap": 1e-3}, "contact.gap"),
-        ("field-opening", {"load.pressure": 4e6}, "load.pressure"),
-        ("field-opening", {"load.eccentricity": 0.1}, "load.eccentricity"),
-        ("field-opening", {"time.step": 1e-3}, "time.step"),
-        ("field-opening", {"time.gg": 0.99}, "time.gg"),
-        ("field-opening", {"time.steps": 201}, "200 steps, not 201"),
-        ("field-creep", {"load.slope": 21.0}, "load.slope"),
-        ("field-creep", {"contact.friction": 23.0}, "contact.friction"),
-        ("field-creep", {"contact.shear_stiffness": 1e9}, "contact.shear_stiffness"),
-        ("field-locked", {}, "contact.law = unilateral, not locked"),
-        ("field-column", {}, "column"),
-    ],
-)
-def test_another_problem_has_no_history(name, values, field):
-    with pytest.raises(NotImplementedError, match=f"a history is data: .*{field}"):
-        Histories().solve(load_scene(name).with_values(values))
-
-
 def test_how_dda_steps_makes_no_other_problem():
     scene = load_scene("field-opening").with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.steps": 200})
     assert len(Histories().solve(scene)["displacement"]) == 200

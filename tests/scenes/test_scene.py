@@ -12,8 +12,6 @@ from conftest import SCENE
 from validation.errors import InputError
 from validation.scenes.scene import load_scene, parse_assignment, parse_scene
 
-SQUARE = [[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]]
-
 
 def changed(**changes):
     """Return the small scene with ``section__key`` replaced."""
@@ -51,22 +49,6 @@ def test_refusals_name_file_field_rule_and_value(changes, words):
     assert text.startswith("x.toml: ")
     assert words in text
     assert "\n" not in text and ", got " in text
-
-
-def test_edges_of_a_polygon_are_checked():
-    data = changed(block__vertices=SQUARE, block__top=4)
-    del data["block"]["side"]
-    with pytest.raises(InputError, match="top must be an edge index from 0 to 3, got 4"):
-        parse_scene(data, "x.toml")
-
-
-def test_a_missing_key_is_named():
-    data = changed()
-    del data["load"]["pressure"]
-    with pytest.raises(
-        InputError, match=r"x.toml: load: one of pressure, traction, gravity or base_motion is required"
-    ):
-        parse_scene(data, "x.toml")
 
 
 @pytest.mark.parametrize(
