@@ -17,16 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.box_scenes import box_scene
-
-from validation.models.plane.boxes import boxes_of
-from validation.scenes import features
-from validation.scenes.scene import parse_scene
-
-PEERS = Path(__file__).parents[2] / "examples" / "peers"
-if str(PEERS) not in sys.path:
-    sys.path.insert(0, str(PEERS))
-
-from peers import (  # noqa: E402
+from peers import (
     box2d,
     bullet,
     dart,
@@ -40,8 +31,12 @@ from peers import (  # noqa: E402
     siconos,
     siconos_boxes,
 )
-from peers.boxes import SLOW_CORRECTION, spring_step, substeps  # noqa: E402
-from peers.spatial import OUT_OF_PLANE, check_plane  # noqa: E402
+from peers.boxes import SLOW_CORRECTION, spring_step, substeps
+from peers.spatial import OUT_OF_PLANE, check_plane
+
+from validation.models.plane.boxes import boxes_of
+from validation.scenes import features
+from validation.scenes.scene import parse_scene
 
 DOUBLE = 1e-9
 SINGLE = 3e-4  # m or rad: 400 sub-steps, each rounded by half a unit in the last place of 10 m

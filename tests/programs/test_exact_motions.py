@@ -1,6 +1,7 @@
 """How near the programs of blocks and columns come to exact motions, with the settings that were chosen: one table."""
 
 import tomllib
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -71,3 +72,12 @@ def test_a_program_comes_near_to_the_exact_motion(row, tmp_path):
         expected = truth[name]
         difference = np.linalg.norm(answer[name][: len(expected)] - expected)
         assert difference < row["within"] * np.linalg.norm(expected), name
+
+
+@pytest.mark.skipif(not find_spec("mujoco"), reason="NOT RUN: mujoco is not installed")
+def test_mujoco_as_it_comes_diverges_at_the_step_of_the_problem_and_leaves_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = mujoco.AsItComes().solve(load_scene("field-locked"))["displacement"]
+    assert np.isfinite(found[0])
+    assert np.isnan(found[-1])
+    assert not list(tmp_path.iterdir())

@@ -47,16 +47,12 @@ def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
         assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
 
 
-def test_filtered_modes_are_the_bar_and_many_small_elements():
+def test_filtered_modes_are_the_bar():
     fine = {"time.step": 2e-4, "time.steps": 100, "fem.elements": 128}
     modal = ModalFilter().solve(PAPER.with_values(fine)).history
     exact = solve(PAPER.with_values(fine), "continuum").history
     for name, column in modal.columns.items():
         assert np.abs(column - exact.columns[name]).max() < 2e-4 * np.abs(column).max()
-    heavy = GRANITE.with_values({"time.step": 2e-6, "time.steps": 1500, "fem.elements": 128, "fem.degree": 1} | AVERAGE)
-    modal, mesh = ModalFilter().solve(heavy).history, solve(heavy, "fem").history
-    for name, column in modal.columns.items():
-        assert np.abs(column - mesh.columns[name]).max() < 2e-3 * np.abs(column).max()
 
 
 # ---- window and norm ----------------------------------------------------------------------------------------------
