@@ -12,6 +12,7 @@ from validation.engine.run import finish
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.suite.folders import get_study
 
 
 class Overlay(Results):
@@ -39,6 +40,13 @@ def cases_of(study, gates):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
     return [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+
+
+def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True):
+    """Check the kill matrix of a study, or of some of its gates."""
+    study = get_study(name)
+    gates = [gate for gate in study.gates() if is_checked(gate)]
+    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases)
 
 
 def check_kill_matrix(

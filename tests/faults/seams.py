@@ -44,7 +44,6 @@ from fem_reference.scheme import stage as fem_stage
 from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
-from validation.runs import provenance
 from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
 from validation.solvers.columns import blocks as dda_columns
@@ -194,6 +193,4 @@ BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
-COMMIT = Seam(provenance, provenance._commit)
-PROCESSOR = Seam(provenance, provenance._processor)
 IMPORTED_SOLVER = Seam(registry, registry._imported)

@@ -262,14 +262,6 @@ def test_what_is_verified_today_is_what_the_page_keeps(name, monkeypatch, finish
 # ---- docstrings -----------------------------------------------------------------------------------------------------
 
 
-def test_every_public_name_has_a_docstring():
-    for package in map(importlib.import_module, ("dda", "fem_reference", "validation")):
-        for name in package.__all__:
-            value = getattr(package, name)
-            if isinstance(value, type) or hasattr(value, "__code__"):
-                assert (value.__doc__ or "").strip(), f"{package.__name__}.{name}"
-
-
 EXAMPLES = [
     pytest.param(path, id=path.stem, marks=[pytest.mark.long] if path.stem == "across" else [])  # seconds
     for package in ("dda", "fem_reference", "validation")

@@ -208,12 +208,6 @@ def test_extras_bring_what_they_say_and_a_plain_install_brings_none_of_it():
     assert sorted(re.split(r"[\[\],]", *extras["all"])[1:-1]) == sorted({*EXTRA_OF.values(), "gates"})
 
 
-def test_rooms_say_what_they_are_for():
-    for package in ("dda", "fem_reference", "validation"):
-        for room in [path.parent for path in (ROOT / package).rglob("__init__.py")]:
-            assert ast.get_docstring(ast.parse(text(room / "__init__.py"))), room
-
-
 FILLED = {"engine/run.py", "diagnosis/beside.py", "diagnosis/stepping.py", "problems/cause.py", "problems/models.py"}
 
 

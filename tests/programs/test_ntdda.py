@@ -1,7 +1,6 @@
 """ntdda as a solver: the rows of its files, for the scenes whose problems they are; of polygons the program itself."""
 
 import math
-import shutil
 import sys
 from pathlib import Path
 
@@ -33,31 +32,6 @@ def test_a_block_on_a_slope_moves_sideways():
     found, told = Histories().solve(load_scene("field-creep")), rows("ntdda-phi22-slope20-dt2ms_meas.m")[:100]
     np.testing.assert_allclose(found["displacement"], told[:, 4] - 3, atol=2e-6)
     np.testing.assert_allclose(found["horizontal_displacement"], told[:, 3] - 5, atol=2e-6)
-
-
-@pytest.mark.parametrize(
-    ("name", "values", "field"),
-    [
-        ("field-opening", {"block.young": 2e9}, "block.young = 1e.09, not 2e.09"),
-        ("field-opening", {"block.width": 2.0, "block.height": 2.1}, "block.outline"),
-        ("field-opening", {"block.velocity": -0.1}, "block.velocity"),
-        ("field-opening", {"contact.stiffness": 2e9}, "contact.stiffness"),
-        ("field-opening", {"contact.gap": 1e-3}, "contact.gap"),
-        ("field-opening", {"load.pressure": 4e6}, "load.pressure"),
-        ("field-opening", {"load.eccentricity": 0.1}, "load.eccentricity"),
-        ("field-opening", {"time.step": 1e-3}, "time.step"),
-        ("field-opening", {"time.gg": 0.99}, "time.gg"),
-        ("field-opening", {"time.steps": 201}, "200 steps, not 201"),
-        ("field-creep", {"load.slope": 21.0}, "load.slope"),
-        ("field-creep", {"contact.friction": 23.0}, "contact.friction"),
-        ("field-creep", {"contact.shear_stiffness": 1e9}, "contact.shear_stiffness"),
-        ("field-locked", {}, "contact.law = unilateral, not locked"),
-        ("field-column", {}, "column"),
-    ],
-)
-def test_another_problem_has_no_history(name, values, field):
-    with pytest.raises(NotImplementedError, match=f"a history is data: .*{field}"):
-        Histories().solve(load_scene(name).with_values(values))
 
 
 def test_how_dda_steps_makes_no_other_problem():
@@ -151,15 +125,3 @@ def test_edges_on_one_line_are_one_line():
     edges = [(np.array(a), np.array(b)) for a, b in zip(points[::2], points[1::2], strict=True)]
     lengths = sorted(float(np.hypot(*(end - start))) for start, end in ntdda_live.on_lines(edges))
     assert lengths == pytest.approx([1.0, 1.0, 3.0])
-
-
-@pytest.mark.skipif(shutil.which("ntdda") is None, reason="NOT RUN: no command ntdda on PATH")
-@pytest.mark.parametrize(("dip", "friction"), [(30.0, 20.0), (30.0, 40.0), (50.0, 20.0)])
-def test_a_box_on_a_slope_slides_or_stands(dip, friction):
-    scene = slope(dip, friction)
-    columns = Histories().solve(scene)
-    x, y = centroid(scene.table(PlaneSection).assembly.blocks[1].vertices)
-    a = math.radians(dip)
-    way = 9.81 * 0.5**2 / 2 * max(0.0, math.sin(a) - math.cos(a) * math.tan(math.radians(friction)))
-    moved = math.hypot(columns["box.x"][-1] - x, columns["box.y"][-1] - y)
-    assert moved == pytest.approx(way, rel=0.01, abs=2e-4)

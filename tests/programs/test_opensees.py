@@ -4,12 +4,10 @@ import importlib.util
 
 import numpy as np
 import pytest
-from conftest import thinned
 from peers import opensees, opensees_models
 from peers.opensees import AsItComes, NotConverged, OpenSees
 
-from validation.problems.truth import exact, truth_of
-from validation.scenes.scene import load_scene, parse_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.dda import DDA
 
 needs_program = pytest.mark.skipif(
@@ -38,11 +36,6 @@ class Told:
     def all(self, name, kind=None):
         """Return what a command was told, of elements those of a kind."""
         return [given for said, *given in self.said if said == name and kind in (None, given[0])]
-
-
-def changed(name, **tables):
-    """Return a built-in scene with whole tables replaced."""
-    return parse_scene(load_scene(name).definition() | tables, name)
 
 
 # ---- without the program ------------------------------------------------------------------------------------------
@@ -134,76 +127,3 @@ def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values):
     for column in OF_BLOCK:
         apart = np.linalg.norm(found[column] - expected[column])
         assert apart <= 1e-9 * max(np.linalg.norm(expected[column]), way), column
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("name", "values"),
-    thinned(
-        [
-            ("field-locked", {**PUSHED, "time.steps": 10, "run.columns": OF_BLOCK}),
-            ("field-opening", {"load.eccentricity": -0.2, "contact.shear_stiffness": 0.0, "time.steps": 4}),
-            ("field-rebound", {"time.steps": 100}),
-            ("field-sliding", {"time.steps": 3}),
-            ("field-creep", {"time.steps": 5, "contact.gap": 1e-4, "block.velocity": -0.2}),
-            ("field-rocking", {"block.tilt": -20.0}),
-            ("field-column", {"time.steps": 120}),
-        ],
-        3,
-    ),
-)
-def test_chosen_settings_are_exact_within_a_thousandth(name, values):
-    check(load_scene(name).with_values(values))
-
-
-LAYERS = [
-    {"thickness": 5.0, "density": 2000.0, "young": 1e9, "poisson": 0.2, "blocks": 3},
-    {"thickness": 7.0, "density": 2400.0, "young": 4e9, "blocks": 4},
-]
-JOINTS = [{"height": 5.0, "stiffness": 4e8}]
-FROM_BELOW = {"at": "base", "shape": "half-sine", "velocity": 0.5, "duration": 0.02}
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("stands", "drive"),
-    thinned(
-        [
-            ({"motion": "pressure", "base": "rigid", "joint": [{"height": 0.0, "stiffness": 4e8}]}, FROM_BELOW),
-            ({"motion": "shear", "base": "springs", "base_stiffness": 5e8, "joint": JOINTS}, FROM_BELOW),
-            (
-                {
-                    "motion": "shear",
-                    "base": "transmitting",
-                    "base_density": 2500.0,
-                    "base_speed": 1414.0,
-                    "joint": JOINTS,
-                },
-                {"at": "base", "shape": "ricker", "velocity": 0.5, "frequency": 15.0},
-            ),
-        ],
-        3,
-    ),
-)
-def test_columns_are_exact_within_a_thousandth(stands, drive):
-    columns = ["displacement", "displacement_1", "displacement_2"]
-    column = {"layer": LAYERS, "heights": [0.5, 3.5]} | stands
-    check(changed("field-column", column=column, input=drive, run={"columns": columns}))
-
-
-@pytest.mark.long
-@needs_program
-def test_a_rigid_base_may_start_with_a_jump(tmp_path):
-    (tmp_path / "record.csv").write_text("time,velocity\n0.0,0.5\n0.05,0.2\n0.1,0.3\n")
-    drive = {"at": "base", "record": str(tmp_path / "record.csv")}
-    column = {"layer": LAYERS, "motion": "shear", "base": "rigid", "heights": [2.0]}
-    check(changed("field-column", column=column, input=drive, run={"columns": ["displacement", "displacement_1"]}))
-
-
-def check(scene):
-    """Compare the solver with the exact motion of a scene, as long as that is known."""
-    found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns
-    for column in scene.run.columns:
-        told = expected[column]
-        assert found[column].shape == (scene.time.steps,)
-        assert np.linalg.norm(found[column][: len(told)] - told) <= 1e-3 * np.linalg.norm(told), column

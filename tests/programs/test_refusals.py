@@ -5,17 +5,14 @@ import shutil
 import sys
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
-from peers import calculix, mujoco, opensees, siconos, yade
+from peers import calculix, mujoco, ntdda, opensees, siconos, yade
 
 from validation.scenes import features
 from validation.scenes.scene import load_scene
 
-REFUSALS: dict[str, list[tuple[str, dict[str, Any], str]]] = tomllib.loads(
-    Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8")
-)
+REFUSALS = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))
 PROGRAMS = {
     "siconos": siconos.Siconos,
     "siconos-default": siconos.AsItComes,
@@ -26,7 +23,8 @@ PROGRAMS = {
     "opensees": opensees.OpenSees,
     "opensees-default": opensees.AsItComes,
 }
-ROWS = [(name, *row) for name in PROGRAMS for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
+REFUSING = PROGRAMS | {"ntdda": ntdda.Histories}
+ROWS = [(name, *row) for name in REFUSING for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
 
 
 @pytest.fixture
@@ -42,7 +40,7 @@ def _nothing_is_there(monkeypatch):
 def test_what_a_program_cannot_express_is_refused_by_name(name, problem, values, words):
     scene = load_scene(f"field-{problem}").with_values(values)
     with pytest.raises(NotImplementedError, match=re.escape(words)):
-        PROGRAMS[name]().solve(scene)
+        REFUSING[name]().solve(scene)
 
 
 @pytest.mark.usefixtures("_nothing_is_there")

@@ -1,17 +1,10 @@
 """Yade as a solver: what it refuses, that its bodies are the scene's block, and its own integrator."""
 
-import shutil
-
 import numpy as np
 import pytest
 from peers import yade_block, yade_column
-from peers.yade import Yade
 
-from validation.problems.problem import problem_of
-from validation.problems.truth import exact
 from validation.scenes.scene import load_scene, parse_scene
-
-with_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="NOT RUN: yade is not installed")
 
 
 def scene_of(name, **tables):
@@ -59,20 +52,3 @@ def test_a_lattice_has_the_mass_and_the_softness_of_its_layers_and_joints():
     assert (1 / chain.springs).sum() == pytest.approx(3 / 2e9 + 5 / 4e9 + 1 / 1e9 + 1 / 5e9)
     assert chain.heights[[0, -1]] == pytest.approx([0.0, 8.0])
     assert np.all(np.diff(chain.heights) > 0)
-
-
-@with_yade
-@pytest.mark.parametrize(
-    ("scene", "most"),
-    [
-        pytest.param(scene_of("opening", time={"steps": 20}), 5e-4, marks=pytest.mark.long),
-        pytest.param(scene_of("creep", time={"steps": 20}), 1e-3, marks=pytest.mark.long),
-        pytest.param(scene_of("column", column={"motion": "shear"}), 2e-3, marks=pytest.mark.long),
-    ],
-    ids=["two bodies", "linkage", "lattice"],
-)
-def test_it_moves_as_the_exact_motion(scene, most):
-    posed = problem_of(scene)
-    truth, found = exact(scene, posed.truth).columns, Yade().solve(scene)
-    for name in scene.run.columns:
-        assert np.linalg.norm(found[name] - truth[name]) < most * np.linalg.norm(truth[name]), name

@@ -47,16 +47,12 @@ def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
         assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
 
 
-def test_filtered_modes_are_the_bar_and_many_small_elements():
+def test_filtered_modes_are_the_bar():
     fine = {"time.step": 2e-4, "time.steps": 100, "fem.elements": 128}
     modal = ModalFilter().solve(PAPER.with_values(fine)).history
     exact = solve(PAPER.with_values(fine), "continuum").history
     for name, column in modal.columns.items():
         assert np.abs(column - exact.columns[name]).max() < 2e-4 * np.abs(column).max()
-    heavy = GRANITE.with_values({"time.step": 2e-6, "time.steps": 1500, "fem.elements": 128, "fem.degree": 1} | AVERAGE)
-    modal, mesh = ModalFilter().solve(heavy).history, solve(heavy, "fem").history
-    for name, column in modal.columns.items():
-        assert np.abs(column - mesh.columns[name]).max() < 2e-3 * np.abs(column).max()
 
 
 # ---- window and norm ----------------------------------------------------------------------------------------------
@@ -76,17 +72,6 @@ def solve_modes(scene):
     from validation.solvers.registry import get_solver
 
     return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
-
-
-def test_the_running_mean_of_a_sudden_load_is_the_answer_to_one_that_rises():
-    """By linearity; both are stepped, and the steps differ in what they make of the rise."""
-    ladder = Ladder.of(PAPER)
-    scene = PAPER.with_values({"time.step": 1e-5, "time.steps": 2000} | AVERAGE)
-    sudden, rising = (solve(scene.with_values({"load.ramp": ramp}), "dda").history for ramp in (0.0, ladder.mean))
-    grid = np.append(0.0, sudden.time)
-    for name in ("displacement", "contact_pressure"):
-        mean = measures.running_mean(measures.on_grid(sudden, name, grid), round(ladder.mean / 1e-5))[1:]
-        assert np.abs(mean - rising.columns[name]).max() < 3e-3 * np.abs(mean).max()
 
 
 def test_a_history_of_long_steps_is_straight_between_them():
@@ -345,13 +330,3 @@ def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
     cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
     assert cheapest["error.force"] <= 1e-3
     assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
-
-
-def test_a_seeded_fault_makes_the_gates_red(sound, tmp_path, monkeypatch):
-    fault = FAULTS[0]
-    fault.seam.wrap(monkeypatch, fault.replacement)
-    faulty = Results(tmp_path)
-    study = paper_alone()
-    run_study(study, faulty)
-    red = {verdict["metric"] for verdict in faulty.verdicts("cost") if verdict["verdict"] == "FAIL"}
-    assert red == {"reached.dda", "sub_blocks", "model"}

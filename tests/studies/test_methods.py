@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, told
-from faults.kill_matrix import cases_of, check_kill_matrix
+from faults.kill_matrix import check_study
 
 from validation import solve
 from validation.studies.methods import formulas as methods
@@ -80,17 +80,19 @@ FAULTS = [
 
 
 def check(faults, words, tmp_path, finished_cases):
-    declared = get_study("methods")
     without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # in test_facts.py
-    gates = [gate for gate in declared.gates() if (gate.scene, gate.pair[0]) not in without_runs]
-    if words:
-        gates = [gate for gate in gates if gate.scene.startswith(words)]
-    check_kill_matrix(declared, cases_of(declared, gates), gates, faults, tmp_path, finished_cases)
+    check_study(
+        "methods",
+        faults,
+        tmp_path,
+        finished_cases,
+        lambda gate: (gate.scene, gate.pair[0]) not in without_runs and gate.scene.startswith(words),
+    )
 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check(FAULTS, (), tmp_path, finished_cases)
+    check(FAULTS, "", tmp_path, finished_cases)
 
 
 @pytest.mark.long
