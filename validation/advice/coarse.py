@@ -105,8 +105,7 @@ def removal_of(scene: Scene, frequency: float) -> Removal:
     pair = _scheme(scene).roots(omega_dt)[:2]
     rate = scene.damping.mass + scene.damping.stiffness * frequency**2
     damped = math.sqrt(t.discount) * math.exp(-rate * t.step / 2)
-    greatest = min(float(max(abs(pair))), 1.0)
-    return Removal(omega_dt, 1 - greatest**steps, 1 - damped**steps)
+    return Removal(omega_dt, 1 - min(float(max(abs(pair))), 1.0) ** steps, 1 - damped**steps)
 
 
 def _scheme(scene: Scene) -> Stepping:
@@ -131,8 +130,7 @@ def closed(scene: Scene) -> Scene:
     """Return a scene whose contact stays closed: its springs locked, of a rigid stop as stiff as rounding allows."""
     if features.linear(scene):
         return scene
-    stiffness = min(scene.contact.stiffness, 1e6 * scene.block.young)
-    contact = type(scene.contact)(stiffness=stiffness)
+    contact = type(scene.contact)(stiffness=min(scene.contact.stiffness, 1e6 * scene.block.young))
     run = scene.run.model_copy(update={"geometry": "small", "rotation": "exact"})
     damping = scene.damping.model_copy(update={"kinetic": "constant"})
     return scene.model_copy(update={"stated_contact": contact, "run": run, "damping": damping})

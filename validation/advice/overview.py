@@ -22,6 +22,7 @@ from validation.advice.plain import Line, PlainAnswer, in_columns
 from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
 from validation.errors import InputError
 from validation.runs import extras
+from validation.runs.aliases import Words
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -74,7 +75,7 @@ class Overview(PlainAnswer):
 
 def overview(
     scene: Scene,
-    chosen: tuple[str, ...] = goals.GOALS,
+    chosen: Words = goals.GOALS,
     error: float = 0.05,
     frequency: float | None = None,
     progress: Callable[[int, int, str], None] = lambda *_: None,

@@ -52,8 +52,7 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     verdicts = results.unread_verdicts()
     for study in studies:
         try:
-            manifest = results.whole(study, histories=True)
-            for case in manifest.get("cases", []):
+            for case in results.whole(study, histories=True).get("cases", []):
                 parse_scene(case["definition"], case["scene"])
         except InputError as error:
             reasons[study] = str(error)

@@ -197,7 +197,16 @@ class Results:
                 part = "history"
             else:
                 if histories and row.outcome in WITH_HISTORY:
-                    _check_shape(self._history_file(row.key), row)
+                    # Refuse a history without the columns and steps of its row, from the archive's directory alone.
+                    path = self._history_file(row.key)
+                    with _archive(path) as archive:
+                        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
+                    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
+                    content = 8 * row.steps  # bytes of a column of doubles
+                    if {*sizes} != {"time", *row.columns}:
+                        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
+                    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
+                        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
                 continue
             raise InputError(
                 f"the {part} of {case['scene']} {case['solver']} is missing",
@@ -298,18 +307,6 @@ def _read_columns(path: Path) -> tuple[str, dict[str, Array], dict[str, Array]]:
             with archive.open(member) as file:
                 place[name.removeprefix(BETWEEN)] = np.lib.format.read_array(file, allow_pickle=False)
         return archive.comment.decode(errors="replace"), columns, between
-
-
-def _check_shape(path: Path, row: Row) -> None:
-    """Refuse a kept history that has not the columns and steps of its row, from the archive's directory alone."""
-    with _archive(path) as archive:
-        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
-    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
-    content = 8 * row.steps  # bytes of a column of doubles
-    if {*sizes} != {"time", *row.columns}:
-        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
-    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
-        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
 
 
 def _defect(columns: dict[str, Array], between: dict[str, Array]) -> str | None:

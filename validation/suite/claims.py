@@ -12,7 +12,6 @@ import tomllib
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -22,8 +21,9 @@ from validation.gates.gate import Gate
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
+from validation.runs.aliases import Data, Fields
 from validation.runs.history import Array
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import about, cases, gate
 
@@ -135,9 +135,9 @@ class Claim:
         """Return the derived row that holds the verdict and the measured numbers."""
         return Derived(REGISTER, self.id, self.needs, self._compute, READ)
 
-    def _compute(self, finished: Finished) -> Mapping[str, Value]:
+    def _compute(self, finished: Finished) -> Metrics:
         numbers = self.measure(Evidence(finished))
-        values: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
+        values: NewMetrics = {k: _plain(v) for k, v in numbers.items()}
         return {"verdict": float(self.finding(numbers))} | values
 
     def gate(self) -> Gate:
@@ -207,7 +207,7 @@ class Register:
         """Return the rows of the register."""
         return tuple(claim.row() for claim in self.claims)
 
-    def words(self) -> dict[str, Any]:
+    def words(self) -> Fields:
         """Return what each claim says, why it has its verdict and on which condition, and which are misprints."""
         return {
             "statement": {claim.id: f"{claim.says} ({claim.place})" for claim in self.claims},
@@ -219,7 +219,7 @@ class Register:
         }
 
 
-def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def entries(register: Register, rows: Iterable[Data]) -> list[Fields]:
     """Return the claims with their verdicts and measured numbers as plain data."""
     measured = {row["name"]: row["metrics"] for row in rows}
     listed = []
@@ -238,7 +238,7 @@ def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[
     return listed
 
 
-def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
+def page(register: Register, rows: Iterable[Data]) -> str:
     """Return a register as a Markdown page, from the derived rows of its study."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):

@@ -23,15 +23,15 @@ import csv
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
+from validation.runs.aliases import Fields
 from validation.scenes.scene import Scene
 
 
 def printed_numbers(
-    path: Path, entry: dict[str, Any], cases_of: Callable[[str], Sequence[Scene]]
+    path: Path, entry: Fields, cases_of: Callable[[str], Sequence[Scene]]
 ) -> Mapping[str, Mapping[str, str]]:
     """Return the numbers of a table as their texts, by case and metric.
 

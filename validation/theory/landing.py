@@ -25,6 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -162,7 +163,7 @@ def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | Non
     return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
 
 
-def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
+def _end(motion: _Motion, longest: float, opens: bool) -> NumberPair:
     """Return when a stretch ends, infinite where it does not, and its greatest penetration on the way."""
     sample = 2 * math.pi / float(motion.frequencies.max()) / SAMPLES
     depth = 0.0
@@ -170,7 +171,13 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     while start * sample <= longest:  # in parts: a stiff contact ends in the first of very many
         times = np.asarray(np.arange(start, start + 4 * SAMPLES + 1) * sample, dtype=np.float64)
         gaps = motion.gap(times)
-        depth = max(depth, _deepest(motion, times, gaps))
+        # The greatest penetration within samples, refined about the lowest of them before the gap opens.
+        opened = np.flatnonzero(gaps[1:] > 0)
+        within = gaps[: int(opened[0]) + 1] if opened.size else gaps
+        i = int(np.argmin(within))
+        step = times[1] - times[0]
+        fine = np.linspace(max(times[i] - step, times[0]), min(times[i] + step, times[-1]), 401)
+        depth = max(depth, float(-motion.gap(fine).min()))
         crossed = 1 + np.flatnonzero(gaps[1:] > 0 if opens else gaps[1:] < 0)
         if crossed.size:
             last = int(crossed[0])
@@ -184,16 +191,6 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
             return float(high), max(depth, 0.0) if opens else 0.0
         start += 4 * SAMPLES
     return math.inf, depth
-
-
-def _deepest(motion: _Motion, times: Array, gaps: Array) -> float:
-    """Return the greatest penetration within samples, refined about the lowest of them before the gap opens."""
-    opened = np.flatnonzero(gaps[1:] > 0)
-    within = gaps[: int(opened[0]) + 1] if opened.size else gaps
-    i = int(np.argmin(within))
-    step = times[1] - times[0]
-    fine = np.linspace(max(times[i] - step, times[0]), min(times[i] + step, times[-1]), 401)
-    return float(-motion.gap(fine).min())
 
 
 @functools.cache

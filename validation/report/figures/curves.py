@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.runs.aliases import NumberPair
 from validation.runs.columns import OwnColumns, kind_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import LineStyle
@@ -111,7 +112,7 @@ class HistoryPanel:
 HistoryPanels = Sequence[HistoryPanel]
 
 
-def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
+def common_range(panels: HistoryPanels, column: str) -> NumberPair:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     kinds = [kind for panel in panels if (kind := kind_of(column, panel.own))]
     from_zero = all(kind.from_zero for kind in kinds)

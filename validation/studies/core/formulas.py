@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
 from validation.studies.core.damping import derived as damping_rows
@@ -96,8 +95,7 @@ def dispersion(case: Scene) -> dict[str, Band] | None:
 
 def distance_from_the_finest_mesh(case: Scene) -> dict[str, Band]:
     """Differences of meshes of 4 and of 8 elements a side from one of 16, this suite's own, within half of each."""
-    last_values = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}
-    displacement, pressure = last_values[case.fem.per_side]
+    displacement, pressure = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}[case.fem.per_side]
     return {
         "displacement.l2": (displacement / 1.5, displacement * 1.5),
         "pressure.l2": (pressure / 1.5, pressure * 1.5),
@@ -109,20 +107,20 @@ def same_recursion(case: Scene) -> Band:
     return 0.0, spectra.rounding(case)
 
 
-def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
     """Return how far DDA's displacement at rest is from that of the elements, relative to it."""
     first, second = (or_nan(row.metrics.get("displacement.static")) for row in (dda, fem))
     return {"displacement": abs(first / second - 1)}
 
 
-def drift(finished: Finished) -> Mapping[str, Value]:
+def drift(finished: Finished) -> Metrics:
     """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
     levels = tuple(cases(POINT_SPRINGS))
     settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
     return {"halving": float(np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0])}
 
 
-def order(finished: Finished) -> Mapping[str, Value]:
+def order(finished: Finished) -> Metrics:
     """Return the power of the elements a side with which the error against the bar falls."""
     levels = tuple(cases(MESHES))
     errors = []

@@ -8,11 +8,10 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, about, cases, near
 
@@ -127,10 +126,10 @@ def derived() -> tuple[Derived, ...]:
     return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, levels), tuple(SWITCHES.values())),)
 
 
-def rigid(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+def rigid(levels: tuple[Scene, ...], finished: Finished) -> Metrics:
     """Return the times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
     a, b = (1 / stiffness_ratio(case) for case in levels)
-    times: dict[str, Value] = {}
+    times: NewMetrics = {}
     for name, switch in SWITCHES.items():
         x, y = (or_nan(finished.rows[case.name, BAR].metrics.get(switch)) for case in levels)
         times[name] = finite((a * y - b * x) / (a - b))
