@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from itertools import starmap
 
 import numpy as np
 
@@ -142,7 +143,7 @@ def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
 
 def orders(levels: Levels) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
-    coarse, fine = (parts(*level) for level in levels[-2:])
+    coarse, fine = starmap(parts, levels[-2:])
     values = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
