@@ -366,7 +366,9 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("dda", "nonsense"), "nonsense: no such scene file"),
+        (("dda", "nonsense"), "nonsense: no such problem, scene or scene file"),
+        (("dda", "stoping"), "did you mean stopping?"),
+        (("dda", "figures-3-5"), "did you mean figures-3-4?"),
         (("mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
         (("mine/locked.csv",), "asked: must name the one problem or scene that a table answers"),
         (("nowhere:solve", "locked"), "solver: must be a module that Python finds"),
