@@ -1,5 +1,6 @@
 """The study `standing`: limits and the truss against numbers of other programs; every gate is bitten by a fault."""
 
+import cmath
 import math
 from dataclasses import replace
 
@@ -54,11 +55,11 @@ def test_on_high_steps_the_recursion_is_the_limit_of_all_forces_but_those_of_ris
     def rests(dip, risers):
         columns = ColumnsSection(name="column", width=1.0, heights=heights, dip=dip, rise=1.0)
         outlines, held = limits.drawn(columns)
-        along = np.array([math.cos(math.radians(dip)), -math.sin(math.radians(dip))])
+        upwards = cmath.rect(1.0, math.radians(dip))  # the conjugate of the way along the dip
 
         def points(given):
             for point in all_points(given):
-                if risers or len(heights) not in (point.block, point.on) or abs(point.normal @ along) < 0.5:
+                if risers or len(heights) not in (point.block, point.on) or abs((point.normal * upwards).real) < 0.5:
                     yield point
 
         monkeypatch.setattr(limits, "contact_points", points)

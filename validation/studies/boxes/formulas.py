@@ -16,7 +16,6 @@ from validation.engine.finished import Derived, Finished
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Value
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
 
@@ -26,7 +25,7 @@ Against = Callable[[Scene, History, History], Mapping[str, Value]]
 def masses(case: Scene) -> list[float]:
     """Return the masses of the boxes, from the lowest up [kg]."""
     blocks = case.table(PlaneSection).assembly.blocks
-    return [block.density * area(block.vertices) for block in blocks if not block.fixed]
+    return [block.mass for block in blocks if not block.fixed]
 
 
 def slide(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
