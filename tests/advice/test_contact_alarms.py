@@ -19,7 +19,6 @@ from validation.runs.results import Results
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
 ROWS = tomllib.loads(Path(__file__).with_name("raised.toml").read_text(encoding="utf-8"))["contact"]
-STIFF = {"contact.stiffness": 1e11}
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 
 
