@@ -95,7 +95,7 @@ def test_the_kind_of_a_reference_is_one_of_four():
         Gate("s", ("dda",), "m", 0, 1, "r", "guess")
 
 
-@pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.1, 1)])
+@pytest.mark.parametrize(("factor", "status"), [pytest.param(1.0, 0, marks=pytest.mark.long), (1.1, 1)])
 def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, tmp_path, monkeypatch):
     boxes = phenomenon("boxes")
     sliding = replace(boxes, gates=tuple(gate for gate in boxes.gates if gate.scene == "boxes-sliding"))
