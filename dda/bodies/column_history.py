@@ -39,7 +39,7 @@ from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
 from dda.march.energy import energies_of
 from dda.march.step import history_of, march_of, reached_history
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.checks import check_columns, check_count
 from dda.result.contact_result import MarchResult, run_fields
 from dda.scheme.newmark import Scheme
@@ -155,7 +155,7 @@ def solve_column(
     history = reached_history(history, reached)
     record = history.motion[:, len(columns) :].T
 
-    def balance() -> dict[str, Array]:
+    def balance() -> Columns:
         """Return the energies; that of the load is minus the work of all that drives, less what is stored at first."""
         kinetic, strain, springs = record[[KINETIC, STRAINED, SPRINGS]]
         load = np.full_like(kinetic, -(strain[0] + springs[0]))

@@ -40,7 +40,7 @@ import numpy as np
 
 from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
-from dda.contact.rows import FOUND, LOWER, Rows
+from dda.contact.rows import FOUND, LOWER, Rows, Solved
 from dda.march.account import account, half_square, over_stages
 from dda.march.energy import DAMPING, GIVEN, IMPULSE
 from dda.march.step import (
@@ -123,7 +123,7 @@ def make_column_stage(
     after: AnyState,
     course: Course,
     part: Part,
-) -> tuple[int, int]:
+) -> Solved:
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
     work = march.work
     rows = after.rows
@@ -156,7 +156,7 @@ def make_linear_stage(
     after: AnyState,
     course: Course,
     part: Part,
-) -> tuple[int, int]:
+) -> Solved:
     """Go to the end of a stage as `make_column_stage` does, in arrays, where no row opens or slips.
 
     Nothing is searched, and the matrix of the rows is factorised once, in room that a band leaves unused.

@@ -293,6 +293,27 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
     assert done.returncode == 2
 
 
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("dda", "nonsense"), "nonsense: no such problem, scene or scene file"),
+        (("dda", "stoping"), "did you mean stopping?"),
+        (("dda", "figures-3-5"), "did you mean figures-3-4?"),
+        (("mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
+        (("mine/locked.csv",), "asked: must name the one problem or scene that a table answers"),
+        (("nowhere:solve", "locked"), "solver: must be a module that Python finds"),
+        (("installed",), "no other package brings a solver"),
+    ],
+)  # fmt: skip
+def test_bad_input_is_one_line_and_writes_nothing(arguments, said, tmp_path, undrawn, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(registry, "entry_points", dict)
+    answered(tmp_path / "mine", 1.001, ("locked",))
+    done = typed("judge", *arguments)
+    assert done.returncode == 2 and said in done.stderr and done.stderr.count("\n") == 1, done.stderr
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["mine"]
+
+
 # ---- gates ----------------------------------------------------------------------------------------------------------
 
 

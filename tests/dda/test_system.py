@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from oracles.plain_newmark import glued, stepped
 
 import dda
 import fem_reference
@@ -72,39 +71,6 @@ def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, sch
     expected = fem_reference.solve(problem, elements, 50, COLUMNS, full=corrections is not None)
     assert corrections is None or result.solves == 50 * (1 + corrections)
     assert largest_error(result, expected) < 1e-9  # 1e-8 is asked
-
-
-@pytest.mark.parametrize("ratio", [0.3, 50.0])
-def test_finite_glue_is_the_assembled_system_in_other_coordinates(ratio):
-    """Joints written down by hand, in the unknowns of the blocks, by plain Newmark."""
-    width, height, nx, ny, p = 1.8, 1.2, 3, 2, 2e9
-    vertices = ((0, 0), (width, 0), (width, height), (0, height))
-    model = dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, 0.2)), dda.Contact(p), 5e6, gravity=9.81)
-    system = dda.subdivided(model, nx, ny, ratio * 1e9)
-    w, h, blocks, glue = width / nx, height / ny, system.blocks, (ratio * 1e9,) * 2
-    springs = []
-    for k in range(nx * ny):
-        x, y = (k % nx) * w, (k // nx) * h
-        if k % nx < nx - 1:
-            springs += [(k, k + 1, (x + w, y + end), *glue) for end in (0.0, h)]
-        if k < nx:
-            springs += [(k, k + nx, (x + end, y + h), *glue) for end in (0.0, w)]
-            springs += [(k, None, (x + end, 0.0), p / nx, p / nx) for end in (0.0, w)]
-    M, K = glued(blocks, springs)
-    F, pressure = np.zeros((2, 6 * nx * ny))
-    for k, block in enumerate(blocks):
-        rows = slice(6 * k, 6 * k + 6)
-        F[rows] = -9.81 * 2700.0 * w * h * np.eye(6)[1]
-        if k >= nx:
-            F[rows] -= 5e6 * w * block.T((k % nx + 0.5) * w, height)[1]
-        else:
-            pressure[rows] = -2 * p / nx / width * block.T((k + 0.5) * w, 0.0)[1]
-    D = stepped(M, K, np.tile(F, (61, 1)), SCHEME)
-    T = [blocks[k].T(width / 2, height / 2)[1] for k in (1, 4)]
-    expected = {"displacement": (D[:, 6:12] @ T[0] + D[:, 24:30] @ T[1]) / 2, "contact_pressure": D @ pressure}
-    result = dda.solve_system(system, SCHEME, 60)
-    for name, values in expected.items():
-        np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-11 * np.abs(values).max())
 
 
 def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():

@@ -189,18 +189,15 @@ def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path):
 def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times():
     """Step n of dt and step 4 n of dt / 4 end at the same time."""
     fine = made_history(0.25, np.arange(1, 13) ** 2, np.arange(1, 13))
-    finished = SimpleNamespace(needed_history=lambda case, solver: fine)
-    columns = formulas._columns(finished, "a", "dda", 4)
+    columns = formulas._columns(fine, 4)
     assert columns["displacement"].tolist() == [16, 64, 144] and columns["pressure"].tolist() == [4, 8, 12]
 
 
 def test_the_grid_convergence_index_is_that_of_the_last_change():
     """Values 1 + n^-2 change by (3/4) n^-2: order 2, index 1.25 |last change| / (2^2 - 1)."""
-    recipe, index = formulas.grid_convergence(), load_scene("cost-h-poisson").expand()
-    values = {case.name: 1 + n**-2 for case, n in zip(index, formulas.MESHES, strict=True)}
-    made = SimpleNamespace(needed_history=lambda case, _: made_history(0.1, [values[case]] * 3, [2 * values[case]] * 3))
-    metrics = recipe.compute(made)
-    change = 0.75 * 32**-2 / values[index[-1].name]
+    values = [1 + n**-2 for n in formulas.MESHES]
+    metrics = formulas.grid_convergence([(None, made_history(0.1, [one] * 3, [2 * one] * 3)) for one in values])
+    change = 0.75 * 32**-2 / values[-1]
     assert metrics["order.displacement"] == pytest.approx(2.0, abs=0.02)
     assert metrics["gci.displacement"] == pytest.approx(1.25 * change / (2 ** metrics["order.displacement"] - 1))
     assert metrics["gci.pressure"] == pytest.approx(metrics["gci.displacement"])

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
 
 from validation.runs.aliases import NamedTexts, NumbersByName
+from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 from validation.runs.records import AlarmRecord
 from validation.runs.row import Row, RowsBySolver
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-SENTENCES: NamedTexts = tomllib.loads(Path(__file__).with_name("alarms.toml").read_text(encoding="utf-8"))
+SENTENCES: NamedTexts = table_beside(__file__, "alarms.toml")
 
 
 @dataclass(frozen=True)

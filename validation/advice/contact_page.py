@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
-from pathlib import Path
 
 from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
@@ -15,6 +13,7 @@ from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.aliases import Data, Fields
+from validation.runs.beside import table_beside
 from validation.runs.numbers import number_text, share_text
 from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
 from validation.scenes import features
@@ -33,7 +32,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-LINES: dict[str, list[Fields]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+LINES: dict[str, list[Fields]] = table_beside(__file__)
 ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 

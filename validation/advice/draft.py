@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from validation.advice.limits import Limit, check_choice
 from validation.errors import InputError
 from validation.runs.aliases import Data, Fields, NamedNumbers, NumbersByName
+from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 
-TABLES: Fields = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+TABLES: Fields = table_beside(__file__)
 ROCKS: dict[str, NamedNumbers] = TABLES["rock"]
 KINDS = tuple(TABLES["text"])
 MOVING = tuple(TABLES["moving"]["title"])  # kinds of blocks in the plane that move

@@ -20,13 +20,11 @@ from validation.cli.app import (
     refuse_bad_input,
 )
 from validation.cli.printing.output import broken, echo_answer
-from validation.runs.aliases import NamedTexts
+from validation.runs.aliases import NamedTexts, Progress
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
     from validation.scenes.scene import Scene
-
-Progress = Callable[[int, int, str], None]  # of the runs done, how many there are at most, and what the next one is
 
 
 @parts.command()

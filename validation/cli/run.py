@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from validation.runs.aliases import Progress
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
@@ -367,7 +369,7 @@ class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _watch(show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+def _watch(show: Progress, prepared: Prepared) -> None:
     """Show how far a run is, where its solver says so."""
     prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -19,7 +19,7 @@ from validation.engine.measured import JudgedStudy
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
-from validation.runs.aliases import NamedTexts
+from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.records import (
@@ -35,7 +35,6 @@ from validation.runs.run import Outcome
 from validation.runs.text import error_text
 from validation.scenes.scene import Scene
 
-Progress = Callable[[int, int, str], None]
 # What was not installed then may be installed now; memory, time and files that were wanting may be there.
 RUN_AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 

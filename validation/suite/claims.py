@@ -11,6 +11,7 @@ import enum
 import tomllib
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import starmap
 from pathlib import Path
 
 import numpy as np
@@ -173,8 +174,8 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
             "needs": tuple((need, "dda") if isinstance(need, str) else need for need in names),
             "measure": measure,
             "expected": findings[entry["expected"]],
-            "printed": tuple(Band(*band) for band in entry["printed"]),
-            "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
+            "printed": tuple(starmap(Band, entry["printed"])),
+            "conditional": tuple(starmap(Band, entry.get("conditional", ()))),
             "numbers": tuple(entry.get("numbers", ())),
         }
         claims.append(Claim(**claim))

@@ -77,10 +77,11 @@ def _value(text: str) -> tuple[float, ...]:
 
 def _case(path: Path, cases: Sequence[Scene], values: Mapping[str, tuple[float, ...]]) -> str:
     """Return the name of the one case that has these values."""
-    matching = []
-    for case in cases:
-        if all(np.allclose(operator.attrgetter(key)(case), value, 1e-9, 0) for key, value in values.items()):
-            matching.append(case.name)
+    matching = [
+        case.name
+        for case in cases
+        if all(np.allclose(operator.attrgetter(key)(case), value, 1e-9, 0) for key, value in values.items())
+    ]
     if len(matching) != 1:
         raise ValueError(f"{path}: {dict(values)} must be of one case, got {', '.join(matching) or 'none'}")
     return matching[0]

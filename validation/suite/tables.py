@@ -65,11 +65,6 @@ NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 
-def read(module: str) -> Fields:
-    """Return the table beside a module, by the module's file."""
-    return tomllib.loads(Path(module).with_name("study.toml").read_text(encoding="utf-8"))
-
-
 def declare(folder: Path, fields: Data, formulas: Any = None) -> Study:
     """Return the study of a folder.
 

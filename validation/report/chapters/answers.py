@@ -154,10 +154,9 @@ def answer_table(of_all: Sequence[JudgedSet]) -> Table:
     A program that answered nothing is named below the table, with what it said of the first problem.
     """
     sets = with_answers(of_all)
-    notes = []
-    for judged in of_all:
-        if judged not in sets:
-            notes.append(f"No answer by {judged.answers.title}: {answered(judged)[0].reason}.")
+    notes = [
+        f"No answer by {judged.answers.title}: {answered(judged)[0].reason}." for judged in of_all if judged not in sets
+    ]
     by_set = [{cell.problem: cell for cell in answered(judged)} for judged in sets]
     rows = []
     for name in asks_of(sets):

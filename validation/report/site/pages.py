@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
@@ -22,7 +22,7 @@ from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
 from validation.report.verification import matrix
-from validation.runs.aliases import NamedTexts
+from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -33,7 +33,6 @@ CALCULATORS = "calculators.html"
 VERIFIED = "verification.html"
 DECISIONS = "decisions.html"
 SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
-Progress = Callable[[int, int, str], None]
 
 
 def build(

@@ -14,11 +14,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from validation.runs.aliases import Fields
+from validation.runs.beside import table_beside
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.suite import tables
 from validation.suite.bands import Band, fitted_order
 from validation.theory import columns
 from validation.theory.stepping import Stepping
@@ -64,7 +64,7 @@ def samples(scene: Scene, history: History) -> Metrics:
 def printed(row: str) -> dict[str, Fields]:
     """Return the printed numbers of a row, by case and metric."""
     numbers: dict[str, Fields] = {}
-    for entry in tables.read(__file__)["gate"]:
+    for entry in table_beside(__file__, "study.toml")["gate"]:
         if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
             numbers |= entry["numbers"]
     return numbers

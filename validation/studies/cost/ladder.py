@@ -32,14 +32,13 @@ from __future__ import annotations
 import functools
 import math
 import operator
-import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from validation.errors import InputError
 from validation.runs.aliases import Fields, NamedNumbers
+from validation.runs.beside import table_beside
 from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
@@ -52,7 +51,6 @@ RIGID = 1e6  # E W / H, in place of an infinite stiffness
 LEVEL_OF_CHOICES = 32  # steps a period
 CUTS = {"few": 4, "many": 16}  # sub-blocks upwards
 SQUARE_CUTS = {"few": 3, "many": 6}  # along both sides, where the motion is not that of a column
-TABLE = Path(__file__).with_name("methods.toml")
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ class Method:
 @functools.cache
 def methods() -> tuple[Method, ...]:
     """Return the methods, and at the end what a choice changes of one of them."""
-    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
+    table = table_beside(__file__, "methods.toml")
     schemes = table["schemes"]
     listed = [Method(time=schemes[row.pop("scheme")], **row) for row in table["method"]]
     for choice in table["choice"]:

@@ -64,9 +64,9 @@ def errors(ladder: Ladder, history: History, reference: History) -> NamedNumbers
     count = max(1, round(ladder.mean / float(reference.time[0])))
     error_of = {}
     for quantity, column in QUANTITIES.items():
-        smooth = []
-        for motion in (history, reference):
-            smooth.append(running_mean(running_mean(on_grid(motion, column, grid), count), count))
+        smooth = [
+            running_mean(running_mean(on_grid(motion, column, grid), count), count) for motion in (history, reference)
+        ]
         error_of[quantity] = or_nan(relative_l2(*smooth))
     return error_of
 

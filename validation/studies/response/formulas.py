@@ -148,7 +148,7 @@ def amplitudes() -> Iterator[Fields]:
             closed = answer.closed(solver, f)
             for column in COLUMNS:
                 size, phase = polar(getattr(closed, column))
-                row |= {column: size[0], f"{column}_phase": phase[0]}
+                row |= {column: float(size[0]), f"{column}_phase": float(phase[0])}
             yield row
 
 

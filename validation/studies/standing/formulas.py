@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from validation.metrics.values import or_nan
 from validation.models.plane.canon import friction_of, half_truss, stiffness_of
 from validation.models.plane.limits import (
     flat_height,
@@ -177,7 +178,7 @@ LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], NumberPair]]] = {
 
 def verdict(case: Scene) -> Band:
     """Return the unbalanced share of the weight: none below the limit, above it at least a tenth of the excess."""
-    beyond = float(str(limit_of(case)["beyond"]))
+    beyond = or_nan(limit_of(case)["beyond"])
     return (LEVER * min(beyond, 1.0), 1.0) if beyond > 0 else (0.0, REST)
 
 
