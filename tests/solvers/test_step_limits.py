@@ -35,9 +35,9 @@ PULSE = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
 
 def scene(step, steps=300, **tables):
     """Return a scene under central differences, a block unless `tables` says otherwise."""
-    plain = {"time": {"step": step, "steps": steps, "alpha": 0.0, "delta": 0.5}, "fem": {"elements": 2}}
     body = {} if "column" in tables else PLAIN
-    return parse_scene({**body, **plain, **tables}, "limited")
+    time = {"step": step, "steps": steps} | tables.get("time", {"alpha": 0.0, "delta": 0.5})
+    return parse_scene({**body, "fem": {"elements": 2}, **tables, "time": time}, "limited")
 
 
 def refusal(solver, limited):
@@ -82,7 +82,16 @@ def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top():
     assert said is not None and "must not exceed" in said
 
 
-GROWING = ("opening", "turning", "opening sub-blocks", "opening mesh", "locked", "mesh", "column of blocks")
+GROWING = (
+    "leapfrog, opening",
+    "opening",
+    "turning",
+    "opening sub-blocks",
+    "opening mesh",
+    "locked",
+    "mesh",
+    "column of blocks",
+)
 
 
 @pytest.mark.parametrize("name", GROWING)
