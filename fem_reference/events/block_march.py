@@ -106,7 +106,7 @@ class BlockMarch(March):
         of_gap, of_rate = self.transport.radius(np.pad(rows, [(0, 0), (0, 2)])).tolist()
         if not touches and abs(contact.closing(self.start.u)) > of_gap:
             return None
-        acceleration = self.block.motion(self.states).acceleration(*self.start[1:])
+        acceleration = self.block.accelerations(self.states, self.start, ())
         of_rate += 2 * self.offset * float(abs(contact.closing(acceleration)).upper())
         approach = -contact.closing(self.start.v)
         if not approach > of_rate:

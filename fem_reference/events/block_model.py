@@ -37,7 +37,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat
@@ -225,18 +224,14 @@ class BlockModel(System):
         u = start.u
         twice = (u.transpose() * (self.stiffness * u - self.load * 2))[0, 0]
         twice += (start.v.transpose() * self.mass * start.v)[0, 0]
-        rows = self.values(u)
+        rows, forces = self.forces(states, start, ())
         for c, (contact, state) in enumerate(zip(self.contacts, states, strict=True)):
             if state != OPEN:
-                stretch = self.stretch(c, state, rows, start.references[c])
-                twice += contact.stiffness * rows[c] * rows[c] + contact.shear_stiffness * stretch * stretch
+                twice += contact.stiffness * rows[c] * rows[c]
+            if contact.slide is not None:
+                T = forces[contact.slide]
+                twice += T * T / contact.shear_stiffness
         return twice / 2
-
-    def stretch(self, c: int, state: int, rows: Sequence[Any], reference: arb) -> Any:
-        """Stretch s - r of the shear spring of a corner [m], or its series."""
-        contact = self.contacts[c]
-        held = reference if state == STICKS or contact.slide is None else contact.reference(state, rows)
-        return rows[2 + c] - held
 
 
 class RigidContact:

@@ -25,7 +25,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
-from flint import arb, arb_mat
+from flint import arb
 from scipy.linalg import block_diag, expm
 
 from fem_reference.events.column_drive import Piece
@@ -196,18 +196,10 @@ class Ellipsoid:
 
     def _rates(self, start: Start, states: States, drives: Sequence[Piece]) -> tuple[Array, Array]:
         """Z' at a state, and the size of what its drives add to z''."""
-        motion = self.model.motion(states)
-        acceleration = motion.acceleration(*start[1:])
-        further = np.zeros(len(self.unit))
-        if drives:
-            base = drives[0].series(start.time, 1.0, 4)
-            pressure = drives[1].series(start.time, 1.0, 2)
-            terms = [base[:2], [base[1], 2 * base[2]], [2 * base[2], 6 * base[3]], pressure]
-            pushes = motion.E * arb_mat(terms)
-            acceleration += arb_mat([[row[0]] for row in pushes.tolist()])
-            further[self.v] = np.abs(self.unit[self.v, self.v]) @ np.abs(floats(pushes)[:, 1])
-        rates = np.array([*floats(start.v)[:, 0], *floats(acceleration)[:, 0], *np.zeros(len(states))])
-        return self.unit @ rates, further
+        a, third = floats(self.model.accelerations(states, start, drives)).T
+        still = np.zeros(len(states))
+        further = np.abs(self.unit) @ np.abs(np.array([*0 * third, *third, *still]))
+        return self.unit @ np.array([*floats(start.v)[:, 0], *a, *still]), further
 
     def _of_references(self, states: States) -> tuple[Array, Array]:
         """What taking the references along makes of z, and what the displacement of the base adds to it."""

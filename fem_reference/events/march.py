@@ -227,17 +227,13 @@ class March:
         if not moving:
             return radii
         references = list(self.start.references)
-        rows = self.model.values(self.start.u, self.base_now())
+        rows = self.model.values(self.start, self.pieces)
         for c in moving:
             reference = self.model.contacts[c].reference(self.states[c], rows)
             radii[c] = reference.rad()
             references[c] = reference.mid()
         self.start = self.start._replace(references=references)
         return radii
-
-    def base_now(self) -> arb | None:
-        """Displacement of the base that drives the motion, None without one."""
-        return self.pieces[0].series(self.start.time, 1.0, 1)[0] if self.pieces else None
 
     # -- settling
 

@@ -79,15 +79,16 @@ def beside(scene: Scene, place: np.ndarray) -> SlopeSearch:
     return SlopeSearch(scene, Reading(steps, place, np.zeros(place.shape)))
 
 
-def test_noise_is_no_departure_and_a_shape_is_one() -> None:
-    scene = SCENE.with_values({"time.steps": 120})
+@pytest.mark.parametrize("steps", [120, 60])
+def test_noise_is_no_departure_and_a_shape_is_one(steps: int) -> None:
+    scene = SCENE.with_values({"time.steps": steps})
     place = own(scene)
     noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=1, keepdims=True)
     exact = beside(scene, place)
     assert exact.is_scene() and exact.left(exact.scene_run) == 0
     assert beside(scene, place + 1e-3 * noise).is_scene()
     wrong_row = place + 1e-3 * noise
-    wrong_row[:, 60] *= 1.02
+    wrong_row[:, steps // 2] *= 1.02
     assert not beside(scene, wrong_row).is_scene()
     assert not beside(scene, place + 3e-2 * noise).is_scene()
     assert not beside(scene, place * (1 + 1e-3)).is_scene()

@@ -69,7 +69,7 @@ def watched(model: System, states: tuple[int, int], start: Start) -> list[Watch]
 
 def exactly(watch: Watch, model: BlockModel, start: Start) -> arb:
     """A watched function at a state."""
-    rows = [model.values(start.u), (model.rows * start.v).entries()]
+    rows = [model.values(start), (model.rows * start.v).entries()]
     value = arb(0) if watch.rates else watch.offset
     for row, factor, dashpot in watch.parts:
         value += factor * rows[watch.rates][row]

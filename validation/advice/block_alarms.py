@@ -11,7 +11,7 @@ That of a start that puts energy in is in `validation.advice.overshoot`, those o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.advice.contact_alarms import contact_alarms
@@ -19,7 +19,7 @@ from validation.advice.friction import friction_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.spectra import FLIPPING, steps_to
 from validation.runs.aliases import NamedNumbers
-from validation.runs.row import Row
+from validation.runs.row import RowsBySolver
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
@@ -28,7 +28,7 @@ TENSION = "hidden tension"
 RINGING = "contact ringing"
 
 
-def block_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
     # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
     values: NamedNumbers = {}
@@ -50,7 +50,7 @@ def block_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
     yield from friction_alarms(scene, rows)
 
 
-def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
+def _ringing(scene: Scene, solvers: RowsBySolver) -> Iterator[Alarm]:
     row = first_row(solvers, Role.JUDGED)
     root = number(row, "contact.least_root")
     radius = number(row, "contact.spectral_radius")

@@ -73,7 +73,7 @@ def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Calla
         if removal.by_damping >= REMOVED:
             continue
         values = {"frequency": motion.frequency, "omega_dt": removal.omega_dt, "removed": removal.by_scheme}
-        words: dict[str, object] = {"what": motion.name, "w": motion.frequency}
+        words = {"what": motion.name, "w": motion.frequency}
         damps = removal.by_scheme >= REMOVED
         if damps:
             scheme = _scheme(scene)
@@ -123,7 +123,7 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
     turns = np.geomspace(RESOLVED, beyond, TURNS)
     first = next((i for i, turn in enumerate(turns) if excess(turn) >= 0), 0)
-    return float(brentq(excess, turns[first - 1], turns[first], rtol=1e-6)) / beyond if first else 1.0
+    return brentq(excess, turns[first - 1], turns[first], rtol=1e-6) / beyond if first else 1.0
 
 
 def closed(scene: Scene) -> Scene:

@@ -130,8 +130,8 @@ def _at_rest(column: ColumnSection) -> tuple[list[float], list[float], float]:
 
     Each contact carries the weight above it, and the mean stress of a block is that of its middle.
     """
-    middles: list[float] = []
-    at_rest: list[float] = []
+    middles = []
+    at_rest = []
     contacts = list(column.contacts)
     faces = iter(itertools.pairwise(column.faces))
     foot = 0.0

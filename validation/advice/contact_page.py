@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
-from pathlib import Path
 
 from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
@@ -15,8 +13,9 @@ from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.aliases import Data, Fields
+from validation.runs.beside import table_beside
 from validation.runs.numbers import number_text, share_text
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -33,7 +32,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-LINES: dict[str, list[Fields]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+LINES: dict[str, list[Fields]] = table_beside(__file__)
 ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 
@@ -82,7 +81,7 @@ def scenes(scene: Scene) -> dict[str, Scene]:
 
 def answer(
     scene: Scene,
-    rows: Mapping[str, Row],
+    rows: RowsBySolver,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
 ) -> Fields:
@@ -130,7 +129,7 @@ def measured(row: Row) -> NewMetrics:
     return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}
 
 
-def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
+def landing_speed(scene: Scene, rows: RowsBySolver) -> float:
     """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
     for name in (exact(), own()):
         value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
@@ -174,7 +173,7 @@ def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "
 
 def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return the runs side by side."""
-    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    lines = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     with_friction = features.FRICTION in features.of(scene)
@@ -187,7 +186,7 @@ def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
 
 def measured_lines(kind: str, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return a line of each metric of a kind of `LINES`, with its number in every run."""
-    lines: list[Line] = []
+    lines = []
     for line in LINES[kind]:
         numbers = (
             number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()
@@ -274,7 +273,7 @@ def column_scenes(scene: Scene) -> dict[str, Scene]:
     return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
 
 
-def column_answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> Fields:
+def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> Fields:
     """Return everything as plain data."""
     return {
         "scene": scene.name,

@@ -63,7 +63,7 @@ def in_rows(
     fits_beside = not columns or width is None or offsets[count] + NARROW <= width
     if width is not None and not fits_beside:
         count = max(1, sum(offset - 2 <= width for offset in offsets[1 : count + 1]))
-    rows: list[list[str]] = []
+    rows = []
     for line in lines:
         padded = zip(line, widths, strict=False)  # no cells are an empty line
         cells = [cell.rjust(n) if i in right else cell.ljust(n) for i, (cell, n) in enumerate(padded)]

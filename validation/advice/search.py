@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 
 from validation.runs.aliases import NamedNumbers
-from validation.runs.history import Array
+from validation.runs.history import Array, ArrayPair
 
 FLAT = 1e-12  # relative; smaller turns of a function are rounding, not extrema
 HALVINGS = 100  # of an interval in which a function ends to be defined: to the last bit
@@ -27,7 +27,7 @@ class Search:
     flat: float = FLAT  # relative size of turns that are rounding
 
     @cached_property
-    def samples(self) -> tuple[Array, Array]:
+    def samples(self) -> ArrayPair:
         """Coordinates and xi: the grid, its extrema refined, and the last ones at which xi is defined."""
         ratios = self._ratios(self.grid)
         slopes = np.diff(ratios)
@@ -74,7 +74,7 @@ class Search:
         roots: list[float] = []
         for i in np.flatnonzero(is_passed):
             ends = coordinates[i : i + 2]
-            root = float(brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+            root = brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps)
             # a root at a sample belongs to both of its neighbours
             if not roots or not math.isclose(self.value(root), self.value(roots[-1]), rel_tol=1e-12):
                 roots.append(root)

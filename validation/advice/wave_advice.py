@@ -23,7 +23,7 @@ from validation.advice.spectra import highest_frequency
 from validation.errors import InputError
 from validation.models.column.tables import NEAR
 from validation.runs.aliases import NumberPair
-from validation.runs.history import Array, Complex
+from validation.runs.history import ArrayPair, Complex
 from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -88,7 +88,7 @@ class _WavePath:
     def wavelengths(self) -> float:
         return self.times * sum(layer.thickness / layer.speed for layer in self.layers) * self.frequency
 
-    def passed(self, w2: Complex) -> tuple[Array, Array]:
+    def passed(self, w2: Complex) -> ArrayPair:
         """Return loss and delay in periods at squared frequencies."""
         decay = np.zeros(np.shape(w2))
         phase = np.zeros(np.shape(w2))

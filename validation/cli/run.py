@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
-from validation.runs.aliases import NamedNumbers
+from validation.runs.aliases import Progress
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -266,8 +266,8 @@ def _run_studies(
 
     last = time.monotonic()
     groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    runs: dict[str, JudgedStudy] = {}
-    seconds: NamedNumbers = {}
+    runs = {}
+    seconds = {}
     with _running(groups, results, machine, judging) as ended:
         for group in ended:
             runs[group.study.name] = judge_study(group, results)
@@ -369,7 +369,7 @@ class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _watch(show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+def _watch(show: Progress, prepared: Prepared) -> None:
     """Show how far a run is, where its solver says so."""
     prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
 

@@ -22,8 +22,8 @@ from itertools import combinations
 
 import numpy as np
 
-from validation.diagnosis.causes import CAUSES, CONTACT_METHODS, benign_springs
-from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals
+from validation.diagnosis.causes import BAND_FIELDS, CAUSES, CONTACT_METHODS, benign_springs
+from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals, is_factor
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.schemes import SHARED
@@ -60,6 +60,7 @@ SAME_PROGRAM = 1e-8  # relative difference, of roundings
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
+MANIFOLD = 10.0  # times a factor that give the same rows: these tell that it is large or small, and no number
 NEUTRAL = Variant(0.5, 1.0, 1.0)  # numbers of a variant by which nothing is changed
 
 
@@ -174,6 +175,8 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     """Return the verdict over candidates."""
     nearest = min(explanations, key=lambda f: f.fit.misfit, default=Explanation((), scene_fit))
     fine = [f for f in explanations if accepted(target, scene_fit, f.fit)]
+    fewer = _fewer(target, scene_fit.variant, fine)
+    fine += [f for f in fewer if accepted(target, scene_fit, f.fit)]
     fine = [f for f in fine if is_determined(target, scene_fit, f)]
     if not fine:
         return Verdict(scene_fit, nearest, False)
@@ -181,7 +184,9 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     scores = {id(f): score(target, deviations, f) for f in fine}
     near = min(scores.values()) + CLEAR
     close = sorted((f for f in fine if scores[id(f)] < near), key=lambda f: scores[id(f)])
-    best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
+    # a change is there only if the rows are clearly worse without it
+    ids = min((f.ids for f in close if set(f.ids) <= set(close[0].ids)), key=len)
+    best = min((f for f in close if f.ids == ids), key=lambda f: len(f.fit.free))
     best, names = _canonical(target, best, close)
     # not the best one with a further part that has no effect
     alike = {f.ids: f for f in reversed(close) if f.ids not in names and not set(best.ids) < set(f.ids)}
@@ -197,6 +202,26 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
         aliases=aliases,
         others=tuple(others.values()),
     )
+
+
+def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) -> list[Explanation]:
+    """Return explanations of several changes without each of them, fitted from where they are.
+
+    Candidates are pursued by what they leave before all of them are in: a dead band may stand in for the mass of a base
+    that is fitted later, and has then no effect.
+    """
+    nearest = {f.ids: f for f in sorted(explanations, key=lambda f: -f.fit.misfit) if len(f.moves) > 1}
+    starts: list[Start] = []
+    for f in nearest.values():
+        for move in f.moves:
+            names = {*move.changes, *move.free} | ({"base"} if "softness" in move.free else set())
+            rest = tuple(other for other in f.moves if other is not move)
+            if move.id in BAND_FIELDS and "opens" in names:  # without its limit the contact still opens
+                names -= {"opens"}
+                rest = (Move("contact-opened", {"opens": True}), *rest)
+            without = changed(f.fit.variant, {name: getattr(scene, name) for name in names})
+            starts.append((rest, without, tuple(name for name in f.fit.free if name not in names)))
+    return _fits(target, starts, ROUNDS)
 
 
 def score(target: Target, deviations: Array, explanation: Explanation) -> float:
@@ -318,7 +343,8 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
     """Whether the rows determine every free number, and as another one than that by which nothing is changed.
 
     HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: a number says
-    nothing if such a special case explains the rows as well, or if no row changes with it.
+    nothing if such a special case explains the rows as well, if no row changes with it, or if they leave open how
+    many times the scene's it is.
     """
     solution, scene = explanation.fit, scene_fit.variant
     special_cases: list[dict[str, float]] = []
@@ -331,6 +357,11 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
             special_cases.append({name: scene.gg})
         else:
             special_cases.append({name: getattr(NEUTRAL, name)})
+            number = getattr(solution.variant, name)
+            if is_factor(name):
+                special_cases += [{name: number * MANIFOLD}, {name: number / MANIFOLD}]
+            elif name == "softness":
+                special_cases += [{name: number + math.log(MANIFOLD)}, {name: number - math.log(MANIFOLD)}]
     if not all(math.isfinite(interval.half_width) for interval in intervals(solution).values()):
         return False
     specials = [fit_one(target, changed(solution.variant, case)) for case in special_cases]

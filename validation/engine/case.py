@@ -11,7 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from validation.errors import InputError
-from validation.runs.aliases import Fields, Words
+from validation.runs.aliases import Fields, NamedTexts, Words
 from validation.scenes.kinds import MODELS
 from validation.scenes.scene import Scene, named_files
 from validation.solvers.contract import Solver
@@ -108,7 +108,7 @@ def source_digest(module: str) -> str:
 
 
 @functools.cache
-def library_versions() -> dict[str, str]:
+def library_versions() -> NamedTexts:
     """Return the versions of the libraries that rows are computed with."""
     versions = {}
     for name in LIBRARIES:

@@ -45,6 +45,9 @@ class Derived:
     linear: bool = False
 
 
+DerivedRows = tuple[Derived, ...]
+
+
 @dataclass(frozen=True)
 class Finished:
     """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""

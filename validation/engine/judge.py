@@ -151,7 +151,7 @@ def _shortened(gate: Gate, names: list[NamePair], finished: Finished) -> str:
     until = compared_until(gate, names, finished) if gate.metric in PAIRS else None
     if until is None:
         return ""
-    ends = [float(h.time[-1]) for h in (finished.history(*name) for name in names) if h is not None and len(h.time)]
+    ends = [float(h.time[-1]) for h in itertools.starmap(finished.history, names) if h is not None and len(h.time)]
     if until >= min([*ends, gate.until or math.inf]) * (1 - 1e-9):
         return ""
     return f"compared up to {until:.4g} s, where the switches of the contact have amplified rounding to 1e-6"
@@ -159,12 +159,12 @@ def _shortened(gate: Gate, names: list[NamePair], finished: Finished) -> str:
 
 def _value(gate: Gate, names: list[NamePair], finished: Finished) -> Value:
     if gate.metric in PAIRS:
-        histories = [finished.history(*name) for name in names]
+        histories = list(itertools.starmap(finished.history, names))
         if len(histories) < 2 or histories[0] is None or histories[1] is None:
             return None
         until = compared_until(gate, names, finished)
         first, second = (h if until is None else h.until(until) for h in histories if h is not None)
         return _paired(gate.metric, first, second, finished.rows[names[0]].metrics)
-    rows = [finished.row(*name) for name in names]
+    rows = list(itertools.starmap(finished.row, names))
     values = [None if row is None else row.metrics.get(gate.metric) for row in rows]
     return values[0] if len(values) == 1 else ratio(values[0], values[1])

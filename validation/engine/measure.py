@@ -6,7 +6,7 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import FrameType
@@ -20,7 +20,7 @@ from validation.engine.cluster import worker_memory
 from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
-from validation.runs.aliases import NumberPair, Words
+from validation.runs.aliases import NumberPair, NumbersByName, Words
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import WITH_HISTORY
@@ -274,11 +274,11 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
         needs -= {STATIC, MODES, DIAGNOSTICS}
     static = _reported("static", prepared.static, None, failed) if STATIC in needs else None
-    assumed_static: Mapping[str, float] = static or {}
+    assumed_static: NumbersByName = static or {}
     if static is None and STATIC in needs:
         assumed_static = prepared.assumed_static()
     modes: tuple[Mode, ...] = _reported("modes", prepared.modes, (), failed) if MODES in needs else ()
-    diagnostics: Mapping[str, float] = {}
+    diagnostics: NumbersByName = {}
     if DIAGNOSTICS in needs:
         diagnostics = _reported("diagnostics", prepared.diagnostics, {}, failed)
     switches = _reported("switches", prepared.switches, None, failed) if SWITCHES in needs else None

@@ -63,7 +63,7 @@ def complaints(runs: Sequence[JudgedStudy]) -> Iterator[str]:
 def missing_gates(runs: Sequence[JudgedStudy], required: Sequence[str]) -> Iterator[str]:
     """Yield a sentence for each required solver that gates were not run for, or that no gate has judged."""
     for name in required:
-        statuses: list[Status] = []
+        statuses = []
         for run in runs:
             statuses += [verdict.status for verdict in run.verdicts if run.concerns(verdict, name)]
         if missing := statuses.count(Status.NOT_RUN):

@@ -31,7 +31,7 @@ def of_rows(rows: Iterable[Row]) -> Fields:
     """Return where the rows of a study come from, an item a line; what differs between rows with their number."""
     origins = [row.provenance for row in rows]
     items = dict.fromkeys(itertools.chain.from_iterable(origins))
-    summary: Fields = {
+    summary = {
         item: _counted([row_origin.get(item, UNKNOWN) for row_origin in origins])
         for item in items
         if item != "packages"

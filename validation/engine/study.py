@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass
 
 from validation.engine.case import MEASURES, Case
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, NamePair, Words
 from validation.runs.records import Annotations
@@ -63,7 +63,7 @@ class Study:
     extra: tuple[NamePair, ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False
-    derived: Callable[[], tuple[Derived, ...]] = tuple
+    derived: Callable[[], DerivedRows] = tuple
     data: Callable[[], Data] = dict
     measures: Words = MEASURES
     pairs: tuple[NamePair, ...] | None = None
@@ -73,8 +73,8 @@ class Study:
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        pairs: list[tuple[Scene, str]] = []
-        scenes_by_name: dict[str, Scene] = {}
+        pairs = []
+        scenes_by_name = {}
         for declared in self.scenes:
             scene = load_scene(declared) if isinstance(declared, str) else declared
             for case in scene.expand():

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +13,7 @@ from validation.metrics import columns, contact, growth, modes, pairs
 from validation.metrics.measurable import Measurable
 from validation.metrics.pairs import Pairing
 from validation.metrics.values import UNDEFINED, finite
+from validation.runs.beside import table_beside
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics, Value
 
@@ -53,7 +52,7 @@ ROOMS = {"columns": columns, "contact": contact, "growth": growth, "modes": mode
 def _read() -> list[Metric]:
     """Return the metrics of the catalogue, in its order."""
     metrics = []
-    for entry in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["metric"]:
+    for entry in table_beside(__file__)["metric"]:
         room, _, name = entry.pop("function").partition(".")
         function = partial(getattr(ROOMS[room], name), **entry.pop("with", {}))
         needs = frozenset(entry.pop("needs"))

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
 
-from validation.runs.aliases import Data
+from validation.runs.aliases import Data, NamedTexts
 
 BIBLIOGRAPHY = Path(__file__).with_name("references.bib")
 ENTRY = re.compile(r"^@(\w+)\{(\w+),\n(.*?)^\}", re.M | re.S)
@@ -25,7 +25,7 @@ PAPER = (
 )
 
 
-def references() -> dict[str, dict[str, str]]:
+def references() -> dict[str, NamedTexts]:
     """Return the fields of the sources by their keys, in the order of the file."""
     entries = {}
     for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8")):

@@ -173,7 +173,7 @@ def matrix(verdicts: Sequence[VerdictRecord]) -> Blocks:
 def verdict_blocks(shown: Phenomenon, verdicts: Sequence[Verdict], every: bool) -> Blocks:
     """Return what came out of a run: of the gates with one reason the tightest and those that did not pass, or all."""
     by_id = {verdict.gate.id: verdict for verdict in verdicts}
-    rows: list[Words] = []
+    rows = []
     for gates in shown.lines():
         judged = [by_id[gate.id] for gate in gates if gate.id in by_id]
         tightest = decisive([verdict.gate for verdict in judged]) if judged else None

@@ -74,7 +74,7 @@ def atomic_directory(out: Path) -> Iterator[Path]:
         The directory cannot be made or replaced.
     """
     target = Path(os.path.realpath(out))  # of a link the directory that it names is replaced, and the link stays
-    temporary: Path | None = None
+    temporary = None
     if target.exists() and not target.is_dir():
         raise InputError("must be a directory", source=out, value=kind_of(target.stat().st_mode))
     try:

@@ -22,6 +22,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs import strict
+from validation.runs.aliases import NamedTexts
 from validation.runs.files import write_atomically
 from validation.runs.history import Array, History
 from validation.runs.records import Manifest, Named, VerdictRecord, Verdicts
@@ -230,10 +231,10 @@ class Results:
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
+        records = self.read_json("verdicts.json", [], Verdicts)
         return [v for v in records if study is None or v["study"] == study]
 
-    def unread_verdicts(self) -> dict[str, str]:
+    def unread_verdicts(self) -> NamedTexts:
         """Return the studies with verdicts that are not as this version writes them, and what is wrong with the first.
 
         Raises
@@ -241,20 +242,20 @@ class Results:
         InputError
             The file holds no list of records that name their study.
         """
-        records: Iterable[Named] = self.read_json("verdicts.json", [], list[Named])
+        records = self.read_json("verdicts.json", [], list[Named])
         defects = {v["study"]: strict.defect_of(v, VerdictRecord) for v in reversed([*records])}
         return {study: defect for study, defect in defects.items() if defect}
 
     def readable_verdicts(self) -> list[VerdictRecord]:
         """Return the verdicts of the studies that `unread_verdicts` does not name."""
         unread = self.unread_verdicts()
-        records: list[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+        records = self.read_json("verdicts.json", [], list[Named])
         return [v for v in records if v["study"] not in unread]
 
     def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
         with self._locked():
-            records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+            records = self.read_json("verdicts.json", [], list[Named])
             others = [v for v in records if v["study"] != study]
             self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
 

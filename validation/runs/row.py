@@ -62,6 +62,7 @@ class Row:
             return None
 
 
+RowsBySolver = Mapping[str, Row]
 FIELDS = frozenset(field.name for field in fields(Row))
 
 

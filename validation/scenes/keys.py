@@ -141,7 +141,7 @@ def described(name: str, value: object, key: Key) -> str:
 
 def range_of(field: FieldInfo) -> str:
     """Return the words that a key takes, or the type of its number and the bounds of it."""
-    words: list[str] = []
+    words = []
     for part in (field.annotation, *get_args(field.annotation)):
         if get_origin(part) is Literal:
             words += [f'"{word}"' for word in get_args(part)]

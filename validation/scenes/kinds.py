@@ -43,7 +43,7 @@ class Hooks:
     @classmethod
     def of_kind(cls, name: str) -> Self:
         """Return the answers of a kind."""
-        hooks: type[Self] = _hooks(cls.module, name) or cls
+        hooks = _hooks(cls.module, name) or cls
         return hooks()
 
 

@@ -7,19 +7,18 @@ scene that means its values says why: its key `extreme` holds the reason, and no
 from __future__ import annotations
 
 import math
-import tomllib
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 from validation.errors import PlausibilityWarning
-from validation.runs.aliases import Fields, NamedNumbers, NamePair
+from validation.runs.aliases import Fields, NamedNumbers, NamedTexts, NamePair
+from validation.runs.beside import table_beside
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
-TABLE: Fields = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
-KINDS: dict[str, str] = TABLE.pop("kinds")
+TABLE: Fields = table_beside(__file__)
+KINDS: NamedTexts = TABLE.pop("kinds")
 LEAST_PRESSURE, LEAST_STRESS_RATIO = 100.0, 1e-6  # Pa, and of the modulus: a pressure below both is looked at
 EXPLAIN_A_SINK = ("gravity", "pressure", "density", "modulus", "size", "strain")
 SLOWEST, FASTEST = 100.0, 1e4  # m/s: waves in rock and soil, to which another unit of the modulus would lead

@@ -20,7 +20,7 @@ from typing import Any, Self, get_args
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
-from validation.runs.aliases import Data, Fields, NamePair, Words
+from validation.runs.aliases import Data, Fields, NamedTexts, NamePair, Words
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs, key_of_any_entry
 from validation.scenes.kinds import kinds
@@ -202,7 +202,7 @@ def _excluded(field: str, value: object) -> Words:
 
 def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str, type[Section]]:
     """Return the tables that a scene may have, by their names; ``column.layer`` is an entry of a list in a table."""
-    tables: dict[str, type[Section]] = {}
+    tables = {}
     for name, field in model.model_fields.items():
         for table in (field.annotation, *get_args(field.annotation)):
             if isinstance(table, type) and issubclass(table, Section):
@@ -355,7 +355,7 @@ def _beside(directory: Path, data: Fields) -> None:
 
 
 @functools.cache
-def _files() -> dict[str, str]:
+def _files() -> NamedTexts:
     """Return the keys that name files, those of kinds too, and what these are."""
     files = dict(FILES)
     for kind in kinds().values():
@@ -370,7 +370,7 @@ def named_files(tables: Data) -> Iterator[tuple[str, str, Any, str]]:
     """
     for field, role in _files().items():
         *parts, key = field.split(".")
-        holders: list[tuple[str, Any]] = [("", tables)]
+        holders = [("", tables)]
         for part in parts:
             inner = [(f"{place}.{part}".lstrip("."), _value(holder, part)) for place, holder in holders]
             holders = []

@@ -27,7 +27,7 @@ TYPED = ("block", "contact", "load")  # tables that have a property of their nam
 
 def _fields_of_kinds() -> Fields:
     """Return a field for each table of each kind: ``column`` of the kind's own table, else ``stated_input``."""
-    fields: Fields = {}
+    fields = {}
     for kind in kinds().values():
         for table, section in kind.tables.items():
             is_own = table == kind.name and table not in TYPED

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import difflib
 import functools
-import tomllib
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
-from validation.runs.aliases import Data
+from validation.runs.aliases import Data, NamedTexts
+from validation.runs.beside import table_beside
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
-OTHER_NAMES: dict[str, list[str]] = tomllib.loads(
-    Path(__file__).with_name("other_names.toml").read_text(encoding="utf-8")
-)  # what other programs, and the symbols of the text, call a key
+# what other programs, and the symbols of the text, call a key
+OTHER_NAMES: dict[str, list[str]] = table_beside(__file__, "other_names.toml")
 SHORTEST = 3  # letters of a name that another may be spelt like
 CLOSE = 0.6  # similarity of two names from which on one may be meant for the other
 NAMED = 30  # unknown keys that are named in full
@@ -132,7 +130,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
     return None
 
 
-def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> dict[str, str]:
+def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> NamedTexts:
     """Return fields by all that they are called, plainly: their names, symbols, and other programs' names."""
     by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
     for field in reversed(fields):

@@ -23,6 +23,8 @@ from validation.scenes.scene import Scene, load_scene
 
 Band = tuple[float, float]
 """Lower and upper edge."""
+Bands = dict[str, Band]
+"""Bands by metric."""
 Runs = Sequence[tuple[Scene, History]]
 """Cases of a scene, each with the history of a solver: what a row of a sweep is computed from."""
 OTHER = "other code"  # the kind of a reference that an independent program computed

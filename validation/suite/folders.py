@@ -178,7 +178,7 @@ def scene_study(source: str, assignments: Data | None = None) -> Study:
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     check_names(scene, source)
-    scene_gates: list[Gate] = []
+    scene_gates = []
     for case in scene.expand():
         for section in case.gate:
             scene_gates.append(Gate(case.name, section.pair, section.metric, *section.band, section.reason))
@@ -198,7 +198,7 @@ def _of_suite(scene: Scene, part_of: Callable[[Study], Iterable[T]], case_of: Ca
     if scene.name not in scene_names() or scene != load_scene(scene.name):
         return ()
     names = {case.name for case in scene.expand()}
-    items: list[T] = []
+    items = []
     for study in map(get_study, judged_studies()):
         study_scenes = [declared if isinstance(declared, str) else declared.name for declared in study.scenes]
         if scene.name in map(scene_of, study_scenes):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -15,7 +15,7 @@ from validation.problems.bands import Standard, standard
 from validation.problems.cause import Cause, cause
 from validation.problems.judge import Judgement, judge
 from validation.problems.problem import Problem
-from validation.runs.aliases import Words
+from validation.runs.aliases import Progress, Words
 from validation.runs.history import History
 from validation.runs.numbers import error_percent
 from validation.runs.run import Outcome, Run
@@ -32,7 +32,6 @@ WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UN
 MISSING = "is not installed"  # what an adapter says where its program is absent
 DEFAULTS = "-default"  # ending of the name of a program as it comes
 HANDED_BACK = "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back."
-Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,11 +103,11 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         There is no such solver, or what it reads is no history.
     """
     solver = get_solver(name)
-    about: Mapping[str, str] = {}
+    about = {}
     if isinstance(solver, UserSolver):
         solver.check_module()
         about = solver.about()
-    answers: list[Answer] = []
+    answers = []
     repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
     for number, problem in enumerate(problems):
         progress(number, len(problems), f"{name} {problem.name}")

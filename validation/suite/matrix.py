@@ -18,11 +18,11 @@ from itertools import chain
 from validation.engine.case import Case
 from validation.engine.finished import Derived
 from validation.engine.judge import evaluate, existing
-from validation.engine.run import Progress, finish
+from validation.engine.run import finish
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
-from validation.runs.aliases import NamePair, Words
+from validation.runs.aliases import NamePair, Progress, Words
 from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome

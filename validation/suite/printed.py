@@ -26,7 +26,7 @@ from pathlib import Path
 
 import numpy as np
 
-from validation.runs.aliases import Fields
+from validation.runs.aliases import Fields, NamedTexts
 from validation.scenes.scene import Scene
 
 
@@ -53,7 +53,7 @@ def printed_numbers(
     keys = entry.pop("by", ())
     metrics = entry.pop("metrics", ())
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-    numbers: dict[str, dict[str, str]] = {}
+    numbers: dict[str, NamedTexts] = {}
     for line in csv.DictReader(lines, skipinitialspace=True):
         words = {column: text.strip() for column, text in line.items() if text and text.strip()}
         name = pattern.format(**words)
@@ -77,10 +77,11 @@ def _value(text: str) -> tuple[float, ...]:
 
 def _case(path: Path, cases: Sequence[Scene], values: Mapping[str, tuple[float, ...]]) -> str:
     """Return the name of the one case that has these values."""
-    matching = []
-    for case in cases:
-        if all(np.allclose(operator.attrgetter(key)(case), value, 1e-9, 0) for key, value in values.items()):
-            matching.append(case.name)
+    matching = [
+        case.name
+        for case in cases
+        if all(np.allclose(operator.attrgetter(key)(case), value, 1e-9, 0) for key, value in values.items())
+    ]
     if len(matching) != 1:
         raise ValueError(f"{path}: {dict(values)} must be of one case, got {', '.join(matching) or 'none'}")
     return matching[0]

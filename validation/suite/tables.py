@@ -44,13 +44,13 @@ these; of ``owners`` it is one without a case.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Derived, derived_row
+from validation.engine.finished import DerivedRows, derived_row
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, Fields
@@ -63,11 +63,6 @@ from validation.suite.printed import printed_numbers
 
 NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_scene")
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
-
-
-def read(module: str) -> Fields:
-    """Return the table beside a module, by the module's file."""
-    return tomllib.loads(Path(module).with_name("study.toml").read_text(encoding="utf-8"))
 
 
 def declare(folder: Path, fields: Data, formulas: Any = None) -> Study:
@@ -122,7 +117,7 @@ class StudyTable:
 
     def study(self) -> Study:
         """Return the study."""
-        declared: Fields = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
+        declared = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
         for key in FUNCTIONS:
             if isinstance(declared.get(key), str):
                 declared[key] = self.function(declared[key])
@@ -148,7 +143,7 @@ class StudyTable:
 
     def gates(self) -> tuple[Gate, ...]:
         """Return the gates: those of the table in its order, and those of the function that it names."""
-        declared: list[Gate] = []
+        declared = []
         for entry in self.entries.get("gate", ()):
             pairs = entry.pop("pairs")
             judged = self._printed(entry) if "numbers" in entry else self._banded(entry)
@@ -156,9 +151,9 @@ class StudyTable:
                 declared += [Gate(pair=tuple(pair), **(entry | fields)) for pair in pairs]
         return (*declared, *self._further("gates"))
 
-    def derived(self) -> tuple[Derived, ...]:
+    def derived(self) -> DerivedRows:
         """Return the derived rows: those of the table, and those of the function that it names."""
-        declared: list[Derived] = []
+        declared = []
         for entry in self.entries.get("row", ()):
             read = {key: entry[key] for key in ("histories", "rows", "reads") if key in entry}
             compute = self.function(entry["compute"])
@@ -171,7 +166,7 @@ class StudyTable:
         return (*declared, *self._further("derived"))
 
     def _further(self, field: str) -> Iterable[Any]:
-        function: Callable[[], Iterable[Any]] = self.function(self.fields[field]) if field in self.fields else tuple
+        function = self.function(self.fields[field]) if field in self.fields else tuple
         return function()
 
     def _printed(self, entry: Fields) -> Iterator[Fields]:
@@ -236,7 +231,7 @@ class StudyTable:
 
 def named_cases(names: Iterable[str]) -> list[Scene]:
     """Return the cases of built-in scenes, all of them or one, by its name."""
-    named: list[Scene] = []
+    named = []
     for name in names:
         named += [case for case in cases(scene_of(name)) if name in (case.name, scene_of(name))]
     return named

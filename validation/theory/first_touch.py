@@ -83,9 +83,7 @@ def _touch(
 
     gap, _, _ = placed(times)
     for k in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0)):
-        time = float(
-            brentq(lambda t: float(placed(np.array([t]))[0][0]), times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
-        )
+        time = brentq(lambda t: float(placed(np.array([t]))[0][0]), times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
         _, foot, normal = placed(np.array([time]))
         if -1e-12 <= foot[0] <= 1 + 1e-12:
             return time, float(foot[0]), float(normal[0])

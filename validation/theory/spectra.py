@@ -122,8 +122,8 @@ def bar_shares(scene: Scene, quantity: str, b: Array) -> Array:
     ratio = 2 * scene.contact.stiffness * h / (E * w)
     modal = 2 / (b**2 * (1 + np.sin(2 * b) / (2 * b)))  # response of the mode to a unit of q h / E, in phi
     if quantity == "displacement":
-        return np.asarray(modal * np.cos(b / 2) / (1 / ratio + 0.5))
-    return np.asarray(modal * np.cos(b) * ratio)
+        return modal * np.cos(b / 2) / (1 / ratio + 0.5)
+    return modal * np.cos(b) * ratio
 
 
 def bar_response(scene: Scene, omega: Array) -> Array:

@@ -73,7 +73,7 @@ class Composite(NamedTuple):
         """Return R(s) of y' = y s / dt over a step."""
         half = self.split * s / 2
         middle = (1 + half) / (1 - half)
-        return np.asarray((1 + self.q0 * s + self.q1 * s * middle) / (1 - self.q2 * s))
+        return (1 + self.q0 * s + self.q1 * s * middle) / (1 - self.q2 * s)
 
     @property
     def fourth(self) -> float:
@@ -242,7 +242,7 @@ class Stepping:
     def _kinematics(self, numbers: Stage, turn: Complex) -> Complex:
         """Return gg ((1 - gamma) + gamma z) + (1/2 - beta + beta z)(z - gg) of z - 1."""
         ahead = (1 - self.gg) + turn
-        return np.asarray(self.gg * (1 + numbers.gamma * turn) + (0.5 + numbers.beta * turn) * ahead)
+        return self.gg * (1 + numbers.gamma * turn) + (0.5 + numbers.beta * turn) * ahead
 
     def _numbers(self, quantity: str) -> Stage:
         numbers = self.one_stage

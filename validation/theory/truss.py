@@ -64,7 +64,7 @@ class HalfTruss:
         def left_over(u: float) -> float:
             return 2 * self.series * (self.diagonal * math.cos(u) - self.span) * math.tan(u) - whole
 
-        u = float(brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14))
+        u = brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14)
         thrust = self.series * (self.diagonal * math.cos(u) - self.span)
         return {
             "turn": math.atan2(self.height, self.length) - u,
@@ -99,5 +99,4 @@ class HalfTruss:
         solution = solve_ivp(
             rate, (0.0, float(times[-1])), start, method="DOP853", rtol=1e-12, atol=1e-14, t_eval=times
         )
-        rows: Array = np.array([[*q[:3], *forces(q)] for q in solution.y.T])
-        return rows
+        return np.array([[*q[:3], *forces(q)] for q in solution.y.T])

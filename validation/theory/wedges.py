@@ -42,7 +42,7 @@ class Wedges:
             A2 = (P * math.cos(p - a2 + q) - m2 * g * math.sin(p - a2)) / (m2 * math.cos(p))
             return A2 * math.cos(a2) - active(P) * math.cos(a1)
 
-        P = float(brentq(left_over, 0.0, (m1 + m2) * g, xtol=1e-6, rtol=1e-14))
+        P = brentq(left_over, 0.0, (m1 + m2) * g, xtol=1e-6, rtol=1e-14)
         return {
             "active": active(P),
             "passive": active(P) * math.cos(a1) / math.cos(a2),

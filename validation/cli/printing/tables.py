@@ -32,7 +32,7 @@ PAIRS_SHOWN = 20
 def verdict_table(verdicts: Sequence[Verdict], results: Results, studies: Sequence[str]) -> Table:
     """Return a row a gate: verdict, scene, pair, metric, value, band, seconds of its first case."""
     rows = results.rows()
-    seconds: dict[NamePair, float] = {}
+    seconds = {}
     for study in studies:
         for case in results.manifest(study)["cases"]:
             seconds[case["scene"], case["solver"]] = sum(rows[case["key"]].seconds.values())

@@ -27,8 +27,8 @@ def damping_table(group: CaseGroup) -> Table:
     """
     columns = PAGE.columns("damping")
     has_long_labels = any(len(case.label) > LONG_LABEL for case in group.cases)
-    rows: list[Words] = []
-    measured: list[Value] = []
+    rows = []
+    measured = []
     for case in group.cases:
         solvers_by_cells: dict[Words, list[str]] = {}
         for solver in _finished(case):

@@ -91,7 +91,7 @@ def gate_table(verdicts: Verdicts) -> Table:
         subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
         row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band_cell(*v["band"]))
         rows_by_reason.setdefault(reason(v), []).append(row)
-    lines: list[Words] = []
+    lines = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
     return table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "fill"), "Value", "Band"), lines, ruled=False)

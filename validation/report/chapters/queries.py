@@ -159,7 +159,7 @@ class StudyTable:
         owners = (owner,) if slash else (line.name, scene_of(line.name))
         for candidate in owners:
             if (candidate, name) in self.derived:
-                value: Value = self.derived[candidate, name].get(metric)
+                value = self.derived[candidate, name].get(metric)
                 return value
         return None
 

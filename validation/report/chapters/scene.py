@@ -98,7 +98,7 @@ def scene_section(
     without
         Solvers that are left out of the figure.
     """
-    blocks: Blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
+    blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
@@ -137,7 +137,7 @@ def _agreement(group: CaseGroup) -> str:
 
 def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
-    longest: NamedNumbers = {case.name: -math.inf for case in group.cases}
+    longest = {case.name: -math.inf for case in group.cases}
     for pair in group.comparisons:
         scene = pair["scene"]
         if {pair["solver"], pair["reference"]} == {solver, reference} and scene in longest:
@@ -254,7 +254,7 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
     The window is that of `free_window`; the case is that in which, over it, the judged solver and its reference differ
     by a share nearest to `VISIBLE`: further apart their lines have no more to do with one another, closer they are one.
     """
-    panels: dict[str, HistoryPanel] = {}
+    panels = {}
     for case in group.cases if columns else ():
         window = min(free_window(case, columns[0]), _settling_time([case], columns, ()))
         panel = _panel(case, columns, window, ())

@@ -29,8 +29,8 @@ from validation.report.figures.histories import (
     share_left,
     size_of,
 )
-from validation.runs.aliases import Fields, NumberPair, Words
-from validation.runs.history import Array
+from validation.runs.aliases import Fields, NumberPair, NumbersByName, Words
+from validation.runs.history import Array, ArrayPair
 from validation.runs.numbers import tick_text
 
 LETTER = 1.42  # mm, width of a letter of a name
@@ -53,7 +53,7 @@ class ChartLine:
     hollow: bool = False  # whether the dots are
     notes: Words = ()  # words beside each point
     note: str = ""  # what follows the name
-    shaded: tuple[Array, Array] | None = None  # least and greatest value about the line
+    shaded: ArrayPair | None = None  # least and greatest value about the line
 
     @property
     def shade(self) -> str:
@@ -79,8 +79,8 @@ class ChartPanel:
     x_range: NumberPair | None = None  # of all points by default, from 0 where the axis is linear
     y_range: tuple[float | None, float | None] | None = None
     logarithmic: tuple[bool, bool] = (False, False)
-    marks: Mapping[str, float] = field(default_factory=dict)  # words at an x, above the axes where there is room
-    levels: Mapping[str, float] = field(default_factory=dict)  # words at a y
+    marks: NumbersByName = field(default_factory=dict)  # words at an x, above the axes where there is room
+    levels: NumbersByName = field(default_factory=dict)  # words at a y
     x_ticks: Mapping[float, str] | int = 0  # or how many parts an axis from 0 has at most
     y_ticks: Mapping[float, str] | int = 0
     names: Names = "ends"

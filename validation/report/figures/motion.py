@@ -68,7 +68,7 @@ def history_figure(
     rows = [*[(height, 3.0)] * (len(columns) - 1), (height, gap), *below]
     rows[-1] = (rows[-1][0], 13.0 + extra)
     ticks = 3 if room < NARROW else 5
-    charts: list[ChartPanel | None] = []
+    charts = []
     bands = [drawn[first : first + across] for first in range(0, len(drawn), across)]
     for band in bands:
         in_rows = [_history_row(band, drawn, column, notes) for column in columns]
@@ -196,7 +196,7 @@ def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes:
     label = f"{name}\n[{unit}]" if unit else name
     charts = []
     for panel in band:
-        lines: list[ChartLine] = []
+        lines = []
         for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
             line = ChartLine(solver, history.time, values, note=notes.get(solver, ""))

@@ -15,7 +15,7 @@ from validation.report.figures.histories import Margins, house_style, save
 from validation.runs.aliases import Fields
 from validation.runs.columns import axis_of
 from validation.runs.files import write_atomically
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, ArrayPair
 
 DASHED = (4.0, 1.6)
 BETWEEN = 12.0  # two panels [mm]: the powers of ten of the right one stand there
@@ -32,7 +32,7 @@ class ResponseCurve:
     solver: str  # whose colour it has
     dashed: bool  # exact in time
     frequency: Array  # Hz
-    columns: Mapping[str, tuple[Array, Array]]  # column -> amplitude and phase
+    columns: Mapping[str, ArrayPair]  # column -> amplitude and phase
 
 
 def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metre: bool = False) -> Figure:

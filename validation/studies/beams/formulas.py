@@ -13,6 +13,7 @@ P L^3 / (3 EI) + P L (1/G + 1/(g E)) / w, since squares keep plane rows.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import starmap
 
 import numpy as np
 
@@ -43,8 +44,8 @@ def ratios(case: Scene, row: Row, elements: Row) -> NewMetrics:
 
 def orders(levels: Sequence[tuple[Scene, Row, Row]]) -> Metrics:
     """Return the order of the last halving of the block, by metric."""
-    coarse, fine = (ratios(*level) for level in levels[-2:])
-    orders: NewMetrics = {}
+    coarse, fine = starmap(ratios, levels[-2:])
+    orders = {}
     for metric, ratio in fine.items():
         before = coarse[metric]
         if isinstance(ratio, float) and isinstance(before, float):

@@ -13,7 +13,6 @@ import numpy as np
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Metrics
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 
@@ -21,22 +20,22 @@ from validation.suite.bands import Band
 def masses(case: Scene) -> list[float]:
     """Return the masses of the boxes, from the lowest up [kg]."""
     blocks = case.table(PlaneSection).assembly.blocks
-    return [block.density * area(block.vertices) for block in blocks if not block.fixed]
+    return [block.mass for block in blocks if not block.fixed]
 
 
 def slide(case: Scene, own: History, exact: History) -> Metrics:
     """Return how far the box is ahead at the end [m], and its normal force over the exact one, less one."""
     force = "box-ground.normal"
     return {
-        "lead": float(own.columns["box.x"][-1] - exact.columns["box.x"][-1]),
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "lead": own.columns["box.x"][-1] - exact.columns["box.x"][-1],
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 
 def rock(case: Scene, own: History, exact: History) -> Metrics:
     """Return the greatest rotation over the exact one, less one."""
     angle = "box.angle"
-    return {"rotation": float(np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1)}
+    return {"rotation": np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1}
 
 
 def stack(case: Scene, own: History, exact: History) -> Metrics:
@@ -46,7 +45,7 @@ def stack(case: Scene, own: History, exact: History) -> Metrics:
     force = "A-ground.normal"
     return {
         "sinking": float(exact.columns["E.y"][-1] - own.columns["E.y"][-1]) / springs - 1,
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 

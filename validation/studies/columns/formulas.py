@@ -14,11 +14,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from validation.runs.aliases import Fields
+from validation.runs.beside import table_beside
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.suite import tables
 from validation.suite.bands import Band, fitted_order
 from validation.theory import columns
 from validation.theory.stepping import Stepping
@@ -52,7 +52,7 @@ def jointed() -> Iterator[Scene]:
 
 def samples(scene: Scene, history: History) -> Metrics:
     """Return the values of a history that were printed, each named as ``displacement_1 at 0.02 s``."""
-    values: NewMetrics = {}
+    values = {}
     for name in printed("samples")[scene.name]:
         column, _, time = name.removesuffix(" s").partition(" at ")
         row = int(np.argmin(np.abs(history.time - float(time))))
@@ -64,7 +64,7 @@ def samples(scene: Scene, history: History) -> Metrics:
 def printed(row: str) -> dict[str, Fields]:
     """Return the printed numbers of a row, by case and metric."""
     numbers: dict[str, Fields] = {}
-    for entry in tables.read(__file__)["gate"]:
+    for entry in table_beside(__file__, "study.toml")["gate"]:
         if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
             numbers |= entry["numbers"]
     return numbers
@@ -89,7 +89,7 @@ def pieces(scene: Scene, history: History) -> Metrics:
     speed = math.sqrt(column.modulus(layer) / layer.density)
     rows = round(2 * column.height / len(middles) / speed / scene.time.step)
     elapsed = rows * scene.time.step
-    values: NewMetrics = {}
+    values = {}
     for number, name in enumerate(middles, start=1):
         before, after = history.columns[name][[-1 - rows, -1]]
         values[f"piece {number}"] = float(after - before) / elapsed
@@ -128,7 +128,7 @@ def rest(scene: Scene, history: History) -> Metrics:
     outside = np.flatnonzero(np.abs(moved - settled) > 1e-3 * abs(settled))
     if outside.size == len(moved):
         return {"time": "undefined"}
-    return {"time": float(history.time[outside[-1]]) if outside.size else 0.0, "final": float(moved[-1] / settled)}
+    return {"time": history.time[outside[-1]] if outside.size else 0.0, "final": moved[-1] / settled}
 
 
 def settlement(scene: Scene) -> float:
@@ -145,7 +145,7 @@ def settlement(scene: Scene) -> float:
 
 def residual(scene: Scene, history: History) -> Metrics:
     """Return the slips that remain of the lowest and the highest joint [m]."""
-    return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
+    return {"lowest": history.columns["slip_1"][-1], "highest": history.columns["slip_5"][-1]}
 
 
 def exact_joint(case: Scene) -> Metrics:

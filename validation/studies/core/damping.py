@@ -9,10 +9,10 @@ from __future__ import annotations
 import functools
 from collections.abc import Iterator
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.runs.beside import table_beside
 from validation.runs.row import Metrics, Row, Value
 from validation.scenes.scene import Scene
-from validation.suite import tables
 from validation.suite.bands import Band, about, cases
 from validation.theory import spectra
 
@@ -24,7 +24,7 @@ UNDAMPED = 1e-12
 
 def compared_cases() -> Iterator[Scene]:
     """Return the cases of the study."""
-    return cases(*tables.read(__file__)["study"]["scenes"])
+    return cases(*table_beside(__file__, "study.toml")["study"]["scenes"])
 
 
 def solvers(scene: Scene) -> list[str]:
@@ -33,7 +33,7 @@ def solvers(scene: Scene) -> list[str]:
     return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the derived row of every case."""
     rows = []
     for scene in compared_cases():

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import cmath
 import functools
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -84,7 +84,7 @@ def first_peak(case: Scene, dda: Row, bar: Row) -> Metrics:
 
 def derived() -> Iterator[Derived]:
     """Yield the rows in closed form."""
-    rows: dict[str, Callable[[Finished], Metrics]] = {"closed": _closed}
+    rows = {"closed": _closed}
     rows |= {f"p = {ratio:g}E": functools.partial(_stiffness, ratio) for ratio in RATIOS}
     rows |= {f"stepped at {step:g}": functools.partial(_stepped, step) for step in STEPPED}
     rows |= {f"gg = {gg:g}": functools.partial(_discount, gg) for gg in DISCOUNTS}

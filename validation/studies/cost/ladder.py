@@ -32,15 +32,14 @@ from __future__ import annotations
 import functools
 import math
 import operator
-import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import numpy as np
 
 from validation.errors import InputError
 from validation.runs.aliases import Fields, NamedNumbers
-from validation.runs.history import Array
+from validation.runs.beside import table_beside
+from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
@@ -52,7 +51,6 @@ RIGID = 1e6  # E W / H, in place of an infinite stiffness
 LEVEL_OF_CHOICES = 32  # steps a period
 CUTS = {"few": 4, "many": 16}  # sub-blocks upwards
 SQUARE_CUTS = {"few": 3, "many": 6}  # along both sides, where the motion is not that of a column
-TABLE = Path(__file__).with_name("methods.toml")
 
 
 @dataclass(frozen=True)
@@ -92,7 +90,7 @@ class Method:
 @functools.cache
 def methods() -> tuple[Method, ...]:
     """Return the methods, and at the end what a choice changes of one of them."""
-    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
+    table = table_beside(__file__, "methods.toml")
     schemes = table["schemes"]
     listed = [Method(time=schemes[row.pop("scheme")], **row) for row in table["method"]]
     for choice in table["choice"]:
@@ -102,7 +100,7 @@ def methods() -> tuple[Method, ...]:
     return tuple(listed)
 
 
-def one_strain(scene: Scene) -> tuple[Array, Array]:
+def one_strain(scene: Scene) -> ArrayPair:
     """Return mass and stiffness of a block of one strain on closed springs, for displacement and strain."""
     height = scene.block.extent[1]
     k = min(2 * scene.contact.stiffness, RIGID * scene.block.young * scene.block.base_length / height)
@@ -216,7 +214,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, Fields] = {}
+        tables = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -230,7 +228,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: Fields = {"mode": "zip", "time.steps": counts}
+        sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

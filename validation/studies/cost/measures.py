@@ -64,9 +64,9 @@ def errors(ladder: Ladder, history: History, reference: History) -> NamedNumbers
     count = max(1, round(ladder.mean / float(reference.time[0])))
     error_of = {}
     for quantity, column in QUANTITIES.items():
-        smooth = []
-        for motion in (history, reference):
-            smooth.append(running_mean(running_mean(on_grid(motion, column, grid), count), count))
+        smooth = [
+            running_mean(running_mean(on_grid(motion, column, grid), count), count) for motion in (history, reference)
+        ]
         error_of[quantity] = or_nan(relative_l2(*smooth))
     return error_of
 
@@ -192,7 +192,7 @@ class BlockRows:
         def compute(finished: Finished) -> Metrics:
             runs = self.runs(finished)
             places = [np.argsort(np.argsort([run.number(name) for run in runs])) for name in ("work", "seconds")]
-            facts: NewMetrics = {"rank": float(np.asarray(np.corrcoef(places))[0, 1])}
+            facts: NewMetrics = {"rank": np.asarray(np.corrcoef(places))[0, 1]}
             for who in (ANY, OWN, ELEMENTS):
                 facts[f"reached.{who}"] = reached([run for run in runs if who in (ANY, run.method.solver)], quantity)
             one_strain = [run for run in runs if run.method.solver == OWN and not run.method.cut]

@@ -11,10 +11,10 @@ import functools
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import APART, Band, cases, near, order_row
 from validation.theory import friction
@@ -38,7 +38,7 @@ def slid(columns: Data) -> np.ndarray:
     return np.asarray((columns["slide_m"] + columns["slide_n"]) / 2)
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
     return (
         *(_nearest(step) for step in PROGRAM),
@@ -50,11 +50,11 @@ def base(scene: Scene, history: History) -> Metrics:
     """Return the mean slide of the corners at quarters of the run, and its mean speed over the second half."""
     mean_slide = slid(history.columns)
     n = len(history.time)
-    values: NewMetrics = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
+    values = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
     speed = (mean_slide[-1] - mean_slide[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
     mean_speed = mean_slide[-1] / history.time[-1]
     scale = friction.creep_scale(scene)
-    return values | {"speed": float(speed), "mean_speed": float(mean_speed), "share": float(mean_speed / scale)}
+    return values | {"speed": speed, "mean_speed": mean_speed, "share": mean_speed / scale}
 
 
 def _nearest(step: float) -> Derived:

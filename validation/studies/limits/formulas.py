@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import or_nan
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
@@ -37,7 +37,7 @@ def scenes() -> tuple[str | Scene, ...]:
     return "locking", *fine(), "long-run"
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return displacements at rest over each other: linear over quadratic elements, coarse over fine ones."""
     cases_by_data = {(case.block.poisson, case.fem.degree): case for case in cases("locking")}
     rows = []

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import or_nan
 from validation.runs.aliases import Data, Fields, NamePair, NumberPair
 from validation.runs.case_name import scene_of
@@ -25,7 +25,7 @@ from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import facts
 from validation.studies.methods.closed import exact_locked
 from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
-from validation.suite.bands import Band, about, fitted_order
+from validation.suite.bands import Band, Bands, about, fitted_order
 from validation.theory import friction, rebound, spectra
 from validation.theory.stepping import Stepping
 
@@ -161,10 +161,10 @@ STOPS: Mapping[str, tuple[str, Fields]] = {  # what turns a block back at a rigi
 def rigid(stop: str) -> Scene:
     """Return the block on a rigid stop, over halved steps."""
     words, values = STOPS[stop]
-    rigid_stop: Fields = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     lists = halved(RIGID_COARSEST, RIGID_LEVELS)
-    sweep: Fields = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
+    sweep = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
@@ -252,7 +252,7 @@ def sliding_cases() -> Iterator[Scene]:
 def locked_error(case: Scene, history: History) -> Metrics:
     """Return the largest displacement error over the largest exact displacement."""
     expected = exact_locked(case, history.time)
-    return {"largest": float(np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected)))}
+    return {"largest": np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected))}
 
 
 def final_energy(case: Scene, finished: Finished) -> Metrics:
@@ -382,7 +382,7 @@ def row(
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
     declared = [row(COST, ERROR, [*cost_cases().values()], equal_cost)]
     compared = [case for name in ("constant", *FAST) for case in expanded(refined(method(name)))]
@@ -435,7 +435,7 @@ def _short(value: float) -> float | None:
 # ---- bands ----------------------------------------------------------------------------------------------------------
 
 
-def damping_ratios(case: Scene) -> dict[str, Band]:
+def damping_ratios(case: Scene) -> Bands:
     """Return the damping ratios of both modes of the locked block, where the scheme's roots swing."""
     stepping = Stepping.of(case)
     ratios = {}

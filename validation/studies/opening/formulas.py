@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 
-from validation.engine.finished import Derived
+from validation.engine.finished import DerivedRows
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import order_row
 
@@ -23,7 +23,7 @@ REFINED = {  # scene -> what converges to what, the step or mesh width that is r
 
 def samples(case: Scene, history: History) -> Metrics:
     """Return displacement and contact pressure at the instants."""
-    values: NewMetrics = {}
+    values = {}
     for n in INSTANTS:
         values[f"displacement.{n}"] = float(history.displacement[n - 1])
         values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
@@ -40,6 +40,6 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-def orders() -> tuple[Derived, ...]:
+def orders() -> DerivedRows:
     """Return the rows of orders."""
     return tuple(order_row(name, *refined) for name, refined in REFINED.items())

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from dda.scheme.spectral import spectral_radius
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.metrics.values import as_number
 from validation.runs.aliases import Data
@@ -67,7 +67,7 @@ def gates() -> tuple[Gate, ...]:
     return CLAIMS_OF_THE_PAPER.gates()
 
 
-def rows() -> tuple[Derived, ...]:
+def rows() -> DerivedRows:
     """Return the rows of the claims, and what Figures 1 and 3 to 9 draw beside histories and metrics."""
     of_figures = (_period(case) for case in cases(*FIGURES))
     of_map = (_angles(case) for case in cases("damping-map"))

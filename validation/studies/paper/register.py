@@ -89,7 +89,7 @@ def stiff_steps(e: Evidence) -> NamedNumbers:
 
 def stiff_alike(e: Evidence) -> NamedNumbers:
     """Return the difference of settling steps between p = 10E and 100E, at 1 % and at 1e-4."""
-    differences: NamedNumbers = {}
+    differences = {}
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
         for quantity, word in (("displacement", "displacement"), ("pressure", "contact force")):
             steps = [e.settles(case, quantity, tolerance) for case in (STIFF, STIFFEST)]
@@ -107,10 +107,10 @@ def over_steps(e: Evidence) -> NamedNumbers:
     rise = np.diff(xi)
     below = omega[1:] < 3.28
     return {
-        "least rise of xi below w dt = 3.27": float(rise[below].min()),
-        "least rise of xi above": float(rise[~below].min()),
-        "greatest xi": float(xi.max()),
-        "at w dt": float(omega[np.argmax(xi)]),
+        "least rise of xi below w dt = 3.27": rise[below].min(),
+        "least rise of xi above": rise[~below].min(),
+        "greatest xi": xi.max(),
+        "at w dt": omega[np.argmax(xi)],
     }
 
 
@@ -125,7 +125,7 @@ def over_stiffness(e: Evidence) -> NamedNumbers:
     return {
         "least rise of xi with p, dt to 6.2 ms": min(rises),
         **{f"|lambda| at dt = 0.01, p = {p:g}E": value for p, value in zip(ladder, first, strict=True)},
-        "fall of |lambda| at dt = 0.01": float(-np.diff(first).max()),
+        "fall of |lambda| at dt = 0.01": -np.diff(first).max(),
         "contact |lambda| at dt = 0.01, p = 100E": e.number(cell(100.0, 0.01), "contact.spectral_radius"),
     }
 
@@ -134,7 +134,7 @@ def peaks(displacement: Array) -> Array:
     """Return the heights of a history's maxima above the static value."""
     middle = displacement[1:-1]
     is_peak = (middle > displacement[:-2]) & (middle >= displacement[2:]) & (middle > 1)
-    return np.asarray(middle[is_peak])
+    return middle[is_peak]
 
 
 def small_step(e: Evidence) -> NamedNumbers:
@@ -145,7 +145,7 @@ def small_step(e: Evidence) -> NamedNumbers:
     for case, p in zip(A7, ("1E", "10E", "100E"), strict=True):
         heights = peaks(e.scaled(case, "displacement"))
         xi = e.number(case, "mode1.damping")
-        values |= {f"first peak at {p}": float(heights[0]), f"last peak at {p}": float(heights[-1]), f"xi at {p}": xi}
+        values |= {f"first peak at {p}": heights[0], f"last peak at {p}": heights[-1], f"xi at {p}": xi}
         falls.append(float(heights[0] - heights[-1]))
         lost.append(1 - math.exp(-2 * math.pi * PERIODS * xi / math.sqrt(1 - xi * xi)))
     return values | {
@@ -177,8 +177,8 @@ def quasi_static(e: Evidence) -> NamedNumbers:
     distance = np.abs(e.scaled(undamped, "displacement") - 1)
     return {
         "constant acceleration, steps to 1 %": e.settles(damped, "displacement"),
-        "its last distance from static": float(abs(e.scaled(damped, "displacement")[-1] - 1)),
-        "average acceleration, greatest distance over the last 50 steps": float(distance[-50:].max()),
+        "its last distance from static": abs(e.scaled(damped, "displacement")[-1] - 1),
+        "average acceleration, greatest distance over the last 50 steps": distance[-50:].max(),
     }
 
 
@@ -188,7 +188,7 @@ def discounted_amplitudes(e: Evidence) -> NamedNumbers:
     left = {f"|lambda| at gg = {s.time.discount:g}": radius for s, radius in zip(FIGURE_9, radii, strict=True)}
     squares = [radius**2 / s.time.discount for s, radius in zip(FIGURE_9, radii, strict=True)]
     return left | {
-        "least fall from one discount to the next": float(-np.diff(radii).max()),
+        "least fall from one discount to the next": -np.diff(radii).max(),
         "|lambda|^2 / gg - 1, largest": max(abs(square - 1) for square in squares),
     }
 
@@ -259,11 +259,11 @@ def high_frequencies(e: Evidence) -> NamedNumbers:
     below = omega < 4
     above = omega > 4
     return {
-        "greatest rise of |lambda| below w dt = 4": float(np.diff(radius[below]).max()),
-        "least |lambda|": float(radius.min()),
-        "greatest w dt of the map": float(omega[-1]),
-        "|lambda| there": float(radius[-1]),
-        "least rise of |lambda| above w dt = 4": float(np.diff(radius[above]).min()),
+        "greatest rise of |lambda| below w dt = 4": np.diff(radius[below]).max(),
+        "least |lambda|": radius.min(),
+        "greatest w dt of the map": omega[-1],
+        "|lambda| there": radius[-1],
+        "least rise of |lambda| above w dt = 4": np.diff(radius[above]).min(),
     }
 
 
@@ -280,7 +280,7 @@ def boundary(e: Evidence) -> NamedNumbers:
 
 def discount_alone(e: Evidence) -> NamedNumbers:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
-    ratios: NamedNumbers = {}
+    ratios = {}
     squares = []
     for name, s in DISCOUNTS.items():
         ratios[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")

@@ -12,6 +12,7 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Sequence
+from itertools import starmap
 
 import numpy as np
 
@@ -19,8 +20,8 @@ from validation.metrics.values import or_nan
 from validation.models.plane.blocks import Vertices
 from validation.models.plane.glued import Loads, PlateSection
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NumberPair
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.aliases import NamedNumbers, NumberPair
+from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
@@ -114,10 +115,10 @@ def cells_of(case: Scene) -> int:
 # ---- rows and bands -------------------------------------------------------------------------------------------------
 
 
-def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
+def parts(case: Scene, dda: Row, fem: Row | None = None) -> NamedNumbers:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(dda.metrics[STATIC])
-    values: NewMetrics = {
+    values = {
         "cells": float(cells_of(case)),
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
@@ -142,12 +143,12 @@ def parts(case: Scene, dda: Row, fem: Row | None = None) -> Metrics:
 
 def orders(levels: Levels) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
-    coarse, fine = (parts(*level) for level in levels[-2:])
-    values: NewMetrics = {}
+    coarse, fine = starmap(parts, levels[-2:])
+    values: NamedNumbers = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
-            errors = abs(float(str(coarse[name])) / float(str(fine[name])))
-            values[name] = math.log(errors) / math.log(float(str(fine["cells"])) / float(str(coarse["cells"])))
+            errors = abs(coarse[name] / fine[name])
+            values[name] = math.log(errors) / math.log(fine["cells"] / coarse["cells"])
     return values
 
 

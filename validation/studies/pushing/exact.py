@@ -179,7 +179,7 @@ def _first_zero(function: Callable[[float], float], span: float) -> float | None
     for k in range(1, SAMPLES + 1):
         t = span * k / SAMPLES
         if function(t) < 0:
-            return float(brentq(function, before, t, xtol=1e-16, rtol=1e-14)) if function(before) > 0 else before
+            return brentq(function, before, t, xtol=1e-16, rtol=1e-14) if function(before) > 0 else before
         before = t
     return None
 

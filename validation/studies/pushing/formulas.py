@@ -77,8 +77,8 @@ def against_exact(scene: Scene, history: History) -> Metrics:
         "upper": upper,
         "lower": lower,
         "centre": (first * upper + second * lower) / (first + second),
-        "largest push": float(np.max(push)),
-        "balance": float(np.max(np.abs(history.columns["energy.balance"])) / np.max(energy)),
+        "largest push": np.max(push),
+        "balance": np.max(np.abs(history.columns["energy.balance"])) / np.max(energy),
     }
 
 
@@ -112,7 +112,7 @@ def first_correction(case: Scene) -> float:
     """Return W/(p l): all weight on one corner spring over the thinnest block that moves."""
     plane = case.table(PlaneSection)
     moving = [block for block in plane.assembly.blocks if not block.fixed]
-    weight = sum(block.density * area(block.vertices) for block in moving) * math.hypot(*plane.gravity)
+    weight = sum(block.mass for block in moving) * math.hypot(*plane.gravity)
     stiffness = plane.contact.stiffness if plane.contact else math.inf
     return weight / (stiffness * plane.assembly.thinnest)
 

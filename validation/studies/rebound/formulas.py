@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.metrics.values import finite, or_nan
 from validation.runs.aliases import Data, NamePair, NumberPair
@@ -66,7 +66,7 @@ def expected(scene: Scene) -> float:
     return impact_restitution(t.alpha, t.delta, t.discount, omega(scene), phase(scene))
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that need no run, by scheme and by p/E."""
     statistics = [Derived(MAP, label(scheme), (), functools.partial(stiff, scheme)) for scheme in STIFF]
     own = [Derived(MAP, f"p = {r:g}E", (), functools.partial(own_landing, r)) for r in EXACT_SWITCHES]

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from validation.advice.response import Response, polar, response
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.aliases import Data, Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE
@@ -108,7 +108,7 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metri
 def _removed(_: Finished) -> Metrics:
     """Return the share of the displacement near the first frequency that the step takes."""
     exact, stepped, _average = (abs(one.reported("dda", RESONANCE).columns[DISPLACEMENT][0]) for one in answers())
-    return {"removed": float(1 - stepped / exact)}
+    return {"removed": 1 - stepped / exact}
 
 
 def loaded_gates() -> Iterator[Gate]:
@@ -287,7 +287,7 @@ def viscous_gates() -> Iterator[Gate]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows under the pressure, of the steps, and of the damping."""
     rows = []
     for answer in answers():
@@ -320,7 +320,7 @@ def curves() -> Data:
     }
     drawn = []
     for name, reported in responses.items():
-        curve: Fields = {"name": name, "frequency": short(DRAWN)}
+        curve = {"name": name, "frequency": short(DRAWN)}
         for column, values in reported.columns.items():
             size, phase = polar(values)
             curve |= {column: short(size), f"{column}_phase": short(phase)}

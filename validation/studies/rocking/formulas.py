@@ -9,9 +9,9 @@ import numpy as np
 
 from validation.metrics.rotation import crossing, landing
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band
+from validation.suite.bands import Band, Bands
 from validation.theory.rocking import rectangle, settlement
 
 PULSED = "rocking-pulse"
@@ -50,7 +50,7 @@ def passage(scene: Scene, history: History) -> Metrics:
 def rigid(scene: Scene) -> Metrics:
     """Return the rigid block: its shape and its tilt, or the pulse over the least one that overturns it."""
     block = rectangle(scene)
-    values: NewMetrics = {"slenderness": block.height / block.width, "tipping": block.alpha}
+    values = {"slenderness": block.height / block.width, "tipping": block.alpha}
     if scene.name.startswith(PULSED):
         return values | {"size": PUSH / block.gravity / block.pulse_threshold(DURATION)}
     tilt = math.radians(scene.block.tilt)
@@ -84,7 +84,7 @@ def quarter_period(case: Scene) -> Band:
     return 1 - early, 1 + late
 
 
-def pulsed(case: Scene) -> dict[str, Band]:
+def pulsed(case: Scene) -> Bands:
     """Return what a pulse that is sampled does, over what the pulse does to a rigid block."""
     exact = after_pulse(case)
     off = (case.time.step / DURATION) ** 2

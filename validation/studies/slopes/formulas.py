@@ -15,11 +15,11 @@ import numpy as np
 from validation.metrics.values import or_nan
 from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.slopes import closed as closed_forms
-from validation.suite.bands import APART, Band, Runs, about, cases, near, short
+from validation.suite.bands import APART, Band, Bands, Runs, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -47,7 +47,7 @@ RATE = 2.0  # Hz
 def sliding(scene: Scene, history: History) -> np.ndarray:
     """Return u_t + tan(phi) u_n of the centroid [m]."""
     along = history.columns["horizontal_displacement"]
-    return np.asarray(along + friction.coefficient(scene) * history.displacement)
+    return along + friction.coefficient(scene) * history.displacement
 
 
 def acceleration(scene: Scene, history: History) -> float:
@@ -77,13 +77,13 @@ def ringing(scene: Scene, history: History) -> Metrics:
     """Return the largest error of a sliding block over its exact way, from a start on."""
     way = friction.sliding_acceleration(scene) * history.time**2 / 2
     late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
-    return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
+    return {"error": np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late])}
 
 
 def rigid_ringing() -> Metrics:
     """Return the error of a rigid block that slides and stays closed, over penalty and step."""
     scene = next(iter(cases(STIFFNESS)))
-    numbers: NewMetrics = {}
+    numbers = {}
     for p, step in itertools.product((1e8, 1e9), FACT_STEPS):
         numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed_forms.normal_ringing_error(scene, p, step)
     return numbers
@@ -98,7 +98,7 @@ def late_friction() -> Metrics:
 def discounted() -> Metrics:
     """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
     gg = 0.98
-    numbers: NewMetrics = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
+    numbers = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
     for step in (1e-2, 5e-3, 2.5e-3, 1e-3):
         numbers[f"rate at dt = {1e3 * step:g} ms, 1/s"] = -math.log(gg) / step
     for step in (1e-2, 2.5e-3):
@@ -115,7 +115,7 @@ def against_rigid(scene: Scene, history: History) -> Metrics:
     """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
     rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
-    return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
+    return {"slide": slide[-1], "largest difference": np.max(np.abs(slide - rigid))}
 
 
 def threshold(runs: Runs) -> Metrics:
@@ -163,7 +163,7 @@ def late_waves(case: Scene) -> Band:
     return about(0.0, 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration)
 
 
-def shaken(case: Scene) -> dict[str, Band]:
+def shaken(case: Scene) -> Bands:
     """Return the slide on a base that shakes, and its distance from that of a rigid mass [m]."""
     resisted = friction.coefficient(case) * friction.across(case)
     stretch = case.block.mass * resisted / (2 * case.contact.shear)
@@ -172,7 +172,7 @@ def shaken(case: Scene) -> dict[str, Band]:
     return _beside(rigid.at([rigid.end])[0][0], 2 * CYCLES * stretch + late)
 
 
-def in_an_earthquake(case: Scene) -> dict[str, Band]:
+def in_an_earthquake(case: Scene) -> Bands:
     """Return the same on a base that follows a record of several frequencies [m]."""
     rigid = rigid_motion(case, smooth=True)
     ends = [*(t for t, _ in rigid.switches[1:]), case.time.duration]
@@ -188,7 +188,7 @@ def lag(case: Scene) -> Band:
     return APART, friction.lag(case)
 
 
-def _beside(slide: float, allowed: float) -> dict[str, Band]:
+def _beside(slide: float, allowed: float) -> Bands:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
 
 
@@ -196,7 +196,7 @@ def closed(case: Scene) -> Metrics:
     """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
     acceleration = friction.sliding_acceleration(case)
     displacement, _ = friction.free_motion(case, acceleration)
-    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": float(displacement[-1])}
+    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": displacement[-1]}
 
 
 def beside_closed(case: Scene, dda: Row) -> Metrics:

@@ -12,9 +12,8 @@ from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, Runs, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
 
 STRAINS = ("ex", "ey", "gxy")
@@ -33,7 +32,7 @@ def accounts(scene: Scene, history: History) -> NewMetrics:
     """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    return {"momentum": float(np.max(np.abs(momentum - 1))), "balance": float(balance)}
+    return {"momentum": np.max(np.abs(momentum - 1)), "balance": float(balance)}
 
 
 def against_motion(scene: Scene, history: History) -> Metrics:
@@ -63,7 +62,7 @@ def orders(runs: Runs) -> Metrics:
     return {name: fitted_order(steps, [error[name] for error in errors]) for name in names}
 
 
-def second_order() -> dict[str, Band]:
+def second_order() -> Bands:
     """Return 2 -/+ what the largest step departs from the leading term of its error.
 
     A mode of frequency w has in average acceleration the phase 2 atan(w h / 2) = w h - (w h)^3/12 + (w h)^5/80 a step:
@@ -85,7 +84,7 @@ def rounding(case: Scene) -> Band:
     return 0.0, case.time.steps * EPS
 
 
-def steady(case: Scene) -> dict[str, Band]:
+def steady(case: Scene) -> Bands:
     """Return strain, area and rate of a steady spin: each rounded once a step, the rate as a difference of angles."""
     exact = spinning_of(case)
     relative = case.time.steps * EPS
@@ -117,7 +116,7 @@ def weight_over_stiffness(scene: Scene) -> float:
     """Return W/p [m]."""
     plane = scene.table(PlaneSection)
     (block,) = moving_blocks(scene)
-    weight = block.density * area(block.vertices) * -plane.gravity[1]
+    weight = block.mass * -plane.gravity[1]
     return weight / plane.contact.stiffness if plane.contact else 0.0
 
 
@@ -135,7 +134,7 @@ def against_stop(scene: Scene, history: History) -> Metrics:
     way = history.columns["block.x"] - slide.start
     parabola = slide.speed * t - slowing * t**2 / 2
     sliding = t < 0.99 * slide.speed / slowing
-    return {"parabola": float(np.max(np.abs((way - parabola)[sliding]))), "distance": float(way[-1])}
+    return {"parabola": np.max(np.abs((way - parabola)[sliding])), "distance": way[-1]}
 
 
 def closed_stop(case: Scene) -> Metrics:
@@ -174,7 +173,7 @@ def turn_at_end(scene: Scene, history: History) -> NumberPair:
 def against_ledge(scene: Scene, history: History) -> Metrics:
     """Return the turn at the end over the rigid block's, less one, or where it stops [m]."""
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    accounted: NewMetrics = {"balance": float(balance), "stiffness": stiffness_of(scene)}
+    accounted = {"balance": float(balance), "stiffness": stiffness_of(scene)}
     slide = slide_of(scene)
     if slide.tips is None:
         return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}

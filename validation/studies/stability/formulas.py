@@ -12,7 +12,7 @@ from typing import Any
 
 from validation.gates.gate import Gate
 from validation.metrics.growth import Stability
-from validation.runs.aliases import Data, Fields
+from validation.runs.aliases import Data
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import gate
 from validation.theory import spectra
@@ -45,7 +45,7 @@ def conditional(alpha: float, delta: float) -> bool:
 def scheme_scene(alpha: float, delta: float, start: str, sweep: Data) -> Scene:
     """Return the base scene under a scheme, swept."""
     limited = conditional(alpha, delta)
-    values: Fields = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+    values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
     base = load_scene("extremes")
     if limited:
         values["time.allow_unstable"] = True
@@ -66,7 +66,7 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
     """Yield the one-factor extremes of constant acceleration at rest and of average acceleration, consistent."""
     for name, start in itertools.product(names, STARTS):
         ((alpha, delta),) = STARTS[start]
-        values: Fields = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+        values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
         if name.startswith("plane"):
             values["block.hypothesis"] = name.replace("-", " ")
         scene = load_scene("extremes").with_values(values)

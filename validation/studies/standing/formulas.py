@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from validation.metrics.values import or_nan
 from validation.models.plane.canon import friction_of, half_truss, stiffness_of
 from validation.models.plane.limits import (
     flat_height,
@@ -177,7 +178,7 @@ LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], NumberPair]]] = {
 
 def verdict(case: Scene) -> Band:
     """Return the unbalanced share of the weight: none below the limit, above it at least a tenth of the excess."""
-    beyond = float(str(limit_of(case)["beyond"]))
+    beyond = or_nan(limit_of(case)["beyond"])
     return (LEVER * min(beyond, 1.0), 1.0) if beyond > 0 else (0.0, REST)
 
 
@@ -205,7 +206,7 @@ def turning(scene: Scene, history: History) -> Metrics:
 
     columns = [-history.columns[f"{name}.angle"] for name in moving(scene.table(PlaneSection))]
     ratios = [acceleration(column) / acceleration(exact) - 1 for column in columns]
-    return {"toe": ratios[0], "top": ratios[-1], "turn": float(exact[-1])}
+    return {"toe": ratios[0], "top": ratios[-1], "turn": exact[-1]}
 
 
 def turned_columns(scene: Scene, times: Array) -> Array:
@@ -246,7 +247,7 @@ def seats(runs: Runs) -> Metrics:
     pile = soft.table(PlaneSection).stack[0]
     share = (sum(pile.offsets) + pile.rectangle[0] / 2) / harmonic(pile.count, pile.rectangle[0])
     weight = soft.table(PlaneSection).density * math.prod(pile.rectangle) * 9.81
-    values: NewMetrics = {}
+    values = {}
     for number, (_, inner) in enumerate(seat_forces(pile.count, pile.rectangle[0], share), start=1):
         upper = pile.count + 1 - number
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
@@ -284,7 +285,7 @@ def at_rest(scene: Scene, history: History) -> Metrics:
     weight = truss.mass * truss.gravity
     _, most = truss.limit
     turn = -float(history.columns["half.angle"][-1])
-    values: NewMetrics = {"load": (load + weight) / (most + weight), "turned": turn}
+    values = {"load": (load + weight) / (most + weight), "turned": turn}
     u, _ = truss.limit
     values["beyond"] = turn - (math.atan2(truss.height, truss.length) - u)
     exact = truss.rest(load)
@@ -292,7 +293,7 @@ def at_rest(scene: Scene, history: History) -> Metrics:
         return values
     measured = {
         "turn": turn,
-        "thrust": float(history.columns["half.0-abutment.1.normal"][-1]),
+        "thrust": history.columns["half.0-abutment.1.normal"][-1],
         "shear": abs(float(history.columns["half.0-abutment.1.shear"][-1])),
     }
     return values | {name: value / exact[name] - 1 for name, value in measured.items()}

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 from validation.metrics.rotation import crossing, increments
 from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, about, cases, short
+from validation.suite.bands import Band, Bands, about, cases, short
 from validation.theory.friction import coefficient, sliding_acceleration
 from validation.theory.rocking import rectangle, settlement
 
@@ -49,15 +49,15 @@ def slide(scene: Scene, history: History) -> Metrics:
     v = history.displacement
     sliding_distance = sliding_acceleration(scene) * history.time**2 / 2
     return {
-        "identity": float(np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1]),
-        "run-out": float(u[-1] / sliding_distance[-1]),
+        "identity": np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1],
+        "run-out": u[-1] / sliding_distance[-1],
     }
 
 
 def fall(scene: Scene, history: History) -> Metrics:
     """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
     rotation = -history.columns["rotation"]
-    values: NewMetrics = {"turned": float(np.max(np.abs(rotation)))}
+    values = {"turned": np.max(np.abs(rotation))}
     if beyond(scene) > 0:
         exact = rectangle(scene).fall_time(beyond(scene), TURN)
         values["time"] = crossing(history.time, rotation, TURN) / exact
@@ -103,7 +103,7 @@ def straight(scene: Scene) -> float:
     return (scene.time.step / rectangle(scene).fall_time(beyond(scene), TURN)) ** 2
 
 
-def let_go(case: Scene) -> dict[str, Band]:
+def let_go(case: Scene) -> Bands:
     """Return time, area and growth of a tower that is released on its lower corner, by its kind of rotation."""
     block = rectangle(case)
     grown = growth(case)

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from scipy.integrate import solve_ivp
 
+from validation.metrics.values import or_nan
 from validation.models.plane.canon import TOGETHER, falling, polygons
 from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers, NumberPair
@@ -63,7 +64,7 @@ def motion(scene: Scene, history: History) -> Metrics:
     pressed = np.flatnonzero(np.hypot(u, v) > TOUCHED)
     touch = touch_of(scene)
     energy = columns["energy.kinetic"]
-    gain = {"gain": float(np.max(energy) / energy[0] - 1)}
+    gain = {"gain": np.max(energy) / energy[0] - 1}
     if touch is None or not len(pressed):
         return {"missed": float((touch is None) != (not len(pressed))), **gain}
     first = int(pressed[0])
@@ -88,7 +89,7 @@ def turned_in_a_step(case: Scene) -> Band | None:
     speed = sum(math.hypot(*body.velocity) for body in bodies)
     plane = case.table(PlaneSection)
     stiffness = plane.contact.stiffness if plane.contact else 0.0
-    lightest = plane.density * min(area(block.vertices) for block in plane.assembly.blocks)
+    lightest = plane.density * min(block.area for block in plane.assembly.blocks)
     starts = speed * step * min(1.0, step**2 * stiffness / lightest * 4)
     return 0.0, 2 * step * sum(abs(body.spin) for body in bodies) + starts
 
@@ -201,7 +202,7 @@ def rigid(scene: Scene) -> NamedNumbers:
 
 def in_the_limit(runs: Runs) -> Metrics:
     """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
-    soft, stiff = (float(str(against_springs(*run)["J_n"])) / smooth_limit() - 1 for run in runs)
+    soft, stiff = (or_nan(against_springs(*run)["J_n"]) / smooth_limit() - 1 for run in runs)
     first, second = (case.table(PlaneSection).contact for case, _ in runs)
     root = math.sqrt(second.stiffness / first.stiffness) if first and second else math.nan
     return {"soft": soft, "stiff": stiff, "rigid": (root * stiff - soft) / (root - 1)}

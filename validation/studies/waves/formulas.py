@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived
+from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
 from validation.runs.aliases import NamePair
 from validation.runs.history import History
@@ -36,7 +36,7 @@ def scenes() -> tuple[str | Scene, ...]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
     return (
@@ -101,6 +101,6 @@ def sites() -> Iterator[Scene]:
 def largest(case: Scene, history: History) -> Metrics:
     """Return the largest displacement of the surface [m] and the largest stress on the base [Pa]."""
     return {
-        "displacement": float(np.abs(history.displacement).max()),
-        "pressure": float(np.abs(history.contact_pressure).max()),
+        "displacement": np.abs(history.displacement).max(),
+        "pressure": np.abs(history.contact_pressure).max(),
     }

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.metrics.transform import Complex, spectrum
+from validation.metrics.transform import spectrum
 from validation.runs.aliases import NumberPair
 from validation.runs.history import History
 from validation.scenes.scene import Scene
@@ -60,7 +60,7 @@ class Guide:
     def measured(self, history: History, names: Sequence[str]) -> complex:
         """Return k from three equal steps along the column, x- + x+ = 2 cos(kh) x [rad/m]."""
         low, middle, high = self.amplitudes(history, names)
-        sine: Complex = np.sqrt((2 * middle - low - high) / middle) / 2
+        sine = np.sqrt((2 * middle - low - high) / middle) / 2
         return complex(2 * np.arcsin(sine) / self.column.height)
 
     def parts(self, history: History, names: Sequence[str], heights: ArrayLike) -> tuple[complex, complex]:

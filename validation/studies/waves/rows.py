@@ -208,7 +208,7 @@ def base_gates() -> Iterator[Gate]:
 
 def curves() -> dict[str, list[dict[str, object]]]:
     """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
-    drawn: list[dict[str, object]] = []
+    drawn = []
     blocks = np.geomspace(7.5, 110, 60)
     for case in cases("waves-blocks"):
         guide = Guide.of(case, 10)
