@@ -11,7 +11,7 @@ from validation.runs.results import Results
 from validation.scenes.record import base_record
 from validation.scenes.scene import load_scene
 from validation.studies.response import formulas as response
-from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW, VISCOUS
+from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW
 from validation.suite.folders import get_study
 
 STUDY = get_study("response")
@@ -52,7 +52,7 @@ def reached(gate, solver):
 
 @pytest.mark.long
 def test_gates_on_steps_are_bitten(tmp_path, finished_cases):
-    stepped = (BASE, VISCOUS)
+    stepped = (BASE, "viscous")
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)
 

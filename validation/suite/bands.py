@@ -123,26 +123,3 @@ def gate(
     name = case if isinstance(case, str) else case.name
     names = (solvers,) if isinstance(solvers, str) else solvers
     return Gate(name, names, metric, *band, reason, kind, uncertainty, **window)
-
-
-def printed(
-    scene: Scene | str,
-    solvers: str | Words,
-    metric: str,
-    value: float,
-    half: float,
-    reason: str,
-    **window: Any,
-) -> Gate:
-    """Return the gate on a number that an independent program printed.
-
-    Parameters
-    ----------
-    scene, solvers, metric
-        What is judged.
-    value, half
-        The number, and half a unit of its last digit: the half width of the band.
-    reason, window
-        Why it is so, and further fields of the gate, such as `until`.
-    """
-    return gate(scene, solvers, metric, about(value, half), reason, OTHER, half, **window)
