@@ -347,24 +347,28 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
     many times the scene's it is.
     """
     solution, scene = explanation.fit, scene_fit.variant
+    v = solution.variant
     special_cases: list[dict[str, float]] = []
+    many_times: list[dict[str, float]] = []
     for name in solution.free:
         if name in ("alpha", "delta"):
             special_cases.append({"alpha": scene.alpha, "delta": scene.delta})
         elif name == "spectral":
-            special_cases += [{name: number} for number in SHARED.get(solution.variant.family, ())]
+            special_cases += [{name: number} for number in SHARED.get(v.family, ())]
         elif name == "gg":
             special_cases.append({name: scene.gg})
         else:
             special_cases.append({name: getattr(NEUTRAL, name)})
-            number = getattr(solution.variant, name)
-            if is_factor(name):
-                special_cases += [{name: number * MANIFOLD}, {name: number / MANIFOLD}]
-            elif name == "softness":
-                special_cases += [{name: number + math.log(MANIFOLD)}, {name: number - math.log(MANIFOLD)}]
+        if is_factor(name):
+            many_times += [{name: getattr(v, name) * MANIFOLD}, {name: getattr(v, name) / MANIFOLD}]
+        elif name == "softness":
+            many_times += [{name: v.softness + math.log(MANIFOLD)}, {name: v.softness - math.log(MANIFOLD)}]
     if not all(math.isfinite(interval.half_width) for interval in intervals(solution).values()):
         return False
-    specials = [fit_one(target, changed(solution.variant, case)) for case in special_cases]
+    starts: list[tuple[Variant, tuple[str, ...]]] = [(changed(v, case), ()) for case in special_cases]
+    # beside a stiffness that is hardly felt the other numbers are hardly others
+    starts += [(changed(v, case), tuple(name for name in solution.free if name not in case)) for case in many_times]
+    specials = fit(target, starts, ROUNDS)
     return not any(each.misfit <= NEGLIGIBLE or accepted(target, scene_fit, each) for each in specials)
 
 
