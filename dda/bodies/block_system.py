@@ -20,7 +20,7 @@ from dda.bodies.gap_form import D_COLUMNS, free_block
 from dda.bodies.joints import FIXED, Joint, gap_groups
 from dda.linear import elimination
 from dda.linear.krylov import amplitudes
-from dda.model.arrays import Array, without_rounding
+from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
 from dda.result.result import COLUMNS
@@ -171,7 +171,7 @@ class Equations:
     C: csr_array  # (gaps, gaps) [m/N]
     F: Array  # (modes,)
     inertia: Array  # (modes,) load of a unit acceleration of the base, or upwards
-    observers: dict[str, Array]  # column -> (modes,) row
+    observers: Columns  # column -> (modes,) row
     pressure: Array  # (gaps,) row of the contact pressure by lambda [1/m]
 
     @cached_property
@@ -186,12 +186,12 @@ class Equations:
         """The solver of `saddle`."""
         return factor(self.saddle, definite=False)
 
-    def at_rest(self, F: Array, g: Array) -> tuple[Array, Array]:
+    def at_rest(self, F: Array, g: Array) -> ArrayPair:
         """Return z and lambda of k z + B' lambda = F, B z - C lambda = g; the matrix is factorised once."""
         solution = self._factor(np.concatenate([F / self.scale, g]))
         return solution[: len(F)], self.scale * solution[len(F) :]
 
-    def at_base(self, F: Array, base: Array) -> tuple[Array, Array]:
+    def at_base(self, F: Array, base: Array) -> ArrayPair:
         """Return z and lambda at rest, where what is fixed has moved by (x, y) [m]."""
         return self.at_rest(F, self.G @ base)
 
@@ -200,7 +200,7 @@ class Equations:
         return self.F if np.any(self.F) else self.inertia
 
     def steady(
-        self, rows: tuple[Array, Array], F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
+        self, rows: ArrayPair, F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
     ) -> Complex:
         """Return what rows observe of a steady vibration, (rows, frequencies)."""
         W2, factor = answering(scheme, frequencies, exact)
@@ -269,7 +269,7 @@ class Equations:
             pressure=self.pressure[gaps],
         )
 
-    def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
+    def rows(self, columns: Sequence[str]) -> ArrayPair:
         """Return the rows of some columns by z and by lambda."""
         by_modes = np.zeros((len(columns), len(self.k)))
         by_force = np.zeros((len(columns), len(self.pressure)))

@@ -42,11 +42,11 @@ def columns_of(record: Record, model: ContactModel, rows: ContactRows) -> dict[s
     force = record.force
     return {
         "displacement": displacement,
-        "contact_pressure": force[:, :points].sum(axis=1) / model.length,
+        "contact_pressure": force[:, :points].sum(axis=1) / model.problem.base_length,
         "horizontal_displacement": horizontal,
         "rotation": rotation,
         "velocity": record.velocities[:, 0],
-        "base_shear": force[:, points:].sum(axis=1) / model.length,
+        "base_shear": force[:, points:].sum(axis=1) / model.problem.base_length,
         "open_share": (gap > 0) @ model.share,
         "largest_gap": np.maximum(gap, 0.0).max(axis=1),
         "largest_penetration": np.maximum(-gap, 0.0).max(axis=1),

@@ -7,7 +7,7 @@ from typing import Any
 from petsc4py import PETSc
 
 from .factor import Factor
-from .model import Meshed, Request
+from .model import Elements, Request
 
 
 class Newmark:
@@ -17,7 +17,7 @@ class Newmark:
     A1 = (D1 - D*) / (alpha dt^2), or M^-1 (F - K D1) for alpha = 0,  V1 = gg V + dt ((1 - delta) A + delta A1).
     """
 
-    def __init__(self, block: Meshed, request: Request) -> None:
+    def __init__(self, block: Elements, request: Request) -> None:
         self.M = block.M
         self.K = block.K
         self.moved = request["moved"]

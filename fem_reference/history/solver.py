@@ -11,7 +11,7 @@ from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, AdaptiveDiscount
 from fem_reference.history.reduced import Reduced, reduced
 from fem_reference.mesh.fields import FieldWriter
 from fem_reference.mesh.model import Model, build
-from fem_reference.problem.digits import bounded, front
+from fem_reference.problem.digits import bounded, coarse
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Result, check_request, just_ended
 from fem_reference.scheme.newmark import Stepper, Work
@@ -82,7 +82,7 @@ def solve(
         columns={name: every[name] for name in columns},
         unknowns=len(model.F),
         **vars(stepper.work),
-        notes=(*model.notes, *front(problem, scheme.step), _note(small)),
+        notes=(*model.notes, *coarse(problem, scheme.step), _note(small)),
         estimate=estimate,
     )
 

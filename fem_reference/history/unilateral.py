@@ -15,7 +15,7 @@ from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.points import ContactModel, Friction, build
 from fem_reference.contact.stepper import ContactStepper
 from fem_reference.problem.checks import require, require_numbers
-from fem_reference.problem.digits import front
+from fem_reference.problem.digits import coarse
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Result, just_ended
 
@@ -126,7 +126,7 @@ def solve_unilateral(
         unknowns=len(model.F),
         points=len(model.share),
         **vars(stepper.work),
-        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *notes),
+        notes=(*saving, *coarse(problem, scheme.step, opens=True), *notes),
     )
 
 
@@ -135,19 +135,6 @@ def _kept_columns(columns: tuple[str, ...]) -> tuple[str, ...]:
     motion = [name for name in dict.fromkeys(columns) if name not in (*LOSS_COLUMNS, *COUNTS)]
     losses = LOSS_COLUMNS if any(name in LOSS_COLUMNS for name in columns) else ()
     return (*motion, *losses, *(name for name in COUNTS if name in columns))
-
-
-def _ramp(problem: Problem) -> tuple[str, ...]:
-    """Say where the elements are longer than the way 1/kappa of a wave in which the base's pressure changes.
-
-    A wave of modulus lam + 2 G meets springs of 2 p / a for each length of the base: kappa = 2 p / (a (lam + 2 G)).
-    """
-    if problem.mesh is not None:
-        return ()
-    spring = 2 * problem.stiffness / problem.base_length
-    kappa = spring / (problem.lame + 2 * problem.shear_modulus)
-    passed = kappa * float(np.ptp(problem.outline[:, 1])) / problem.elements
-    return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
 
 
 def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilateral) -> ContactState:

@@ -23,6 +23,7 @@ from scipy.sparse import coo_array, csr_array, diags_array
 from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
 from skfem.helpers import ddot, div, dot, sym_grad
 
+from fem_reference.problem.material import Elastic
 from fem_reference.problem.problem import Array, Problem
 
 ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4, 2): ElementQuad2}
@@ -87,31 +88,34 @@ def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
     return assembled([(density, mass_form)], basis, congruent)
 
 
-def stiffness(basis: Basis, problem: Problem, congruent: bool = False) -> csr_array:
+def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
     """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
-    return assembled([(problem.shear_modulus, strain_form), (problem.lame, dilatation_form)], basis, congruent)
+    return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
 
 
-def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:
-    """Matrices that give u and v at points of cells, each of shape (count, unknowns).
-
-    Parameters
-    ----------
-    basis
-        The displacement basis.
-    points
-        Reference coordinates, shape (2, count).
-    cells
-        Cell of each point, shape (count,).
-    """
-    phi = np.array(
-        [basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0] for k in range(basis.Nbfun)]
-    )
-    rows = np.tile(np.arange(len(cells)), basis.Nbfun)
-    columns = basis.element_dofs[:, cells].ravel()
-    shape = (len(cells), basis.N)
+def values(basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
+    """Matrices that give u and v at the points of a rule, each of shape (count, unknowns)."""
+    x = rule.points[:, :, None]
+    phi = np.array([basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0][..., 0] for k in range(basis.Nbfun)])
+    rows = np.tile(np.arange(len(rule.cells)), basis.Nbfun)
+    columns = basis.element_dofs[:, rule.cells].ravel()
+    shape = (len(rule.cells), basis.N)
     u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
     return u, v
+
+
+def across_and_along(problem: Problem, basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
+    """Rows of the displacements normal to the base, into the block, and along it at the points of a rule."""
+    u, v = values(basis, rule)
+    across, along = (csr_array(x * u + y * v) for x, y in (problem.normal, problem.tangent))
+    return across, along
+
+
+def in_order(basis: Basis, rule: Rule, tangent: Array) -> tuple[Rule, Array]:
+    """A rule in the order of its points along a direction, and their places in it [m]."""
+    along = tangent @ basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
+    order = np.argsort(along, kind="stable")
+    return Rule(rule.points[:, order], rule.cells[order], rule.weights[order]), along[order]
 
 
 def edge_rule(
@@ -170,11 +174,7 @@ def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Arra
     The weights of `rule` sum to its length (or to the number of points); the whole foundation carries
     2 p normally and 2 p_s tangentially.
     """
-    u, v = values(basis, rule.points, rule.cells)
-    n = problem.normal
-    t = problem.tangent
-    normal = n[0] * u + n[1] * v
-    tangential = t[0] * u + t[1] * v
+    normal, tangential = across_and_along(problem, basis, rule)
     share = 2 * rule.weights / _carried(problem)
     k_n = problem.stiffness * share
     k_t = problem.shear_stiffness * share
@@ -213,7 +213,7 @@ def edge_load(
     start, end = problem.top_ends
     tangent = (end - start) / problem.top_length
     rule = edge_rule(basis.mesh, top, start, tangent, [interval], problem.degree + 1)
-    u, v = values(basis, rule.points, rule.cells)
+    u, v = values(basis, rule)
     return u.T @ rule.weights, v.T @ rule.weights
 
 
@@ -223,21 +223,15 @@ def load(basis: Basis, problem: Problem, top: NDArray[np.int64], M: csr_array) -
     if problem.traction != 0:
         F = F + problem.traction * edge_load(basis, problem, top, (-np.inf, np.inf))[0]
     if problem.gravity != 0:
-        F = F + M @ (translation(basis) @ np.array(problem.pull))
+        F = F + M @ (rigid_motions(basis)[:, :2] @ np.array(problem.pull))
     return F
-
-
-def translation(basis: Basis) -> Array:
-    """Unknowns of the unit translations in x and y, shape (unknowns, 2)."""
-    component = components(basis)
-    return np.stack([1 - component, component], axis=1)
 
 
 def rigid_motions(basis: Basis) -> Array:
     """Unknowns of the unit translations and of the turn by one about the origin, shape (unknowns, 3)."""
     x, y = basis.doflocs
-    turn = np.where(components(basis) == 0, -y, x)
-    return np.column_stack([translation(basis), turn])
+    v = components(basis)
+    return np.column_stack([1 - v, v, np.where(v == 0, -y, x)])
 
 
 def components(basis: Basis) -> Array:
@@ -256,9 +250,9 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     ValueError
         If the point lies outside the mesh.
     """
-    rule = point_rule(basis, point)
-    u, v = values(basis, rule.points, rule.cells)
-    return u.toarray()[0], v.toarray()[0], _rotation(basis, *_cells_at(basis, point))
+    rule = _cells_at(basis, point)
+    u, v = values(basis, _first(rule))
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
 
 
 def point_strains(basis: Basis, point: Array) -> Array:
@@ -269,7 +263,7 @@ def point_strains(basis: Basis, point: Array) -> Array:
     ValueError
         If the point lies outside the mesh.
     """
-    gradient = _gradient(basis, *_cells_at(basis, point))
+    gradient = _gradient(basis, _cells_at(basis, point))
     return np.array([gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]])
 
 
@@ -281,12 +275,15 @@ def point_rule(basis: Basis, point: Array) -> Rule:
     ValueError
         If the point lies outside the mesh.
     """
-    local, cells = _cells_at(basis, point)
-    return Rule(local[:, :1], cells[:1], np.ones(1))
+    return _first(_cells_at(basis, point))
 
 
-def _cells_at(basis: Basis, point: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Reference coordinates of a point in each of the cells that meet there, shape (2, count), and these."""
+def _first(rule: Rule) -> Rule:
+    return Rule(rule.points[:, :1], rule.cells[:1], np.ones(1))
+
+
+def _cells_at(basis: Basis, point: Array) -> Rule:
+    """A point in each of the cells that meet there, with equal weights, whose sum is one."""
     corners = basis.mesh.p[:, basis.mesh.t]
     x = point[:, None]
     slack = 1e-9 * np.ptp(basis.mesh.p)
@@ -299,24 +296,25 @@ def _cells_at(basis: Basis, point: Array) -> tuple[Array, NDArray[np.int64]]:
     hits = np.flatnonzero(outside < 1e-9)
     if len(hits) == 0:
         raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
-    return local[:, hits], cells[hits]
+    return Rule(local[:, hits], cells[hits], np.full(len(hits), 1 / len(hits)))
 
 
-def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
+def _rotation(basis: Basis, rule: Rule) -> Array:
     """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
-    gradient = _gradient(basis, points, cells)
+    gradient = _gradient(basis, rule)
     return np.asarray((gradient[1, 0] - gradient[0, 1]) / 2)
 
 
-def _gradient(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
+def _gradient(basis: Basis, rule: Rule) -> Array:
     """Rows of the mean over cells that meet at a point of the derivatives of u and v, shape (2, 2, unknowns).
 
     They are discontinuous between cells.
     """
     rows = np.zeros((basis.N, 2, 2))
+    x = rule.points[:, :, None]
     for k in range(basis.Nbfun):
-        gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
-        np.add.at(rows, basis.element_dofs[k, cells], np.moveaxis(gradient, -1, 0) / len(cells))
+        gradient = basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0].grad[..., 0]
+        np.add.at(rows, basis.element_dofs[k, rule.cells], np.moveaxis(rule.weights * gradient, -1, 0))
     return np.moveaxis(rows, 0, -1)
 
 

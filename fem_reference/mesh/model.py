@@ -231,17 +231,13 @@ def half_block(problem: Problem) -> Model:
 
 
 def _model(problem: Problem, assembled: Assembled, kind: str, notes: tuple[str, ...]) -> Model:
-    R = elasticity.translation(assembled.basis) * float(problem.motion is not None)
+    R = elasticity.rigid_motions(assembled.basis)[:, :2] * float(problem.motion is not None)
     if problem.motion is not None and not problem.motion.sideways:
         R[:, 0] = 0.0
     pressure = -(assembled.observers["contact_pressure"] @ R)
-    K = _plus(assembled.K, assembled.springs)
+    K = csr_array(assembled.K + assembled.springs)
     places = np.vstack([assembled.basis.doflocs, elasticity.components(assembled.basis)])
     return Model(assembled.M, K, assembled.F, assembled.springs @ R, pressure, assembled.observers, places, kind, notes)
-
-
-def _plus(left: csr_array, right: csr_array) -> csr_array:
-    return csr_array(left + right)
 
 
 def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:

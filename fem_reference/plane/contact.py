@@ -145,7 +145,7 @@ def _relative(
     y_rows = x_rows
     for (number, sign, _), rule in zip(sides, rules, strict=True):
         body = bodies[number]
-        u, v = elasticity.values(body.basis, rule.points, rule.cells)
+        u, v = elasticity.values(body.basis, rule)
         place = csr_array(eye_array(len(body.free), first[-1], k=first[number]))
         x_rows = x_rows + sign * (u[:, body.free] @ place)
         y_rows = y_rows + sign * (v[:, body.free] @ place)
@@ -170,7 +170,5 @@ def _rules(contact: PatchContact, meshes: Sequence[tuple[BodyElements, Array]]) 
     for (body, shift), (facets, _) in zip(meshes, edges, strict=True):
         tangent = (end - start) / length
         rule = elasticity.edge_rule(body.mesh, facets, start + shift, tangent, [*pairwise(breaks)], order)
-        along = tangent @ body.basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
-        ordered = np.argsort(along, kind="stable")
-        rules.append(elasticity.Rule(rule.points[:, ordered], rule.cells[ordered], rule.weights[ordered]))
+        rules.append(elasticity.in_order(body.basis, rule, tangent)[0])
     return rules

@@ -51,14 +51,13 @@ class BodyElements:
         self.basis = elasticity.vector_basis(self.mesh, body.degree)
         self.free = np.setdiff1d(np.arange(self.basis.N), self._fixed())
         self._mass = elasticity.mass(self.basis, body.density)
-        stiffness = self.elastic()
         self.M = csr_array(self._mass[self.free][:, self.free])
-        self.K = csr_array(stiffness[self.free][:, self.free])
+        self.K = csr_array(self.elastic()[self.free][:, self.free])
         self.F = self._load()[self.free]
 
     def elastic(self) -> csr_array:
         """Return the stiffness of all unknowns [N/m]."""
-        return elasticity.stiffness(self.basis, self.body)  # type: ignore[arg-type]  # which reads its moduli alone
+        return elasticity.stiffness(self.basis, self.body)
 
     def _facets(self, part: Segment) -> NDArray[np.int64]:
         return facets_between(self.mesh, *part, self.body.slack)
@@ -77,7 +76,7 @@ class BodyElements:
 
     def _load(self) -> Array:
         body = self.body
-        F: Array = self._mass @ (elasticity.translation(self.basis) @ np.array(body.gravity))
+        F: Array = self._mass @ (elasticity.rigid_motions(self.basis)[:, :2] @ np.array(body.gravity))
         for part, traction in body.tractions:
             F = F + self._pushed(part, traction)
         for place, force in body.forces:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,7 @@ from fem_reference.plane.body import PlaneBody, Point
 from fem_reference.plane.contact import PatchContact, points_of
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.motion import Motion as BaseMotion
+from fem_reference.problem.motion import moved_base
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Mode, Result, just_ended
 from fem_reference.scheme.eigen import as_modes, largest_frequency, lowest
@@ -237,17 +238,11 @@ class PlaneModel:
             watch=Motion(np.asarray(rows, float), np.vstack([rigid.T @ self.M, rows]), np.zeros((0, len(self.F)))),
             pushes=np.zeros((len(self.F), 0)),
             ground=self.points.ground,
-            prescribed=self._base,
+            prescribed=partial(moved_base, self.base_motion),
             start_parts=np.zeros(2),
             motions=tuple(part.motions for part in self.parts),
             C=csr_array(damping) if scheme.damped else None,
         )
-
-    def _base(self, positions: Array, times: Array) -> Array:
-        """Displacement of the base in x and y, shape (steps, stages, 2) [m]."""
-        if self.base_motion is None:
-            return np.zeros((*times.shape, 2))
-        return np.asarray(self.base_motion(times.ravel())).reshape(*times.shape, 2)
 
     def _start(self, stepper: ContactStepper, settled: bool) -> ContactState:
         """The bodies at t = 0."""

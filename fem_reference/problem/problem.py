@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.checks import require, require_numbers
+from fem_reference.problem.material import Elastic
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.stages import Stage, StageTable, newmark_stage
 
@@ -32,7 +33,7 @@ class Rectangle(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Problem:
+class Problem(Elastic):
     """One elastic block on a locked elastic foundation under loads that come on at t = 0, at once or in a ramp.
 
     The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
@@ -197,22 +198,6 @@ class Problem:
         cross, sums = self._cross
         point: Array = cross @ sums / (6 * self.area)
         return point
-
-    @property
-    def shear_modulus(self) -> float:
-        """G = E / (2 (1 + mu)) [Pa]."""
-        return self.young / (2 * (1 + self.poisson))
-
-    @property
-    def lame(self) -> float:
-        """First Lame parameter of the plane problem [Pa].
-
-        E mu / (1 - mu^2) in plane stress, E mu / ((1 + mu) (1 - 2 mu)) in plane strain; both factors
-        of the denominator are exact in floating point near their zeros.
-        """
-        mu = self.poisson
-        last = 1 - mu if self.hypothesis == "plane stress" else 1 - 2 * mu
-        return self.young * mu / ((1 + mu) * last)
 
     @property
     def rectangle(self) -> Rectangle | None:

@@ -5,11 +5,11 @@ import math
 import tomllib
 
 import pytest
-from conftest import SCENE, refused
+from conftest import SCENE
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from validation import load_scene, solve
+from validation import load_scene
 from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.runs.run import Outcome
@@ -122,26 +122,3 @@ def test_a_directory_and_a_missing_file_are_refused(tmp_path):
         with pytest.raises(InputError) as caught:
             load_scene(tmp_path / name)
         one_line(caught.value)
-
-
-@pytest.mark.parametrize("name", ["empty", "binary", "deep lists", "oversized"])
-def test_the_command_line_says_one_line_and_writes_nothing(name, tmp_path):
-    (tmp_path / "x.toml").write_bytes(BROKEN[name])
-    refused("run", "x.toml", "--results", "r", cwd=tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["x.toml"]
-
-
-LARGE = [
-    ("dda", {"time.steps": 10**14}, "time.steps: must fit into memory, dda needs about 1.44e+07 GB"),
-    ("fem", {"fem.elements": 10**6, "block.poisson": 0.3}, "fem.elements: must fit into memory, fem needs about"),
-    ("dda", {"block.subdivide": [10**4, 10**4]}, "block.subdivide: must fit into memory"),
-]
-
-
-@pytest.mark.parametrize(("solver", "values", "words"), LARGE)
-def test_what_cannot_fit_is_refused_with_the_estimate(solver, values, words):
-    scene = parse_scene(DATA, "x.toml").with_values(values)
-    with pytest.raises(InputError, match="GB are available, got") as caught:
-        solve(scene, solver)
-    assert words in str(caught.value)
-    assert completed(get_solver(solver), scene).outcome is Outcome.REFUSED

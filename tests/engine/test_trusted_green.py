@@ -92,18 +92,6 @@ def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(of_history,
     assert ran(scene, results) == []
 
 
-def test_histories_that_swap_places_are_run_again(scene, tmp_path):
-    results = Results(tmp_path)
-    run_study(study(scene), results)
-    first, second = (tmp_path / "histories").iterdir()
-    shutil.copy(first, tmp_path / "x")
-    shutil.copy(second, first)
-    shutil.copy(tmp_path / "x", second)
-    with pytest.raises(InputError, match="belongs to another case"):
-        results.history(first.stem)
-    assert sorted(ran(scene, results)) == ["bar", "dda"]
-
-
 def test_a_history_without_time_is_one_line(scene, tmp_path):
     results = Results(tmp_path)
     run_study(study(scene), results)

@@ -10,10 +10,10 @@ import pytest
 from conftest import thinned
 
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
-from fem_reference.column.contact_system import column_at_start, mesh_of, stepper_of, system_of
+from fem_reference.column.contact_system import column_at_start, model_of, stepper_of, system_of
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import Observation, observed_by, solve_line
+from fem_reference.column.stepping import observed_by, solve_line
 from fem_reference.contact import compilation
 from fem_reference.contact.iteration import CONVERGED
 from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE
@@ -68,11 +68,10 @@ RANDOM = range(24)
 def stepper_and_start(
     column: ContactColumn, elements: int, degree: int, how: Scheme, drive: Excitation
 ) -> tuple[ContactStepper, ContactState]:
-    mesh, model = mesh_of(column, [elements] * len(column.ground.strata), degree)
-    none = np.zeros(mesh.size)
-    nothing = observed_by(model, [Observation(none, none, none, np.zeros(4))])
-    stepper = stepper_of(column, system_of(column, mesh, model, how, drive, nothing), how)
-    return stepper, column_at_start(stepper, column, mesh, model)
+    model = model_of(column, [elements] * len(column.ground.strata), degree)
+    system = system_of(column, model, how, drive, observed_by(model, (), ()))
+    stepper = stepper_of(column, system, how)
+    return stepper, column_at_start(stepper, column, model)
 
 
 @pytest.mark.parametrize("seed", thinned(RANDOM, 5))

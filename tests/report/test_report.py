@@ -5,7 +5,7 @@ from oracles.made_cases import kept_study, made_row
 from oracles.made_results import made_rows
 
 from validation.errors import InputError
-from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, Table, TableColumn
+from validation.report.blocks import FigureBlock, Table, TableColumn
 from validation.report.book import build, write_figures
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import scene as chapters
@@ -45,18 +45,6 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, draw
     with pytest.raises(RuntimeError, match="typesetting failed"):
         build(small, out)
     assert out.read_bytes() == b"old"
-
-
-def test_what_did_not_pass_has_a_page_of_its_own_before_the_decisions(made_results):
-    class Page:
-        def blocks(self, name):
-            return [Heading(name)]
-
-    blocks = front_pages(Page(), {}, made_results.verdicts())
-    kinds = [block.text if isinstance(block, Heading) else type(block) for block in blocks]
-    failures = ["Gates that did not pass", Callout, Table]
-    decisions = [part for name in ("step", "springs", "discount") for part in (PageBreak, name)]
-    assert kinds == [Paragraph, "first", Callout, PageBreak, *failures, *decisions, PageBreak]
 
 
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
