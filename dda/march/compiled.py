@@ -51,7 +51,12 @@ logger = logging.getLogger("dda")
 
 
 def run_loop(
-    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], steps: int
+    loop: Loop,
+    records: tuple[Any, ...],
+    series: tuple[Any, ...],
+    rows: tuple[Any, ...],
+    steps: int,
+    in_arrays: Loop | None = None,
 ) -> tuple[Any, tuple[Any, ...], str]:
     """Run a loop over steps; return what it returns, the records and series that it left, and how it ran, in words.
 
@@ -67,6 +72,8 @@ def run_loop(
         Arrays that it fills, or named tuples of these, and numbers.
     steps
         How many steps it makes.
+    in_arrays
+        What does the same by whole arrays, and takes the place of plain Python on lists; without records.
     """
     with np.errstate(all="ignore"):
         if steps >= SHORT:
@@ -75,6 +82,8 @@ def run_loop(
             machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
             if machine_code is not None:
                 return machine_code(*arguments), (*converted, *series), COMPILED
+        if in_arrays is not None:
+            return in_arrays(*series, *rows), series, PLAIN
         left = tuple(as_lists(part) for part in (*records, *series))
         return loop(*left, *rows), left, PLAIN
 

@@ -137,13 +137,10 @@ class BlockMotion(ProvenMotion):
         ledgers = np.array(self._ledgers)[node].T
         mass = np.array([float(m) for m in model.masses])
         load = floats(model.load)[:, 0]
-        radius = np.empty((6, len(t)))
         work = ledgers[4].copy()
         for i in np.unique(node).tolist():
             here = np.flatnonzero(node == i)
             begun = self.nodes[i]
-            flow = model.flow(begun.states)
-            radius[:, here] = np.abs(_OUTPUTS) @ flow.growth(begun.error, flow.rate * report.passed[here])
             for axis, speed in enumerate(self._base_velocity(begun)):
                 gained = mass[0] * (rate[axis, here] - float(begun.start.v[axis, 0] + speed))
                 work[here] += float(speed) * (gained - load[axis] * report.passed[here])
@@ -172,7 +169,7 @@ class BlockMotion(ProvenMotion):
             released=ledgers[2],
             friction=dissipated if has_friction else nothing,
             damped=nothing if has_friction else dissipated,
-            displacement_radius=radius + ROUNDING * np.abs(x),
+            displacement_radius=np.abs(_OUTPUTS) @ report.radius + ROUNDING * np.abs(x),
         )
 
     def _reported(self, part: Part) -> list[arb_poly]:

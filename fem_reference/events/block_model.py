@@ -43,7 +43,6 @@ import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
-from fem_reference.events.flow import Flow
 from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
@@ -194,7 +193,6 @@ class BlockModel(System):
             Contact(c, name, c, 2 + c if ps > 0 else None, p, arb(problem.damping), ps, friction, cohesion, force)
             for c, name in enumerate(CORNERS)
         ]
-        self.flows: dict[States, Flow] = {}
 
     def _mobility(self, rigid: bool) -> arb_mat:
         """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
@@ -207,12 +205,6 @@ class BlockModel(System):
         W[3, 3] = W[4, 4] = turning
         W[3, 4] = W[4, 3] = -turning
         return W
-
-    def flow(self, states: States) -> Flow:
-        """Return the motion in a state of the corners as what may be off of it moves."""
-        if states not in self.flows:
-            self.flows[states] = Flow(self, states)
-        return self.flows[states]
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """Yield the functions that are positive as long as the corners keep their states."""

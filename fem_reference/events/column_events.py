@@ -19,7 +19,6 @@ from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.contacts import OPEN, RIGHT, STICKS, States
 from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
-from fem_reference.events.energy_norm import EnergyNorm
 from fem_reference.events.march import March, Node
 from fem_reference.events.report import ROUNDING, Part, sampled
 from fem_reference.events.series import Start
@@ -29,7 +28,7 @@ from fem_reference.problem.problem import Array
 
 DIGITS = 60
 """Decimal digits of the first computation."""
-MOST_DIGITS = 960
+MOST_DIGITS = 240
 """Decimal digits of the last one, where switches cost those of the ones before."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
@@ -140,8 +139,7 @@ class ColumnMotion(ProvenMotion):
         potential = mass * problem.gravity * (foot + top) / 2
         pressure = report.series[0, model.size + 1]
         face_force = self._face_force(of_joints[0], (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0])
-        errors = np.array([float(node.error.upper()) for node in self.nodes])[report.node]
-        radius = errors * np.exp(model.soft * report.passed / 2) * (model.sizes.max() / model.soft)
+        radius = report.radius.max(axis=0)
         return ColumnHistory(
             time=t,
             foot=foot,
@@ -188,7 +186,7 @@ class ColumnMarch(March):
 
     def __init__(self, problem: ColumnProblem, end: float, limit: int, work: Work) -> None:
         self.column = ColumnModel(problem)
-        super().__init__(self.column, EnergyNorm(self.column), end, limit, work)
+        super().__init__(self.column, end, limit, work)
         self.courses = problem.base_motion(), problem.pressure()
         self.breaks = [time for course in self.courses for time in course.breaks]
 
@@ -221,7 +219,7 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
         rate = model.rate((STICKS,) * len(model.contacts))
-        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.soft)
+        open_rate = model.rate((OPEN,) * len(model.contacts))
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 

@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 from flint import arb, arb_mat
 
@@ -28,9 +27,6 @@ from fem_reference.problem.checks import require, require_numbers
 LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
-# Part of the highest rate that the metric of the error gives to an unknown without a spring: the error grows with it,
-# and the less by each contact that closes the higher it is, while contacts that slip make no error grow.
-SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
 
 
 @dataclass(frozen=True)
@@ -202,15 +198,6 @@ class ColumnModel(System):
     def spring(self, contact: int) -> arb:
         """Stiffness k of a contact [Pa/m]."""
         return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
-
-    @cached_property
-    def soft(self) -> float:
-        """Rate that the metric of the error gives to an unknown without a spring [rad/s]."""
-        return self.rate((STICKS,) * len(self.contacts)) * SOFT_PART[self.problem.law]
-
-    def least_rate(self) -> float:
-        """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
-        return self.soft
 
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""

@@ -36,6 +36,7 @@ class Sampled(NamedTuple):
     series: Array  # values, rates and second derivatives of the series that were asked for, shape (3, series, times)
     rows: Array  # the same of the rows, shape (3, rows, times)
     held: Array  # row of each contact less its reference at the node, or that of a slide, shape (contacts, times)
+    radius: Array  # how far the unknowns may be off, shape (unknowns, times)
 
 
 def sampled(
@@ -63,10 +64,12 @@ def sampled(
         )
         states = np.array([nodes[i].states for i in begun.tolist()], dtype=int).reshape(len(t), len(model.contacts)).T
         values: Array = np.zeros((0, 0, 0))
+        radius = np.empty((model.size, len(t)))
         for index in np.unique(begun).tolist():
             node = nodes[index]
             columns = np.flatnonzero(begun == index)
             start = node.start
+            radius[:, columns] = model.growth(node.states, node.error, passed[columns])
             step = step_length(model, node.states, node.pieces)
             length = step * REPORT_ANGLE / model.angle
             numbers = np.maximum(0, np.floor(passed[columns] / length)).astype(int)
@@ -90,4 +93,4 @@ def sampled(
     contacts = len(model.contacts)
     count = values.shape[1] - contacts
     of_rows = slice(count - len(model.row_sizes), count)
-    return Sampled(begun, passed, states, values[:, : of_rows.start], values[:, of_rows], values[0, count:])
+    return Sampled(begun, passed, states, values[:, : of_rows.start], values[:, of_rows], values[0, count:], radius)

@@ -14,6 +14,9 @@ follow from these alone. In the norm of the system (`System.norm`), with w^2 the
     |C_(k+2)| <= (w^2 |C_k| + d (k+1) |C_(k+1)|) length^2 / ((k+1) (k+2))
 
 Where x = rate * length with w^2 + d rate <= rate^2, terms below M x^k / k! stay so. M is that of the last two.
+
+What the drives leave out, their tails in s, accelerates the motion by P |E| at most. By Duhamel's formula this moves it
+by no more than P length^2 e^x over the step, and its derivatives in the share by (1 + x)^3 times that.
 """
 
 from __future__ import annotations
@@ -136,9 +139,20 @@ class System:
         """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
         return self.bounds_of(states).motion
 
-    def least_rate(self) -> float:
-        """Rate that bounds the steps of a motion that has none [rad/s]."""
-        return 0.0
+    def growth(self, states: States, radii: Array, passed: Array) -> Array:
+        """How far the unknowns may be off after times [s] in which the contacts keep their states, (unknowns, times).
+
+        Parameters
+        ----------
+        radii
+            What unknowns, rates and references may be off before.
+        """
+        n = self.size
+        bounds = self.bounds_of(states)
+        upper = np.abs(self.root[0])
+        apart = bounds.frequency * np.linalg.norm(upper @ radii[:n]) + np.linalg.norm(upper @ radii[n : 2 * n])
+        pull = np.linalg.norm(upper @ np.abs(floats(self.motion(states).R)) @ radii[2 * n :]) / bounds.motion
+        return np.outer(self.sizes / bounds.frequency, np.exp(bounds.motion * passed) * (apart + pull))
 
     def norm(self, x: Sequence[arb]) -> arb:
         """Norm of the unknowns, in which `rate` bounds the motion."""
@@ -272,8 +286,7 @@ def diagonal(entries: Sequence[arb]) -> arb_mat:
 
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
     """Return the longest step; infinite where nothing bounds it [s]."""
-    rate = max(system.rate(states), system.least_rate())
-    return min([system.angle / rate, *(piece.longest_step() for piece in drives)])
+    return min([system.angle / system.rate(states), *(piece.longest_step() for piece in drives)])
 
 
 def expand(
@@ -320,7 +333,13 @@ def expand(
     ratio = arb(angle) / count
     before, last = (system.norm(term.entries()) for term in terms[-2:])
     largest = max((last * ratio).upper(), (before * ratio * ratio * 1.1).upper())
-    tail = (tail_sum(ratio) * arb(count) ** 3 * largest).upper()
+    tail = tail_sum(ratio) * arb(count) ** 3 * largest
+    if drives:
+        of_base, of_pressure = drive_tails
+        pushes = np.linalg.norm(system.root[0] @ floats(motion.E), axis=0) * INFLATION
+        left_out = zip(pushes.tolist(), (of_base * square, of_base * span, of_base, of_pressure * square), strict=True)
+        tail += sum((push * part for push, part in left_out), arb(0)) * arb(angle).exp() * (1 + arb(angle)) ** 3
+    tail = tail.upper()
     return Segment(system, length, terms, of_drives, tail, drive_tails)
 
 

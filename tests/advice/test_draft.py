@@ -11,12 +11,20 @@ from validation.errors import InputError
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
 
+SLOW = ("wall", "plate")  # seconds each; smaller ones and other glued bodies are short
+
 
 def default(question, value):
     return value
 
 
-@pytest.mark.parametrize(("kind", "rock"), [*((kind, "granite") for kind in KINDS), ("slope", "shale")])
+@pytest.mark.parametrize(
+    ("kind", "rock"),
+    [
+        *(pytest.param(kind, "granite", marks=[pytest.mark.long] * (kind in SLOW)) for kind in KINDS),
+        ("slope", "shale"),
+    ],
+)
 def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind, rock, tmp_path):
     done = typed("new", "mine.toml", "--kind", kind, "--rock", rock, cwd=tmp_path)
     following = "show" if kind in (*MOVING, *GLUED_BODIES) else "advise"
@@ -43,7 +51,10 @@ def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path)
     assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
 
 
-@pytest.mark.parametrize(("kind", "blocks"), [*((kind, 3) for kind in MOVING), ("wall", 2)])
+@pytest.mark.parametrize(
+    ("kind", "blocks"),
+    [*(pytest.param(kind, 3, marks=[pytest.mark.long] * (kind in SLOW)) for kind in MOVING), ("wall", 2)],
+)
 def test_a_drawn_scene_does_what_it_is_called(kind, blocks, tmp_path):
     """What is to stand stands on its springs, one thousandth of a block's height each under all; the others move.
 

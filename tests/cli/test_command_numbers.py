@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from conftest import typed
 from oracles.made_cases import between, kept_study, made_history, made_row
-from oracles.pages import table
 
 from validation import load_scene
 from validation.cli.printing import tables
@@ -107,19 +106,6 @@ def made(tmp_path):
     cases.append((scene, made_row("bar", {}, scene.name, seconds={"setup": 9.0}), None))
     kept_study(results, cases, pairs)
     return results
-
-
-def test_rows_are_written_under_their_names(made, tmp_path):
-    done = typed("rows", "made", "--csv", tmp_path / "a.csv", "--results", made.directory)
-    lines = table(tmp_path / "a.csv")
-    assert done.stdout == f"wrote {tmp_path / 'a.csv'}: {len(lines)} rows, {len(lines[0])} columns\n"
-    values = {(line["time.step"], line["solver"], line["reference"], line["metric"]): line["value"] for line in lines}
-    steps = ("0.01", "0.002", "0.001")
-    assert [values[step, "dda", "", "work.solves"] for step in steps] == ["1", "10", "100"]
-    assert [values[step, "dda", "", "pressure.peak"] for step in steps] == ["6000000.0", "6000001.0", "6000002.0"]
-    assert [values[step, "dda", "bar", "displacement.l2"] for step in steps] == [repr(0.1 * 3), "0.2", "0.1"]
-    assert values["0.001", "bar", "", "seconds.setup"] == "9.0"
-    assert {line["unit"] for line in lines if line["metric"] == "pressure.peak"} == {"Pa"}
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------

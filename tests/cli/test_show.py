@@ -15,8 +15,7 @@ from validation.scenes.scene import load_scene, scene_names
 def shown(*arguments):
     done = typed("show", *arguments, "--json")
     assert done.returncode == 0, done.stderr
-    found = json.loads(done.stdout)
-    return found
+    return json.loads(done.stdout)
 
 
 def single(found):

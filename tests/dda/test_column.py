@@ -32,19 +32,3 @@ def test_a_column_is_the_system_of_blocks_on_its_springs():
     for mine, other in (("displacement_1", "displacement"), ("contact_pressure", "contact_pressure")):
         size = np.abs(system.columns[other]).max()
         assert np.abs(found.columns[mine] - system.columns[other]).max() < 1e-10 * size
-
-
-@pytest.mark.parametrize(
-    ("change", "says"),
-    [
-        ({"layers": []}, "layers: must be at least one"),
-        ({"glue": 0.0}, "glue: must be finite and positive"),
-        ({"impedance": -1.0}, "impedance: must be finite and positive"),
-        ({"joints": [Spring(0.3, 1e9)]}, "joints: must lie where blocks meet"),
-        ({"joints": [Spring(4.0, 1e9)]}, "joints: must lie where blocks meet, below the top"),
-        ({"joints": [Spring(1.0, 1e9), Spring(1.0, 2e9)]}, "joints: must not share a height"),
-    ],
-)
-def test_bad_columns_are_refused(change, says):
-    with pytest.raises(ValueError, match=says):
-        Column(**({"layers": [Layer(4.0, DENSITY, YOUNG, 0.0, 4)]} | change))

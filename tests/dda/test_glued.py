@@ -1,4 +1,4 @@
-"""Glued blocks under loads on their outline: hand values at rest, held and free, plain assembly in motion, refusals."""
+"""Glued blocks under loads on their outline: hand values at rest, held and free, plain assembly in motion."""
 
 import numpy as np
 import pytest
@@ -79,27 +79,3 @@ def test_modes_and_steps_are_those_of_the_plain_assembly(loads, held):
     result = pair.history(SCHEME, 40, rows)
     for number, values in enumerate(expected.T):
         assert result.columns[str(number)] == pytest.approx(values, abs=1e-11 * np.abs(expected).max())
-
-
-OFF, POINT = ((0.0, 0.5), (1.0, 0.5)), ((0.0, 0.0), (0.0, 0.0))
-
-
-@pytest.mark.parametrize(
-    ("ask", "field"),
-    [
-        (lambda: body(clamps=[OFF]), "clamp"),
-        (lambda: body(clamps=[((1.0, 0.0), (1.0, 1.0))]), "clamp"),  # glued, and no part of the outline
-        (lambda: body(clamps=[POINT]), "clamp"),
-        (lambda: body(tractions=[dda.Traction(*OFF, (1.0, 0.0))]), "load"),
-        (lambda: body(tractions=[PULLED]).rest, "load"),  # nothing holds it
-        (lambda: body(gravity=(0.0, -9.81)).rest, "load"),
-        (lambda: body(glue=0.0), "normal"),
-        (lambda: body(clamps=[LEFT], clamp_glue=-1.0), "normal"),
-        (lambda: body(**HELD).observer((3.0, 0.5), (3.0, 0.5)), "point"),
-        (lambda: body(**HELD).observer(*OFF), "edge"),
-        (lambda: body(**HELD).history(SCHEME, 0, np.zeros((1, 12))), "steps"),
-    ],
-)
-def test_what_cannot_be_is_refused_by_field(ask, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        ask()

@@ -6,7 +6,6 @@ from oracles.plain_newmark import glued, stepped
 
 import dda
 import fem_reference
-from dda.bodies.block_system import BlockSystem
 from validation import load_scene, solve
 from validation.errors import InputError
 
@@ -114,34 +113,6 @@ def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():
     assert (saved.unknowns, full.unknowns) == (12, 36)
     assert saved.notes == ("12 of 36 unknowns kept",)
     assert largest_error(saved, full, COLUMNS[:2]) < 1e-12
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"columns": 0}, "columns: must be at least 1"),
-        ({"rows": -1}, "rows: must be at least 1"),
-        ({"glue": 0.0}, "glue: must be finite and positive"),
-        ({"pattern": "hexagons"}, "pattern: must be 'squares' or 'triangles'"),
-        ({"model": two_block(PENTAGON)}, "only convex quadrilaterals"),
-    ],
-)
-def test_what_cannot_be_cut_is_refused(changes, words):
-    data = {"model": two_block(), "columns": 2, "rows": 2, "glue": 1e9, "pattern": "squares"} | changes
-    with pytest.raises(ValueError, match=words):
-        dda.subdivided(**data)
-
-
-def test_joints_and_systems_are_checked():
-    block = two_block().block
-    with pytest.raises(ValueError, match="normal: must be finite and positive"):
-        dda.Joint(0, 1, (0, 0), (1, 0), 0.0, 1.0)
-    with pytest.raises(ValueError, match="end: must differ from start"):
-        dda.Joint(0, 1, (0, 0), (0, 0), 1.0, 1.0)
-    with pytest.raises(ValueError, match="must name blocks from 0 to 0"):
-        BlockSystem([block], [dda.Joint(0, 1, (0, 0), (1, 0), 1.0, 1.0)], (1.0, 1.0), 2.0)
-    with pytest.raises(ValueError, match="observed: must lie in a block"):
-        BlockSystem([block], [], (3.0, 1.0), 2.0)
 
 
 def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():

@@ -12,7 +12,7 @@ import pytest
 from conftest import refused, typed
 from faults import seams
 from matplotlib.image import imread
-from oracles.plain_block import Plain, history, write_measured_point
+from oracles.sliding_block import Plain, history, write_measured_point
 
 from validation import load_scene, solve
 from validation.diagnosis.fits.fit import fit, intervals, untold

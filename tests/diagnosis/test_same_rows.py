@@ -11,8 +11,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.column_histories import history
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare

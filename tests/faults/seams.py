@@ -4,13 +4,8 @@ A seam names the module or class *through which* a function is called, since tha
 `newmark.predictor` is the function: where it is renamed, moved or no longer imported, this module does not import.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-
-import pytest
 
 import dda
 import fem_reference.exact.bar as exact_bar
@@ -73,17 +68,17 @@ class Seam:
     sound: Any
     name: str = field(init=False)
 
-    def __post_init__(self) -> None:
+    def __post_init__(self):
         names = [name for name, value in vars(self.owner).items() if value is self.sound]
         if len(names) != 1:
             raise ValueError(f"{self.owner!r} holds {self.sound!r} under the names {names}: a seam has exactly one")
         object.__setattr__(self, "name", names[0])
 
-    def put(self, patch: pytest.MonkeyPatch, other: Any) -> None:
+    def put(self, patch, other):
         """Put something in the place of what is there, as long as the patch lasts."""
         patch.setattr(self.owner, self.name, other)
 
-    def wrap(self, patch: pytest.MonkeyPatch, replacement: Callable[[Any], Any]) -> None:
+    def wrap(self, patch, replacement):
         """Put in its place what is made of it."""
         self.put(patch, replacement(getattr(self.owner, self.name)))
 

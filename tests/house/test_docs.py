@@ -26,9 +26,10 @@ from validation.solvers.names import check_names
 from validation.suite.matrix import phenomena, phenomenon, verify
 
 DOCS = ROOT / "docs"
-PAGES = ("extending.md", "columns.md", "methods.md", "plane.md", "subblocks.md")
+PAGES = ("extending.md", "columns.md", "methods.md", "plane.md")
 # Pages that take seconds each.
 LONG = (
+    "subblocks.md",
     "stacks.md",
     "contact.md",
     "rotation.md",
@@ -226,6 +227,7 @@ def test_the_page_of_references_is_that_of_the_bibliography(monkeypatch):
     assert references.PAGE.read_text(encoding="utf-8") == references.page()
 
 
+@pytest.mark.long
 def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch):
     """The values that it keeps are those of all gates that decide, and lie within their bands."""
     verification = script("verification", monkeypatch)
@@ -243,9 +245,8 @@ def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch):
             assert gate.low - rounded <= value <= gate.high + rounded, gate.id
 
 
-@pytest.mark.parametrize(
-    "name", ["arch", *(pytest.param(n, marks=pytest.mark.long) for n in ("push each", "spins", "wedge"))]
-)
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["arch", "push each", "spins", "wedge"])
 def test_what_is_verified_today_is_what_the_page_keeps(name, monkeypatch, finished_cases):
     shown = phenomenon(name)
     verdicts, _ = verify(shown, Results(finished_cases))

@@ -73,13 +73,6 @@ def imports(path):
     return found
 
 
-def importers(package, name):
-    """Return the files of a package, by their path in it, that import a package."""
-    root, line = ROOT / package, re.compile(rf"\b(from|import) +{name}\b")
-    named = (path for path in root.rglob("*.py") if line.search(text(path)))
-    return {path.relative_to(root).as_posix() for path in named if name in imports(path)}
-
-
 @cache
 def modules(code):
     """Return the modules that a fresh interpreter holds after some code."""
@@ -111,40 +104,6 @@ def test_a_solver_package_imports_only_what_it_may(package, allowed):
         if path.parent.name != "fenicsx":
             compiles = {"numba"} if path == ROOT / "dda/march/compiled.py" else set()
             assert imports(path) <= allowed | standard | compiles, path.name
-
-
-def test_dolfinx_is_imported_by_one_folder_that_shares_nothing_with_the_others():
-    libraries = {"numpy", "dolfinx", "ufl", "basix", "mpi4py", "petsc4py"}
-    for path in (ROOT / "fem_reference/fenicsx").glob("*.py"):
-        assert imports(path) <= libraries | set(sys.stdlib_module_names), path.name
-        relative = [node for node in statements(path) if isinstance(node, ast.ImportFrom)]
-        assert all(node.level <= 1 for node in relative), path.name
-    for package in ("dda", "fem_reference", "validation"):
-        assert all(path.startswith("fenicsx/") for path in importers(package, "dolfinx")), package
-        for path in (ROOT / package).rglob("*.py"):
-            assert not re.search(r"^ *(from|import) fem_reference\.fenicsx", text(path), re.M), path
-
-
-def test_no_module_of_validation_knows_both_solvers():
-    dda, elements = importers("validation", "dda"), importers("validation", "fem_reference")
-    columns = {f"solvers/columns/{name}.py" for name in ("elements", "layers", "events", "bars")}
-    rigid = {f"solvers/rigid/{name}.py" for name in ("impacts", "sliding", "rocking")}
-    others = {f"solvers/{name}.py" for name in ("fem", "bar", "events", "plane/mesh")}
-    assert elements == {"exact.py", "models/plane/meshed.py", *others, *rigid, *columns}
-    assert not dda & elements
-    adapters = {
-        "solvers/dda.py",
-        "solvers/blocks/closed.py",
-        "solvers/blocks/opening.py",
-        "solvers/blocks/rotation.py",
-        "solvers/columns/blocks.py",
-        "solvers/plane/blocks.py",
-        "models/plane/moving.py",
-    }
-    for path in (path for path in dda - adapters if not path.startswith("diagnosis/")):
-        lines = text(ROOT / "validation" / path)  # apart from the adapter, the closed forms of the scheme alone
-        named = re.findall(r"^ *(?:from|import) (dda\b[\w.]*)(?: import (\w+))?", lines, re.M)
-        assert all(f"{module}.{name}".startswith("dda.scheme") for module, name in named), path
 
 
 # Runs commands in one process in which the libraries of the extras cannot be imported; each with its status and errors.
@@ -212,33 +171,31 @@ HEAVY = [  # what it does not, and the extra that does
 ]
 
 
-@pytest.fixture(scope="module")
-def ended(tmp_path_factory):
-    """Status, output and errors of the commands of both tables without the libraries of the extras."""
-    place = tmp_path_factory.mktemp("light")
+def ended(place, table):
+    """Status, output and errors of commands without the libraries of the extras, and what goes with them in a table."""
     answered(place / "answer", 1.001, ("rocking", "column"))
-    commands = [arguments for arguments, _ in (*LIGHT, *HEAVY)]
-    command = [sys.executable, "-c", WITHOUT_EXTRAS, json.dumps(commands)]
+    command = [sys.executable, "-c", WITHOUT_EXTRAS, json.dumps([arguments for arguments, _ in table])]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=place)
-    assert {path.name for path in place.iterdir()} == {"answer", "history.csv", "pentagon.csv", "results", "rows.csv"}
-    return dict(zip(map(" ".join, commands), json.loads(done.stdout.splitlines()[-1]), strict=True))
+    return [(*row, *told) for row, told in zip(table, json.loads(done.stdout.splitlines()[-1]), strict=True)]
 
 
-@pytest.mark.parametrize(("arguments", "status"), LIGHT, ids=[" ".join(row[0]) for row in LIGHT])
-def test_a_plain_install_judges_and_compares(arguments, status, ended):
-    reached, output, errors = ended[" ".join(arguments)]
-    assert reached == status, errors
-    assert "Traceback" not in output + errors
-    assert ("fem is no candidate: it needs meshio" in output) == (arguments[:2] == ["compare", "pentagon"])
+@pytest.mark.long
+def test_a_plain_install_judges_and_compares(tmp_path):
+    for arguments, status, reached, output, errors in ended(tmp_path, LIGHT):
+        assert reached == status, (arguments, errors)
+        assert "Traceback" not in output + errors
+        assert ("fem is no candidate: it needs meshio" in output) == (arguments[:2] == ["compare", "pentagon"])
+    written = {path.name for path in tmp_path.iterdir()}
+    assert written == {"answer", "history.csv", "pentagon.csv", "results", "rows.csv"}
 
 
-@pytest.mark.parametrize(("arguments", "extra"), HEAVY, ids=[" ".join(row[0]) for row in HEAVY])
-def test_what_needs_an_extra_names_it_in_one_line(arguments, extra, ended):
-    status, _, errors = ended[" ".join(arguments)]
-    assert status == 2, errors
-    (line,) = (line for line in errors.splitlines() if "warning" not in line)
-    assert line.startswith("error: ")
-    assert line.endswith(f"pip install 'dda-validation[{extra}]'")
+def test_what_needs_an_extra_names_it_in_one_line(tmp_path):
+    runs = [row for row in LIGHT if row[0][0] == "run" or "history.csv" in row[0][-1]]
+    for arguments, extra, status, _, errors in ended(tmp_path, [*runs, *HEAVY])[len(runs) :]:
+        assert status == 2, (arguments, errors)
+        (line,) = (line for line in errors.splitlines() if "warning" not in line)
+        assert line.startswith("error: ")
+        assert line.endswith(f"pip install 'dda-validation[{extra}]'")
 
 
 def test_extras_bring_what_they_say_and_a_plain_install_brings_none_of_it():
@@ -300,8 +257,3 @@ def test_start_up_loads_little():
     assert packages(page - bare) <= {"validation"} | TYPER
     assert len(own := {name for name in page if name.startswith("validation")}) < 35, own  # 22
     assert len(page - bare) < 400  # 270
-
-
-def test_one_module_reaches_for_a_cluster():
-    for package in ("dda", "fem_reference", "validation"):
-        assert importers(package, "distributed") <= {"engine/cluster.py"}

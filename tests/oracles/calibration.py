@@ -1,9 +1,9 @@
 """A thousand histories of known origin by three generators, what `compare` makes of them, and the counts of the docs.
 
-The generators share nothing with what judges: a plain DDA code (`plain_block`), the finite elements of `fem_reference`
-with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
-scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in no catalogue;
-digits, noise, steps, schemes and scenes are drawn at random.
+The generators share nothing with what judges: a plain DDA code (`sliding_block`), the finite elements of
+`fem_reference` with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the
+recursion of the scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in
+no catalogue; digits, noise, steps, schemes and scenes are drawn at random.
 
 ``PYTHONPATH=.:tests python tests/oracles/calibration.py [COUNT [PROCESSES]]`` judges so many, a thousand by default,
 and writes the counts to docs/compare.md.
@@ -20,8 +20,8 @@ from pathlib import Path
 
 import numpy as np
 from oracles.pages import page_with, summary
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation import solve
 from validation.diagnosis.judgement import compare

@@ -1,6 +1,6 @@
 """Fifty histories of known origin, what `compare` makes of them, and the counts of the documentation.
 
-The histories come from the program in `plain_block`, which shares nothing with what judges them: seven digits each,
+The histories come from the program in `sliding_block`, which shares nothing with what judges them: seven digits each,
 some with noise, some on a base that yields. ``PYTHONPATH=.:tests python
 tests/oracles/confusion.py`` writes the counts to docs/compare.md.
 """
@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 from oracles.pages import page_with, summary
-from oracles.plain_block import Plain, history
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, history
 
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.judgement import compare

@@ -1,12 +1,10 @@
 """CalculiX as a solver: what it refuses, what it is told, its integrator by theory, its contact by exact motions."""
 
-from __future__ import annotations
-
 import shutil
 
 import numpy as np
 import pytest
-from peers.calculix import AsItComes, CalculiX
+from peers.calculix import CalculiX
 from peers.calculix_block import block_deck
 from peers.calculix_column import acceleration, column_deck, parts_of
 from peers.calculix_deck import parsed
@@ -21,15 +19,15 @@ needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="NOT RUN: Cal
 class Quick(CalculiX):
     """The chosen settings with fewer increments."""
 
-    def increments(self, scene: Scene) -> int:
+    def increments(self, scene):
         return 8 if scene.column is None else 4
 
 
-def scene_of(name: str, **values: object) -> Scene:
+def scene_of(name, **values):
     return problem(name).scene.with_values({key.replace("__", "."): value for key, value in values.items()})
 
 
-def column_scene(**column: object) -> Scene:
+def column_scene(**column):
     scene = problem("column").scene
     return scene.with_values({f"column.{key}": value for key, value in column.items()})
 
@@ -66,38 +64,7 @@ def test_the_momentum_of_a_base_is_kept_though_it_start_with_a_jump(moved):
     assert abs(reached - (moved(1.0) - moved(0.98)) / 0.02) < 0.02 * abs(reached)
 
 
-def hht(scene: Scene, alpha: float) -> np.ndarray:
-    """Return the centroid of a block on locked springs by HHT [m].
-
-    M a1 + (1 + alpha) K u1 - alpha K u0 = F with beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha (Hilber, Hughes and
-    Taylor 1977). The acceleration at the start is that which ccx finds with an increment of a tenth of the first one:
-    (M + (1 + alpha) beta (dt / 10)^2 K) a0 = F.
-    """
-    b, t, p = scene.block, scene.time, scene.contact.stiffness
-    h, dt, beta = b.side, t.step, (1 - alpha) ** 2 / 4
-    M, base = np.diag([b.mass, b.mass * h * h / 12]), np.array([1.0, -h / 2])
-    K = 2 * p * np.outer(base, base) + np.diag([0.0, b.side * h * b.young])
-    F = -scene.load.pressure * b.side * np.array([1.0, h / 2])
-    u = v = np.zeros(2)
-    a = np.linalg.solve(M + (1 + alpha) * beta * (dt / 10) ** 2 * K, F)
-    moved = []
-    for _ in range(t.steps):
-        guess = u + dt * v + dt * dt * (0.5 - beta) * a
-        new = np.linalg.solve(M + (1 + alpha) * beta * dt * dt * K, F - (1 + alpha) * K @ guess + alpha * K @ u)
-        v = v + dt * ((0.5 + alpha) * a + (0.5 - alpha) * new)
-        u, a = guess + beta * dt * dt * new, new
-        moved.append(u[0])
-    return np.array(moved)
-
-
-@needs_ccx
-def test_its_default_is_hht_with_alpha_of_a_twentieth():
-    scene = scene_of("locked", time__steps=20)
-    found, expected = AsItComes().solve(scene)["displacement"], hht(scene, -0.05)
-    assert np.max(np.abs(found - expected)) <= 1e-6 * np.max(np.abs(expected))  # seven digits are printed
-
-
-def differences(scene: Scene) -> dict[str, float]:
+def differences(scene):
     known, found = exact(scene, problem_of(scene).truth).columns, Quick().solve(scene)
     return {name: float(np.linalg.norm(found[name][: len(v)] - v) / np.linalg.norm(v)) for name, v in known.items()}
 

@@ -35,7 +35,7 @@ def program():
         pytest.skip("NOT RUN: siconos is not installed")
 
 
-def test_a_python_without_numpy_has_no_siconos() -> None:
+def test_a_python_without_numpy_has_no_siconos():
     """Debian's own Python where the package is absent: -S leaves out what is installed beside the standard library."""
     done = subprocess.run([sys.executable, "-I", "-S", str(siconos.PROGRAM), "none", "none"], capture_output=True)
     assert done.returncode == siconos.ABSENT, done.stderr
@@ -65,19 +65,6 @@ def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half(
     predicted, found = solve(given.with_values(scheme), "dda").history, siconos.AsItComes().solve(given)
     for name in MOVED:
         np.testing.assert_allclose(found[name], predicted.columns[name], rtol=0, atol=1e-9 * np.abs(found[name]).max())
-
-
-@pytest.mark.long
-def test_its_own_contact_slides_exactly_but_for_a_step_in_which_a_corner_is_taken_as_open(program):
-    """A corner that rounding lifts does not rub for a step, which costs tan(phi) g cos(slope) dt^2 at most, once."""
-    given = scene("sliding", time__steps=50)
-    slope, tan = math.radians(28.9), math.tan(math.radians(15.0))
-    held = 9.81 * math.cos(slope) * tan
-    t = given.time.step * np.arange(1, 51)
-    predicted = (9.81 * math.sin(slope) - held) * t**2 / 2
-    late = siconos.AsItComes().solve(given)["horizontal_displacement"] - predicted
-    assert (late > -1e-6 * predicted).all()
-    assert (late < held * given.time.step**2 + 1e-6 * predicted).all()
 
 
 SLOWER = [

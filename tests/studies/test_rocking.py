@@ -14,7 +14,6 @@ from scipy.integrate import solve_ivp
 from dda.bodies import turning_step as step
 from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
 from dda.march.step import steps_by
-from fem_reference.exact.rocking import RockingBlock
 from validation.studies.rocking import formulas as rocking
 from validation.studies.toppling import formulas as toppling
 from validation.suite.bands import cases
@@ -157,13 +156,6 @@ def test_quarter_periods_and_falls_are_those_of_the_differential_equation():
     rates = motion.sol(np.linspace(0, duration, 4001))[1]
     squared = np.trapezoid(rates**2, dx=duration / 4000)
     assert tower.squared_rate(slope - tower.alpha, duration) == pytest.approx(squared, rel=1e-6)
-
-
-def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package():
-    for height, tilt in ((2.0, 1e-3), (4.0, 1e-3), (8.0, 0.12)):
-        own, other = Rectangle(2.0, height, 9.81), RockingBlock(2.0, height, 9.81)
-        assert own.quarter_period(tilt) == pytest.approx(other.quarter_period(tilt), rel=1e-12)
-        assert own.housner == pytest.approx(other.ratio, rel=1e-14)
 
 
 def test_the_numbers_of_the_page_are_those_of_the_closed_forms():

@@ -9,7 +9,7 @@ from conftest import thinned
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, scaled, told
 from faults.kill_matrix import cases_of, check_kill_matrix
-from oracles.sliding_dda import Slider, run
+from oracles.sliding_block import SLIDER, history
 
 from validation import solve
 from validation.scenes.record import base_record
@@ -146,15 +146,16 @@ def test_dda_is_the_plain_program_step_by_step():
             {"contact.rules": rules, "contact.band": [0.0, 0.0], "time.step": 1e-3, "time.steps": 150}
         )
         data = oracle(case, rules == "lagged")
-        found, plain = solve(case, "dda").history.columns, run(data)
-        for name, other in (("horizontal_displacement", plain.u), ("displacement", plain.v)):
+        found, plain = solve(case, "dda").history.columns, history(data)
+        for name, other in (("horizontal_displacement", plain.sideways), ("displacement", plain.displacement)):
             assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
 
 
 def oracle(case, lagged):
     c, t = case.contact, case.time
     pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
-    return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)
+    values = {"phi": c.friction or 0.0, "p": c.stiffness, "ps": c.shear, "dt": t.step, "steps": t.steps}
+    return replace(SLIDER, force=pull, lagged=lagged, **values)
 
 
 CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n

@@ -118,7 +118,7 @@ def judge(
         raise InputError("goes with a problem or a scene", field="--set", value=assignments[0])
     with all_defects(), _progress("judge") as progress:
         problems = [_asked(name, assignments) for name in asked or ()]
-        sets: list[AnswerSet] = []
+        sets = []
         for one in _sources([source, *(beside or ())]):
             sets += _answers(one, problems, layout, (columns, scale), progress)
         if len(sets) == 1 and len(sets[0].answers) == 1:

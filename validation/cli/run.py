@@ -264,8 +264,8 @@ def _run_studies(
 
     last = time.monotonic()
     groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    runs: dict[str, JudgedStudy] = {}
-    seconds: dict[str, float] = {}
+    runs = {}
+    seconds = {}
     with _running(groups, results, machine, judging) as ended:
         for group in ended:
             runs[group.study.name] = judge_study(group, results)
@@ -346,8 +346,7 @@ def solve(
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}") as show:
         show(0, 1, "")
-        watch = partial(_watch, show)
-        ended = _run_case(adapter, case, is_full, fields, watch)
+        ended = _run_case(adapter, case, is_full, fields, partial(_watch, show))
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)
@@ -358,7 +357,10 @@ def solve(
     if ended.outcome is not Outcome.COMPLETED:
         echo(f"{case.name} {solver}: {ended.outcome}: {ended.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
-    _print_run(case, solver, ended)
+    work = ", ".join(f"{count} {name}" for name, count in ended.work.items())
+    last = {name: float(values[-1]) for name, values in ended.history.columns.items()} if ended.history else {}
+    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
+    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 class _Abandoned(Exception):
@@ -386,13 +388,6 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None, watc
         if part.stat().st_size == 0:
             raise InputError(f"{solver.name} has written none", field="--fields", value=repr(str(fields)))
     return run
-
-
-def _print_run(case: Scene, solver: str, run: Run) -> None:
-    work = ", ".join(f"{count} {name}" for name, count in run.work.items())
-    last = {name: float(values[-1]) for name, values in run.history.columns.items()} if run.history else {}
-    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
-    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 def _status(

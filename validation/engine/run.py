@@ -19,6 +19,7 @@ from validation.engine.measured import JudgedStudy
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
+from validation.runs.aliases import NamedTexts
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.records import (
@@ -26,7 +27,6 @@ from validation.runs.records import (
     Annotations,
     CaseRecord,
     DerivedRecord,
-    Manifest,
     VerdictRecord,
 )
 from validation.runs.results import Results
@@ -199,7 +199,7 @@ def judge_study(group: StudyCases, results: Results) -> JudgedStudy:
     finished = group.finished(results)
     scenes = list({case.scene.name: case.scene for case in group.cases}.values())
     annotations = _annotated(study, scenes, finished)
-    manifest: Manifest = {
+    manifest = {
         "study": study.name,
         "title": study.title,
         "purpose": study.purpose,
@@ -227,7 +227,7 @@ def _is_valid(row: Row, case: Case, results: Results) -> bool:
 @np.errstate(divide="raise", invalid="raise")
 def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
-    failed: dict[str, str] = {}
+    failed: NamedTexts = {}
     try:
         return study.annotate(scenes, finished)
     except Exception:  # which scene it was is found one by one

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,7 @@ from validation.metrics.measurable import Measurable
 from validation.metrics.pairs import Pairing
 from validation.metrics.values import UNDEFINED, finite
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Value
 
 HISTORY = "history"
 STATIC = "static"
@@ -97,13 +97,13 @@ def measured_by(measures: Collection[str], only: Collection[str] | None = None) 
 
 def solo(
     m: Measurable, measures: Collection[str] = ("history", "modes"), only: Collection[str] | None = None
-) -> dict[str, Value]:
+) -> NewMetrics:
     """Return the metrics of one run that are asked for; none of them is ever NaN."""
     with np.errstate(all="ignore"):
         return {metric.id: finite(metric.function(m)) for metric in measured_by(measures, only)}
 
 
-def pair(metric: str, history: History, reference: History, run: Mapping[str, Value] | None = None) -> Value:
+def pair(metric: str, history: History, reference: History, run: Metrics | None = None) -> Value:
     """Return a metric between a run and its reference, on their common steps.
 
     Parameters

@@ -30,5 +30,5 @@ class Texts:
 
     def text(self, name: str, *places: Any, **values: Any) -> str:
         """Return a text with its values, ``{0}`` and ``{name}``."""
-        text: str = self._data["text"][name]
+        text = self._data["text"][name]
         return FILLED.vformat(text, places, values) if places or values else text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import operator
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Sequence
 from functools import cache
 from typing import Any
 
@@ -15,12 +15,18 @@ from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
+from validation.runs.aliases import NamePair, Words
+from validation.runs.history import History
 from validation.runs.numbers import significant
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 
 Band = tuple[float, float]
 """Lower and upper edge."""
+Bands = dict[str, Band]
+"""Bands by metric."""
+Runs = Sequence[tuple[Scene, History]]
+"""Cases of a scene, each with the history of a solver: what a row of a sweep is computed from."""
 OTHER = "other code"  # the kind of a reference that an independent program computed
 APART = 1e-17  # two programs never agree to the last bit: a smaller difference is a run compared with itself
 
@@ -56,9 +62,7 @@ def short(values: ArrayLike, digits: int = 5) -> list[float]:
     return [significant(value, digits) for value in np.asarray(values)]
 
 
-def order_row(
-    name: str, solvers: tuple[str, str], key: str, quantities: tuple[str, ...] = ("displacement",)
-) -> Derived:
+def order_row(name: str, solvers: NamePair, key: str, quantities: Words = ("displacement",)) -> Derived:
     """Return the row `order` of a scene that is refined: the order of one solver's error against another.
 
     Parameters
@@ -74,7 +78,7 @@ def order_row(
     """
     levels = load_scene(name).expand()
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         errors: dict[str, list[float]] = {quantity: [] for quantity in quantities}
         for case in levels:
             history, exact = (finished.needed_history(case.name, solver) for solver in solvers)
@@ -97,7 +101,7 @@ def half_unit(printed: str | float) -> float:
 
 def gate(
     case: Scene | str,
-    solvers: str | tuple[str, ...],
+    solvers: str | Words,
     metric: str,
     band: Band,
     reason: str,
@@ -123,7 +127,7 @@ def gate(
 
 def printed(
     scene: Scene | str,
-    solvers: str | tuple[str, ...],
+    solvers: str | Words,
     metric: str,
     value: float,
     half: float,

@@ -22,6 +22,7 @@ from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
 from validation.report.verification import matrix
+from validation.runs.aliases import NamedTexts
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -172,7 +173,7 @@ class Site:
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
         )
-        index: Blocks = [
+        index = [
             Heading("Discontinuous Deformation Analysis against finite elements"),
             Paragraph(lead, "lead"),
             Paragraph(f"The model is that of {PAPER}.", "small"),
@@ -204,10 +205,10 @@ def picture_of(page: str, blocks: Blocks) -> str:
     return f"{page.removesuffix('.html')}/{figures[0].file}" if figures else ""
 
 
-def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
+def page_names(kind: str, names: Sequence[str]) -> NamedTexts:
     """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
-    pages: dict[str, str] = {}
-    used: set[str] = set()
+    pages = {}
+    used = set()
     for name in names:
         stem = f"{kind}-{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('-.') or 'unnamed'}"[:100]
         unique = stem

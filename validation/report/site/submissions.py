@@ -27,6 +27,7 @@ from validation.report.chapters.answers import (
 from validation.report.chapters.judged import page
 from validation.report.render import html
 from validation.report.site.places import check_place, write
+from validation.runs.aliases import Words
 from validation.runs.files import atomic_directory
 from validation.runs.text import visible
 from validation.suite.judging import JudgedSet
@@ -79,7 +80,7 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
     return out / "index.html"
 
 
-def _by_address(judged: JudgedSet) -> tuple[str, ...]:
+def _by_address(judged: JudgedSet) -> Words:
     return judged.answers.address
 
 
@@ -107,7 +108,7 @@ class Site:
         asks = asks_of(sets)
         missing = [name for name in names() if name not in asks]
         unanswered = [Paragraph(f"Not answered by any of them: {', '.join(missing)}.", "small")] if missing else []
-        blocks: Blocks = [
+        blocks = [
             Paragraph(f"{LEAD} All verdicts as plain data: {VERDICTS}.", "lead"),
             answer_table(sets),
             *unanswered,

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
 from validation.studies.core.damping import derived as damping_rows
@@ -19,7 +18,7 @@ from validation.studies.core.decisions import curves as curves
 from validation.studies.core.decisions import derived as closed_rows
 from validation.studies.core.decisions import first_peak as first_peak
 from validation.studies.core.decisions import springs as springs
-from validation.suite.bands import Band, about, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, about, cases, fitted_order, near
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
 
@@ -86,7 +85,7 @@ def damping_of_the_history(case: Scene) -> Band:
     return about(spectra.damping_ratio(case, spectra.dda_frequency(case)), 1e-6)
 
 
-def dispersion(case: Scene) -> dict[str, Band] | None:
+def dispersion(case: Scene) -> Bands | None:
     """Mesh error of weakly damped waves, which is that of the elements' dispersion."""
     if case.time.alpha == 0.5 and case.time.step >= 1e-3:
         return None  # the figure's constant acceleration: damped within the window, judged with Figures 3 to 6
@@ -94,10 +93,9 @@ def dispersion(case: Scene) -> dict[str, Band] | None:
     return {f"{quantity}.l2": (0.75 * error, 1.1 * error) for quantity, error in errors.items()}
 
 
-def distance_from_the_finest_mesh(case: Scene) -> dict[str, Band]:
+def distance_from_the_finest_mesh(case: Scene) -> Bands:
     """Differences of meshes of 4 and of 8 elements a side from one of 16, this suite's own, within half of each."""
-    last_values = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}
-    displacement, pressure = last_values[case.fem.per_side]
+    displacement, pressure = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}[case.fem.per_side]
     return {
         "displacement.l2": (displacement / 1.5, displacement * 1.5),
         "pressure.l2": (pressure / 1.5, pressure * 1.5),
@@ -109,20 +107,20 @@ def same_recursion(case: Scene) -> Band:
     return 0.0, spectra.rounding(case)
 
 
-def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
     """Return how far DDA's displacement at rest is from that of the elements, relative to it."""
     first, second = (or_nan(row.metrics.get("displacement.static")) for row in (dda, fem))
     return {"displacement": abs(first / second - 1)}
 
 
-def drift(finished: Finished) -> Mapping[str, Value]:
+def drift(finished: Finished) -> Metrics:
     """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
     levels = tuple(cases(POINT_SPRINGS))
     settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
-    return {"halving": float(np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0])}
+    return {"halving": np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0]}
 
 
-def order(finished: Finished) -> Mapping[str, Value]:
+def order(finished: Finished) -> Metrics:
     """Return the power of the elements a side with which the error against the bar falls."""
     levels = tuple(cases(MESHES))
     errors = []
@@ -132,7 +130,7 @@ def order(finished: Finished) -> Mapping[str, Value]:
     return {"power": fitted_order([case.fem.per_side for case in levels], errors)}
 
 
-def further_rows() -> tuple[Derived, ...]:
+def further_rows() -> DerivedRows:
     """Return the rows of damping, of the first pages, of the order of elements, and of their drift on point springs."""
     points = tuple((case.name, "fem") for case in cases(POINT_SPRINGS))
     meshes = tuple(itertools.product((case.name for case in cases(MESHES)), ("fem", "bar")))

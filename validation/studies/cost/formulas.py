@@ -9,16 +9,16 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
+from validation.runs.aliases import Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array
 from validation.runs.records import Annotations
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.studies.cost.ladder import Ladder
@@ -50,7 +50,7 @@ def ladder_of(name: str) -> Ladder:
     return Ladder.of(load_scene(f"cost-{name}"))
 
 
-def of_scene(base: Scene) -> dict[str, Any]:
+def of_scene(base: Scene) -> Fields:
     """Return the fields of the study of a user's block: the same methods, and no gates.
 
     Raises
@@ -90,7 +90,7 @@ def order_in_time(name: str) -> Derived:
     levels = load_scene(name).expand()[:ORDER_LEVELS]
     reference = load_scene(IN_TIME[-1]).expand()[-1].name
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         exact = _columns(finished, reference, "dda", REFERENCE)
         solutions = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
         return _orders([case.time.step for case in levels], solutions, [exact] * len(levels))
@@ -99,10 +99,8 @@ def order_in_time(name: str) -> Derived:
     return Derived(name, "order", needs, compute)
 
 
-def _orders(
-    sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]
-) -> Mapping[str, Value]:
-    orders: dict[str, Value] = {}
+def _orders(sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Metrics:
+    orders = {}
     for quantity in QUANTITIES:
         errors = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in zip(solutions, exact, strict=True)]
         orders[f"order.{quantity}"] = fitted_order(sizes, errors)
@@ -113,7 +111,7 @@ def order_in_mesh(name: str) -> Derived:
     """Return the row of the order in h, against the bar."""
     levels = load_scene(name).expand()
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         solutions = [_columns(finished, case.name, "fem") for case in levels]
         exact = [_columns(finished, case.name, "bar") for case in levels]
         return _orders([1 / n for n in MESHES], solutions, exact)
@@ -126,9 +124,9 @@ def grid_convergence() -> Derived:
     """Return the row of the grid-convergence index: order from successive changes, uncertainty of the finest mesh."""
     levels = load_scene(WITHOUT_EXACT).expand()
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         histories = [_columns(finished, case.name, "fem") for case in levels]
-        metrics: dict[str, Value] = {}
+        metrics = {}
         for quantity in QUANTITIES:
             changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
             order = fitted_order([1 / n for n in MESHES[1:]], changes)
@@ -140,7 +138,7 @@ def grid_convergence() -> Derived:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows of orders, of the grid-convergence index, and of the blocks."""
     times = map(order_in_time, IN_TIME)
     meshes = map(order_in_mesh, IN_MESH)

@@ -35,12 +35,12 @@ import operator
 import tomllib
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.history import Array
+from validation.runs.aliases import Fields, NamedNumbers
+from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
@@ -80,12 +80,12 @@ class Method:
     id: str
     label: str
     solver: str
-    time: dict[str, Any]
+    time: Fields
     levels: tuple[int, ...]
-    fem: dict[str, Any] = field(default_factory=dict)
+    fem: Fields = field(default_factory=dict)
     per_element: int = 0
     cut: str = ""
-    scaled: dict[str, float] = field(default_factory=dict)
+    scaled: NamedNumbers = field(default_factory=dict)
     is_choice: bool = False
 
 
@@ -102,7 +102,7 @@ def methods() -> tuple[Method, ...]:
     return tuple(listed)
 
 
-def one_strain(scene: Scene) -> tuple[Array, Array]:
+def one_strain(scene: Scene) -> ArrayPair:
     """Return mass and stiffness of a block of one strain on closed springs, for displacement and strain."""
     height = scene.block.extent[1]
     k = min(2 * scene.contact.stiffness, RIGID * scene.block.young * scene.block.base_length / height)
@@ -114,8 +114,7 @@ def one_strain(scene: Scene) -> tuple[Array, Array]:
 def first_period(scene: Scene) -> float:
     """Return the period of the first mode of one strain on its springs [s]."""
     mass, stiffness = one_strain(scene)
-    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-    return 2 * math.pi / math.sqrt(min(squares))
+    return 2 * math.pi / math.sqrt(min(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
 
 
 def landing(scene: Scene) -> float:
@@ -126,8 +125,7 @@ def landing(scene: Scene) -> float:
     InputError
         It never comes down.
     """
-    width = scene.block.base_length
-    acceleration = scene.load.gravity + scene.load.pressure * width / scene.block.mass
+    acceleration = scene.load.gravity + scene.load.pressure * scene.block.base_length / scene.block.mass
     speed = scene.block.velocity
     gap = scene.contact.gap
     if gap == 0 and speed <= 0:
@@ -218,7 +216,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, dict[str, Any]] = {}
+        tables = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -232,7 +230,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: dict[str, Any] = {"mode": "zip", "time.steps": counts}
+        sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
-from validation.engine.finished import Derived
+from validation.engine.finished import DerivedRows
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import order_row
 
@@ -22,9 +21,9 @@ REFINED = {  # scene -> what converges to what, the step or mesh width that is r
 }
 
 
-def samples(case: Scene, history: History) -> Mapping[str, Value]:
+def samples(case: Scene, history: History) -> Metrics:
     """Return displacement and contact pressure at the instants."""
-    values: dict[str, Value] = {}
+    values = {}
     for n in INSTANTS:
         values[f"displacement.{n}"] = float(history.displacement[n - 1])
         values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
@@ -41,6 +40,6 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-def orders() -> tuple[Derived, ...]:
+def orders() -> DerivedRows:
     """Return the rows of orders."""
     return tuple(order_row(name, *refined) for name, refined in REFINED.items())

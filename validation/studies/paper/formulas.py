@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from dda.scheme.spectral import spectral_radius
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.metrics.values import as_number
-from validation.runs.row import Value
+from validation.runs.aliases import Data
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.studies.paper import open_close, register, slips
 from validation.suite.bands import cases, short
@@ -44,7 +43,7 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 }
 
 
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return the words of the claims, and Figure 1: spectral radius over w dt, and the root of 1 + h that is printed.
 
     What is printed departs from the radius where the roots are real; only that part is kept.
@@ -68,7 +67,7 @@ def gates() -> tuple[Gate, ...]:
     return CLAIMS_OF_THE_PAPER.gates()
 
 
-def rows() -> tuple[Derived, ...]:
+def rows() -> DerivedRows:
     """Return the rows of the claims, and what Figures 1 and 3 to 9 draw beside histories and metrics."""
     of_figures = (_period(case) for case in cases(*FIGURES))
     of_map = (_angles(case) for case in cases("damping-map"))
@@ -78,7 +77,7 @@ def rows() -> tuple[Derived, ...]:
 def _period(case: Scene) -> Derived:
     """Return the row of the steps in a period of the bar, and whether the continuum is a curve with so few."""
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         frequency = as_number(finished.rows[case.name, "bar"].metrics["mode1.frequency"])
         steps = 2 * math.pi / (frequency * case.time.step)
         return {"steps": steps, "continuum": "curve" if steps >= COARSE else "none"}
@@ -89,7 +88,7 @@ def _period(case: Scene) -> Derived:
 def _angles(case: Scene) -> Derived:
     """Return the row of w dt of both modes of the block, as far as Figure 1 reaches."""
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         metrics = finished.rows[case.name, "dda"].metrics
         frequencies = {mode: metrics.get(f"{mode}.frequency") for mode in MODES}
         angles = {mode: w * case.time.step for mode, w in frequencies.items() if isinstance(w, float)}

@@ -24,8 +24,7 @@ def carried(scene: Scene) -> float:
     """Static contact pressure [Pa]: the vertical load q L on the top, resolved normal to the base, over its length."""
     (x0, y0), (x1, y1) = scene.block.edge(scene.block.top)
     (ax, _), (bx, _) = scene.block.edge(scene.block.base)
-    length = scene.block.base_length
-    return scene.load.pressure * math.hypot(x1 - x0, y1 - y0) * (bx - ax) / length**2
+    return scene.load.pressure * math.hypot(x1 - x0, y1 - y0) * (bx - ax) / scene.block.base_length**2
 
 
 def equilibrium() -> Iterator[Gate]:

@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived
+from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
+from validation.runs.aliases import NamePair
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
 from validation.studies.waves import oblique, rows
@@ -35,7 +36,7 @@ def scenes() -> tuple[str | Scene, ...]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
     return (
@@ -64,7 +65,7 @@ def site() -> Iterator[Gate]:
             yield gate(SITE, (solver, "layers"), metric, (APART, CONVERGED), why, uncertainty=1e-4)
 
 
-def fem_too() -> tuple[tuple[str, str], ...]:
+def fem_too() -> tuple[NamePair, ...]:
     """Return the cases that line elements run beside the blocks."""
     return tuple(
         dict.fromkeys((w.scene.name, w.solver) for w in (*rows.travelling(), *rows.jointed()) if w.solver == "fem")
@@ -77,14 +78,14 @@ def all_cases() -> Iterator[Scene]:
         yield from (load_scene(declared) if isinstance(declared, str) else declared).expand()
 
 
-def closed(case: Scene) -> Mapping[str, Value]:
+def closed(case: Scene) -> Metrics:
     """Return c dt/h of the lowest layer, its glue over that of its own blocks, and the weights of the scheme."""
     column = column_of(case)
     layer = column.layer[0]
     height = layer.thickness / layer.blocks
     speed = math.sqrt(column.modulus(layer) / layer.density)
     time = case.time
-    values: dict[str, Value] = {
+    values: NewMetrics = {
         "courant": round(speed * time.step / height, 6),
         "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
     }
@@ -97,9 +98,9 @@ def sites() -> Iterator[Scene]:
     yield from usual_site().expand()
 
 
-def largest(case: Scene, history: History) -> Mapping[str, Value]:
+def largest(case: Scene, history: History) -> Metrics:
     """Return the largest displacement of the surface [m] and the largest stress on the base [Pa]."""
     return {
-        "displacement": float(np.abs(history.displacement).max()),
-        "pressure": float(np.abs(history.contact_pressure).max()),
+        "displacement": np.abs(history.displacement).max(),
+        "pressure": np.abs(history.contact_pressure).max(),
     }

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.suite.bands import about, gate, half_unit, printed
 from validation.theory.stepping import Complex, Stepping
 from validation.theory.waves import Column, base_reflection
@@ -69,10 +69,10 @@ def returned_energy(angle: float, wave: str, poisson: float = 0.25) -> float:
     return float(flux / (speeds[wave] ** 2 * normal[wave].real))
 
 
-def reflections(finished: Finished) -> Mapping[str, Value]:
+def reflections(finished: Finished) -> Metrics:
     """Return |R| of a base of the column's own impedance over blocks a wavelength, scheme and Courant number."""
     block = Column(height=1.0, density=1.0, modulus=1.0)  # so that c = 1
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for (scheme, blocks), courant in itertools.product(REFLECTED, COURANTS):
         omega = 2 * math.pi / blocks
         reflected = base_reflection(block, Stepping(courant, *SCHEMES[scheme]), omega, impedance=1.0)
@@ -80,11 +80,11 @@ def reflections(finished: Finished) -> Mapping[str, Value]:
     return numbers
 
 
-def energies(finished: Finished) -> Mapping[str, Value]:
+def energies(finished: Finished) -> Metrics:
     """Return the energy sent back over the angle, and the angles at which it passes three per cent [deg]."""
     from scipy.optimize import brentq
 
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for wave, angle in itertools.product(SENT_BACK, (0.0, *ANGLES)):
         numbers[f"{wave} at {angle:g} deg"] = returned_energy(angle, wave)
     for wave, name, low, high in (
@@ -93,7 +93,7 @@ def energies(finished: Finished) -> Mapping[str, Value]:
         ("S", "S to", 32.0, 40.0),
         ("S", "S again from", 40.0, 60.0),
     ):
-        numbers[f"{name}, deg"] = float(brentq(_above_noticed, low, high, wave))
+        numbers[f"{name}, deg"] = brentq(_above_noticed, low, high, wave)
     return numbers
 
 
@@ -101,7 +101,7 @@ def _above_noticed(angle: float, wave: str) -> float:
     return returned_energy(angle, wave) - NOTICED
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows."""
     return Derived(FACTS, "viscous base", (), reflections), Derived(FACTS, "oblique waves", (), energies)
 
