@@ -12,9 +12,10 @@ from fem_reference.contact.iteration import CONVERGED, UNSETTLED, fall_back
 from fem_reference.contact.law import Law, States
 from fem_reference.contact.march import SUMS, ContactStage, ContactState, Record, Watch, load, march, part_of
 from fem_reference.contact.system import ContactSystem
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.stages import Stage
-from fem_reference.scheme.newmark import Operator, Work, effective_matrix, operator, start_velocity
+from fem_reference.scheme.newmark import Operator, Work, inverses, operator, start_velocity
 from fem_reference.scheme.stage import Body
 
 AVERAGE = (0.25, 0.5)
@@ -58,8 +59,9 @@ class ContactStepper:
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
-        if self.rule == "implicit" and (self.scheme.alpha, self.scheme.delta) != AVERAGE:
-            raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
+        is_average = (self.scheme.alpha, self.scheme.delta) == AVERAGE
+        is_sound = is_average or self.rule != "implicit"
+        require(is_sound, "alpha, delta", f"must be {AVERAGE} for implicit contact", self.scheme)
         system = self.system
         if system.to_modes is not None:
             self.work.factorisations += 1
@@ -172,16 +174,14 @@ class ContactStepper:
             self._lengths = {1.0: self._lengths[1.0]}
         system = self.system
         scheme = replace(self.scheme, step=self.scheme.step * ratio, gg=self.scheme.gg**ratio)
-        matrices: dict[int, tuple[Any, Any, Array]] = {}
+        weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
+        responses: list[tuple[Any, Array]] = []
         stages: list[ContactStage] = []
-        begin = 0.0
+        made = inverses(system.M, system.K, scheme, system.C, self.factor)
         for number, first in enumerate(scheme.stage_matrices):
-            if first == number:
-                inverse = self.factor(effective_matrix(system.M, system.K, scheme, number, system.C))
-                weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
-                matrices[number] = (inverse, *self._responses(inverse, weight))
-            stages.append(self._stage(scheme, number, begin, *matrices[first], ratio))
-            begin = scheme.stages[number].end
+            responses.append(responses[first] if first < number else self._responses(made[number], weight))
+            begin = scheme.stages[number - 1].end if number else 0.0
+            stages.append(self._stage(scheme, number, begin, made[number], *responses[number], ratio))
         self._lengths[ratio] = tuple(stages)
         return self._lengths[ratio]
 
@@ -240,4 +240,4 @@ class ContactStepper:
         for i in range(count):
             response[:, i] = inverse * B[[i]].toarray()[0]
         response *= weight
-        return response, np.asarray(B @ response)
+        return response, B @ response

@@ -7,7 +7,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import Integrated, random_problem, slipping_problem
+from oracles.integrated import integrated_block, random_problem, slipping_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import BlockProblem
@@ -95,7 +95,7 @@ def test_an_independent_integration_with_events_agrees(problem: BlockProblem, tr
     end = travels * travel(problem)
     motion = solve(problem, end)
     # DOP853 at rtol 1e-13 is good to about 1e-11 here; every switch amplifies that, by up to ten in these problems
-    switches, y = Integrated(problem).run([int(state) for state in motion.nodes[0].states], end)
+    switches, y = integrated_block(problem, [int(state) for state in motion.nodes[0].states], end)
     assert switches
     opened = [(corner, state in (OPEN, RELEASED)) for _, corner, state in switches]
     assert [(s.corner, s.kind == "opens") for s in motion.switches] == opened

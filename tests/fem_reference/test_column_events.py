@@ -9,7 +9,7 @@ import pytest
 from conftest import thinned
 from flint import arb
 from oracles.column_motions import COLUMNS, RIGID, KnownColumn, blocks, half_unit, kind_of
-from oracles.column_oracle import integrated, random_column
+from oracles.integrated import integrated_column, random_column
 
 from fem_reference.events import column_drive as drives
 from fem_reference.events import column_events, contacts
@@ -69,7 +69,7 @@ def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
 def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_events(seed: int) -> None:
     problem, end = random_column(seed)
     motion = solve(problem, end)
-    oracle = integrated(problem, end)
+    oracle = integrated_column(problem, end)
     assert labels(motion) == [label for label, _ in oracle.switches]
     times = [switch.time for switch in motion.switches]
     np.testing.assert_allclose(times, [time for _, time in oracle.switches], rtol=0, atol=1e-9 * end)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb, arb_mat
-from oracles.block_by_integration import slipping_problem
+from oracles.integrated import slipping_problem
 from scipy.linalg import expm
 
 from fem_reference.events import block_events, block_march, column_events, series, watching

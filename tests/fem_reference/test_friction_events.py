@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import slipping_problem
+from oracles.integrated import slipping_problem
 
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import BlockProblem

@@ -21,6 +21,7 @@ from validation.advice.limits import Limit, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency
 from validation.errors import InputError
+from validation.runs.aliases import Fields, NamedNumbers, NumberPair, Words
 from validation.runs.modes import Mode
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -54,7 +55,7 @@ class Offer:
     """A scheme at a step that has the wanted damping ratio."""
 
     name: str
-    settings: dict[str, Any]  # for Scene.with_values
+    settings: Fields  # for Scene.with_values
     step: float  # dt [s]
     gg: float  # per step
     damping: float  # xi at the requested frequency [-]
@@ -64,11 +65,11 @@ class Offer:
     contact_mode: float | None  # xi of its highest mode, the contact's where p is large
     contact_radius: float  # and the share of its amplitude that a step keeps
     cost: float | None  # linear solves a second over those of the scene; None where that has none
-    rebound: dict[str, float]  # of its contact at this step, without the discount: mean, least, most [-]
+    rebound: NamedNumbers  # of its contact at this step, without the discount: mean, least, most [-]
     greatest_rebound: float  # at any step [-]
     gains: bool  # whether an impact at this step may give back more than it had
     start_rise: float | None  # energy that the first step adds from a consistent start, over what the loads give [-]
-    fears: tuple[str, ...]
+    fears: Words
 
 
 @dataclass(frozen=True)
@@ -80,7 +81,7 @@ class SchemeAdvice(PlainAnswer):
     frequency: float  # at which it is wanted [Hz]
     no_gain: bool  # whether impacts must not gain energy
     offers: tuple[Offer, ...]
-    unreachable: dict[str, float]  # scheme -> the largest xi that it has there
+    unreachable: NamedNumbers  # scheme -> the largest xi that it has there
     sentence: str
 
 
@@ -119,7 +120,13 @@ def advise_across(
     check_ratio(damping, LEAST_RATIO)
     Limit("frequency").check(frequency)
     features.refuse_damping(scene, "advise")
-    block = _closed_block(scene)
+    # A block whose contact stays closed, which has modes; one that opens must be a rectangle on springs.
+    features.refuse_column(scene, "advise")
+    is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
+    if scene.contact.law == "unilateral" and not is_known:
+        rule = "must be a rectangle on springs of finite stiffness where contact opens"
+        raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
+    block = closed(scene)
     modes = dda_modes(block)
     highest = highest_frequency(block)
     impact = highest if scene.block.rectangle is None else landing.contact_frequency(scene)
@@ -139,20 +146,10 @@ def advise_across(
     return replace(answer, sentence=_sentence(answer))
 
 
-def _closed_block(scene: Scene) -> Scene:
-    """Return a block whose contact stays closed, which has modes; one that opens must be a rectangle on springs."""
-    features.refuse_column(scene, "advise")
-    is_known = scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness)
-    if scene.contact.law == "unilateral" and not is_known:
-        rule = "must be a rectangle on springs of finite stiffness where contact opens"
-        raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
-    return closed(scene)
-
-
 # ---- candidates -----------------------------------------------------------------------------------------------------
 
 
-def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], dict[str, float]]:
+def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], NamedNumbers]:
     """Return the steps that have the target, and by name the largest xi of the schemes that have it nowhere."""
     present = Stepping.of(scene)
     weights = [CONSTANT, (present.alpha, present.delta)] if present.scheme == "newmark" else [CONSTANT]
@@ -160,7 +157,7 @@ def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Steppin
     for scheme, radii in LADDER.items():
         units += [Stepping.named(scheme, rho_inf=radius) for radius in radii]
     steppings: list[Stepping | None] = []
-    unreachable: dict[str, float] = {}
+    unreachable: NamedNumbers = {}
     for unit in units:
         ratios = _ratios(unit)
         if not np.any(ratios >= target):
@@ -192,9 +189,7 @@ def _of_radius(scheme: str, step: float, radius: float) -> Stepping:
     return Stepping.named(scheme, step, rho_inf=radius)
 
 
-def _member(
-    family: Callable[[float], Stepping], target: float, omega: float, ends: tuple[float, float]
-) -> Stepping | None:
+def _member(family: Callable[[float], Stepping], target: float, omega: float, ends: NumberPair) -> Stepping | None:
     """Return the scheme of a family that has the target at a frequency; None where the ends do not bracket it."""
     number = _root(lambda value: family(value).damping_ratio(omega * family(value).step), target, *ends)
     return None if number is None else family(number)
@@ -234,7 +229,7 @@ def _offer(
     """Return a scheme at its step with all that follows from it."""
     dt = stepping.step
     present = Stepping.of(scene)
-    settings: dict[str, Any] = {"time.step": dt, "time.gg": stepping.gg}
+    settings: Fields = {"time.step": dt, "time.gg": stepping.gg}
     if stepping.scheme != "newmark":
         settings |= {"time.scheme": stepping.scheme, "time.rho_inf": stepping.rho_inf}
     else:

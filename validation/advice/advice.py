@@ -30,6 +30,7 @@ from validation.advice.spectra import (
     steps_to,
 )
 from validation.metrics.columns import settling_step
+from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -60,7 +61,7 @@ class Solution:
     step: float  # dt [s]
     gg: float  # per step
     gg_rate: float | None  # c = -ln(gg) / dt [1/s]
-    settings: dict[str, float]  # for Scene.with_values
+    settings: NamedNumbers  # for Scene.with_values
     contact: ModeDamping | None
 
 
@@ -231,8 +232,7 @@ def _settling(case: Scene) -> tuple[int | None, str]:
         rough = ramp + max(steps_to(0.01 / share, radius) for radius, share in modes if share > 0)
         return (math.ceil(rough) if math.isfinite(rough) else None), "envelope"
     steps = max(10, math.ceil(ramp + max(last)) + 10)
-    run = solve(case.with_values({"time.steps": steps}), "dda")
-    step = settling_step(run.displacement, static)
+    step = settling_step(solve(case.with_values({"time.steps": steps}), "dda").displacement, static)
     return (int(step) if isinstance(step, float) else None), "history"
 
 

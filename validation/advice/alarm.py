@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 import math
-import tomllib
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 
+from validation.runs.aliases import NamedTexts, NumbersByName
+from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 from validation.runs.records import AlarmRecord
-from validation.runs.row import Row
+from validation.runs.row import Row, RowsBySolver
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-SENTENCES: dict[str, str] = tomllib.loads(Path(__file__).with_name("alarms.toml").read_text(encoding="utf-8"))
+SENTENCES: NamedTexts = table_beside(__file__, "alarms.toml")
 
 
 @dataclass(frozen=True)
@@ -24,7 +23,7 @@ class Alarm:
     kind: str
     scene: str
     sentence: str
-    values: Mapping[str, float] = field(default_factory=dict)
+    values: NumbersByName = field(default_factory=dict)
 
     def record(self) -> AlarmRecord:
         """Return plain data, numbers rounded well above the last bits."""
@@ -32,14 +31,14 @@ class Alarm:
         return {"kind": self.kind, "scene": self.scene, "sentence": self.sentence, "values": rounded}
 
 
-def alarm(kind: str, scene: str, values: Mapping[str, float] | None = None, **words: object) -> Alarm:
+def alarm(kind: str, scene: str, values: NumbersByName | None = None, **words: object) -> Alarm:
     """Return an alarm with the sentence of its kind, made of its numbers and of further words."""
     numbers = dict(values or {})
     finite = {name: value for name, value in numbers.items() if math.isfinite(value)}
     return Alarm(kind, scene, SENTENCES[kind].format(**numbers, **words), finite)
 
 
-def first_row(rows: Mapping[str, Row], role: Role) -> Row | None:
+def first_row(rows: RowsBySolver, role: Role) -> Row | None:
     """Return the row of the solver of the highest rank of a role that has one."""
     return next((rows[name] for name in by_role(role) if name in rows), None)
 

@@ -10,7 +10,7 @@ contacts: `.block_alarms`, and `.columns` of columns whose contacts open or slip
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from typing import Protocol
 
 from validation.advice.alarm import Alarm as Alarm
@@ -18,10 +18,11 @@ from validation.advice.alarm import alarm, first_row, number
 from validation.advice.coarse import coarse_alarms
 from validation.advice.hooks import AdviceHooks
 from validation.metrics.catalogue import pair as pair_metric
+from validation.runs.aliases import NamePair
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.numbers import share_text
-from validation.runs.row import Row
+from validation.runs.row import Row, RowsBySolver
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers.contract import EXACT_IN_TIME, Role
@@ -35,7 +36,7 @@ class Cases(Protocol):
     """What alarms are raised from: rows and histories of finished cases."""
 
     @property
-    def rows(self) -> dict[tuple[str, str], Row]:
+    def rows(self) -> dict[NamePair, Row]:
         """Rows by (scene, solver)."""
 
     def history(self, scene: str, solver: str) -> History | None:
@@ -58,7 +59,7 @@ def alarms(scenes: Iterable[Scene], finished: Cases) -> Iterator[Alarm]:
     yield from fixed_discount(scene for scene in listed if AdviceHooks.of(scene).has_budget)
 
 
-def _stepped(rows: Mapping[str, Row]) -> bool:
+def _stepped(rows: RowsBySolver) -> bool:
     """Whether some solver that takes the scene's steps has completed it."""
     return any(row.outcome is Outcome.COMPLETED and role(solver) not in EXACT_IN_TIME for solver, row in rows.items())
 

@@ -11,14 +11,15 @@ That of a start that puts energy in is in `validation.advice.overshoot`, those o
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.spectra import FLIPPING, steps_to
-from validation.runs.row import Row
+from validation.runs.aliases import NamedNumbers
+from validation.runs.row import RowsBySolver
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
@@ -27,20 +28,12 @@ TENSION = "hidden tension"
 RINGING = "contact ringing"
 
 
-def block_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
-    yield from _tension(scene, rows)
-    yield from _ringing(scene, rows)
-    yield from contact_alarms(scene, rows)
-    yield from overshoot_alarms(scene, rows)
-    yield from friction_alarms(scene, rows)
-
-
-def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
-    """Yield one alarm for the solvers whose contact carries tension; runs that repeat another are not listed."""
-    values: dict[str, float] = {}
+    # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
+    values: NamedNumbers = {}
     parts = []
-    for solver, row in solvers.items():
+    for solver, row in rows.items():
         minimum = number(row, "pressure.minimum")
         time = number(row, "pressure.minimum_time")
         duration = number(row, "pressure.tension_time")
@@ -51,9 +44,13 @@ def _tension(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
             parts.append(f"in {solver} by {-minimum / 1e6:.3g} MPa at t = {time:.4g} s, for {duration:.3g} s in total")
     if parts:
         yield alarm(TENSION, scene.name, values, solvers="; ".join(parts))
+    yield from _ringing(scene, rows)
+    yield from contact_alarms(scene, rows)
+    yield from overshoot_alarms(scene, rows)
+    yield from friction_alarms(scene, rows)
 
 
-def _ringing(scene: Scene, solvers: Mapping[str, Row]) -> Iterator[Alarm]:
+def _ringing(scene: Scene, solvers: RowsBySolver) -> Iterator[Alarm]:
     row = first_row(solvers, Role.JUDGED)
     root = number(row, "contact.least_root")
     radius = number(row, "contact.spectral_radius")

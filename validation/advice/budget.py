@@ -32,17 +32,14 @@ def budgets(scenes: Iterable[Scene]) -> Iterator[BudgetRecord]:
     """Yield one budget for each setting of a scene apart from its time steps and meshes."""
     settings: dict[str, dict[str, list[Scene]]] = {}
     for scene in scenes:
-        settings.setdefault(scene_of(scene.name), {}).setdefault(_setting(scene), []).append(scene)
+        data = scene.definition()
+        time = {key: value for key, value in data["time"].items() if key not in ("step", "steps", "start")}
+        setting = repr((data["block"], data["contact"], data.get("damping"), time))
+        settings.setdefault(scene_of(scene.name), {}).setdefault(setting, []).append(scene)
     for group in settings.values():
         for cases in itertools.islice(group.values(), VARIANTS):
             with contextlib.suppress(InputError, ValueError):  # a scene that DDA cannot take has no budget
                 yield budget(cases)
-
-
-def _setting(scene: Scene) -> str:
-    data = scene.definition()
-    time = {key: value for key, value in data["time"].items() if key not in ("step", "steps", "start")}
-    return repr((data["block"], data["contact"], data.get("damping"), time))
 
 
 def budget(cases: list[Scene]) -> BudgetRecord:

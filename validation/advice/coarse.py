@@ -73,7 +73,7 @@ def coarse_alarms(scene: Scene, frequency: float | None = None, agreement: Calla
         if removal.by_damping >= REMOVED:
             continue
         values = {"frequency": motion.frequency, "omega_dt": removal.omega_dt, "removed": removal.by_scheme}
-        words: dict[str, object] = {"what": motion.name, "w": motion.frequency}
+        words = {"what": motion.name, "w": motion.frequency}
         damps = removal.by_scheme >= REMOVED
         if damps:
             scheme = _scheme(scene)
@@ -105,8 +105,7 @@ def removal_of(scene: Scene, frequency: float) -> Removal:
     pair = _scheme(scene).roots(omega_dt)[:2]
     rate = scene.damping.mass + scene.damping.stiffness * frequency**2
     damped = math.sqrt(t.discount) * math.exp(-rate * t.step / 2)
-    greatest = min(float(max(abs(pair))), 1.0)
-    return Removal(omega_dt, 1 - greatest**steps, 1 - damped**steps)
+    return Removal(omega_dt, 1 - min(float(max(abs(pair))), 1.0) ** steps, 1 - damped**steps)
 
 
 def _scheme(scene: Scene) -> Stepping:
@@ -124,15 +123,14 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
     turns = np.geomspace(RESOLVED, beyond, TURNS)
     first = next((i for i, turn in enumerate(turns) if excess(turn) >= 0), 0)
-    return float(brentq(excess, turns[first - 1], turns[first], rtol=1e-6)) / beyond if first else 1.0
+    return brentq(excess, turns[first - 1], turns[first], rtol=1e-6) / beyond if first else 1.0
 
 
 def closed(scene: Scene) -> Scene:
     """Return a scene whose contact stays closed: its springs locked, of a rigid stop as stiff as rounding allows."""
     if features.linear(scene):
         return scene
-    stiffness = min(scene.contact.stiffness, 1e6 * scene.block.young)
-    contact = type(scene.contact)(stiffness=stiffness)
+    contact = type(scene.contact)(stiffness=min(scene.contact.stiffness, 1e6 * scene.block.young))
     run = scene.run.model_copy(update={"geometry": "small", "rotation": "exact"})
     damping = scene.damping.model_copy(update={"kinetic": "constant"})
     return scene.model_copy(update={"stated_contact": contact, "run": run, "damping": damping})

@@ -77,7 +77,12 @@ def limits(scene: Scene) -> ColumnLimits | None:
     lowest = _lowest(column)
     ring_down = None if lowest is None else columns.ring_down(lowest, stepping)
     solves = columns.greatest_solves(count) if proven else None
-    return ColumnLimits(count, solves, turned, _blocks(column, t.step, stepping.spring_weight), lowest, ring_down)
+    # The blocks of each layer, the present ones at least, whose far faces move the right way at a step.
+    counts = []
+    for layer in column.layer:
+        whole = columns.far_face_step(_speed(column, layer), layer.thickness, stepping.spring_weight)
+        counts.append(max(layer.blocks, math.ceil(whole / t.step * (1 - ROUNDING))) if math.isfinite(whole) else 0)
+    return ColumnLimits(count, solves, turned, tuple(counts), lowest, ring_down)
 
 
 def rest(scene: Scene) -> Rest | None:
@@ -125,8 +130,8 @@ def _at_rest(column: ColumnSection) -> tuple[list[float], list[float], float]:
 
     Each contact carries the weight above it, and the mean stress of a block is that of its middle.
     """
-    middles: list[float] = []
-    at_rest: list[float] = []
+    middles = []
+    at_rest = []
     contacts = list(column.contacts)
     faces = iter(itertools.pairwise(column.faces))
     foot = 0.0
@@ -151,15 +156,6 @@ def far_face_step(column: ColumnSection, alpha: float) -> float:
     return max(
         columns.far_face_step(_speed(column, layer), layer.thickness / layer.blocks, alpha) for layer in column.layer
     )
-
-
-def _blocks(column: ColumnSection, step: float, alpha: float) -> tuple[int, ...]:
-    """Return the blocks of each layer, the present ones at least, whose far faces move the right way at a step."""
-    counts = []
-    for layer in column.layer:
-        whole = columns.far_face_step(_speed(column, layer), layer.thickness, alpha)
-        counts.append(max(layer.blocks, math.ceil(whole / step * (1 - ROUNDING))) if math.isfinite(whole) else 0)
-    return tuple(counts)
 
 
 def _speed(column: ColumnSection, layer: LayerSection) -> float:

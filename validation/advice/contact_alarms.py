@@ -20,12 +20,12 @@ tension of a dead band
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 from validation.advice import contact
 from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.runs.numbers import share_text
-from validation.runs.row import Row
+from validation.runs.row import Row, RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -45,7 +45,7 @@ NOTABLE = 0.01  # of the energy given, or of the load
 BEYOND = 1.5  # times the peak force of the exact bar from which on a peak is the springs'
 
 
-def contact_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+def contact_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of the judged method's run of a scene with unilateral contact.
 
     Parameters

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
-from pathlib import Path
-from typing import Any
 
 from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
+from validation.runs.aliases import Data, Fields
+from validation.runs.beside import table_beside
 from validation.runs.numbers import number_text, share_text
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -33,7 +32,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-LINES: dict[str, list[dict[str, Any]]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+LINES: dict[str, list[Fields]] = table_beside(__file__)
 ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 
@@ -82,10 +81,10 @@ def scenes(scene: Scene) -> dict[str, Scene]:
 
 def answer(
     scene: Scene,
-    rows: Mapping[str, Row],
+    rows: RowsBySolver,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
-) -> dict[str, Any]:
+) -> Fields:
     """Return everything as plain data.
 
     Parameters
@@ -124,13 +123,13 @@ def answer(
     }
 
 
-def measured(row: Row) -> dict[str, Value]:
+def measured(row: Row) -> NewMetrics:
     """Return what was measured of the contact."""
     prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
     return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}
 
 
-def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
+def landing_speed(scene: Scene, rows: RowsBySolver) -> float:
     """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
     for name in (exact(), own()):
         value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
@@ -140,7 +139,7 @@ def landing_speed(scene: Scene, rows: Mapping[str, Row]) -> float:
     return math.sqrt(scene.block.velocity**2 + max(0.0, fallen))
 
 
-def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
+def page(scene: Scene, data: Data, absent: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
     springs = f"p = {scene.contact.stiffness:.4g} N/m"
     yield from _heading(scene, "contact that opens", springs, f": w_c dt = {data['omega']:.3g}")
@@ -172,9 +171,9 @@ def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "
     yield ""
 
 
-def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
+def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return the runs side by side."""
-    lines: list[Line] = [(f"over {scene.time.duration:.4g} s", *runs)]
+    lines = [(f"over {scene.time.duration:.4g} s", *runs)]
     for words, opens in (("first opening", True), ("first landing", False)):
         lines.append((words, *(first(scene, run, opens) for run in runs.values())))
     with_friction = features.FRICTION in features.of(scene)
@@ -185,9 +184,9 @@ def table(scene: Scene, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
     return [*lines, *measured_lines("repeatable", runs)]
 
 
-def measured_lines(kind: str, runs: Mapping[str, Mapping[str, Value]]) -> list[Line]:
+def measured_lines(kind: str, runs: Mapping[str, Metrics]) -> list[Line]:
     """Return a line of each metric of a kind of `LINES`, with its number in every run."""
-    lines: list[Line] = []
+    lines = []
     for line in LINES[kind]:
         numbers = (
             number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()
@@ -196,7 +195,7 @@ def measured_lines(kind: str, runs: Mapping[str, Mapping[str, Value]]) -> list[L
     return lines
 
 
-def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
+def first(scene: Scene, run: Metrics, opens: bool) -> str:
     """Return when a run first opens or lands, in words; a block that touches may do either at once."""
     opening, closing = (run.get(f"switches.first_{name}") for name in ("opening", "closing"))
     value, other = (opening, closing) if opens else (closing, opening)
@@ -207,18 +206,18 @@ def first(scene: Scene, run: Mapping[str, Value], opens: bool) -> str:
     return f"{value:.7g} s" if isinstance(value, float) else "never"
 
 
-def _solves(run: Mapping[str, Value]) -> str:
+def _solves(run: Metrics) -> str:
     mean, most = (run.get(f"contact.{name}_solves") for name in ("mean", "most"))
     return f"{mean:.4g}, {most:.0f}" if isinstance(mean, float) and isinstance(most, float) else "-"
 
 
-def _number(run: Mapping[str, Value], metric: str) -> float:
+def _number(run: Metrics, metric: str) -> float:
     """Return a number of a run, NaN where it has none."""
     value = run.get(metric)
     return value if isinstance(value, float) else math.nan
 
 
-def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> Iterator[str]:
+def _hops(slides: friction.Sliding, runs: Mapping[str, Metrics]) -> Iterator[str]:
     """Say where the exact block moves otherwise than a rigid one that stays on the slope."""
     run = runs.get(exact(), {})
     distance = abs(_number(run, ALONG))
@@ -231,7 +230,7 @@ def _hops(slides: friction.Sliding, runs: Mapping[str, Mapping[str, Value]]) -> 
     )
 
 
-def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
+def _needed(scene: Scene, data: Data) -> Iterator[str]:
     need = data["needed"]
     depth = data["asked"]["penetration"]
     load = abs(opened.resultant_load(scene))
@@ -257,7 +256,7 @@ def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
         yield f"  gg = {scene.time.discount:g} acts per step: {loses}; {left}"
 
 
-def _depth(need: Mapping[str, Any], penetration: float) -> str:
+def _depth(need: Data, penetration: float) -> str:
     if need["depth"] is None:
         return ", for the load at rest and one unloaded landing"
     reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
@@ -274,7 +273,7 @@ def column_scenes(scene: Scene) -> dict[str, Scene]:
     return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
 
 
-def column_answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLimits) -> dict[str, Any]:
+def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> Fields:
     """Return everything as plain data."""
     return {
         "scene": scene.name,
@@ -284,9 +283,7 @@ def column_answer(scene: Scene, rows: Mapping[str, Row], bound: columns.ColumnLi
     }
 
 
-def column_page(
-    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
-) -> Iterator[str]:
+def column_page(scene: Scene, bound: columns.ColumnLimits, data: Data, absent: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of one page of text; a line of the table that no run has a number for is left out."""
     yield from _heading(scene, "a column whose contacts open or slip", f"{bound.contacts} contacts")
     lines = [*measured_lines("column", data["runs"]), *measured_lines("repeatable", data["runs"])]

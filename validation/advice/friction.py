@@ -17,12 +17,12 @@ drag on a sliding block
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.advice.plain import PlainAnswer
-from validation.runs.row import Row
+from validation.runs.row import Row, RowsBySolver
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -127,7 +127,7 @@ def lines(scene: Scene, slides: Sliding) -> Iterator[str]:
             )
 
 
-def friction_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+def friction_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of the judged method's run of a scene with friction, by its finished rows."""
     row = first_row(rows, Role.JUDGED)
     if row is None or features.FRICTION not in features.of(scene):

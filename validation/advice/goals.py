@@ -21,10 +21,9 @@ import itertools
 import math
 import tempfile
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -40,6 +39,7 @@ from validation.metrics.columns import settling_step
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import as_number
 from validation.runs import extras
+from validation.runs.aliases import Data, Fields, NumberPair, Words
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
@@ -80,7 +80,7 @@ class Recommendation(PlainAnswer):
 
     goal: str
     condition: str  # under which the numbers hold, in words
-    settings: dict[str, Any]  # for Scene.with_values
+    settings: Fields  # for Scene.with_values
     is_reached: bool  # whether both errors are within the requested one
     displacement_error: float  # against the reference [-]
     force_error: float | None  # of the contact pressure, or of an impact of the restitution [-]; None if not compared
@@ -95,7 +95,7 @@ class Recommendation(PlainAnswer):
 class Candidate:
     """Settings that were run."""
 
-    settings: dict[str, Any]
+    settings: Fields
     steps: int
     displacement_error: float
     force_error: float | None
@@ -169,7 +169,7 @@ def recommend(
     InputError
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
-    values: dict[str, Any] = {}
+    values: Fields = {}
     if not keep_springs or math.isinf(scene.contact.stiffness):  # a rigid stop has none to keep
         values = {"contact.stiffness": springs(scene, error)}
     values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
@@ -179,7 +179,20 @@ def recommend(
     block = closed(at_rest(sprung))
     slides = sliding(scene)
     if goal == "static" and slides is not None and not slides.stands:
-        return (_slide(scene, error),)
+        # The longest step with which a block slides as far as a rigid one, on its own springs.
+        duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
+        finest = duration / FINEST_SLIDE
+        plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+
+        def run(every: int) -> Candidate:
+            settings = CONSTANT | {"time.step": every * finest}
+            steps = FINEST_SLIDE // every
+            errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
+            return Candidate(settings, steps, *errors)
+
+        best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
+        condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
+        return (recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration),)
     if goal == "static":
         return (_static(sprung, block, error),)
     if goal == "impact":
@@ -241,24 +254,7 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     return recommendation(scene, "static", condition, best, error, reference, duration)
 
 
-def _slide(scene: Scene, error: float) -> Recommendation:
-    """Return the longest step with which a block slides as far as a rigid one, on its own springs."""
-    duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
-    finest = duration / FINEST_SLIDE
-    plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
-
-    def run(every: int) -> Candidate:
-        settings = CONSTANT | {"time.step": every * finest}
-        steps = FINEST_SLIDE // every
-        errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
-        return Candidate(settings, steps, *errors)
-
-    best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
-    condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
-    return recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration)
-
-
-def slide_errors(scene: Scene) -> tuple[float, float] | None:
+def slide_errors(scene: Scene) -> NumberPair | None:
     """Return how far `dda` is from a rigid block that slides: of the distance, and of the mean contact pressure [-].
 
     Undamped stiff springs may let the exact block hop, which then slides farther; a rigid block stays on its slope.
@@ -275,12 +271,17 @@ def slide_errors(scene: Scene) -> tuple[float, float] | None:
 # ---- wave and quake -------------------------------------------------------------------------------------------------
 
 
-def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple[str, ...]) -> Recommendation:
+def _driven(block: Scene, goal: str, error: float, frequency: float, axes: Words) -> Recommendation:
     duration = DURATION / frequency
     finest = 1 / (frequency * COARSEST * 2 ** (REFINEMENTS - 1))
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "wavelet.csv"
-        _write_wavelet(record, frequency, duration, finest, axes)
+        # Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base.
+        times = np.arange(round(duration / finest) + 2) * finest
+        a = (np.pi * (frequency * times - ONSET)) ** 2
+        motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
+        table = np.column_stack([times, *[motion - motion[0]] * len(axes)])
+        np.savetxt(record, table, delimiter=",", header=",".join(("time", *axes)), comments="")
         columns = [DISPLACEMENT, PRESSURE, *([ALONG] if "x" in axes else [])]
         driven = block.with_values(NO_LOADS | {"load.base_motion": str(record), "run.columns": columns})
         fine = AVERAGE | {"time.step": finest, "time.steps": round(duration / finest)}
@@ -295,15 +296,6 @@ def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple
         return recommendation(driven, goal, condition, best, error, reference, duration)
 
 
-def _write_wavelet(path: Path, frequency: float, duration: float, step: float, axes: tuple[str, ...]) -> None:
-    """Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base."""
-    times = np.arange(round(duration / step) + 2) * step
-    a = (np.pi * (frequency * times - ONSET)) ** 2
-    motion = AMPLITUDE * (1 - 2 * a) * np.exp(-a)
-    table = np.column_stack([times, *[motion - motion[0]] * len(axes)])
-    np.savetxt(path, table, delimiter=",", header=",".join(("time", *axes)), comments="")
-
-
 def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Candidate:
     """Return the candidate with the fewest steps times blocks that keeps the error, or that with the least error."""
     tried: list[Candidate] = []
@@ -311,7 +303,7 @@ def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Can
         good = []
         for scheme in (AVERAGE, CONSTANT):
 
-            def run(every: int, scheme: Mapping[str, Any] = scheme, pieces: int = pieces) -> Candidate:
+            def run(every: int, scheme: Data = scheme, pieces: int = pieces) -> Candidate:
                 steps = len(exact.time) // every
                 settings = {**scheme, **_cut(driven, pieces), "time.step": every * finest}
                 history = _history(driven, own(), settings | {"time.steps": steps})
@@ -379,7 +371,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
         if method is CONSERVING and block.block.poisson != 0:
             continue  # its base slides, which the rule does not take with springs of shear
 
-        def run(every: int, method: Mapping[str, Any] = method) -> Candidate:
+        def run(every: int, method: Data = method) -> Candidate:
             settings = {**method, "time.step": every * finest}
             errors = [_landing_errors(falling, settings, flight, every, phase, speed) for phase in PHASES]
             return Candidate(settings, steps // every, *np.max(errors, axis=0).tolist())
@@ -390,8 +382,8 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
 
 
 def _landing_errors(
-    falling: Scene, settings: Mapping[str, Any], flight: Array, every: int, phase: float, speed: float
-) -> tuple[float, float]:
+    falling: Scene, settings: Data, flight: Array, every: int, phase: float, speed: float
+) -> NumberPair:
     """Return the errors of displacement and restitution of a block that lands at a phase of its first step.
 
     `flight` is the exact displacement at every `every`-th part of a step from the landing on.
@@ -417,7 +409,7 @@ def _pieces(scene: Scene) -> list[int]:
     return [1, 2, 4] if scene.block.rectangle is not None else [1]
 
 
-def _cut(scene: Scene, pieces: int) -> dict[str, Any]:
+def _cut(scene: Scene, pieces: int) -> Fields:
     """Return the settings that cut each present block upwards, and sideways where it strains sideways."""
     if pieces == 1:
         return {}
@@ -426,7 +418,7 @@ def _cut(scene: Scene, pieces: int) -> dict[str, Any]:
     return {"block.subdivide": [across * sideways, upwards * pieces]}
 
 
-def _history(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:
+def _history(scene: Scene, solver: str, values: Data) -> History | None:
     """Return the history of a run with some values; None where it did not complete."""
     run = solve(scene.with_values(dict(values)), solver)
     return run.history if run.outcome.value == "completed" else None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -11,7 +11,7 @@ from validation.advice.alarm import Alarm
 from validation.advice.columns import ColumnLimits
 from validation.errors import InputError
 from validation.runs.history import Complex
-from validation.runs.row import Row
+from validation.runs.row import RowsBySolver
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 from validation.theory.waves import Column
@@ -61,7 +61,7 @@ class AdviceHooks(Hooks):
         """Yield what the motion of a scene is made of, the first mode with its frequency, if that is known [rad/s]."""
         yield from ()
 
-    def alarms(self, scene: Scene, rows: Mapping[str, Row] | None = None) -> Iterator[Alarm]:
+    def alarms(self, scene: Scene, rows: RowsBySolver | None = None) -> Iterator[Alarm]:
         """Yield alarms of a scene's contacts from its finished rows by solver; before a run, of what may happen."""
         yield from ()
 

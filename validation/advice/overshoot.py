@@ -8,7 +8,7 @@ overshoot of the start
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from contextlib import suppress
 
 from validation.advice.alarm import Alarm, alarm, first_row
@@ -16,7 +16,7 @@ from validation.advice.coarse import closed
 from validation.advice.spectra import dda_modes
 from validation.errors import InputError
 from validation.runs.modes import Mode
-from validation.runs.row import Row
+from validation.runs.row import RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
@@ -29,7 +29,7 @@ NOTABLE = 0.01  # of the energy given
 IMPULSES = frozenset({features.RIGID, features.IMPLICIT, features.CONSERVING, features.SUB_BLOCKS})
 
 
-def overshoot_alarms(scene: Scene, rows: Mapping[str, Row]) -> Iterator[Alarm]:
+def overshoot_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarm of the judged method's start, by its finished rows."""
     if first_row(rows, Role.JUDGED) is None or (rise := start_rise(scene)) is None:
         return

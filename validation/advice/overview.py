@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -22,6 +22,7 @@ from validation.advice.plain import Line, PlainAnswer, in_columns
 from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
 from validation.errors import InputError
 from validation.runs import extras
+from validation.runs.aliases import NamedTexts, Progress, Words
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -69,15 +70,15 @@ class Overview(PlainAnswer):
     facts: tuple[Fact, ...]
     present: PresentError | None
     recommendations: tuple[Recommendation, ...]
-    refused: dict[str, str]  # goal -> why there is nothing to take for it
+    refused: NamedTexts  # goal -> why there is nothing to take for it
 
 
 def overview(
     scene: Scene,
-    chosen: tuple[str, ...] = goals.GOALS,
+    chosen: Words = goals.GOALS,
     error: float = 0.05,
     frequency: float | None = None,
-    progress: Callable[[int, int, str], None] = lambda *_: None,
+    progress: Progress = lambda *_: None,
     keep_springs: bool = False,
 ) -> Overview:
     """Return what the settings of a block do, and what to take for goals.
@@ -108,7 +109,7 @@ def overview(
     present = _present_error(scene)
     facts = tuple(_facts(scene))
     recommendations: list[Recommendation] = []
-    refused: dict[str, str] = {}
+    refused: NamedTexts = {}
     for number, goal in enumerate(chosen, 1):
         progress(number, len(chosen) + 1, goal)
         try:

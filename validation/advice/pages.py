@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 from validation.advice.goals import GOALS, Recommendation
 from validation.advice.overview import Overview, recommended
 from validation.errors import InputError
+from validation.runs.aliases import Progress, Words
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
@@ -22,10 +23,10 @@ class Question:
     source: str  # the words of the scene on a command line
     error: float  # of displacement and contact force, that is allowed [-]
     stated: str = ""  # the options that all goals are asked for with, as one goal takes them
-    goals: tuple[str, ...] = GOALS
+    goals: Words = GOALS
     frequency: float | None = None  # of the wave or the quake [Hz]
     keep_springs: bool = False  # whether the springs are those of a real joint, and stay
-    progress: Callable[[int, int, str], None] = lambda *_: None  # is told what has been done, of how much, what is next
+    progress: Progress = lambda *_: None  # is told what has been done, of how much, what is next
 
 
 class PageHooks(Hooks):

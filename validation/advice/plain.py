@@ -9,6 +9,8 @@ import textwrap
 from collections.abc import Collection, Sequence
 from typing import Any
 
+from validation.runs.aliases import Fields
+
 Line = tuple[str, ...]
 NARROW = 34  # characters: a last column with less room stands below its line
 
@@ -16,7 +18,7 @@ NARROW = 34  # characters: a last column with less room stands below its line
 class PlainAnswer:
     """An answer, a dataclass, that ``--json`` prints field by field."""
 
-    def as_dict(self) -> dict[str, Any]:
+    def as_dict(self) -> Fields:
         """Return plain data for JSON."""
         return dataclasses.asdict(self)  # type: ignore[call-overload, no-any-return]
 
@@ -61,7 +63,7 @@ def in_rows(
     fits_beside = not columns or width is None or offsets[count] + NARROW <= width
     if width is not None and not fits_beside:
         count = max(1, sum(offset - 2 <= width for offset in offsets[1 : count + 1]))
-    rows: list[list[str]] = []
+    rows = []
     for line in lines:
         padded = zip(line, widths, strict=False)  # no cells are an empty line
         cells = [cell.rjust(n) if i in right else cell.ljust(n) for i, (cell, n) in enumerate(padded)]

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from validation.advice.spectra import checked
 from validation.errors import InputError
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array, Complex
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, ArrayPair, Complex
 from validation.runs.threads import one_thread
 from validation.scenes import features
 from validation.scenes.keys import is_fulfilled
@@ -95,7 +95,7 @@ class Response:
     def _follow(self, column: str, low: float, high: float) -> Peak | None:
         """Return the peak between two frequencies; None where the amplitude is highest at an end."""
         ends = (low, high)
-        sizes: list[float] = []
+        sizes = []
         while True:
             frequency = np.linspace(low, high, POINTS_A_ZOOM)
             values = self.answer(frequency)[column]
@@ -117,10 +117,10 @@ class Response:
 
 def _are_real(values: Complex) -> NDArray[np.bool_]:
     """Whether amplitudes have no imaginary part but rounding."""
-    return np.asarray(np.abs(values.imag) <= ROUNDING * np.abs(values))
+    return np.abs(values.imag) <= ROUNDING * np.abs(values)
 
 
-def polar(amplitude: Complex) -> tuple[Array, Array]:
+def polar(amplitude: Complex) -> ArrayPair:
     """Return modulus, and phase before the load's in (-pi, pi] [rad], zero where nothing moves.
 
     An imaginary part that is rounding counts as none, so that the phase of what nothing damps is 0 or pi.

@@ -9,7 +9,8 @@ from functools import cached_property
 
 import numpy as np
 
-from validation.runs.history import Array
+from validation.runs.aliases import NamedNumbers
+from validation.runs.history import Array, ArrayPair
 
 FLAT = 1e-12  # relative; smaller turns of a function are rounding, not extrema
 HALVINGS = 100  # of an interval in which a function ends to be defined: to the last bit
@@ -22,11 +23,11 @@ class Search:
     grid: Array  # coordinates, increasing
     xi: Callable[[Array], Array]  # damping ratios [1], NaN where a root is not positive
     value: Callable[[float], float]  # dt [s], gg [1] or delta [1] at a coordinate
-    settings: Callable[[float], dict[str, float]]  # for Scene.with_values
+    settings: Callable[[float], NamedNumbers]  # for Scene.with_values
     flat: float = FLAT  # relative size of turns that are rounding
 
     @cached_property
-    def samples(self) -> tuple[Array, Array]:
+    def samples(self) -> ArrayPair:
         """Coordinates and xi: the grid, its extrema refined, and the last ones at which xi is defined."""
         ratios = self._ratios(self.grid)
         slopes = np.diff(ratios)
@@ -73,7 +74,7 @@ class Search:
         roots: list[float] = []
         for i in np.flatnonzero(is_passed):
             ends = coordinates[i : i + 2]
-            root = float(brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps))
+            root = brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps)
             # a root at a sample belongs to both of its neighbours
             if not roots or not math.isclose(self.value(root), self.value(roots[-1]), rel_tol=1e-12):
                 roots.append(root)

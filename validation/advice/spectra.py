@@ -267,8 +267,7 @@ def alias(scene: Scene) -> float | None:
 
 def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
     """Return frequency and damping of a reference's first axial mode; empty where it does not apply."""
-    chosen = get_solver(solver)
-    if chosen.refusal(scene):
+    if get_solver(solver).refusal(scene):
         return {}
     mode = checked(solver, scene).modes(scene)[0]
     xi = operator_damping(mode.eigenvalues)

@@ -22,7 +22,8 @@ from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
 from validation.errors import InputError
 from validation.models.column.tables import NEAR
-from validation.runs.history import Array, Complex
+from validation.runs.aliases import NumberPair
+from validation.runs.history import ArrayPair, Complex
 from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -87,7 +88,7 @@ class _WavePath:
     def wavelengths(self) -> float:
         return self.times * sum(layer.thickness / layer.speed for layer in self.layers) * self.frequency
 
-    def passed(self, w2: Complex) -> tuple[Array, Array]:
+    def passed(self, w2: Complex) -> ArrayPair:
         """Return loss and delay in periods at squared frequencies."""
         decay = np.zeros(np.shape(w2))
         phase = np.zeros(np.shape(w2))
@@ -99,7 +100,9 @@ class _WavePath:
 
     def passage(self, stepping: Stepping) -> Passage:
         loss, delay = self.passed(stepping.squared_frequency([self.omega]))
-        values = (loss[0], delay[0], _steady_ratio(stepping, self.frequency))
+        # The damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz.
+        W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(self.frequency, float)))
+        values = (loss[0], delay[0], float(-W.imag / np.abs(W)))
         rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
         return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *rounded)
 
@@ -225,7 +228,7 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
     """Return the largest step with which the wave arrives, and what limits it."""
     is_stable = _stability(scene, path)
 
-    def passed(step: float) -> tuple[float, float]:
+    def passed(step: float) -> NumberPair:
         lost, delay = path.passed(Stepping.of(scene).at(step).squared_frequency([path.omega]))
         return float(lost[0]), float(abs(delay[0]))
 
@@ -271,12 +274,6 @@ def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
         return step * highest <= scheme.at(step).critical_omega
 
     return is_stable
-
-
-def _steady_ratio(stepping: Stepping, frequency: float) -> float:
-    """Return the damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz."""
-    W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(frequency, float)))
-    return float(-W.imag / np.abs(W))
 
 
 def _check_sampled(frequency: float, step: float) -> None:

@@ -12,6 +12,7 @@ import typer
 
 from validation.cli.app import JsonOption, SceneArgument, SetOption, _progress, one_case, parts
 from validation.cli.printing.output import broken, columns, echo_answer
+from validation.runs.aliases import NamePair
 from validation.runs.numbers import number_text, share_text
 
 if TYPE_CHECKING:
@@ -61,10 +62,16 @@ def everything(
     check(goal, error, frequency)
     case = one_case(scene, assignments)
     with _progress("advise") as progress:
+        # The options that a page on all goals was asked for with, as one on a goal takes them.
+        options = [] if error == ERROR else ["--error", f"{error:g}"]
+        if frequency is not None:
+            options += ["--frequency", f"{frequency:g}"]
+        if keep_springs:
+            options.append("--keep-springs")
         question = Question(
             source=_words(scene, assignments),
             error=error,
-            stated=_stated(error, frequency, keep_springs),
+            stated=" ".join(["", *options]),
             goals=GOALS if goal is None else (goal,),
             frequency=frequency,
             keep_springs=keep_springs,
@@ -77,16 +84,6 @@ def everything(
 def _words(scene: str, assignments: list[str] | None) -> str:
     """Return a scene with values set as a command line has it."""
     return shlex.join([scene, *itertools.chain.from_iterable(("--set", value) for value in assignments or [])])
-
-
-def _stated(error: float, frequency: float | None, keep_springs: bool) -> str:
-    """Return the options that a page on all goals was asked for with, as one on a goal takes them."""
-    options = [] if error == ERROR else ["--error", f"{error:g}"]
-    if frequency is not None:
-        options += ["--frequency", f"{frequency:g}"]
-    if keep_springs:
-        options.append("--keep-springs")
-    return " ".join(["", *options])
 
 
 @parts.command()
@@ -157,7 +154,7 @@ def schemes(
         advice = advise_across(one_case(scene, assignments), target, at, no_gain)
     offers = advice.offers
     heads = [f"xi at {float(hertz):.4g} Hz" for hertz in (offers[0].hidden if offers else ())]
-    rows: list[tuple[str, ...]] = [("", "dt [s]", *heads, "first mode", "contact", "solves", "rebound", "at any step")]
+    rows = [("", "dt [s]", *heads, "first mode", "contact", "solves", "rebound", "at any step")]
     for offer in offers:
         ratios = map(_percent, (*offer.hidden.values(), offer.first_mode, offer.contact_mode))
         numbers = (number_text(number, 3) for number in (offer.cost, offer.rebound["most"], offer.greatest_rebound))
@@ -192,7 +189,7 @@ def wave(
 
     with _progress("advise"):
         advice = advise_wave(one_case(scene, assignments), fmax, loss, wavelengths, phase_error)
-    rows: list[tuple[str, ...]] = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
+    rows = [("", "blocks [m]", "dt [s]", "lost", "late [periods]", "steady ratio")]
     for name, passage in (("present", advice.present), ("advised", advice.advised)):
         if passage is not None:
             heights = ", ".join(f"{height:.5g}" for height in passage.heights)
@@ -207,7 +204,7 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
     yield f"{broken(analysis.sentence)}\n\ngg = {analysis.gg:.6g} per step{_rate(analysis.gg_rate)}"
     has_tables = any(mode.viscous for mode in analysis.modes)
     shares = ("algorithmic", "kinetic", "viscous") if has_tables else ("algorithmic", "kinetic")
-    rows: list[tuple[str, ...]] = [("mode", "w [rad/s]", "w dt", "xi [%]", *shares, "|lambda|", "w/w' - 1")]
+    rows = [("mode", "w [rad/s]", "w dt", "xi [%]", *shares, "|lambda|", "w/w' - 1")]
     for mode in analysis.modes:
         ratios = [number_text(getattr(mode, part), factor=100) for part in ("damping", *shares)]
         elongation = number_text(mode.period_elongation, 3)
@@ -226,7 +223,7 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
         yield f"\n{broken(alias_note)}"
 
 
-def _facts(solution: Solution) -> Iterator[tuple[str, str]]:
+def _facts(solution: Solution) -> Iterator[NamePair]:
     from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 

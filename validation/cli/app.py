@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 from typer.core import TyperGroup
+
+from validation.runs.aliases import Progress as ProgressReport
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
@@ -197,7 +199,7 @@ def refuse_bad_input(scene: str, solver: str, ended: Run | Row) -> None:
 
 
 @contextmanager
-def _progress(title: str, visible: bool = True) -> Iterator[Callable[[int, int, str], None]]:
+def _progress(title: str, visible: bool = True) -> Iterator[ProgressReport]:
     """Yield a callback that says how far the work is, in a bar that is shown once it has taken two seconds.
 
     The bar does not wait for a call: one piece of the work may take minutes.

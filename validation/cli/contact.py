@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from itertools import count
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,12 +20,11 @@ from validation.cli.app import (
     refuse_bad_input,
 )
 from validation.cli.printing.output import broken, echo_answer
+from validation.runs.aliases import NamedTexts, Progress
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
     from validation.scenes.scene import Scene
-
-Progress = Callable[[int, int, str], None]  # of the runs done, how many there are at most, and what the next one is
 
 
 @parts.command()
@@ -58,7 +57,7 @@ def contact(
         if bounds is None:
             probe = _probe(scenes[contact_page.exact()], progress, len(scenes))
             data = contact_page.answer(case, rows, penetration, probe)
-            lines: Iterable[str] = contact_page.page(case, data, absent)
+            lines = contact_page.page(case, data, absent)
         else:
             data = contact_page.column_answer(case, rows, bounds)
             lines = map(broken, contact_page.column_page(case, bounds, data, absent))
@@ -84,7 +83,7 @@ def _probe(scene: Scene, progress: Progress, before: int) -> Callable[[float], f
     return depth
 
 
-def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], dict[str, str]]:
+def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], NamedTexts]:
     """Return the rows of the runs that completed, and why the others have none.
 
     Raises
@@ -98,8 +97,8 @@ def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row],
     from validation.engine.measure import execute
     from validation.runs.run import Outcome
 
-    rows: dict[str, Row] = {}
-    absent: dict[str, str] = {}
+    rows = {}
+    absent = {}
     for number, (name, scene) in enumerate(scenes.items()):
         progress(number, len(scenes) + 1 + RAISES, f"at most; {name}, {scene.time.steps} steps")
         row, _ = execute(Case(scene, name), "", "contact")

@@ -124,7 +124,7 @@ def _exit_status(command: Callable[[], object]) -> int:
     except InputError as error:
         return _print_error(f"error: {printable(str(error))}")
     except USAGE_ERROR as error:
-        message: str = error.format_message()  # type: ignore[attr-defined]
+        message = error.format_message()  # type: ignore[attr-defined]
         if not message:  # no command: typer has printed its help
             return BAD_INPUT
         return _print_error(f"error: {printable(message)} (see dda-validate --help)")

@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from validation.runs.aliases import Progress
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
@@ -264,8 +266,8 @@ def _run_studies(
 
     last = time.monotonic()
     groups = [study_cases(study, machine.full, machine.ranks) for study in studies]
-    runs: dict[str, JudgedStudy] = {}
-    seconds: dict[str, float] = {}
+    runs = {}
+    seconds = {}
     with _running(groups, results, machine, judging) as ended:
         for group in ended:
             runs[group.study.name] = judge_study(group, results)
@@ -346,8 +348,7 @@ def solve(
     is_full = full or solver.endswith(FULL)
     with _progress(f"solve {solver}") as show:
         show(0, 1, "")
-        watch = partial(_watch, show)
-        ended = _run_case(adapter, case, is_full, fields, watch)
+        ended = _run_case(adapter, case, is_full, fields, partial(_watch, show))
     refuse_bad_input(case.name, solver, ended)
     if csv is not None and ended.outcome is Outcome.COMPLETED and ended.history is not None:
         write_csv(ended.history, csv)
@@ -358,14 +359,17 @@ def solve(
     if ended.outcome is not Outcome.COMPLETED:
         echo(f"{case.name} {solver}: {ended.outcome}: {ended.outcome.sentence}")
         raise typer.Exit(NUMERICAL_FAILURE)
-    _print_run(case, solver, ended)
+    work = ", ".join(f"{count} {name}" for name, count in ended.work.items())
+    last = {name: float(values[-1]) for name, values in ended.history.columns.items()} if ended.history else {}
+    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
+    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 class _Abandoned(Exception):
     """A run that did not complete leaves no fields."""
 
 
-def _watch(show: Callable[[int, int, str], None], prepared: Prepared) -> None:
+def _watch(show: Progress, prepared: Prepared) -> None:
     """Show how far a run is, where its solver says so."""
     prepared.progress = lambda share: show(round(100 * share), 100, "% of the time that is simulated")
 
@@ -386,13 +390,6 @@ def _run_case(solver: Solver, case: Scene, full: bool, fields: Path | None, watc
         if part.stat().st_size == 0:
             raise InputError(f"{solver.name} has written none", field="--fields", value=repr(str(fields)))
     return run
-
-
-def _print_run(case: Scene, solver: str, run: Run) -> None:
-    work = ", ".join(f"{count} {name}" for name, count in run.work.items())
-    last = {name: float(values[-1]) for name, values in run.history.columns.items()} if run.history else {}
-    ends = ", ".join(f"{name} {value:.6g}" for name, value in last.items())
-    echo(f"{case.name} {solver}: {case.time.steps} steps to t = {case.time.duration:g} s; last: {ends}; {work}")
 
 
 def _status(

@@ -60,7 +60,14 @@ def interruptible() -> Iterator[None]:
         for number, handler in before.items():
             if handler is not signal.SIG_IGN:
                 signal.signal(number, _handler(os.getpid()))
-        sys.unraisablehook = _unraisable(hook)
+        # A hook that ends the process where an interruption came in a place that raises nothing.
+
+        def handle(raised: sys.UnraisableHookArgs) -> None:
+            if _received:
+                end()
+            hook(raised)
+
+        sys.unraisablehook = handle
         try:
             yield
         except BaseException:
@@ -111,17 +118,6 @@ def _handler(owner: int) -> Callable[[int, FrameType | None], None]:
             end()
         _received.append(number)
         raise KeyboardInterrupt
-
-    return handle
-
-
-def _unraisable(hook: Callable[[sys.UnraisableHookArgs], object]) -> Callable[[sys.UnraisableHookArgs], None]:
-    """Return a hook that ends the process where an interruption came in a place that raises nothing."""
-
-    def handle(raised: sys.UnraisableHookArgs) -> None:
-        if _received:
-            end()
-        hook(raised)
 
     return handle
 

@@ -11,10 +11,10 @@ import typer
 
 from validation.cli.app import SceneArgument, SetOption, one_case, parts
 from validation.cli.printing.output import columns, echo
+from validation.runs.aliases import NamePair, Words
 
 if TYPE_CHECKING:
     from validation.advice.response import Peak, Response
-    from validation.runs.history import Array
     from validation.scenes.scene import Scene
 
 FigureOption = Annotated[
@@ -46,18 +46,7 @@ def response(
     from validation.runs.files import check_ending
 
     case = one_case(scene, assignments)
-    frequencies = _frequencies(low, high, points, logarithmic)
-    check_ending(figure, "--figure")
-    answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
-    if csv is not None:
-        _write(answers[EXACT if exact else solver], csv)
-    if figure is not None:
-        _draw(case, answers, logarithmic, figure)
-    _print_peaks(case, answers)
-
-
-def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Array:
-    """Return the frequencies of a sweep [Hz], or refuse its ends."""
+    # The frequencies of a sweep [Hz], or refuse its ends.
     import numpy as np
 
     from validation.errors import InputError
@@ -69,17 +58,21 @@ def _frequencies(low: float, high: float, points: int, logarithmic: bool) -> Arr
     if logarithmic and low == 0:
         raise InputError("must be greater than 0 with --log", field="--from", value="0")
     spaced = np.geomspace if logarithmic else np.linspace
-    return np.asarray(spaced(low, high, points), dtype=np.float64)
+    frequencies = np.asarray(spaced(low, high, points), dtype=np.float64)
+    check_ending(figure, "--figure")
+    answers = {solver: answer(case, frequencies, solver), EXACT: answer(case, frequencies, solver, exact=True)}
+    if csv is not None:
+        # Write the table with all digits.
+        response = answers[EXACT if exact else solver]
+        from validation.advice.response import HEADER
+        from validation.runs.files import write_atomically
 
-
-def _write(response: Response, path: Path) -> None:
-    """Write the table with all digits."""
-    from validation.advice.response import HEADER
-    from validation.runs.files import write_atomically
-
-    lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
-    write_atomically(path, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
-    echo(f"wrote {path}: {len(lines) - 1} frequencies")
+        lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
+        write_atomically(csv, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
+        echo(f"wrote {csv}: {len(lines) - 1} frequencies")
+    if figure is not None:
+        _draw(case, answers, logarithmic, figure)
+    _print_peaks(case, answers)
 
 
 def _draw(case: Scene, answers: dict[str, Response], logarithmic: bool, path: Path) -> None:
@@ -120,7 +113,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     unit = "/m" if exact_response.base else ""
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
-    rows: list[tuple[str, ...]] = [heads]
+    rows: list[Words] = [heads]
     has_unbounded = False
     left_out = 0
     for name, answer in answers.items():
@@ -128,7 +121,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         if name != EXACT and all(np.array_equal(answer.columns[c], exact_response.columns[c]) for c in answer.columns):
             continue  # of a solver that takes no steps
         highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
-        peak_cells: list[list[tuple[str, str]]] = []
+        peak_cells: list[list[NamePair]] = []
         for column in (DISPLACEMENT, PRESSURE):
             visible = [peak for peak in answer.peaks(column) if peak.frequency <= highest]
             left_out = max(left_out, len(visible) - PEAKS)

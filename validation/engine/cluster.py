@@ -48,7 +48,7 @@ def executor(address: str | None, solvers: Iterable[str] = ()) -> Iterator[Execu
         yield None
         return
     try:
-        distributed: Any = importlib.import_module("distributed")
+        distributed = importlib.import_module("distributed")
     except ImportError:
         raise InputError(
             "needs the package distributed", field="--scheduler", advice="pip install 'dda-validation[cluster]'"
@@ -105,7 +105,7 @@ def worker_memory() -> float:
     """
     if "distributed" not in sys.modules:
         return math.inf
-    distributed: Any = sys.modules["distributed"]
+    distributed = sys.modules["distributed"]
     try:
         worker = distributed.get_worker()
     except ValueError:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from validation.runs.aliases import NamePair, Words
 from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.runs.run import Outcome
 from validation.runs.text import error_text
 from validation.scenes.scene import Scene
@@ -37,20 +39,23 @@ class Derived:
 
     scene: str
     name: str
-    needs: tuple[tuple[str, str], ...]
-    compute: Callable[[Finished], Mapping[str, Value]]
-    reads: tuple[str, ...] = ()
+    needs: tuple[NamePair, ...]
+    compute: Callable[[Finished], Metrics]
+    reads: Words = ()
     linear: bool = False
+
+
+DerivedRows = tuple[Derived, ...]
 
 
 @dataclass(frozen=True)
 class Finished:
     """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""
 
-    rows: dict[tuple[str, str], Row]
+    rows: dict[NamePair, Row]
     results: Results
-    derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
-    _computed: dict[tuple[str, str], Row] = field(default_factory=dict, init=False, repr=False, compare=False)
+    derived: Mapping[NamePair, Derived] = field(default_factory=dict)
+    _computed: dict[NamePair, Row] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def row(self, scene: str, name: str) -> Row | None:
         """Return the row of a case, or the derived row of that name, which is computed once: many gates may ask."""
@@ -96,43 +101,41 @@ class Finished:
         return None if row is None or row.outcome is not Outcome.COMPLETED else self.results.history(row.key)
 
 
-def from_history(
-    case: Scene, solver: str, name: str, compute: Callable[[Scene, History], Mapping[str, Value]]
+def derived_row(
+    owner: str,
+    name: str,
+    cases: Sequence[Scene],
+    compute: Callable[..., Metrics],
+    histories: Sequence[str] = (),
+    rows: Sequence[str] = (),
+    reads: Sequence[str] = (),
+    whole: bool = False,
 ) -> Derived:
-    """Return a row that is computed from the history of one case.
+    """Return a row that is computed from the histories and the rows of some solvers, of one case or of several.
 
     Parameters
     ----------
-    case, solver
-        The case whose history is read.
-    name
-        Of the row.
+    owner, name
+        Where gates find it.
+    cases
+        The case, all of those that the row is computed from, or none.
     compute
-        Function of the case and its history that returns metrics.
+        Function of a case, its histories and its rows that returns metrics; where it is of the `whole`, of a list of
+        these.
+    histories, rows
+        The solvers whose histories, and whose rows, are read of each case.
+    reads
+        The metrics that are read of the rows.
+    whole
+        Whether the row is one of several cases.
     """
 
-    def compute_row(finished: Finished) -> Mapping[str, Value]:
-        return compute(case, finished.needed_history(case.name, solver))
+    def compute_row(finished: Finished) -> Metrics:
+        read = []
+        for case in cases:
+            of_histories = (finished.needed_history(case.name, solver) for solver in histories)
+            read.append((case, *of_histories, *(finished.rows[case.name, solver] for solver in rows)))
+        return compute(read) if whole else compute(*itertools.chain(*read))
 
-    return Derived(case.name, name, ((case.name, solver),), compute_row)
-
-
-def from_metrics(
-    case: Scene, solvers: Sequence[str], name: str, compute: Callable[..., Mapping[str, Value]]
-) -> Derived:
-    """Return a row that is computed from the metrics of some solvers of a case, or from the case alone.
-
-    Parameters
-    ----------
-    case, solvers
-        The case, and the solvers whose rows are read.
-    name
-        Of the row.
-    compute
-        Function of the case and of the rows that returns metrics.
-    """
-
-    def compute_row(finished: Finished) -> Mapping[str, Value]:
-        return compute(case, *(finished.rows[case.name, solver] for solver in solvers))
-
-    return Derived(case.name, name, tuple((case.name, solver) for solver in solvers), compute_row)
+    needs = itertools.product((case.name for case in cases), (*histories, *rows))
+    return Derived(owner, name, tuple(needs), compute_row, tuple(reads))

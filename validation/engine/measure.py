@@ -6,7 +6,7 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from types import FrameType
@@ -20,10 +20,11 @@ from validation.engine.cluster import worker_memory
 from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
+from validation.runs.aliases import NumberPair, NumbersByName, Words
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import WITH_HISTORY
-from validation.runs.row import Row, Value
+from validation.runs.row import NewMetrics, Row
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
 from validation.runs.threads import one_thread
@@ -69,11 +70,16 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver = case.make_solver()
     scene = case.scene
-    prepared, run = attempt(solver, scene, case.full, contact_record=_reads_contact_record(case))
+    prepared, run = attempt(
+        solver,
+        scene,
+        case.full,
+        contact_record=any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only)),
+    )
     run = checked(run, scene)
     failed: list[str] = []
-    metrics: dict[str, Value] = {}
-    spread: dict[str, Value] = {}
+    metrics: NewMetrics = {}
+    spread: NewMetrics = {}
     if case.repeats and run.outcome is Outcome.COMPLETED:
         run, spread["seconds.spread"] = timed(run, solver, case)
     if prepared is not None:
@@ -127,7 +133,7 @@ def _requested_columns(history: History, scene: Scene) -> History:
     return History(history.time, {name: x for name, x in history.columns.items() if name in scene.run.columns})
 
 
-def columns_of(case: Case) -> tuple[str, ...]:
+def columns_of(case: Case) -> Words:
     """Return the columns that the history of a completed case holds."""
     return tuple(_narrowed(case.make_solver(), case.scene)[0].run.columns)
 
@@ -140,7 +146,7 @@ def timed(run: Run, solver: Solver, case: Case) -> tuple[Run, float]:
     is repeated more often than the case asks for.
     """
     lines = lines_of(lambda: solver.solve(case.scene, case.full))
-    timings: list[tuple[float, float]] = []  # seconds of the processor, and the share of the stepping
+    timings: list[NumberPair] = []  # seconds of the processor, and the share of the stepping
     while len(timings) < case.repeats or sum(total for total, _ in timings) < LEAST_TOTAL:
         began = time.perf_counter()
         start = time.process_time()
@@ -250,7 +256,7 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
     return scene.with_values({"run.columns": [name for name in scene.run.columns if name not in absent]}), absent
 
 
-def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
+def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> NewMetrics:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     # the parts of the study's measures that this run has
     measures = set(case.measures)
@@ -268,11 +274,11 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
         needs -= {STATIC, MODES, DIAGNOSTICS}
     static = _reported("static", prepared.static, None, failed) if STATIC in needs else None
-    assumed_static: Mapping[str, float] = static or {}
+    assumed_static: NumbersByName = static or {}
     if static is None and STATIC in needs:
         assumed_static = prepared.assumed_static()
     modes: tuple[Mode, ...] = _reported("modes", prepared.modes, (), failed) if MODES in needs else ()
-    diagnostics: Mapping[str, float] = {}
+    diagnostics: NumbersByName = {}
     if DIAGNOSTICS in needs:
         diagnostics = _reported("diagnostics", prepared.diagnostics, {}, failed)
     switches = _reported("switches", prepared.switches, None, failed) if SWITCHES in needs else None
@@ -290,18 +296,13 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         lambda: horizon.shadow(solver, case.scene, case.full),
         lambda: stability.limit(solver, case.scene),
     )
-    metrics: dict[str, Value] = {}
+    metrics: NewMetrics = {}
     for part in sorted(parts):
         try:
             metrics |= solo(measurable, (part,), case.only)
         except Exception as error:  # numbers at the edge of the range, of which a library makes an error
             failed.append(f"{part} not measured: {error_text(error)}")
     return metrics
-
-
-def _reads_contact_record(case: Case) -> bool:
-    """Tell whether a metric that a run of the case may have is one of its contacts."""
-    return any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only))
 
 
 def _reported(name: str, part: Callable[[], Part], absent: Part, failed: list[str]) -> Part:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from validation.engine.study import Study
 from validation.gates.gate import Status, Verdict
+from validation.runs.aliases import NamePair
 from validation.runs.run import Outcome
 from validation.solvers.registry import FULL, is_solver
 
@@ -20,10 +21,10 @@ class JudgedStudy:
 
     study: Study
     verdicts: Sequence[Verdict]
-    outcomes: Mapping[tuple[str, str], Outcome]
+    outcomes: Mapping[NamePair, Outcome]
 
     @property
-    def failed(self) -> list[tuple[str, str]]:
+    def failed(self) -> list[NamePair]:
         """Cases that ended in a way that the study does not expect; a refusal is bad input and told as such."""
         fine = {*MEASURED, *NEUTRAL, Outcome.REFUSED, *self.study.expects}
         return [case for case, outcome in self.outcomes.items() if outcome not in fine]
@@ -62,7 +63,7 @@ def complaints(runs: Sequence[JudgedStudy]) -> Iterator[str]:
 def missing_gates(runs: Sequence[JudgedStudy], required: Sequence[str]) -> Iterator[str]:
     """Yield a sentence for each required solver that gates were not run for, or that no gate has judged."""
     for name in required:
-        statuses: list[Status] = []
+        statuses = []
         for run in runs:
             statuses += [verdict.status for verdict in run.verdicts if run.concerns(verdict, name)]
         if missing := statuses.count(Status.NOT_RUN):

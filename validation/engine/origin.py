@@ -9,6 +9,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from validation.engine.case import library_versions
+from validation.runs.aliases import Data, Fields
 from validation.runs.provenance import provenance
 from validation.runs.row import Row
 from validation.solvers.contract import Solver
@@ -19,18 +20,18 @@ UNKNOWN = "unknown"
 _here = functools.cache(provenance)  # it asks git, once a process
 
 
-def of_row(solver: Solver) -> dict[str, Any]:
+def of_row(solver: Solver) -> Fields:
     """Return where a row of a solver comes from that is made here and now."""
     here = _here()
     packages = {name: release for name, release in here["packages"].items() if name not in PRINTERS}
     return {**here, "packages": {**packages, **library_versions(), **solver.versions()}}
 
 
-def of_rows(rows: Iterable[Row]) -> dict[str, Any]:
+def of_rows(rows: Iterable[Row]) -> Fields:
     """Return where the rows of a study come from, an item a line; what differs between rows with their number."""
     origins = [row.provenance for row in rows]
     items = dict.fromkeys(itertools.chain.from_iterable(origins))
-    summary: dict[str, Any] = {
+    summary = {
         item: _counted([row_origin.get(item, UNKNOWN) for row_origin in origins])
         for item in items
         if item != "packages"
@@ -42,7 +43,7 @@ def of_rows(rows: Iterable[Row]) -> dict[str, Any]:
     return summary | {"packages": {package: _counted(values) for package, values in releases.items()}}
 
 
-def _mapping(value: object) -> Mapping[str, Any]:
+def _mapping(value: object) -> Data:
     return value if isinstance(value, Mapping) else {}
 
 

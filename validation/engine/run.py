@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Generator, Sequence
+from collections.abc import Generator, Sequence
 from concurrent.futures import Executor
 from contextlib import closing
 from dataclasses import dataclass, field, replace
@@ -19,6 +19,7 @@ from validation.engine.measured import JudgedStudy
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
+from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.records import (
@@ -26,7 +27,6 @@ from validation.runs.records import (
     Annotations,
     CaseRecord,
     DerivedRecord,
-    Manifest,
     VerdictRecord,
 )
 from validation.runs.results import Results
@@ -35,7 +35,6 @@ from validation.runs.run import Outcome
 from validation.runs.text import error_text
 from validation.scenes.scene import Scene
 
-Progress = Callable[[int, int, str], None]
 # What was not installed then may be installed now; memory, time and files that were wanting may be there.
 RUN_AGAIN = (Outcome.NOT_RUN, Outcome.RAISED, Outcome.REFUSED, Outcome.TIMEOUT)
 
@@ -199,7 +198,7 @@ def judge_study(group: StudyCases, results: Results) -> JudgedStudy:
     finished = group.finished(results)
     scenes = list({case.scene.name: case.scene for case in group.cases}.values())
     annotations = _annotated(study, scenes, finished)
-    manifest: Manifest = {
+    manifest = {
         "study": study.name,
         "title": study.title,
         "purpose": study.purpose,
@@ -227,7 +226,7 @@ def _is_valid(row: Row, case: Case, results: Results) -> bool:
 @np.errstate(divide="raise", invalid="raise")
 def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
-    failed: dict[str, str] = {}
+    failed: NamedTexts = {}
     try:
         return study.annotate(scenes, finished)
     except Exception:  # which scene it was is found one by one

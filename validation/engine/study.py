@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import Any
 
 from validation.engine.case import MEASURES, Case
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
+from validation.runs.aliases import Data, NamePair, Words
 from validation.runs.records import Annotations
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -58,23 +58,23 @@ class Study:
     title: str
     purpose: str
     scenes: Sequence[str | Scene]
-    solvers: tuple[str, ...] | None = None
+    solvers: Words | None = None
     _: KW_ONLY
-    extra: tuple[tuple[str, str], ...] = ()
+    extra: tuple[NamePair, ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False
-    derived: Callable[[], tuple[Derived, ...]] = tuple
-    data: Callable[[], Mapping[str, Any]] = dict
-    measures: tuple[str, ...] = MEASURES
-    pairs: tuple[tuple[str, str], ...] | None = None
+    derived: Callable[[], DerivedRows] = tuple
+    data: Callable[[], Data] = dict
+    measures: Words = MEASURES
+    pairs: tuple[NamePair, ...] | None = None
     annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
     expects: tuple[Outcome, ...] = ()
     long: bool = False
 
     def cases(self, full: bool = False, ranks: int = 1) -> list[Case]:
         """Return all cases; with `full` those of every solver's full model, on `ranks` ranks where one can use them."""
-        pairs: list[tuple[Scene, str]] = []
-        scenes_by_name: dict[str, Scene] = {}
+        pairs = []
+        scenes_by_name = {}
         for declared in self.scenes:
             scene = load_scene(declared) if isinstance(declared, str) else declared
             for case in scene.expand():
@@ -84,14 +84,14 @@ class Study:
         repeats = REPEATS if self.timed else 0
         return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 
-    def recipes(self) -> dict[tuple[str, str], Derived]:
+    def recipes(self) -> dict[NamePair, Derived]:
         """Return the derived rows by the names that gates address them with."""
         return {(row.scene, row.name): row for row in self.derived()}
 
-    def needs(self, gate: Gate) -> list[tuple[str, str]]:
+    def needs(self, gate: Gate) -> list[NamePair]:
         """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
         recipes = self.recipes()
-        needs: list[tuple[str, str]] = []
+        needs: list[NamePair] = []
         for name in gate.cases:
             needs += recipes[name].needs if name in recipes else (name,)
         return needs

@@ -9,7 +9,7 @@ from validation.metrics.catalogue import CATALOGUE
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Value
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ def tidy(results: Results, manifest: Manifest) -> Iterator[TidyRow]:
     cases = {case["scene"] for case in manifest["cases"]}
 
     def of(
-        name: str, solver: str, metrics: Mapping[str, Value], reference: str = "", window: float | None = None
+        name: str, solver: str, metrics: Metrics, reference: str = "", window: float | None = None
     ) -> Iterator[TidyRow]:
         swept = CaseName.parse(name).values
         case = name if name in cases else ""
@@ -58,9 +58,9 @@ def tidy(results: Results, manifest: Manifest) -> Iterator[TidyRow]:
 
     for record in manifest["cases"]:
         row = rows[record["key"]]
-        cost: dict[str, Value] = {f"work.{name}": value for name, value in row.work.items()}
+        cost: NewMetrics = {f"work.{name}": value for name, value in row.work.items()}
         cost |= {f"seconds.{name}": value for name, value in row.seconds.items()}
-        numbers: dict[str, Value] = {"outcome": str(row.outcome), **row.metrics, **cost}
+        numbers: NewMetrics = {"outcome": str(row.outcome), **row.metrics, **cost}
         if row.estimate is not None:
             numbers["estimate"] = row.estimate
         yield from of(record["scene"], record["solver"], numbers)

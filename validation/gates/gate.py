@@ -7,6 +7,7 @@ import math
 import sys
 from dataclasses import dataclass
 
+from validation.runs.aliases import NamePair, Words
 from validation.runs.numbers import ROUNDING, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -59,7 +60,7 @@ class Gate:
     """
 
     scene: str
-    pair: tuple[str, ...]
+    pair: Words
     metric: str
     low: float
     high: float
@@ -84,7 +85,7 @@ class Gate:
             raise ValueError(f"{self.id}: reason must be given, got nothing")
 
     @property
-    def cases(self) -> list[tuple[str, str]]:
+    def cases(self) -> list[NamePair]:
         """Case and solver (or name of a derived row) of each side of the pair."""
         names = [(self.scene, self.pair[0])]
         return [*names, (self.against or self.scene, self.pair[1])] if len(self.pair) == 2 else names

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import tomllib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,8 +13,9 @@ from validation.metrics import columns, contact, growth, modes, pairs
 from validation.metrics.measurable import Measurable
 from validation.metrics.pairs import Pairing
 from validation.metrics.values import UNDEFINED, finite
+from validation.runs.beside import table_beside
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Value
 
 HISTORY = "history"
 STATIC = "static"
@@ -53,7 +52,7 @@ ROOMS = {"columns": columns, "contact": contact, "growth": growth, "modes": mode
 def _read() -> list[Metric]:
     """Return the metrics of the catalogue, in its order."""
     metrics = []
-    for entry in tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))["metric"]:
+    for entry in table_beside(__file__)["metric"]:
         room, _, name = entry.pop("function").partition(".")
         function = partial(getattr(ROOMS[room], name), **entry.pop("with", {}))
         needs = frozenset(entry.pop("needs"))
@@ -97,13 +96,13 @@ def measured_by(measures: Collection[str], only: Collection[str] | None = None) 
 
 def solo(
     m: Measurable, measures: Collection[str] = ("history", "modes"), only: Collection[str] | None = None
-) -> dict[str, Value]:
+) -> NewMetrics:
     """Return the metrics of one run that are asked for; none of them is ever NaN."""
     with np.errstate(all="ignore"):
         return {metric.id: finite(metric.function(m)) for metric in measured_by(measures, only)}
 
 
-def pair(metric: str, history: History, reference: History, run: Mapping[str, Value] | None = None) -> Value:
+def pair(metric: str, history: History, reference: History, run: Metrics | None = None) -> Value:
     """Return a metric between a run and its reference, on their common steps.
 
     Parameters

@@ -52,7 +52,7 @@ def reported(m: Measurable, part: Part) -> Value:
 
 def reduced(record: ContactRecord, column: str, how: str) -> Value:
     """Return the last value of a column, or its largest, its mean or its sum."""
-    values: Array | None = getattr(record, column)
+    values = getattr(record, column)
     if values is None:
         return NOT_REPORTED
     return float(values[-1] if how == "last" else getattr(values, how)()) + 0.0

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from validation.metrics.values import NOT_REPORTED, QUANTITIES, as_number, finite, largest, norm, quotient
-from validation.runs.history import Array, History
-from validation.runs.row import Value
+from validation.runs.history import Array, ArrayPair, History
+from validation.runs.row import Metrics, Value
 
 
 @dataclass(frozen=True)
@@ -18,9 +17,9 @@ class Pairing:
 
     history: History
     reference: History
-    metrics: Mapping[str, Value] = field(default_factory=dict)  # of the run, for its static values
+    metrics: Metrics = field(default_factory=dict)  # of the run, for its static values
 
-    def columns(self, name: str) -> tuple[Array, Array] | None:
+    def columns(self, name: str) -> ArrayPair | None:
         """Return a column of both on their common steps, None where one lacks it."""
         if name not in self.history.columns or name not in self.reference.columns:
             return None

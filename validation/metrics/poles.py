@@ -142,8 +142,7 @@ def _low_pass(signal: Array, thin: int) -> Array:
 def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:
     """Return the powers z, their coefficients c and the largest misfit."""
     half = len(y) // 2
-    hankel = np.lib.stride_tricks.sliding_window_view(y, half)
-    u, s, _ = np.linalg.svd(hankel, full_matrices=False)
+    u, s, _ = np.linalg.svd(np.lib.stride_tricks.sliding_window_view(y, half), full_matrices=False)
     rank = order if order is not None else max(1, int(np.sum(s > tolerance * s[0])))
     u = u[:, : min(rank, u.shape[1] - 1)]
     z = np.linalg.eigvals(np.linalg.lstsq(u[:-1], u[1:], rcond=None)[0]).astype(complex)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from validation.runs.aliases import Fields, NamePair, Words
+
 if TYPE_CHECKING:
     from validation.runs.records import Manifest
     from validation.runs.results import Results
@@ -53,9 +55,9 @@ class Table:
     """
 
     columns: tuple[TableColumn, ...]
-    rows: tuple[tuple[str, ...], ...]
+    rows: tuple[Words, ...]
     caption: str = ""
-    notes: tuple[str, ...] = ()
+    notes: Words = ()
     ruled: bool = True
     dense: bool = False
 
@@ -85,7 +87,7 @@ def table(
     >>> table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns[1].kind
     'decimal'
     """
-    titles: list[tuple[str, str] | TableColumn] = []  # of a column and of its group
+    titles: list[NamePair | TableColumn] = []  # of a column and of its group
     for head in heads:
         if isinstance(head, TableColumn):
             titles.append(head)
@@ -137,7 +139,7 @@ class PageBreak:
 class Points:
     """Numbered points, each opened by its own words in bold."""
 
-    items: tuple[tuple[str, str], ...]
+    items: tuple[NamePair, ...]
 
 
 @dataclass(frozen=True)
@@ -196,9 +198,9 @@ def figures_of(blocks: Iterable[Block]) -> list[FigureBlock]:
     return figures + beside
 
 
-def as_data(block: Block, text: Callable[[str], str]) -> dict[str, Any]:
+def as_data(block: Block, text: Callable[[str], str]) -> Fields:
     """Return a block as plain data with the name of its kind, those within it as well, every text changed."""
-    data: dict[str, Any] = _changed(block, text)
+    data: Fields = _changed(block, text)
     return data
 
 

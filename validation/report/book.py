@@ -14,6 +14,7 @@ from validation.report.chapters.scene import slide_figure
 from validation.report.figures.response import save_as
 from validation.report.names import Readable, page_name, unescaped
 from validation.report.render.pdf import png_of, write_document
+from validation.runs.aliases import NamedTexts
 from validation.runs.results import Results
 from validation.runs.text import error_text
 from validation.scenes.scene import parse_scene
@@ -40,7 +41,7 @@ def ordered_studies(results: Results, chosen: Sequence[str] | None = None) -> li
     return [study for study in studies if study in names] if names else studies
 
 
-def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
+def unread_studies(results: Results, studies: Sequence[str]) -> NamedTexts:
     """Return the studies whose results this version cannot read, and why.
 
     Raises
@@ -48,12 +49,11 @@ def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     InputError
         None of them can be read.
     """
-    reasons: dict[str, str] = {}
+    reasons = {}
     verdicts = results.unread_verdicts()
     for study in studies:
         try:
-            manifest = results.whole(study, histories=True)
-            for case in manifest.get("cases", []):
+            for case in results.whole(study, histories=True).get("cases", []):
                 parse_scene(case["definition"], case["scene"])
         except InputError as error:
             reasons[study] = str(error)
@@ -151,7 +151,7 @@ def write_figures(results: Results, out: Path, chosen: Sequence[str] | None = No
         out.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InputError(f"cannot be made: {error.strerror}", source=out, advice="choose another place") from None
-    paths: list[Path] = []
+    paths = []
     for study in studies:
         for block in figures_of(_chapter(results, study, out)):
             svg = out / block.file

@@ -56,9 +56,7 @@ class Readable(Results):
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        verdicts: list[VerdictRecord] = [
-            with_texts(v, _change(v["study"]), NOT_SHOWN) for v in super().readable_verdicts()
-        ]
+        verdicts = [with_texts(v, _change(v["study"]), NOT_SHOWN) for v in super().readable_verdicts()]
         return [v for v in verdicts if study is None or v["study"] == study]
 
     def history(self, key: str) -> History | None:

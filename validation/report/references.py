@@ -11,7 +11,8 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
-from typing import Any
+
+from validation.runs.aliases import Data, NamedTexts
 
 BIBLIOGRAPHY = Path(__file__).with_name("references.bib")
 ENTRY = re.compile(r"^@(\w+)\{(\w+),\n(.*?)^\}", re.M | re.S)
@@ -24,7 +25,7 @@ PAPER = (
 )
 
 
-def references() -> dict[str, dict[str, str]]:
+def references() -> dict[str, NamedTexts]:
     """Return the fields of the sources by their keys, in the order of the file."""
     entries = {}
     for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8")):
@@ -55,7 +56,7 @@ def named(text: str, form: Callable[[str, str], str] = lambda name, key: name) -
     return re.sub(rf"{_key().pattern}(\w+)", name, text)
 
 
-def identity(provenances: Iterable[Mapping[str, Any]]) -> str:
+def identity(provenances: Iterable[Data]) -> str:
     """Return who made the suite and which version, date and commit the results are of, as far as the runs know."""
     values: dict[str, dict[str, None]] = {"version": {}, "run on": {}, "commit": {}}
     for provenance in provenances:

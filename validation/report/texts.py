@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import string
-import tomllib
 from pathlib import Path
 from typing import Any
 
+from validation.runs.beside import table_beside
 from validation.runs.numbers import FORMS
 
 
@@ -26,9 +26,9 @@ class Texts:
     """The texts of the TOML file beside a module, ``[text]`` in it."""
 
     def __init__(self, module: str | Path) -> None:
-        self._data = tomllib.loads(Path(module).with_suffix(".toml").read_text("utf-8"))
+        self._data = table_beside(module)
 
     def text(self, name: str, *places: Any, **values: Any) -> str:
         """Return a text with its values, ``{0}`` and ``{name}``."""
-        text: str = self._data["text"][name]
+        text = self._data["text"][name]
         return FILLED.vformat(text, places, values) if places or values else text

@@ -16,6 +16,7 @@ from validation.report.chapters.gates import band_cell, value_cell
 from validation.report.chapters.text import some
 from validation.report.references import named
 from validation.report.texts import Texts
+from validation.runs.aliases import Words
 from validation.runs.numbers import DASH, decimal, power, short, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -111,7 +112,7 @@ def _tally(passed: Mapping[str, Sequence[int]]) -> str:
 
 def matrix_table(listed: Standings) -> Table:
     """Return what decides each phenomenon: two remarks, its name and its sources, then a row a reason."""
-    rows: list[tuple[str, ...]] = []
+    rows: list[Words] = []
     for shown, stands in listed:
         rows += [(shown.name,), (TEXTS.text("remark", study=shown.study, sources=shown.sources),)]
         rows += [_row(gates, stands) for gates in shown.lines()[:LINES] if decisive(gates).id in stands.values]
@@ -119,7 +120,7 @@ def matrix_table(listed: Standings) -> Table:
     return table((measured, truth, "Band", "Value", "Margin"), rows, TEXTS.text("caption"), dense=True)
 
 
-def _row(gates: Sequence[Gate], stands: Standing) -> tuple[str, ...]:
+def _row(gates: Sequence[Gate], stands: Standing) -> Words:
     gate = decisive(gates)
     value, margin = stands.values[gate.id]
     metrics = some((words_of(one.metric) for one in gates), NAMES)
@@ -172,7 +173,7 @@ def matrix(verdicts: Sequence[VerdictRecord]) -> Blocks:
 def verdict_blocks(shown: Phenomenon, verdicts: Sequence[Verdict], every: bool) -> Blocks:
     """Return what came out of a run: of the gates with one reason the tightest and those that did not pass, or all."""
     by_id = {verdict.gate.id: verdict for verdict in verdicts}
-    rows: list[tuple[str, ...]] = []
+    rows = []
     for gates in shown.lines():
         judged = [by_id[gate.id] for gate in gates if gate.id in by_id]
         tightest = decisive([verdict.gate for verdict in judged]) if judged else None
@@ -188,7 +189,7 @@ def verdict_blocks(shown: Phenomenon, verdicts: Sequence[Verdict], every: bool) 
     return [Listing(head), table(heads, rows, ruled=False), Paragraph(counted)]
 
 
-def _verdict_row(verdict: Verdict) -> tuple[str, ...]:
+def _verdict_row(verdict: Verdict) -> Words:
     gate = verdict.gate
     margin = gate.margin(verdict.value) if isinstance(verdict.value, float) else None
     until = "" if gate.until is None else f" up to {gate.until:g} s"

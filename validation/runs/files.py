@@ -50,7 +50,9 @@ def atomic_path(path: Path) -> Iterator[Path]:
             _copy_into(target, Path(temporary))
             Path(temporary).unlink()
         else:
-            os.chmod(temporary, 0o666 & ~_umask())
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(temporary, 0o666 & ~mask)
             os.replace(temporary, target)
     except BaseException as error:
         if temporary:
@@ -72,7 +74,7 @@ def atomic_directory(out: Path) -> Iterator[Path]:
         The directory cannot be made or replaced.
     """
     target = Path(os.path.realpath(out))  # of a link the directory that it names is replaced, and the link stays
-    temporary: Path | None = None
+    temporary = None
     if target.exists() and not target.is_dir():
         raise InputError("must be a directory", source=out, value=kind_of(target.stat().st_mode))
     try:
@@ -175,12 +177,6 @@ def check_ending(path: Path | None, field: str) -> None:
     if path.suffix.lower() not in FIGURE_ENDINGS:
         raise InputError(f"must end in {', '.join(FIGURE_ENDINGS)}", field=field, value=repr(path.name))
     extras.require(field, *extras.FIGURES)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def write_csv(history: History, path: Path) -> None:

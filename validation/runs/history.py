@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+ArrayPair = tuple[Array, Array]
 Complex = NDArray[np.complex128]
 STRESS_ERROR = "stress_error"  # of a static solution of blocks in the plane
 STRESSES = ("stress_xx", "stress_yy", "stress_xy")  # of the same, where they are observed

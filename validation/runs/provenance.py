@@ -9,13 +9,14 @@ import subprocess
 import tomllib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+
+from validation.runs.aliases import Fields
 
 PACKAGES = ("dda-validation", "numpy", "scipy", "scikit-fem", "meshio", "pydantic", "matplotlib", "typst")
 ROOM = Path(__file__).parent
 
 
-def provenance() -> dict[str, Any]:
+def provenance() -> Fields:
     """Return versions, commit, processor, cores, seeds and date of this run."""
     return {
         "python": platform.python_version(),

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, NotRequired
+from typing import Annotated, NotRequired
 
 from pydantic import AfterValidator, Field
 from typing_extensions import TypedDict
 
-from validation.runs.row import Value
+from validation.runs.aliases import Fields, NamedNumbers
+from validation.runs.row import NewMetrics, Value
 
 
 class CaseRecord(TypedDict):
@@ -17,7 +18,7 @@ class CaseRecord(TypedDict):
     title: str
     solver: str
     key: str
-    definition: dict[str, Any]  # the scene as a file would state it
+    definition: Fields  # the scene as a file would state it
 
 
 class ComparisonRecord(TypedDict):
@@ -27,7 +28,7 @@ class ComparisonRecord(TypedDict):
     solver: str
     reference: str
     window: float  # s
-    metrics: dict[str, Value]
+    metrics: NewMetrics
 
 
 class DerivedRecord(TypedDict):
@@ -35,7 +36,7 @@ class DerivedRecord(TypedDict):
 
     scene: str
     name: str
-    metrics: dict[str, Value]
+    metrics: NewMetrics
 
 
 class AlarmRecord(TypedDict):
@@ -44,7 +45,7 @@ class AlarmRecord(TypedDict):
     kind: str
     scene: str
     sentence: str
-    values: NotRequired[dict[str, float]]
+    values: NotRequired[NamedNumbers]
 
 
 class BudgetRecord(TypedDict):
@@ -79,10 +80,10 @@ class Manifest(_Study, total=False):
     cases: list[CaseRecord]
     comparisons: list[ComparisonRecord]
     derived: list[DerivedRecord]
-    data: dict[str, Any]  # what the study's own chapter draws
+    data: Fields  # what the study's own chapter draws
     alarms: list[AlarmRecord]
     budgets: list[BudgetRecord]
-    provenance: dict[str, Any]
+    provenance: Fields
 
 
 class Named(TypedDict):

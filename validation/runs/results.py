@@ -22,6 +22,7 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs import strict
+from validation.runs.aliases import NamedTexts
 from validation.runs.files import write_atomically
 from validation.runs.history import Array, History
 from validation.runs.records import Manifest, Named, VerdictRecord, Verdicts
@@ -197,7 +198,16 @@ class Results:
                 part = "history"
             else:
                 if histories and row.outcome in WITH_HISTORY:
-                    _check_shape(self._history_file(row.key), row)
+                    # Refuse a history without the columns and steps of its row, from the archive's directory alone.
+                    path = self._history_file(row.key)
+                    with _archive(path) as archive:
+                        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
+                    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
+                    content = 8 * row.steps  # bytes of a column of doubles
+                    if {*sizes} != {"time", *row.columns}:
+                        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
+                    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
+                        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
                 continue
             raise InputError(
                 f"the {part} of {case['scene']} {case['solver']} is missing",
@@ -221,10 +231,10 @@ class Results:
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], Verdicts)
+        records = self.read_json("verdicts.json", [], Verdicts)
         return [v for v in records if study is None or v["study"] == study]
 
-    def unread_verdicts(self) -> dict[str, str]:
+    def unread_verdicts(self) -> NamedTexts:
         """Return the studies with verdicts that are not as this version writes them, and what is wrong with the first.
 
         Raises
@@ -232,20 +242,20 @@ class Results:
         InputError
             The file holds no list of records that name their study.
         """
-        records: Iterable[Named] = self.read_json("verdicts.json", [], list[Named])
+        records = self.read_json("verdicts.json", [], list[Named])
         defects = {v["study"]: strict.defect_of(v, VerdictRecord) for v in reversed([*records])}
         return {study: defect for study, defect in defects.items() if defect}
 
     def readable_verdicts(self) -> list[VerdictRecord]:
         """Return the verdicts of the studies that `unread_verdicts` does not name."""
         unread = self.unread_verdicts()
-        records: list[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+        records = self.read_json("verdicts.json", [], list[Named])
         return [v for v in records if v["study"] not in unread]
 
     def write_verdicts(self, study: str, verdicts: list[VerdictRecord]) -> None:
         """Replace the verdicts of one study; of two runs at once the one waits for the other."""
         with self._locked():
-            records: Iterable[VerdictRecord] = self.read_json("verdicts.json", [], list[Named])
+            records = self.read_json("verdicts.json", [], list[Named])
             others = [v for v in records if v["study"] != study]
             self.write_json("verdicts.json", sorted(others + verdicts, key=lambda v: (v["study"], v["id"])))
 
@@ -298,18 +308,6 @@ def _read_columns(path: Path) -> tuple[str, dict[str, Array], dict[str, Array]]:
             with archive.open(member) as file:
                 place[name.removeprefix(BETWEEN)] = np.lib.format.read_array(file, allow_pickle=False)
         return archive.comment.decode(errors="replace"), columns, between
-
-
-def _check_shape(path: Path, row: Row) -> None:
-    """Refuse a kept history that has not the columns and steps of its row, from the archive's directory alone."""
-    with _archive(path) as archive:
-        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
-    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
-    content = 8 * row.steps  # bytes of a column of doubles
-    if {*sizes} != {"time", *row.columns}:
-        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
-    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
-        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
 
 
 def _defect(columns: dict[str, Array], between: dict[str, Array]) -> str | None:

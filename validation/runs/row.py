@@ -6,11 +6,13 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
-from typing import Any
 
+from validation.runs.aliases import Data, Words
 from validation.runs.run import Outcome
 
 Value = float | str | None  # a number, or "undefined", or "not reported"
+Metrics = Mapping[str, Value]  # by their ids
+NewMetrics = dict[str, Value]  # the same, to be filled
 
 
 @dataclass(frozen=True)
@@ -26,14 +28,14 @@ class Row:
     scene: str
     solver: str
     outcome: Outcome
-    metrics: Mapping[str, Value]
+    metrics: Metrics
     work: Mapping[str, int] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: Words = ()
     estimate: float | None = None
     steps: int = 0
-    columns: tuple[str, ...] = ()
-    provenance: Mapping[str, Any] = field(default_factory=dict)
+    columns: Words = ()
+    provenance: Data = field(default_factory=dict)
 
     def line(self) -> str:
         """Return the row as one line of JSON, with a digest of what it says."""
@@ -60,8 +62,9 @@ class Row:
             return None
 
 
+RowsBySolver = Mapping[str, Row]
 FIELDS = frozenset(field.name for field in fields(Row))
 
 
-def _digest(data: Mapping[str, Any]) -> str:
+def _digest(data: Data) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]

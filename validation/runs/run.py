@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
+from validation.runs.aliases import Words
 from validation.runs.history import Array, History
 
 
@@ -93,7 +94,7 @@ class Run:
     history: History | None = None
     work: Mapping[str, int] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
-    notes: tuple[str, ...] = ()
+    notes: Words = ()
     estimate: float | None = None  # estimated relative error of the run's own numerics [1]
 
     def _finished(self) -> History:

@@ -15,6 +15,7 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
+from validation.runs.aliases import Words
 from validation.runs.numbers import stated_text
 
 _REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w -]+"(?: or "[\w -]+")*))?$')
@@ -27,7 +28,7 @@ class Key:
     unit: str  # "" of numbers without one, and of words
     text: str  # what it is, in words
     symbol: str | None = None  # that of the text and the figures; "" where the value says enough, None: its name
-    needs: tuple[str, ...] = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
+    needs: Words = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
     feature: str = ""  # of a key of the loads: what a scene has where it is not at its default
 
 
@@ -42,12 +43,13 @@ class Section(BaseModel):
         return True
 
 
-def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
-    """Yield name, field and description of the keys of a table, without the tables in it."""
+@functools.cache  # asked for every table of every case of a sweep
+def keys_of(table: type[Section]) -> tuple[tuple[str, FieldInfo, Key], ...]:
+    """Return name, field and description of the keys of a table, without the tables in it."""
+    keys = []
     for name, field in table.model_fields.items():
-        for key in field.metadata:
-            if isinstance(key, Key):
-                yield field.alias or name, field, key
+        keys += [(field.alias or name, field, key) for key in field.metadata if isinstance(key, Key)]
+    return tuple(keys)
 
 
 def key_of_any_entry(field: str, tables: Mapping[str, type[Section]]) -> str:
@@ -67,8 +69,14 @@ def stated(table: Section) -> Iterator[tuple[str, Any, Key]]:
 
 def stated_value(table: Section, key_name: str) -> Any:
     """Return the value of a key by the name that a file gives it."""
+    return getattr(table, _attribute(type(table), key_name))
+
+
+@functools.cache
+def _attribute(table: type[Section], key_name: str) -> str:
+    """Return the attribute that holds a key as it is stated."""
     alias = f"stated_{key_name}"
-    return getattr(table, alias if alias in type(table).model_fields else key_name)
+    return alias if alias in table.model_fields else key_name
 
 
 def check_needs(tables: Mapping[str, Section]) -> None:
@@ -81,7 +89,10 @@ def check_needs(tables: Mapping[str, Section]) -> None:
     """
     for place, table in tables.items():
         for inside, entry in [("", table), *_entries(table)]:
-            for name, value, key in stated(entry):
+            for name, field, key in keys_of(type(entry)):
+                value = stated_value(entry, name) if key.needs else field.default
+                if value == field.default:
+                    continue
                 for requirement in key.needs:
                     if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"
@@ -113,7 +124,7 @@ def is_fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) ->
 
 
 @functools.cache
-def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
+def _parsed(requirement: str) -> tuple[str, str, Words]:
     """Return table, key and words of a requirement."""
     parts = _REQUIREMENT.match(requirement)
     if parts is None:
@@ -130,7 +141,7 @@ def described(name: str, value: object, key: Key) -> str:
 
 def range_of(field: FieldInfo) -> str:
     """Return the words that a key takes, or the type of its number and the bounds of it."""
-    words: list[str] = []
+    words = []
     for part in (field.annotation, *get_args(field.annotation)):
         if get_origin(part) is Literal:
             words += [f'"{word}"' for word in get_args(part)]

@@ -15,6 +15,7 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self
 
+from validation.runs.aliases import Fields
 from validation.runs.columns import NO_OWN, OwnColumns
 from validation.scenes.keys import Section
 
@@ -42,7 +43,7 @@ class Hooks:
     @classmethod
     def of_kind(cls, name: str) -> Self:
         """Return the answers of a kind."""
-        hooks: type[Self] = _hooks(cls.module, name) or cls
+        hooks = _hooks(cls.module, name) or cls
         return hooks()
 
 
@@ -73,7 +74,7 @@ class Kind:
     refuses: Collection[str] = ()  # common tables that do not go with it
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
 
-    def run(self, table: Any) -> dict[str, Any]:
+    def run(self, table: Any) -> Fields:
         """Return keys of `run`, such as solvers and columns, for a scene that does not state them.
 
         Parameters

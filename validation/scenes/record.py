@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
+from validation.runs.aliases import NumberPair
 from validation.runs.files import read_table
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
@@ -63,7 +64,7 @@ def read_record(path: Path) -> Record:
     return Record(time, columns.get("x", still), columns.get("y", still))
 
 
-def direction(record: Record) -> tuple[float, float]:
+def direction(record: Record) -> NumberPair:
     """Return the unit vector of the straight line that the base moves along, towards +x, or +y where it is steeper.
 
     Raises
@@ -85,7 +86,7 @@ def direction(record: Record) -> tuple[float, float]:
     return x + 0.0, y + 0.0
 
 
-def base_direction(scene: Scene) -> tuple[float, float] | None:
+def base_direction(scene: Scene) -> NumberPair | None:
     """Return the direction that a scene's base moves along, or None where it is fixed."""
     record = base_record(scene)
     return None if record is None else direction(record)

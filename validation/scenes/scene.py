@@ -20,6 +20,7 @@ from typing import Any, Self, get_args
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
+from validation.runs.aliases import Data, Fields, NamedTexts, NamePair, Words
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs, key_of_any_entry
 from validation.scenes.kinds import kinds
@@ -40,7 +41,7 @@ class Scene(SceneTables):
 
     time: TimeSection
     run: RunSection = RunSection()
-    sweep: dict[str, Any] = Field(default_factory=dict)
+    sweep: Fields = Field(default_factory=dict)
     gate: tuple[GateSection, ...] = ()
 
     @model_validator(mode="after")
@@ -114,7 +115,7 @@ class Scene(SceneTables):
             names.add(case.name)
             yield case
 
-    def with_values(self, values: dict[str, Any], label: bool = False) -> Scene:
+    def with_values(self, values: Fields, label: bool = False) -> Scene:
         """Return a copy with dotted keys replaced.
 
         A key that is set leaves the sweep, and so does a key that it excludes.
@@ -148,13 +149,13 @@ class Scene(SceneTables):
             data["name"] = f"{self.name}[{inside}]"
         return parse_scene(data, self.name)
 
-    def definition(self) -> dict[str, Any]:
+    def definition(self) -> Fields:
         """Return the scene as plain data (what a file would state)."""
-        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
+        data: Fields = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
         return data
 
 
-def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
+def _table_of(data: Fields, field: str) -> tuple[Fields, str]:
     """Return the table that a dotted key stands in, made where it is absent, and what of the key is left there.
 
     ``plane.block.1.at`` stands in the second entry of a list of tables, ``plane.block.top.at`` in that of this name.
@@ -187,7 +188,7 @@ def _short(value: object) -> str:
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)
 
 
-def _excluded(field: str, value: object) -> tuple[str, ...]:
+def _excluded(field: str, value: object) -> Words:
     """Return the keys of the same table that a key with this value excludes."""
     if field == "time.scheme":
         # What the new scheme has no number for goes; rho_inf of one scheme is rho_inf of the next.
@@ -201,7 +202,7 @@ def _excluded(field: str, value: object) -> tuple[str, ...]:
 
 def tables_of_scenes(model: type[Section] = Scene, inside: str = "") -> dict[str, type[Section]]:
     """Return the tables that a scene may have, by their names; ``column.layer`` is an entry of a list in a table."""
-    tables: dict[str, type[Section]] = {}
+    tables = {}
     for name, field in model.model_fields.items():
         for table in (field.annotation, *get_args(field.annotation)):
             if isinstance(table, type) and issubclass(table, Section):
@@ -237,7 +238,7 @@ _EXCLUSIVE = {
 }
 
 
-def parse_scene(data: dict[str, Any], source: str) -> Scene:
+def parse_scene(data: Fields, source: str) -> Scene:
     """Check plain data and return the scene.
 
     Raises
@@ -292,7 +293,7 @@ def _number_meant(value: object) -> str | None:
     return f"write {float(number[:-1]) / 100:.12g}" if number.endswith("%") else f"write {number}, with a point"
 
 
-def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
+def rule_and_value(error: Data) -> NamePair:
     """Return the rule that an error of pydantic names, in our words, and the value where the message has it."""
     message = error["msg"]
     for theirs, ours in OUR_WORDS.items():
@@ -337,7 +338,7 @@ def load_scene(source: str | Path) -> Scene:
     return parse_scene({"name": path.stem} | data, path.name)
 
 
-def _beside(directory: Path, data: dict[str, Any]) -> None:
+def _beside(directory: Path, data: Fields) -> None:
     """Let the files that a scene names, in a table or in the sweep, stand beside the scene's own file."""
 
     def beside(value: object) -> object:
@@ -354,7 +355,7 @@ def _beside(directory: Path, data: dict[str, Any]) -> None:
 
 
 @functools.cache
-def _files() -> dict[str, str]:
+def _files() -> NamedTexts:
     """Return the keys that name files, those of kinds too, and what these are."""
     files = dict(FILES)
     for kind in kinds().values():
@@ -362,14 +363,14 @@ def _files() -> dict[str, str]:
     return files
 
 
-def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
+def named_files(tables: Data) -> Iterator[tuple[str, str, Any, str]]:
     """Yield where tables name a file: the place, what the file is, the table and the key that has its name.
 
     A table of a list, as ``[[plane.block]]``, has a place for each of its entries.
     """
     for field, role in _files().items():
         *parts, key = field.split(".")
-        holders: list[tuple[str, Any]] = [("", tables)]
+        holders = [("", tables)]
         for part in parts:
             inner = [(f"{place}.{part}".lstrip("."), _value(holder, part)) for place, holder in holders]
             holders = []
@@ -387,7 +388,7 @@ def _value(table: Any, key: str) -> Any:
     return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read_toml(path: Path) -> Fields:
     try:
         regular(path, LARGEST_FILE)
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import difflib
-import tomllib
+import functools
 from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from validation.errors import InputError
+from validation.runs.aliases import Data, NamedTexts
+from validation.runs.beside import table_beside
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
 
-OTHER_NAMES: dict[str, list[str]] = tomllib.loads(
-    Path(__file__).with_name("other_names.toml").read_text(encoding="utf-8")
-)  # what other programs, and the symbols of the text, call a key
+# what other programs, and the symbols of the text, call a key
+OTHER_NAMES: dict[str, list[str]] = table_beside(__file__, "other_names.toml")
 SHORTEST = 3  # letters of a name that another may be spelt like
 CLOSE = 0.6  # similarity of two names from which on one may be meant for the other
 NAMED = 30  # unknown keys that are named in full
 
 
-def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Section]], source: str) -> None:
+def refuse_unknown_keys(data: Data, tables: Mapping[str, type[Section]], source: str) -> None:
     """Refuse all keys that are none, in one error.
 
     Parameters
@@ -72,14 +72,19 @@ def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Secti
     )
 
 
-def _names(place: str, tables: Mapping[str, type[Section]]) -> list[str]:
+def _names(place: str, tables: Mapping[str, type[Section]]) -> tuple[str, ...]:
     """Return the names of a table's keys as a file states them; the name of a scene is that of its file."""
-    fields = tables[place].model_fields.items()
-    return [field.alias or name for name, field in fields if place or name != "name"]
+    return _names_of(tables[place], not place)
+
+
+@functools.cache  # asked for every table of every case of a sweep
+def _names_of(table: type[Section], is_scene: bool) -> tuple[str, ...]:
+    names = [field.alias or name for name, field in table.model_fields.items()]
+    return tuple(name for name in names if not (is_scene and name == "name"))
 
 
 def _unknown_keys(
-    data: Mapping[str, Any], place: str, stated_at: str, tables: Mapping[str, type[Section]]
+    data: Data, place: str, stated_at: str, tables: Mapping[str, type[Section]]
 ) -> Iterator[tuple[str, str, str, Any]]:
     """Yield table, its place in the file, name and value of the unknown keys of a table and of those in it."""
     names = _names(place, tables)
@@ -125,7 +130,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
     return None
 
 
-def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> dict[str, str]:
+def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> NamedTexts:
     """Return fields by all that they are called, plainly: their names, symbols, and other programs' names."""
     by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
     for field in reversed(fields):

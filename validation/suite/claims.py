@@ -9,21 +9,22 @@ from __future__ import annotations
 
 import enum
 import tomllib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from itertools import starmap
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.engine.judge import HORIZON
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
+from validation.runs.aliases import Data, Fields, NumbersByName
 from validation.runs.history import Array
-from validation.runs.row import Value
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import about, cases, gate
 
@@ -53,7 +54,7 @@ class Band:
     low: float
     high: float
 
-    def holds(self, numbers: Mapping[str, float]) -> bool:
+    def holds(self, numbers: NumbersByName) -> bool:
         """Whether the number was measured and lies inside."""
         return self.low <= numbers.get(self.number, np.nan) <= self.high
 
@@ -124,7 +125,7 @@ class Claim:
     numbers: tuple[tuple[str, float, float], ...] = ()
     misprint: bool = False
 
-    def finding(self, numbers: Mapping[str, float]) -> Finding:
+    def finding(self, numbers: NumbersByName) -> Finding:
         """Return the verdict on measured numbers."""
         if all(band.holds(numbers) for band in self.printed):
             return Finding.CONFIRMED
@@ -135,9 +136,9 @@ class Claim:
         """Return the derived row that holds the verdict and the measured numbers."""
         return Derived(REGISTER, self.id, self.needs, self._compute, READ)
 
-    def _compute(self, finished: Finished) -> Mapping[str, Value]:
+    def _compute(self, finished: Finished) -> Metrics:
         numbers = self.measure(Evidence(finished))
-        values: dict[str, Value] = {k: _plain(v) for k, v in numbers.items()}
+        values = {k: _plain(v) for k, v in numbers.items()}
         return {"verdict": float(self.finding(numbers))} | values
 
     def gate(self) -> Gate:
@@ -173,8 +174,8 @@ def read_claims(path: Path, tests: Tests) -> tuple[Claim, ...]:
             "needs": tuple((need, "dda") if isinstance(need, str) else need for need in names),
             "measure": measure,
             "expected": findings[entry["expected"]],
-            "printed": tuple(Band(*band) for band in entry["printed"]),
-            "conditional": tuple(Band(*band) for band in entry.get("conditional", ())),
+            "printed": tuple(starmap(Band, entry["printed"])),
+            "conditional": tuple(starmap(Band, entry.get("conditional", ()))),
             "numbers": tuple(entry.get("numbers", ())),
         }
         claims.append(Claim(**claim))
@@ -203,11 +204,11 @@ class Register:
                 gates.append(gate(REGISTER, claim.id, number, about(value, half), reason, uncertainty=half))
         return tuple(gates)
 
-    def rows(self) -> tuple[Derived, ...]:
+    def rows(self) -> DerivedRows:
         """Return the rows of the register."""
         return tuple(claim.row() for claim in self.claims)
 
-    def words(self) -> dict[str, Any]:
+    def words(self) -> Fields:
         """Return what each claim says, why it has its verdict and on which condition, and which are misprints."""
         return {
             "statement": {claim.id: f"{claim.says} ({claim.place})" for claim in self.claims},
@@ -219,7 +220,7 @@ class Register:
         }
 
 
-def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
+def entries(register: Register, rows: Iterable[Data]) -> list[Fields]:
     """Return the claims with their verdicts and measured numbers as plain data."""
     measured = {row["name"]: row["metrics"] for row in rows}
     listed = []
@@ -238,7 +239,7 @@ def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[
     return listed
 
 
-def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
+def page(register: Register, rows: Iterable[Data]) -> str:
     """Return a register as a Markdown page, from the derived rows of its study."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):

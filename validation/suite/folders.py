@@ -24,6 +24,7 @@ from typing import Any, TypeVar
 
 from validation.errors import InputError
 from validation.gates.gate import Gate
+from validation.runs.aliases import Data, Fields
 from validation.runs.case_name import scene_of
 from validation.scenes import features
 from validation.scenes.places import STUDIES, study_directories
@@ -55,10 +56,10 @@ class StudyFolder:
     form: str = "study"
 
     @property
-    def fields(self) -> dict[str, Any]:
+    def fields(self) -> Fields:
         """The fields of the study as its table has them."""
         table = _table(self.path / "study.toml")
-        fields: dict[str, Any] = table.get("study", {}) | table.get(self.form, {})
+        fields: Fields = table.get("study", {}) | table.get(self.form, {})
         return fields
 
     def module(self, name: str) -> Any:
@@ -68,7 +69,7 @@ class StudyFolder:
 
 
 @functools.cache
-def _table(path: Path) -> dict[str, Any]:
+def _table(path: Path) -> Fields:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
@@ -128,7 +129,7 @@ def folder_of(name: str) -> StudyFolder | None:
     return folders.get(name) or folders.get(name.partition(OF_SCENE)[0])
 
 
-def study_of_scene(name: str, source: str, assignments: Mapping[str, Any] | None = None) -> Study:
+def study_of_scene(name: str, source: str, assignments: Data | None = None) -> Study:
     """Return a study with a user's scene, built-in or a file, in place of its own ones.
 
     Raises
@@ -166,7 +167,7 @@ def judged_studies() -> list[str]:
     return [name for name in study_names() if not get_study(name).long]
 
 
-def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
+def scene_study(source: str, assignments: Data | None = None) -> Study:
     """Return the study of one scene, built-in or a file, with the gates that belong to it.
 
     Raises
@@ -177,7 +178,7 @@ def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> St
     scene = load_scene(source)
     scene = scene.with_values(dict(assignments)) if assignments else scene
     check_names(scene, source)
-    scene_gates: list[Gate] = []
+    scene_gates = []
     for case in scene.expand():
         for section in case.gate:
             scene_gates.append(Gate(case.name, section.pair, section.metric, *section.band, section.reason))
@@ -197,7 +198,7 @@ def _of_suite(scene: Scene, part_of: Callable[[Study], Iterable[T]], case_of: Ca
     if scene.name not in scene_names() or scene != load_scene(scene.name):
         return ()
     names = {case.name for case in scene.expand()}
-    items: list[T] = []
+    items = []
     for study in map(get_study, judged_studies()):
         study_scenes = [declared if isinstance(declared, str) else declared.name for declared in study.scenes]
         if scene.name in map(scene_of, study_scenes):
@@ -205,7 +206,7 @@ def _of_suite(scene: Scene, part_of: Callable[[Study], Iterable[T]], case_of: Ca
     return tuple(items)
 
 
-def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:
+def resolve(targets: Sequence[str], assignments: Data | None = None) -> list[Study]:
     """Return the studies that the command line names: studies (`all` of them), scenes or scene files.
 
     Raises
@@ -231,7 +232,7 @@ def _meant(target: str) -> str:
     return f" did you mean {', '.join(near)}?" if near else ""
 
 
-def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
+def _resolved(target: str, assignments: Data | None) -> Study:
     if target in study_folders() and not assignments:
         return get_study(target)
     if target in study_folders():

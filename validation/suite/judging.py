@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -13,9 +13,9 @@ from validation.metrics.sameness import is_identical, largest_difference
 from validation.problems.answers import Answer, AnswerSet, stated_by
 from validation.problems.bands import Standard, standard
 from validation.problems.cause import Cause, cause
-from validation.problems.data import AnswersData
 from validation.problems.judge import Judgement, judge
 from validation.problems.problem import Problem
+from validation.runs.aliases import Progress, Words
 from validation.runs.history import History
 from validation.runs.numbers import error_percent
 from validation.runs.run import Outcome, Run
@@ -32,7 +32,6 @@ WRONG = (Outcome.WRONG_UNITS, Outcome.NOT_A_NUMBER, Outcome.OVERFLOW, Outcome.UN
 MISSING = "is not installed"  # what an adapter says where its program is absent
 DEFAULTS = "-default"  # ending of the name of a program as it comes
 HANDED_BACK = "It is bit for bit the exact motion that it is judged by: the suite's own answer, handed back."
-Progress = Callable[[int, int, str], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +44,7 @@ class JudgedAnswer:
     standard: Standard | None  # None of numbers, which no exact motion is needed for
     judgement: Judgement
     cause: Cause | None  # of a failure
-    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
+    warnings: Words = ()  # what makes the verdict worth less, in sentences
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,33 +103,35 @@ def answers_of(name: str, problems: Sequence[Problem], progress: Progress) -> An
         There is no such solver, or what it reads is no history.
     """
     solver = get_solver(name)
-    about: Mapping[str, str] = {}
+    about = {}
     if isinstance(solver, UserSolver):
         solver.check_module()
         about = solver.about()
-    answers: list[Answer] = []
+    answers = []
     repeats = REPEATED if isinstance(solver, UserSolver | Outside) else 0
     for number, problem in enumerate(problems):
         progress(number, len(problems), f"{name} {problem.name}")
         answer = _answer(solver, problem)
         if repeats and answer.history is not None and (answer.seconds or 0.0) < REPEATED_WITHIN:
             repeats -= 1
-            answer = _repeated(answer, answer.history, solver, problem)
+            # An answer with how far a second run is from it, where it is not the same.
+            again = completed(solver, problem.scene).history
+            answer = replace(answer, warnings=(*answer.warnings, *_not_repeatable(answer.history, again)))
         answers.append(answer)
-    return AnswerSet(Path(name), _stated(name, about), tuple(answers))
-
-
-def _stated(name: str, about: Mapping[str, str]) -> AnswersData:
-    """Return what a solver says of itself, as a folder of answers states it; what it does not say is empty."""
+    # What a solver says of itself, as a folder of answers states it; what it does not say is empty.
     settings_name = "default" if name.endswith(DEFAULTS) else "chosen"
     if "program" not in about:
         settings_name = ""
-    return stated_by(
-        about.get("program", name),
-        version=about.get("version", ""),
-        settings_name=settings_name,
-        settings=about.get("settings", ""),
-        contact_model=about.get("model", ""),
+    return AnswerSet(
+        Path(name),
+        stated_by(
+            about.get("program", name),
+            version=about.get("version", ""),
+            settings_name=settings_name,
+            settings=about.get("settings", ""),
+            contact_model=about.get("model", ""),
+        ),
+        tuple(answers),
     )
 
 
@@ -142,12 +143,6 @@ def _answer(solver: Solver, problem: Problem) -> Answer:
     same = [note for note in run.notes if note.startswith(SAME_AS)]
     warnings = tuple(f"It is {note}: the suite's own solver was judged." for note in same)
     return Answer(problem.name, problem, run.history, warnings=warnings, seconds=seconds)
-
-
-def _repeated(answer: Answer, history: History, solver: Solver, problem: Problem) -> Answer:
-    """Return an answer with how far a second run is from it, where it is not the same."""
-    again = completed(solver, problem.scene).history
-    return replace(answer, warnings=(*answer.warnings, *_not_repeatable(history, again)))
 
 
 def _ending(run: Run) -> tuple[Status, str]:

@@ -35,22 +35,25 @@ which is the half width of the band and the uncertainty of the reference; a numb
 ``rounding`` times the value, and ``slack``, widen the band alone, ``above`` its upper edge. Scale, start, slack and
 above are numbers or functions of the case. All other keys are those of a `Gate`.
 
-An entry ``[[row]]`` is a row that a function computes from each history of a ``solver``, from the metrics of some
-``solvers``, or without either from the case alone: closed forms that stand beside the runs.
+An entry ``[[row]]`` is a row that a function computes from each case, the ``histories`` of some solvers and the
+``rows`` of some, of whose metrics it ``reads`` these; or without either from the case alone: closed forms that stand
+beside the runs. Of ``sweeps`` in place of ``scenes`` it is one row of all cases, and the function takes a list of
+these; of ``owners`` it is one without a case.
 """
 
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from validation.engine.finished import Derived, from_history, from_metrics
+from validation.engine.finished import DerivedRows, derived_row
 from validation.errors import InputError
 from validation.gates.gate import Gate
+from validation.runs.aliases import Data, Fields
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -62,12 +65,7 @@ NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 
-def read(module: str) -> dict[str, Any]:
-    """Return the table beside a module, by the module's file."""
-    return tomllib.loads(Path(module).with_name("study.toml").read_text(encoding="utf-8"))
-
-
-def declare(folder: Path, fields: Mapping[str, Any], formulas: Any = None) -> Study:
+def declare(folder: Path, fields: Data, formulas: Any = None) -> Study:
     """Return the study of a folder.
 
     Parameters
@@ -97,8 +95,8 @@ class StudyTable:
     """
 
     folder: Path
-    fields: Mapping[str, Any]
-    formulas: Mapping[str, Any]
+    fields: Data
+    formulas: Data
 
     def function(self, name: str) -> Any:
         """Return what ``formulas.py`` calls so.
@@ -113,13 +111,13 @@ class StudyTable:
         return self.formulas[name]
 
     @property
-    def entries(self) -> dict[str, Any]:
+    def entries(self) -> Fields:
         """The whole table, read anew: its entries are taken apart."""
         return tomllib.loads((self.folder / "study.toml").read_text(encoding="utf-8"))
 
     def study(self) -> Study:
         """Return the study."""
-        declared: dict[str, Any] = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
+        declared = {key: value for key, value in self.fields.items() if key not in NOT_OF_A_STUDY}
         for key in FUNCTIONS:
             if isinstance(declared.get(key), str):
                 declared[key] = self.function(declared[key])
@@ -145,7 +143,7 @@ class StudyTable:
 
     def gates(self) -> tuple[Gate, ...]:
         """Return the gates: those of the table in its order, and those of the function that it names."""
-        declared: list[Gate] = []
+        declared = []
         for entry in self.entries.get("gate", ()):
             pairs = entry.pop("pairs")
             judged = self._printed(entry) if "numbers" in entry else self._banded(entry)
@@ -153,23 +151,25 @@ class StudyTable:
                 declared += [Gate(pair=tuple(pair), **(entry | fields)) for pair in pairs]
         return (*declared, *self._further("gates"))
 
-    def derived(self) -> tuple[Derived, ...]:
+    def derived(self) -> DerivedRows:
         """Return the derived rows: those of the table, and those of the function that it names."""
-        declared: list[Derived] = []
+        declared = []
         for entry in self.entries.get("row", ()):
+            read = {key: entry[key] for key in ("histories", "rows", "reads") if key in entry}
             compute = self.function(entry["compute"])
+            for owner in entry.get("sweeps", ()):
+                declared.append(derived_row(owner, entry["name"], [*cases(owner)], compute, whole=True, **read))
+            for owner in entry.get("owners", ()):
+                declared.append(derived_row(owner, entry["name"], [], compute))
             for case in self.declared_cases(entry):
-                if "solver" in entry:
-                    declared.append(from_history(case, entry["solver"], entry["name"], compute))
-                else:
-                    declared.append(from_metrics(case, entry.get("solvers", ()), entry["name"], compute))
+                declared.append(derived_row(case.name, entry["name"], [case], compute, **read))
         return (*declared, *self._further("derived"))
 
     def _further(self, field: str) -> Iterable[Any]:
-        function: Callable[[], Iterable[Any]] = self.function(self.fields[field]) if field in self.fields else tuple
+        function = self.function(self.fields[field]) if field in self.fields else tuple
         return function()
 
-    def _printed(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    def _printed(self, entry: Fields) -> Iterator[Fields]:
         """Yield the fields of the gates on printed numbers; keys that are no field of a gate are taken out."""
         numbers = entry.pop("numbers")
         given_half = entry.pop("half", None)
@@ -195,7 +195,7 @@ class StudyTable:
         (case,) = named_cases([scene])
         return float(self.function(term)(case))
 
-    def _banded(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
+    def _banded(self, entry: Fields) -> Iterator[Fields]:
         """Yield the fields of the gates whose band is a formula or given."""
         band = entry.pop("band")
         metrics = entry.pop("metrics", ())
@@ -214,7 +214,7 @@ class StudyTable:
                 low, high = by_metric[metric]
                 yield {"scene": scene, "metric": metric, "low": low, "high": high, "reason": reason}
 
-    def declared_cases(self, entry: dict[str, Any]) -> list[Scene]:
+    def declared_cases(self, entry: Fields) -> list[Scene]:
         """Return the cases that an entry names, and take them out of it."""
         if "cases" in entry:
             return list(self.function(entry.pop("cases"))())
@@ -231,7 +231,7 @@ class StudyTable:
 
 def named_cases(names: Iterable[str]) -> list[Scene]:
     """Return the cases of built-in scenes, all of them or one, by its name."""
-    named: list[Scene] = []
+    named = []
     for name in names:
         named += [case for case in cases(scene_of(name)) if name in (case.name, scene_of(name))]
     return named

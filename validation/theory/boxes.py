@@ -117,7 +117,7 @@ class ShakenBox:
 
     def ground(self, time: Array) -> Array:
         """Displacement of the ground [m]."""
-        return np.asarray(self.amplitude * (1 - np.cos(self.rate * time)))
+        return self.amplitude * (1 - np.cos(self.rate * time))
 
     def ground_velocity(self, time: float) -> float:
         """Velocity of the ground [m/s]."""
@@ -246,4 +246,4 @@ class SpringImpact:
     def sinking(self, time: Array) -> Array:
         """Return how far the spring is pressed at instants since the landing [m]."""
         phase = self.rate * time
-        return np.asarray(self.gravity / self.rate**2 * (1 - np.cos(phase)) + self.speed / self.rate * np.sin(phase))
+        return self.gravity / self.rate**2 * (1 - np.cos(phase)) + self.speed / self.rate * np.sin(phase)

@@ -13,13 +13,14 @@ sticks or slips backwards once its slip has come to rest.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 
 SAMPLES = 2000  # of a free flight, between which the lowest corner meets the plane
@@ -33,9 +34,9 @@ class FallingRectangle:
     width: float  # m
     height: float  # m
     mass: float  # kg
-    place: tuple[float, float]  # of the centroid [m]
+    place: NumberPair  # of the centroid [m]
     angle: float  # rad
-    velocity: tuple[float, float]  # m/s
+    velocity: NumberPair  # m/s
     spin: float  # rad/s
     gravity: float = 9.81
 
@@ -74,7 +75,7 @@ class FallingRectangle:
 
         times = np.linspace(0.0, until, SAMPLES + 1)
         below = next(k for k, time in enumerate(times) if lowest(time) < 0)
-        time = float(brentq(lowest, times[below - 1], times[below], xtol=1e-15))
+        time = brentq(lowest, times[below - 1], times[below], xtol=1e-15)
         landed = self.flown(time)
         return time, int(np.argmin(landed.arms(landed.angle)[:, 1]))
 
@@ -85,7 +86,7 @@ class Rebound:
 
     time: float  # at which the corner leaves [s]
     state: tuple[float, ...]  # x, y, angle, and their rates then
-    impulse: tuple[float, float]  # along the plane and across it [N s]
+    impulse: NumberPair  # along the plane and across it [N s]
 
 
 def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, until: float) -> Rebound:
@@ -93,82 +94,64 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
 
     Every mode (sticks, slips either way) is integrated up to the event that ends it, by a method of order 8.
     """
-    landing, number = body.landing(until)
-    start = body.flown(landing)
-    m = body.mass
-    inertia = body.inertia
+    time, number = body.landing(until)
+    start = body.flown(time)
     rough = mu is not None and ps > 0
     coefficient = mu or 0.0
 
-    def corner(q: Array) -> tuple[Array, Array]:
-        arm = body.arms(q[2])[number]
-        return q[:2] + arm, q[3:5] + q[5] * np.array([-arm[1], arm[0]])
+    def corner(q: Array) -> tuple[float, float, float, float]:
+        along, across = body.arms(q[2])[number]
+        return q[0] + along, q[1] + across, q[3] - q[5] * across, q[4] + q[5] * along
 
-    def shear_of(mode: int, held: float) -> Callable[[Array], float]:
+    def shear(q: Array, mode: int, held: float) -> float:
+        x, y, *_ = corner(q)
         if not rough:
-            return lambda q: 0.0
-        if mode == 0:
-            return lambda q: -ps * (float(corner(q)[0][0]) - held)
-        return lambda q: mode * coefficient * p * float(corner(q)[0][1])
+            return 0.0
+        return mode * coefficient * p * y if mode else -ps * (x - held)
 
-    def rate_of(shear: Callable[[Array], float]) -> Callable[[float, Array], list[float]]:
-        def rate(_: float, q: Array) -> list[float]:
-            arm = body.arms(q[2])[number]
-            normal = -p * float(corner(q)[0][1])
-            along = shear(q)
-            return [
-                *q[3:6],
-                along / m,
-                normal / m - body.gravity,
-                (arm[0] * normal - arm[1] * along) / inertia,
-                along,
-                normal,
-            ]
+    def rate(_: float, q: Array, mode: int, held: float) -> list[float]:
+        arm = body.arms(q[2])[number]
+        normal = -p * corner(q)[1]
+        along = shear(q, mode, held)
+        turning = (arm[0] * normal - arm[1] * along) / body.inertia
+        return [*q[3:6], along / body.mass, normal / body.mass - body.gravity, turning, along, normal]
 
-        return rate
+    def leaves(_: float, q: Array, mode: int, held: float) -> float:
+        return corner(q)[1]
 
-    def leaves(_: float, q: Array) -> float:
-        return float(corner(q)[0][1])
-
-    leaves.terminal = True  # type: ignore[attr-defined]
-    leaves.direction = 1.0  # type: ignore[attr-defined]
-    state = np.array([*start.place, start.angle, *start.velocity, start.spin, 0.0, 0.0])
-    place, velocity = corner(state)
-    time = landing
-    held = float(place[0])
-    # at N = T = 0 it sticks if the spring along the plane is loaded slowly enough beside that across it
-    slips = rough and ps * abs(velocity[0]) > coefficient * p * abs(velocity[1])
-    mode = int(np.sign(velocity[0])) if slips else 0
-    for _ in range(MOST_MODES):
-        shear = shear_of(mode, held)
-        events = [leaves]
-        if rough:
-
-            def ends(_: float, q: Array, mode: int = mode, shear: Callable[[Array], float] = shear) -> float:
-                place, velocity = corner(q)
-                if mode == 0:
-                    return coefficient * -p * float(place[1]) - abs(shear(q))
-                return mode * float(velocity[0] + mode * coefficient * p / ps * velocity[1])
-
-            ends.terminal = True  # type: ignore[attr-defined]
-            ends.direction = -1.0  # type: ignore[attr-defined]
-            events.append(ends)
-        solution = solve_ivp(
-            rate_of(shear), (time, until), state, method="DOP853", rtol=1e-12, atol=1e-14, events=events
+    def ends(_: float, q: Array, mode: int, held: float) -> float:
+        _, y, u, v = corner(q)
+        return (
+            mode * (u + mode * coefficient * p / ps * v) if mode else -coefficient * p * y - abs(shear(q, mode, held))
         )
-        time = float(solution.t[-1])
+
+    events: Any = [leaves, ends] if rough else [leaves]
+    for event, direction in zip(events, (1.0, -1.0), strict=False):
+        event.terminal = True
+        event.direction = direction
+    state = np.array([*start.place, start.angle, *start.velocity, start.spin, 0.0, 0.0])
+    held, _, u, v = corner(state)
+    # at N = T = 0 it sticks if the spring along the plane is loaded slowly enough beside that across it
+    slips = rough and ps * abs(u) > coefficient * p * abs(v)
+    mode = int(np.sign(u)) if slips else 0
+    for _ in range(MOST_MODES):
+        solution = solve_ivp(
+            rate, (time, until), state, method="DOP853", rtol=1e-12, atol=1e-14, events=events, args=(mode, held)
+        )
+        time = solution.t[-1]
         state = solution.y[:, -1]
         if len(solution.t_events[0]) or solution.status == 0:
             break
         if mode == 0:
-            mode = int(np.sign(corner(state)[0][0] - held))
+            mode = int(np.sign(corner(state)[0] - held))
         else:
-            held = float(corner(state)[0][0]) + shear(state) / ps
+            held = corner(state)[0] + shear(state, mode, held) / ps
             mode = 0
-    return Rebound(time, tuple(float(value) for value in state[:6]), (float(state[6]), float(state[7])))
+    *state_there, along, across = state.tolist()
+    return Rebound(float(time), tuple(state_there), (along, across))
 
 
-def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[float, float]:
+def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> NumberPair:
     """Return the impulses along and across the plane of a rigid corner with Coulomb friction, no normal work lost.
 
     The corner's velocity changes by A J with the inverse masses A of the corner, piece by piece along J_n.

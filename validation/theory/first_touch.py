@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
+from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 
 SAMPLES = 4000  # of the time that is looked at: gaps are smooth, and change their sign once between two
@@ -24,8 +25,8 @@ class MovingPolygon:
     """A rigid polygon that moves uniformly and turns about its centroid."""
 
     corners: Array  # (n, 2) from the centroid, at t = 0 [m]
-    centroid: tuple[float, float]  # at t = 0 [m]
-    velocity: tuple[float, float]  # m/s
+    centroid: NumberPair  # at t = 0 [m]
+    velocity: NumberPair  # m/s
     spin: float  # rad/s
 
     def at(self, times: Array) -> Array:
@@ -82,16 +83,14 @@ def _touch(
 
     gap, _, _ = placed(times)
     for k in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0)):
-        time = float(
-            brentq(lambda t: float(placed(np.array([t]))[0][0]), times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
-        )
+        time = brentq(lambda t: float(placed(np.array([t]))[0][0]), times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
         _, foot, normal = placed(np.array([time]))
         if -1e-12 <= foot[0] <= 1 + 1e-12:
             return time, float(foot[0]), float(normal[0])
     return None
 
 
-def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> tuple[float, float]:
+def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> NumberPair:
     """Return the least and the greatest direction that a force on the first polygon may have [rad].
 
     A corner inside an edge has the edge's normal; a corner on a corner any direction that is a normal of both.
@@ -107,7 +106,7 @@ def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> t
     return max(low, own_low + shift) + turned, min(high, own_high + shift) + turned
 
 
-def _cone(polygon: MovingPolygon, corner: int, time: float) -> tuple[float, float]:
+def _cone(polygon: MovingPolygon, corner: int, time: float) -> NumberPair:
     """Return the normals of the two edges that meet in a corner, counter-clockwise [rad]."""
     corners = polygon.at(np.array([time]))[0]
     before, here, after = (corners[(corner + k) % len(corners)] for k in (-1, 0, 1))

@@ -16,7 +16,7 @@ import math
 
 import numpy as np
 
-from validation.runs.history import Array
+from validation.runs.history import Array, ArrayPair
 from validation.scenes.scene import Scene
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -165,7 +165,7 @@ def time_constant(scene: Scene) -> float:
     return scene.time.step / lost if lost else math.inf
 
 
-def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
+def free_motion(scene: Scene, acceleration: float) -> ArrayPair:
     """Return displacement and velocity at each step of a free body in the scene's scheme, from rest [m], [m/s].
 
     With A_0 = s a (s = 1 for the consistent start), A_n = a and g = gg:
@@ -187,7 +187,7 @@ def free_motion(scene: Scene, acceleration: float) -> tuple[Array, Array]:
     return begun + t.discount * distance + (n - 1) * t.step**2 * acceleration / 2, velocity
 
 
-def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: float) -> tuple[Array, Array]:
+def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: float) -> ArrayPair:
     """Return displacement and velocity of a free body at each step, by the stages of a scheme, in units of the step."""
     pull = stepping.step**2 * acceleration
     late = pull / 2 if stepping.scheme == "leapfrog" else 0.0  # its v is that of half a step before
@@ -210,7 +210,7 @@ def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: flo
     return moved, speed / stepping.step
 
 
-def _series(gg: float, n: Array) -> tuple[Array, Array]:
+def _series(gg: float, n: Array) -> ArrayPair:
     """Return the sums G_n = 1 + gg + ... + gg^(n-1), and of G_k over k < n."""
     if gg == 1:
         return n, n * (n - 1) / 2

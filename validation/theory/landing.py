@@ -25,7 +25,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.runs.history import Array
+from validation.runs.aliases import NumberPair
+from validation.runs.history import Array, ArrayPair
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
 from validation.theory.stepping import Stepping
@@ -101,12 +102,12 @@ class _Motion:
         """Return x and e at times, shape (n, 2)."""
         phase = np.multiply.outer(time, self.frequencies)
         parts = self.cosines * np.cos(phase) + self.sines * np.multiply.outer(time, np.ones(2)) * np.sinc(phase / np.pi)
-        return np.asarray(parts @ self.shapes.T)
+        return parts @ self.shapes.T
 
     def velocity(self, time: float) -> Array:
         """Return their rates at one time, shape (2,)."""
         phase = time * self.frequencies
-        return np.asarray(self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase)))
+        return self.shapes @ (self.sines * np.cos(phase) - self.cosines * self.frequencies * np.sin(phase))
 
     def gap(self, time: Array) -> Array:
         """Return w at times, shape (n,)."""
@@ -134,7 +135,7 @@ def own_landing(ratio: float) -> OwnLanding:
         return OwnLanding(rebound, 1.0, max(speeds), math.pi / (2 * math.sqrt(ratio)), len(speeds))
     closed = np.diag(STRAIN) + ratio * np.outer(GAP, GAP)
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
-    depths: list[float] = []
+    depths = []
     duration, first_rate = 0.0, 0.0
     while True:
         contact = _Motion.of(closed, position, velocity)
@@ -151,7 +152,7 @@ def own_landing(ratio: float) -> OwnLanding:
     return OwnLanding(float(velocity[0]), first_rate, depth, duration, len(depths))
 
 
-def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | None:
+def _after_flight(position: Array, velocity: Array) -> ArrayPair | None:
     """Return position and velocity at the end of a flight; None of one that does not end."""
     strain = math.hypot(position[1], velocity[1] / math.sqrt(12))
     distance = strain / 2 - position[0] if velocity[0] > 0 else strain / 2 + position[0]
@@ -162,7 +163,7 @@ def _after_flight(position: Array, velocity: Array) -> tuple[Array, Array] | Non
     return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
 
 
-def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
+def _end(motion: _Motion, longest: float, opens: bool) -> NumberPair:
     """Return when a stretch ends, infinite where it does not, and its greatest penetration on the way."""
     sample = 2 * math.pi / float(motion.frequencies.max()) / SAMPLES
     depth = 0.0
@@ -170,7 +171,13 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     while start * sample <= longest:  # in parts: a stiff contact ends in the first of very many
         times = np.asarray(np.arange(start, start + 4 * SAMPLES + 1) * sample, dtype=np.float64)
         gaps = motion.gap(times)
-        depth = max(depth, _deepest(motion, times, gaps))
+        # The greatest penetration within samples, refined about the lowest of them before the gap opens.
+        opened = np.flatnonzero(gaps[1:] > 0)
+        within = gaps[: int(opened[0]) + 1] if opened.size else gaps
+        i = int(np.argmin(within))
+        step = times[1] - times[0]
+        fine = np.linspace(max(times[i] - step, times[0]), min(times[i] + step, times[-1]), 401)
+        depth = max(depth, float(-motion.gap(fine).min()))
         crossed = 1 + np.flatnonzero(gaps[1:] > 0 if opens else gaps[1:] < 0)
         if crossed.size:
             last = int(crossed[0])
@@ -186,16 +193,6 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     return math.inf, depth
 
 
-def _deepest(motion: _Motion, times: Array, gaps: Array) -> float:
-    """Return the greatest penetration within samples, refined about the lowest of them before the gap opens."""
-    opened = np.flatnonzero(gaps[1:] > 0)
-    within = gaps[: int(opened[0]) + 1] if opened.size else gaps
-    i = int(np.argmin(within))
-    step = times[1] - times[0]
-    fine = np.linspace(max(times[i] - step, times[0]), min(times[i] + step, times[-1]), 401)
-    return float(-motion.gap(fine).min())
-
-
 @functools.cache
 def rigid_stop() -> tuple[float, ...]:
     """Return the speeds at which the base lands on a rigid stop, over V, and after them the restitution.
@@ -203,7 +200,7 @@ def rigid_stop() -> tuple[float, ...]:
     Each impact is elastic for a quarter of the mass: J = m |w'|/2, x' += J/m, e' -= 6 J / (m h).
     """
     position, velocity = np.zeros(2), np.array([-1.0, 0.0])
-    speeds: list[float] = []
+    speeds = []
     while True:
         speed = float(-(GAP @ velocity))
         speeds.append(speed)

@@ -18,7 +18,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from validation.runs.history import Array
 from validation.theory.stages import Stages
 
 STEPS = 10  # in which the greatest energy is looked for; it is that of the first one
@@ -33,7 +32,7 @@ def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[f
         W = w dt of each mode, and its share of the static response.
     """
     square = np.array(omegas_dt) ** 2  # x_s and dt are 1
-    start: tuple[Array, Array, Array] = (0 * square, 0 * square, square)
+    start = (0 * square, 0 * square, square)
     greatest = 0.0
     for _ in range(STEPS):
         position, velocity, acceleration = start

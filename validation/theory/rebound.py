@@ -96,8 +96,7 @@ def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
             x = x + stage.beta * weight * N
             if math.isinf(omega):
                 x = np.where(N > 0, 0.0, x)  # and not the rounding of a difference, which would close it again
-            pressed = np.maximum(before.pressed, N)
-            before = Motion(x, v + stage.gamma * weight * N, a + weight * N, N, pressed)
+            before = Motion(x, v + stage.gamma * weight * N, a + weight * N, N, np.maximum(before.pressed, N))
         return before
 
     return advance

@@ -66,7 +66,7 @@ class Rectangle:
     def pulse_rate2(self, k: float, theta: Array) -> Array:
         """Return theta'^2 of a block that was at rest when its base began to accelerate by k g [rad^2/s^2]."""
         pushed = 2 * k * np.cos(self.alpha - theta / 2) * np.sin(theta / 2)
-        return np.asarray(2 * self.rate2 * (pushed + _less(self.alpha, -theta)))
+        return 2 * self.rate2 * (pushed + _less(self.alpha, -theta))
 
     def pulse_end(self, k: float, duration: float) -> float:
         """Return the tilt at the end of the pulse [rad]."""
@@ -99,7 +99,7 @@ class Rectangle:
 
 def _less(angle: float, turned: Array) -> Array:
     """Return cos(angle) - cos(angle + turned) without loss of digits."""
-    return np.asarray(2 * np.sin(angle + turned / 2) * np.sin(turned / 2))
+    return 2 * np.sin(angle + turned / 2) * np.sin(turned / 2)
 
 
 def _time(rate2: Callable[[Array], Array], turned: float) -> float:

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import tomllib
-from pathlib import Path
-from typing import Any
+from validation.runs.aliases import Fields
+from validation.runs.beside import table_beside
 
-CARDS: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+CARDS: dict[str, Fields] = table_beside(__file__)
 """Parameters, order, solves, good, bad and aliases of each scheme, as the table beside this module has them."""

@@ -11,6 +11,7 @@ import math
 
 import numpy as np
 
+from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory.statics import height, moduli, size
@@ -96,8 +97,7 @@ def transit(scene: Scene) -> float:
 def elements_per_front(scene: Scene) -> float:
     """Elements per distance c dt that the wave runs in one step."""
     E, _ = moduli(scene)
-    c = math.sqrt(E / scene.block.density)
-    return c * scene.time.step * scene.fem.per_side / size(scene)[1]
+    return math.sqrt(E / scene.block.density) * scene.time.step * scene.fem.per_side / size(scene)[1]
 
 
 def bar_modes(scene: Scene, count: int) -> Array:
@@ -122,8 +122,8 @@ def bar_shares(scene: Scene, quantity: str, b: Array) -> Array:
     ratio = 2 * scene.contact.stiffness * h / (E * w)
     modal = 2 / (b**2 * (1 + np.sin(2 * b) / (2 * b)))  # response of the mode to a unit of q h / E, in phi
     if quantity == "displacement":
-        return np.asarray(modal * np.cos(b / 2) / (1 / ratio + 0.5))
-    return np.asarray(modal * np.cos(b) * ratio)
+        return modal * np.cos(b / 2) / (1 / ratio + 0.5)
+    return modal * np.cos(b) * ratio
 
 
 def bar_response(scene: Scene, omega: Array) -> Array:
@@ -150,7 +150,7 @@ def bar_response(scene: Scene, omega: Array) -> Array:
     return 1 + x
 
 
-def mesh_error(scene: Scene) -> dict[str, float]:
+def mesh_error(scene: Scene) -> NamedNumbers:
     """Relative L2 errors of quadratic elements against the bar, by quantity, predicted from their dispersion alone.
 
     Each mode's frequency is high by (b/n)^4 / 1440 (with the first factor of `mesh_frequency_error`), its share is

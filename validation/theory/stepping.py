@@ -40,6 +40,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from validation.errors import InputError
+from validation.runs.aliases import NumberPair
 from validation.scenes.scene import Scene
 from validation.theory import stages
 from validation.theory.stages import Stage, Stages
@@ -72,7 +73,7 @@ class Composite(NamedTuple):
         """Return R(s) of y' = y s / dt over a step."""
         half = self.split * s / 2
         middle = (1 + half) / (1 - half)
-        return np.asarray((1 + self.q0 * s + self.q1 * s * middle) / (1 - self.q2 * s))
+        return (1 + self.q0 * s + self.q1 * s * middle) / (1 - self.q2 * s)
 
     @property
     def fourth(self) -> float:
@@ -241,7 +242,7 @@ class Stepping:
     def _kinematics(self, numbers: Stage, turn: Complex) -> Complex:
         """Return gg ((1 - gamma) + gamma z) + (1/2 - beta + beta z)(z - gg) of z - 1."""
         ahead = (1 - self.gg) + turn
-        return np.asarray(self.gg * (1 + numbers.gamma * turn) + (0.5 + numbers.beta * turn) * ahead)
+        return self.gg * (1 + numbers.gamma * turn) + (0.5 + numbers.beta * turn) * ahead
 
     def _numbers(self, quantity: str) -> Stage:
         numbers = self.one_stage
@@ -355,7 +356,7 @@ class Stepping:
             return kinetic + (self.delta - 0.5) / 2 * omega_dt
         return kinetic + (numbers.af - numbers.am) * (1 - numbers.am - numbers.af) ** 2 * omega_dt**3 / 8
 
-    def rayleigh(self) -> tuple[float, float]:
+    def rayleigh(self) -> NumberPair:
         """Return (a0 [1/s], a1 [s]) of the Rayleigh damping that the step hides, in the limit w dt -> 0.
 
         a0 = 2 (1 - gg) / ((1 + gg) dt) is the kinetic part, -Im W2 / w there; a1 = (delta - 1/2) dt is Newmark's

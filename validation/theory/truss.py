@@ -19,6 +19,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import Array
 
 
@@ -30,7 +31,7 @@ class HalfTruss:
     height: float  # h [m]
     mass: float  # kg
     turned: float  # at t = 0 [rad]
-    place: tuple[float, float]  # of A at t = 0, from where it touches without force [m]
+    place: NumberPair  # of A at t = 0, from where it touches without force [m]
     span: float  # S [m]
     abutment: float  # p at A, across and along [N/m]
     crown: float  # c at C [N/m]
@@ -47,12 +48,12 @@ class HalfTruss:
         return 1 / (1 / self.abutment + 1 / self.crown)
 
     @property
-    def limit(self) -> tuple[float, float]:
+    def limit(self) -> NumberPair:
         """Inclination at the limit [rad], and the load on the crown there, W left out [N]."""
         u = math.acos((self.span / self.diagonal) ** (1 / 3))
         return u, 2 * self.series * self.diagonal * math.sin(u) ** 3 - self.mass * self.gravity
 
-    def rest(self, load: float) -> dict[str, float] | None:
+    def rest(self, load: float) -> NamedNumbers | None:
         """Return turn [rad] and forces [N] at rest under a load on the whole crown, None where there is no rest."""
         limit, most = self.limit
         if load > most:
@@ -63,7 +64,7 @@ class HalfTruss:
         def left_over(u: float) -> float:
             return 2 * self.series * (self.diagonal * math.cos(u) - self.span) * math.tan(u) - whole
 
-        u = float(brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14))
+        u = brentq(left_over, limit, flat, xtol=1e-15, rtol=1e-14)
         thrust = self.series * (self.diagonal * math.cos(u) - self.span)
         return {
             "turn": math.atan2(self.height, self.length) - u,
@@ -98,5 +99,4 @@ class HalfTruss:
         solution = solve_ivp(
             rate, (0.0, float(times[-1])), start, method="DOP853", rtol=1e-12, atol=1e-14, t_eval=times
         )
-        rows: Array = np.array([[*q[:3], *forces(q)] for q in solution.y.T])
-        return rows
+        return np.array([[*q[:3], *forces(q)] for q in solution.y.T])

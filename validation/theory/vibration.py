@@ -33,7 +33,7 @@ class Vibration:
     @property
     def band(self) -> Array:
         """The relative difference that rounding can make between two programs."""
-        return np.asarray(OPERATIONS * EPS * self.condition)
+        return OPERATIONS * EPS * self.condition
 
 
 def block(scene: Scene, w2: ArrayLike, base: bool = False) -> Vibration:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from validation.runs.history import ArrayPair
 from validation.theory.stepping import Complex, Stepping
 
 Array = NDArray[np.float64]
@@ -49,9 +50,9 @@ class Column:
             opening *= 1 + (2 * self.modulus / self.height - inertia / 6) / (2 * self.glue)  # (A - B + 2 kg) / (2 kg)
         wavenumber = 2 * np.arcsin(np.sqrt(opening / 2)) / self.height
         growing = wavenumber.imag * self.height > GROWTH
-        return np.asarray(np.where(growing, 2 * np.pi / self.height - wavenumber, wavenumber))
+        return np.where(growing, 2 * np.pi / self.height - wavenumber, wavenumber)
 
-    def travelled(self, stepping: Stepping, omega: ArrayLike, distance: float) -> tuple[Array, Array]:
+    def travelled(self, stepping: Stepping, omega: ArrayLike, distance: float) -> ArrayPair:
         """Return the share of the amplitude left over a distance, and the error w / Re k / c - 1 of the phase speed."""
         omega = np.asarray(omega, float)
         k = self.wavenumber(stepping.squared_frequency(omega))
@@ -61,7 +62,7 @@ class Column:
 
 def joint_transmission(ratio: ArrayLike) -> Array:
     """Return |T| of a joint in a continuum, (1 + (1 / (2 r))^2)^(-1/2) with r = kj / (rho c w)."""
-    return np.asarray((1 + (0.5 / np.asarray(ratio, float)) ** 2) ** -0.5)
+    return (1 + (0.5 / np.asarray(ratio, float)) ** 2) ** -0.5
 
 
 def joint_in_column(column: Column, w2: ArrayLike, stiffness: float) -> tuple[Complex, Complex]:
@@ -92,4 +93,4 @@ def base_reflection(column: Column, stepping: Stepping, omega: ArrayLike, impeda
     A, B = column.ends(w2)
     decay = np.exp(-1j * column.wavenumber(w2) * column.height)
     diagonal = A + stepping.velocity_factor(omega) * impedance
-    return np.asarray(-(diagonal + B / decay) / (diagonal + B * decay))
+    return -(diagonal + B / decay) / (diagonal + B * decay)

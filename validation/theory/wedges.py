@@ -16,18 +16,20 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+from validation.runs.aliases import NamedNumbers, NumberPair
+
 
 @dataclass(frozen=True)
 class Wedges:
     """Two wedges, the active one first."""
 
-    masses: tuple[float, float]  # kg
-    dips: tuple[float, float]  # of the planes they slide on [rad]
+    masses: NumberPair  # kg
+    dips: NumberPair  # of the planes they slide on [rad]
     below: float  # tan(phi)
     between: float  # tan(delta)
     gravity: float = 9.81
 
-    def motion(self) -> dict[str, float]:
+    def motion(self) -> NamedNumbers:
         """Return accelerations down the planes [m/s2] and normal forces [N] of wedges that slide."""
         (m1, m2), (a1, a2), g = self.masses, self.dips, self.gravity
         p = math.atan(self.below)
@@ -40,7 +42,7 @@ class Wedges:
             A2 = (P * math.cos(p - a2 + q) - m2 * g * math.sin(p - a2)) / (m2 * math.cos(p))
             return A2 * math.cos(a2) - active(P) * math.cos(a1)
 
-        P = float(brentq(left_over, 0.0, (m1 + m2) * g, xtol=1e-6, rtol=1e-14))
+        P = brentq(left_over, 0.0, (m1 + m2) * g, xtol=1e-6, rtol=1e-14)
         return {
             "active": active(P),
             "passive": active(P) * math.cos(a1) / math.cos(a2),

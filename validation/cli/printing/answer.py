@@ -5,9 +5,8 @@ from __future__ import annotations
 import itertools
 import shlex
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from validation.cli.app import RESULTS
 from validation.engine.measured import JudgedStudy, unjudged
@@ -15,6 +14,7 @@ from validation.gates.changes import Change
 from validation.gates.gate import Status, Verdict
 from validation.report.blocks import TableColumn, table
 from validation.report.render.terminal import StyledLine, table_lines, wrapped
+from validation.runs.aliases import Fields, NamePair
 from validation.runs.numbers import measured_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
@@ -120,7 +120,7 @@ def badly_ended(answer: RunAnswer) -> Iterator[str]:
                 yield how_it_ended(case["scene"], case["solver"], row.outcome, row.notes)
 
 
-def _bad_cases(run: JudgedStudy) -> set[tuple[str, str]]:
+def _bad_cases(run: JudgedStudy) -> set[NamePair]:
     """Return the cases that ended in a way their study does not expect, refused ones among them."""
     bad = set(run.failed)
     if run.refused:
@@ -139,14 +139,37 @@ def how_it_ended(scene: str, solver: str, outcome: Outcome, notes: Sequence[str]
 def summary(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
     """Yield the lines that stand last, at most `SCREEN` for the studies of the suite."""
     tail = list(_tail(answer, width))
-    yield from _studies(answer, max(SCREEN - 2 - len(tail), LEAST_STUDIES))
+    room = max(SCREEN - 2 - len(tail), LEAST_STUDIES)
+    rows = [(run.study.name, counts(run), s) for run, s in zip(answer.runs, answer.seconds, strict=True)]
+    lines = [
+        (printable(name), *(str(tally[word]) for word in WORDS), f"{seconds:.1f}")
+        for name, tally, seconds in _folded(rows, room)
+    ]
+    numbers = (TableColumn(title, "decimal") for title in ("passed", "failed", "not run", "seconds"))
+    yield from table_lines(table([TableColumn("study"), *numbers], lines), None)
+    total = sum((tally for _, tally, _ in rows), Counter[str]())
+    counted = ", ".join(f"{total[word]} {word}" for word in WORDS)
+    style = next((word for word in ("FAIL", "NOT RUN", "PASS") if total[word]), "")
+    yield f"{counted} in {sum(answer.seconds):.1f} s", style
     yield from tail
 
 
 def _tail(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
-    yield from _not_run(answer, width)
+    reasons = Counter(verdict.why for verdict in answer.verdicts if verdict.status is Status.NOT_RUN)
+    for why, count in reasons.most_common(2):
+        yield from wrapped(f"NOT RUN {count}: {printable(why)}", width, "NOT RUN")
+    if len(reasons) > 2:
+        yield f"NOT RUN for {len(reasons) - 2} more reasons; --verbose shows every one", "NOT RUN"
     yield from _ended(answer, width)
-    yield from _alarms(answer, width)
+    # The kinds of alarm with the number of cases, and for own scenes the first sentence of each kind.
+    kinds = alarm_kinds(answer)
+    if kinds:
+        words = ", ".join(f"{kind} in {n} case{'s' * (n > 1)}" for kind, n in kinds.items())
+        yield from wrapped(f"alarms: {words}", width, "")
+    user_alarms = answer.alarms(name for name in answer.names if name in answer.user_scenes)
+    first_alarms = {alarm["kind"]: alarm for alarm in reversed(user_alarms)}
+    for kind in [kind for kind in kinds if kind in first_alarms][:KINDS_EXPLAINED]:
+        yield from wrapped(f"  {kind}: {first_alarms[kind]['scene']}: {first_alarms[kind]['sentence']}", width, "")
     for sentence in unjudged(answer.runs):
         yield sentence, ""
     yield from wrapped(f"results: {answer.results.directory}", width, "")
@@ -157,23 +180,6 @@ def _tail(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
 def counts(run: JudgedStudy) -> Counter[str]:
     """Return the numbers of gates of a study by verdict."""
     return Counter(str(verdict.status) for verdict in run.verdicts)
-
-
-def _studies(answer: RunAnswer, room: int) -> Iterator[StyledLine]:
-    rows = [(run.study.name, counts(run), s) for run, s in zip(answer.runs, answer.seconds, strict=True)]
-    lines = [
-        (printable(name), *(str(tally[word]) for word in WORDS), f"{seconds:.1f}")
-        for name, tally, seconds in _folded(rows, room)
-    ]
-    numbers = (TableColumn(title, "decimal") for title in ("passed", "failed", "not run", "seconds"))
-    yield from table_lines(table([TableColumn("study"), *numbers], lines), None)
-    total = sum((tally for _, tally, _ in rows), Counter[str]())
-    counted = ", ".join(f"{total[word]} {word}" for word in WORDS)
-    yield f"{counted} in {sum(answer.seconds):.1f} s", _style(total)
-
-
-def _style(tally: Mapping[str, int]) -> str:
-    return next((word for word in ("FAIL", "NOT RUN", "PASS") if tally[word]), "")
 
 
 def _folded(rows: Sequence[tuple[str, Counter[str], float]], room: int) -> list[tuple[str, Counter[str], float]]:
@@ -187,14 +193,6 @@ def _folded(rows: Sequence[tuple[str, Counter[str], float]], room: int) -> list[
     tally = sum((row[1] for row in remainder), Counter[str]())
     total = (f"{len(remainder)} more", tally, sum(row[2] for row in remainder))
     return [*(row for row in rows if row in separate), total]
-
-
-def _not_run(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
-    reasons = Counter(verdict.why for verdict in answer.verdicts if verdict.status is Status.NOT_RUN)
-    for why, count in reasons.most_common(2):
-        yield from wrapped(f"NOT RUN {count}: {printable(why)}", width, "NOT RUN")
-    if len(reasons) > 2:
-        yield f"NOT RUN for {len(reasons) - 2} more reasons; --verbose shows every one", "NOT RUN"
 
 
 def ends(answer: RunAnswer) -> Counter[str]:
@@ -226,18 +224,6 @@ def alarm_kinds(answer: RunAnswer) -> dict[str, int]:
     return {kind: len(scenes) for kind, scenes in cases.items()}
 
 
-def _alarms(answer: RunAnswer, width: int) -> Iterator[StyledLine]:
-    """Yield the kinds of alarm with the number of cases, and for own scenes the first sentence of each kind."""
-    kinds = alarm_kinds(answer)
-    if kinds:
-        words = ", ".join(f"{kind} in {n} case{'s' * (n > 1)}" for kind, n in kinds.items())
-        yield from wrapped(f"alarms: {words}", width, "")
-    user_alarms = answer.alarms(name for name in answer.names if name in answer.user_scenes)
-    first_alarms = {alarm["kind"]: alarm for alarm in reversed(user_alarms)}
-    for kind in [kind for kind in kinds if kind in first_alarms][:KINDS_EXPLAINED]:
-        yield from wrapped(f"  {kind}: {first_alarms[kind]['scene']}: {first_alarms[kind]['sentence']}", width, "")
-
-
 def next_commands(answer: RunAnswer) -> list[str]:
     """Return what to type next."""
     place = "" if answer.results.directory == RESULTS else f" --results {shlex.quote(str(answer.results.directory))}"
@@ -251,7 +237,7 @@ def next_commands(answer: RunAnswer) -> list[str]:
 # ---- for machines --------------------------------------------------------------------------------------------------
 
 
-def as_data(answer: RunAnswer) -> dict[str, Any]:
+def as_data(answer: RunAnswer) -> Fields:
     """Return the answer as plain data; verdicts as they stand in ``verdicts.json``."""
     return {
         "status": answer.status,
@@ -275,7 +261,7 @@ def as_data(answer: RunAnswer) -> dict[str, Any]:
     }
 
 
-def _change(change: Change) -> dict[str, Any]:
+def _change(change: Change) -> Fields:
     return {
         "change": change.kind,
         "study": change.study,

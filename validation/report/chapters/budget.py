@@ -16,7 +16,6 @@ from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import style_of
 from validation.report.figures.histories import Margins
-from validation.runs.history import Array
 from validation.runs.records import BudgetRecord
 
 FIRST = "first axial"
@@ -75,7 +74,7 @@ def budget_lines(budget: BudgetRecord) -> list[ChartLine]:
     colors = {FIRST: style_of("dda").color, "contact": CONTACT_COLOR}
     lines = []
     for name, curves in budget["modes"].items():
-        parts: dict[str, Array] = {}
+        parts = {}
         for part, values in curves.items():
             ratios = 100 * np.array(values, dtype=float)
             parts[part] = np.where(ratios > LEAST_RATIO / 10, ratios, math.nan)

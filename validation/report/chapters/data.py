@@ -6,14 +6,14 @@ import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any
 
 from validation.report.chapters.text import case_labels
+from validation.runs.aliases import Data, NamedTexts
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.history import History
 from validation.runs.records import AlarmRecord, BudgetRecord, CaseRecord, ComparisonRecord, Manifest, VerdictRecord
 from validation.runs.results import Results
-from validation.runs.row import Row
+from validation.runs.row import RowsBySolver
 from validation.scenes.scene import Scene, parse_scene
 from validation.solvers.contract import Role
 from validation.solvers.registry import FULL, by_role
@@ -28,7 +28,7 @@ class CaseResults:
     name: str
     label: str
     scene: Scene
-    rows: Mapping[str, Row]
+    rows: RowsBySolver
     histories: Mapping[str, History] = field(default_factory=dict)
 
     def number(self, solver: str, metric: str) -> float | None:
@@ -72,7 +72,7 @@ class CaseGroup:
         values = [case.number(solver, metric) for case in self.cases]
         return [value for value in values if value is not None]
 
-    def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any] | None:
+    def compared(self, case: CaseResults, solver: str, reference: str) -> Data | None:
         """Return the metrics of a pair over the longest window, in either order, or None."""
         pair = {solver, reference}
         of_pair = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
@@ -126,14 +126,14 @@ def groups_of_studies(results: Results, manifests: Iterable[Manifest], drawn: bo
     return groups
 
 
-def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:
+def labels_of(groups: Iterable[CaseGroup]) -> NamedTexts:
     """Return the labels of all cases, by their names."""
     return {case.name: case.label for group in groups for case in group.cases}
 
 
 def cases_with(
     records_by_case: Mapping[str, Sequence[CaseRecord]],
-    rows: Mapping[str, Row],
+    rows: RowsBySolver,
     history_of: Callable[[str], History | None] = lambda key: None,
 ) -> tuple[CaseResults, ...]:
     """Return the cases of one scene with their labels, the rows of their records, and the histories of these by key."""

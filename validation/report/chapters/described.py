@@ -13,7 +13,7 @@ A column has a title, and where needed a group, a kind and what it is `of`: an e
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,8 +26,9 @@ from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.texts import FILLED, Texts
+from validation.runs.aliases import Fields
 from validation.runs.numbers import FORMS, decimal
-from validation.runs.row import Value
+from validation.runs.row import Metrics, Value
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class CaseColumn:
             return FORMS[self.form](number, self.digits)
         return decimal(number, self.decimals)
 
-    def of_case(self, case: CaseResults, own: Mapping[str, Value] = {}) -> str:
+    def of_case(self, case: CaseResults, own: Metrics) -> str:
         """Return the cell of a case; `own` are values by names that stand in place of an expression."""
         return self.text(own[self.of] if self.of in own else value_of_case(case, None, self.of))
 
@@ -71,14 +72,14 @@ class Description(Texts):
         """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
         return name in self._data.get(kind, {})
 
-    def described(self, kind: str, name: str) -> dict[str, Any]:
+    def described(self, kind: str, name: str) -> Fields:
         """Return what the description says of a thing of a kind."""
-        described: dict[str, Any] = self._data[kind][name]
+        described: Fields = self._data[kind][name]
         return described
 
-    def entries(self, name: str) -> list[dict[str, Any]]:
+    def entries(self, name: str) -> list[Fields]:
         """Return the entries of a list."""
-        entries: list[dict[str, Any]] = self._data[name]
+        entries: list[Fields] = self._data[name]
         return entries
 
     def columns(self, name: str) -> list[CaseColumn]:

@@ -8,6 +8,7 @@ from validation.metrics.catalogue import in_words, is_count, words_of
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.text import capital, cell
+from validation.runs.aliases import Words
 from validation.runs.numbers import bounded, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -85,12 +86,12 @@ def gate_list(verdicts: Verdicts) -> Blocks:
 
 def gate_table(verdicts: Verdicts) -> Table:
     """Return gates with value and band, those of one reason above it."""
-    rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
+    rows_by_reason: dict[str, list[Words]] = {}
     for v in verdicts:
         subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
         row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band_cell(*v["band"]))
         rows_by_reason.setdefault(reason(v), []).append(row)
-    lines: list[tuple[str, ...]] = []
+    lines = []
     for why, rows in rows_by_reason.items():
         lines += [*rows, (why,)]
     return table((TableColumn("Verdict", "verdict"), TableColumn("Gate", "fill"), "Value", "Band"), lines, ruled=False)

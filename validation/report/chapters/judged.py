@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -14,6 +13,7 @@ from validation.problems.cause import Cause
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.figures.curves import EXACT, HistoryPanel
+from validation.runs.aliases import Fields
 from validation.runs.columns import split
 from validation.runs.history import History
 from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
@@ -65,7 +65,7 @@ def reached(answer: JudgedAnswer) -> str:
     return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
 
 
-def as_data(judged: JudgedAnswer) -> dict[str, Any]:
+def as_data(judged: JudgedAnswer) -> Fields:
     """Return a judgement as plain data, its numbers without the last digits, which differ between processors."""
     named = judged.problem.named
     criteria = []
@@ -112,8 +112,8 @@ def rounded(value: float | None) -> float | None:
     return significant(math.copysign(max(abs(value), LEAST_ERROR), value), DIGITS)
 
 
-def _cause_data(cause: Cause) -> dict[str, Any]:
-    statement: dict[str, Any] = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+def _cause_data(cause: Cause) -> Fields:
+    statement: Fields = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
     if cause.passing_step is not None:
         statement["passing_step_s"] = cause.passing_step
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})
@@ -137,7 +137,28 @@ def verdict_blocks(answer: JudgedAnswer, title: str = "") -> Blocks:
         if answer.cause.would_tell:
             half = "" if answer.cause.alike else f"; half the step is {_step(time, 2)}"
             blocks.append(Paragraph(f"What would tell: {answer.cause.would_tell}{half}."))
-    blocks += [Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."), _criteria(answer)]
+    criteria = answer.judgement.criteria
+    caption = "Relative L2 error of each column."
+    notes = [ALLOWED]
+    if answer.problem.numbers:
+        caption = "Errors of the numbers that are judged, as shares of their scales."
+        notes = list(dict.fromkeys(f"{criterion.name}: {criterion.reason}." for criterion in criteria))
+    rows = []
+    for criterion in criteria:
+        name = answer.problem.named(criterion.name)
+        error, allowed = map(error_percent, (criterion.error, criterion.allowed))
+        rows.append((name, str(criterion.status), error, allowed, criterion.datum or DASH, plain(criterion.until)))
+        if criterion.allowed is None:
+            notes.append(f"{name}: {criterion.reason}.")
+    blocks += [
+        Paragraph(f"The question: {answer.problem.asks} {answer.problem.title}."),
+        table(
+            ("Judged", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
+            rows,
+            caption,
+            tuple(notes),
+        ),
+    ]
     if judgement.quantities:
         blocks.append(numbers_table(judgement.quantities))
     return blocks
@@ -191,28 +212,6 @@ def _curves(answer: JudgedAnswer) -> list[tuple[str, History | None]]:
     _, uppermost = split(answer.problem.columns[-1])
     poses = [name for name in answer.problem.columns if split(name)[1] == uppermost]
     return [(name, None) for name in poses if name in columns and np.ptp(columns[name]) >= STILL]
-
-
-def _criteria(answer: JudgedAnswer) -> Table:
-    criteria = answer.judgement.criteria
-    caption = "Relative L2 error of each column."
-    notes = [ALLOWED]
-    if answer.problem.numbers:
-        caption = "Errors of the numbers that are judged, as shares of their scales."
-        notes = list(dict.fromkeys(f"{criterion.name}: {criterion.reason}." for criterion in criteria))
-    rows = []
-    for criterion in criteria:
-        name = answer.problem.named(criterion.name)
-        error, allowed = map(error_percent, (criterion.error, criterion.allowed))
-        rows.append((name, str(criterion.status), error, allowed, criterion.datum or DASH, plain(criterion.until)))
-        if criterion.allowed is None:
-            notes.append(f"{name}: {criterion.reason}.")
-    return table(
-        ("Judged", TableColumn("Verdict", "outcome"), "Error", "Allowed", "Set by", "Until [s]"),
-        rows,
-        caption,
-        tuple(notes),
-    )
 
 
 def numbers_table(numbers: Sequence[Quantity]) -> Table:

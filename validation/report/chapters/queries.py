@@ -38,10 +38,11 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_of_studies
+from validation.runs.aliases import Data, NamePair
 from validation.runs.case_name import scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Value
 
 Query = dict[str, Any]
 NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number
@@ -67,8 +68,8 @@ class Line:
     name: str
     group: CaseGroup | None = None
     case: CaseResults | None = None
-    words: Mapping[str, Value] = field(default_factory=dict)
-    metrics: Mapping[str, Value] = field(default_factory=dict)
+    words: Metrics = field(default_factory=dict)
+    metrics: Metrics = field(default_factory=dict)
 
 
 class StudyTable:
@@ -78,11 +79,9 @@ class StudyTable:
         self.manifest = manifests[0]
         self.groups = groups_of_studies(results, manifests, drawn)
         rows = itertools.chain.from_iterable(manifest.get("derived", []) for manifest in reversed(manifests))
-        self.derived: Mapping[tuple[str, str], Mapping[str, Any]] = {
-            (row["scene"], row["name"]): row["metrics"] for row in rows
-        }
+        self.derived: Mapping[NamePair, Data] = {(row["scene"], row["name"]): row["metrics"] for row in rows}
         self.verdicts = results.verdicts(self.manifest["study"])
-        self.data: Mapping[str, Any] = self.manifest.get("data") or {}
+        self.data: Data = self.manifest.get("data") or {}
         self.cases = {case.name: (group, case) for group in self.groups.values() for case in group.cases}
 
     def lines(self, query: Query) -> list[Line]:
@@ -110,7 +109,7 @@ class StudyTable:
                 else:
                     yield line
 
-    def _groups_of(self, query: Query) -> Iterator[tuple[CaseGroup, Mapping[str, Value]]]:
+    def _groups_of(self, query: Query) -> Iterator[tuple[CaseGroup, Metrics]]:
         for pattern in _listed(query.get("scene", ())):
             for name, group in self.groups.items():
                 if match := _pattern(pattern).fullmatch(name):
@@ -160,7 +159,7 @@ class StudyTable:
         owners = (owner,) if slash else (line.name, scene_of(line.name))
         for candidate in owners:
             if (candidate, name) in self.derived:
-                value: Value = self.derived[candidate, name].get(metric)
+                value = self.derived[candidate, name].get(metric)
                 return value
         return None
 
@@ -200,7 +199,7 @@ class StudyTable:
         best = (max if pick == "most" else min)(numbered, key=operator.itemgetter(0))
         return self.value(best[1], expression)
 
-    def _meets(self, line: Line, where: Mapping[str, Any]) -> bool:
+    def _meets(self, line: Line, where: Data) -> bool:
         for expression, wanted in where.items():
             if isinstance(wanted, dict):
                 wanted = self.data.get(wanted["data"], [])
@@ -224,7 +223,13 @@ def value_of_case(case: CaseResults, group: CaseGroup | None, expression: str) -
         return case.label
     source, _, metric = expression.partition(" ")
     if not metric:
-        return _datum(case, source)
+        try:
+            value = operator.attrgetter(source)(case.scene)
+        except AttributeError:  # of a table that the scene has not
+            return None
+        if isinstance(value, bool) or not isinstance(value, int | float | str | None):
+            return str(value)
+        return value
     solver, _, reference = source.partition("|")
     if reference:
         return group.number_of_pair(case, solver, reference, metric) if group else None
@@ -236,11 +241,11 @@ def _pattern(text: str) -> re.Pattern[str]:
     return re.compile(PLACEHOLDER.sub(r"(?P<\1>.+)", re.escape(text)))
 
 
-def _words(match: re.Match[str]) -> dict[str, Value]:
+def _words(match: re.Match[str]) -> NewMetrics:
     return {word: _number(text) for word, text in match.groupdict().items()}
 
 
-def _words_of_owner(owner: str, wanted: str) -> dict[str, Value] | None:
+def _words_of_owner(owner: str, wanted: str) -> NewMetrics | None:
     """Return the words of what owns a row, or of its scene, None where it is another one."""
     for name in (owner, scene_of(owner)):
         if match := _pattern(wanted).fullmatch(name):
@@ -284,16 +289,6 @@ def _is_among(value: Value, wanted: Sequence[Value]) -> bool:
         elif value == one:
             return True
     return False
-
-
-def _datum(case: CaseResults, path: str) -> Value:
-    try:
-        value = operator.attrgetter(path)(case.scene)
-    except AttributeError:  # of a table that the scene has not
-        return None
-    if isinstance(value, bool) or not isinstance(value, int | float | str | None):
-        return str(value)
-    return value
 
 
 def _of_solver(case: CaseResults, solver: str, metric: str) -> Value:

@@ -24,6 +24,7 @@ from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
+from validation.runs.aliases import NamedNumbers, Words
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import bounded, percent, plain, power, short
@@ -97,7 +98,7 @@ def scene_section(
     without
         Solvers that are left out of the figure.
     """
-    blocks: Blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
+    blocks = [Heading(group.title, 2), Paragraph(conclusion(group)), *outcomes(group)]
     drawn_columns = [name for name in _columns(group) if columns is None or name in columns]
     if drawn_columns:
         blocks.append(history_block(group, drawn_columns, directory, without))
@@ -136,7 +137,7 @@ def _agreement(group: CaseGroup) -> str:
 
 def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
-    longest: dict[str, float] = {case.name: -math.inf for case in group.cases}
+    longest = {case.name: -math.inf for case in group.cases}
     for pair in group.comparisons:
         scene = pair["scene"]
         if {pair["solver"], pair["reference"]} == {solver, reference} and scene in longest:
@@ -169,7 +170,7 @@ def gate_count(verdicts: Verdicts) -> str:
 
 def _tension(group: CaseGroup) -> str:
     """Say where a locked contact hides tension."""
-    tensions: dict[str, float] = {}
+    tensions: NamedNumbers = {}
     for solver in group.solvers:
         minimum = min(group.numbers(solver, "pressure.minimum"), default=0.0)
         if minimum < -1e-6 * load_size(group.cases[0].scene):
@@ -201,7 +202,7 @@ def _damped_agreement(group: CaseGroup) -> str:
 
 def outcomes(group: CaseGroup) -> Blocks:
     """Name every outcome other than completed, with its sentence; cases that share it share a line."""
-    labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
+    labels_by_outcome: dict[tuple[str, Outcome, Words], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
             if row.outcome is not Outcome.COMPLETED:
@@ -253,7 +254,7 @@ def lead_panel(group: CaseGroup, columns: Sequence[str]) -> tuple[HistoryPanel |
     The window is that of `free_window`; the case is that in which, over it, the judged solver and its reference differ
     by a share nearest to `VISIBLE`: further apart their lines have no more to do with one another, closer they are one.
     """
-    panels: dict[str, HistoryPanel] = {}
+    panels = {}
     for case in group.cases if columns else ():
         window = min(free_window(case, columns[0]), _settling_time([case], columns, ()))
         panel = _panel(case, columns, window, ())

@@ -22,8 +22,9 @@ from validation.report.chapters.text import AS_STATED, parameters, range_of, spa
 from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.hooks import SCHEMES, ShowingHooks
+from validation.runs.aliases import NamedNumbers, NamePair
 from validation.runs.numbers import DASH, bounded, percent, plain, short
-from validation.runs.row import Row, Value
+from validation.runs.row import NewMetrics, Row, Value
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -60,7 +61,7 @@ def overview(groups: Groups) -> Table:
     """Return a line for each scene: how far DDA is off, what its first mode is damped by, what a run costs."""
     lines = []
     for group in groups.values():
-        own: dict[str, Value] = {"title": group.title, "cases": float(len(group.cases))}
+        own: NewMetrics = {"title": group.title, "cases": float(len(group.cases))}
         errors = [errors_of(group, case, "dda", reference_of(group, case)) for case in group.cases]
         for metric in ERRORS:
             values = [found[metric] for found in errors if metric in found]
@@ -89,7 +90,7 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
 # ---- choices --------------------------------------------------------------------------------------------------------
 
 
-def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
+def choices(group: CaseGroup) -> Iterator[NamePair]:
     """Yield time step, springs and discount of the cases, and what they do."""
     scenes = [case.scene for case in group.cases]
     hooks = ShowingHooks.of(scenes[0])
@@ -142,7 +143,7 @@ def reference_of(group: CaseGroup, case: CaseResults) -> str | None:
     return None
 
 
-def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> dict[str, float]:
+def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> NamedNumbers:
     """Return the relative L2 differences of a solver from a reference that have a number."""
     values = {} if reference is None else group.compared(case, solver, reference) or {}
     return {metric: float(values[metric]) for metric in ERRORS if isinstance(values.get(metric), int | float)}

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from validation.report.scene.hooks import ShowingHooks
+from validation.runs.aliases import NamePair, Words
 from validation.runs.case_name import CaseName
 from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
@@ -65,7 +66,7 @@ def cell(value: Value) -> str:
     return _WORDS.get(value, value) if isinstance(value, str) else plain(value)
 
 
-def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
+def word_notes(values: Iterable[Value]) -> Words:
     """Return what the short words in a table's cells stand for."""
     words = set(values)
     return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in words)
@@ -94,7 +95,7 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     return ", ".join(parts) or AS_STATED
 
 
-def _symbol(field: str) -> tuple[str, str]:
+def _symbol(field: str) -> NamePair:
     """Return the symbol of a key and its unit, as they stand beside a number."""
     tables = tables_of_scenes()
     place, _, name = key_of_any_entry(field, tables).rpartition(".")
@@ -107,7 +108,7 @@ def _symbol(field: str) -> tuple[str, str]:
     return name.replace("_", " "), ""
 
 
-def _pressure(text: str) -> tuple[str, str]:
+def _pressure(text: str) -> NamePair:
     """Return a pressure, or the components of a stress, in MPa where they are large; a zero needs no unit."""
     values = [float(part) for part in text.split("x")]
     largest = max(map(abs, values))

@@ -56,6 +56,7 @@ from validation.report.figures.drawing import FigureHooks, scenes_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.report.figures.model import model_figure
+from validation.runs.aliases import Fields, NamedNumbers
 from validation.runs.history import Array
 from validation.runs.numbers import DASH
 from validation.runs.records import Manifest
@@ -225,7 +226,7 @@ class WrittenChapter:
         previous: list[str] = []
         for group in self.table.grouped(self.table.lines(described), described.get("group_by", ())):
             cells = [self._cell(column, group) for column in columns]
-            numbers = [text for text, column in zip(cells, columns, strict=True) if _is_measured(column)]
+            numbers = [text for text, column in zip(cells, columns, strict=True) if " " in column.get("of", "")]
             if described.get("measured") and set(numbers) == {DASH}:
                 continue
             pairs = zip(cells, columns, previous or [""] * len(cells), strict=True)
@@ -275,9 +276,9 @@ class WrittenChapter:
         scene = described.get("scene", "")
         return [self.page.figure(name, panels, self.directory, scene, whole_caption=caption, file=file)]
 
-    def _marks(self, marks: Query) -> dict[str, float]:
+    def _marks(self, marks: Query) -> NamedNumbers:
         """Return marks, at a number or where a number of the chapter stands, which may stand in their words as well."""
-        places: dict[str, float] = {}
+        places: NamedNumbers = {}
         for words, place in marks.items():
             if isinstance(place, str):
                 number = self.page.described("number", place)
@@ -299,7 +300,7 @@ class WrittenChapter:
                 drawn += self._lines(line | own)
             level = panel["level_factor"] * (self.table.number(case, panel["level_of"]) or 0.0)
             settled = self.table.number(case, panel["mark_of"]) if "mark_of" in panel else None
-            parts: dict[str, Any] = {
+            parts: Fields = {
                 "title": self.table.value(case, "label"),
                 "x_range": (0.0, float(described["last"])),
                 "x_ticks": described["x_ticks"],
@@ -490,11 +491,6 @@ def _shade(shade: Query, value: float) -> float:
         value, low, high = (math.log(max(one, 1e-300)) for one in (value, low, high))
     share: float = (value - low) / (high - low)
     return min(1.0, abs(share) if shade.get("either_side") else max(0.0, share))
-
-
-def _is_measured(column: Query) -> bool:
-    """Whether a column shows a number of a run, not a datum or a word."""
-    return " " in column.get("of", "")
 
 
 def _column(column: Query) -> CaseColumn:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,7 +29,8 @@ from validation.report.figures.histories import (
     share_left,
     size_of,
 )
-from validation.runs.history import Array
+from validation.runs.aliases import Fields, NumberPair, NumbersByName, Words
+from validation.runs.history import Array, ArrayPair
 from validation.runs.numbers import tick_text
 
 LETTER = 1.42  # mm, width of a letter of a name
@@ -50,16 +51,16 @@ class ChartLine:
     width: float = 1.2  # pt; 0: its dots alone
     dots: float = 0.0  # pt, size of the dots at its points; 0: none
     hollow: bool = False  # whether the dots are
-    notes: tuple[str, ...] = ()  # words beside each point
+    notes: Words = ()  # words beside each point
     note: str = ""  # what follows the name
-    shaded: tuple[Array, Array] | None = None  # least and greatest value about the line
+    shaded: ArrayPair | None = None  # least and greatest value about the line
 
     @property
     def shade(self) -> str:
         """The colour."""
         return self.color or style_of(self.name).color
 
-    def look(self) -> dict[str, Any]:
+    def look(self) -> Fields:
         """Return how matplotlib draws the line."""
         if self.color:
             return {"color": self.color, "lw": self.width, "ls": dash_style(self.dash), "zorder": 4}
@@ -75,11 +76,11 @@ class ChartPanel:
     x_label: str
     y_label: str
     lines: Sequence[ChartLine]
-    x_range: tuple[float, float] | None = None  # of all points by default, from 0 where the axis is linear
+    x_range: NumberPair | None = None  # of all points by default, from 0 where the axis is linear
     y_range: tuple[float | None, float | None] | None = None
     logarithmic: tuple[bool, bool] = (False, False)
-    marks: Mapping[str, float] = field(default_factory=dict)  # words at an x, above the axes where there is room
-    levels: Mapping[str, float] = field(default_factory=dict)  # words at a y
+    marks: NumbersByName = field(default_factory=dict)  # words at an x, above the axes where there is room
+    levels: NumbersByName = field(default_factory=dict)  # words at a y
     x_ticks: Mapping[float, str] | int = 0  # or how many parts an axis from 0 has at most
     y_ticks: Mapping[float, str] | int = 0
     names: Names = "ends"
@@ -87,7 +88,7 @@ class ChartPanel:
 
 def chart_figure(
     panels: Sequence[ChartPanel | None],
-    height: float | Sequence[tuple[float, float]] = 48.0,
+    height: float | Sequence[NumberPair] = 48.0,
     margins: Margins | None = None,
     shared: bool = False,
     width: float = WIDTH,
@@ -124,7 +125,12 @@ def chart_figure(
             if shared:
                 _share_y([axes for axes, _ in pairs])
             for axes, panel in pairs:
-                _draw_frame(axes, panel, has_marked_top)
+                # Write the title, label and number the axes, draw hairlines.
+                axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
+                axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
+                _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
+                _number_axis(axes, axes.yaxis, panel.logarithmic[1], panel.y_ticks)
+                _draw_hairlines(axes, panel, has_marked_top)
                 if not shared or axes is pairs[-1][0]:
                     _write_names(axes, panel)
             if shared:
@@ -168,22 +174,13 @@ def _share_y(row: Sequence[Axes]) -> None:
         axes.set_ylim(min(low for low, _ in limits), max(high for _, high in limits))
 
 
-def _draw_frame(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
-    """Write the title, label and number the axes, draw hairlines."""
-    axes.set(xlabel=panel.x_label, ylabel=panel.y_label)
-    axes.set_title(panel.title, pad=12.0 if has_marked_top else None)
-    _number_axis(axes, axes.xaxis, panel.logarithmic[0], panel.x_ticks)
-    _number_axis(axes, axes.yaxis, panel.logarithmic[1], panel.y_ticks)
-    _draw_hairlines(axes, panel, has_marked_top)
-
-
 def draw_chart_line(axes: Axes, line: ChartLine) -> None:
     """Draw a line, its dots and their notes."""
     look = line.look()
     if line.shaded is not None:
         axes.fill_between(line.x, *line.shaded, color=line.shade, alpha=0.2, lw=0)
     x, y = (line.x, line.y) if line.dots else thin(line.x, line.y)
-    marker: dict[str, Any] = {}
+    marker: Fields = {}
     if line.dots:
         face = "white" if line.hollow else line.shade
         edge = 0.6 if line.hollow else 1.0
@@ -216,13 +213,13 @@ def _number_axis(axes: Axes, axis: Axis, logarithmic: bool, ticks: Mapping[float
 
 
 def _draw_hairlines(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
-    look: dict[str, Any] = {"color": GREY, "lw": HAIR, "zorder": 1, "ls": (0, (3, 2))}
+    look: Fields = {"color": GREY, "lw": HAIR, "zorder": 1, "ls": (0, (3, 2))}
     low, high = axes.get_xlim()
     for words, x in panel.marks.items():
         if not low <= x <= high:
             continue
         axes.axvline(x, **look)
-        at: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "color": GREY, "fontsize": 6}
+        at: Fields = {"xycoords": axes.get_xaxis_transform(), "color": GREY, "fontsize": 6}
         if has_marked_top:
             axes.annotate(words, (x, 1.01), ha="center", va="bottom", **at)
         else:  # inside, on the side of the hairline where there is more room

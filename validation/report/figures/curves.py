@@ -14,8 +14,9 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from validation.runs.aliases import NumberPair, NumbersByName
 from validation.runs.columns import OwnColumns, kind_of
-from validation.runs.history import Array, History
+from validation.runs.history import Array, ArrayPair, History
 from validation.solvers.contract import LineStyle
 from validation.solvers.registry import get_solver, is_solver
 
@@ -46,7 +47,7 @@ def dash_style(dash: tuple[float, ...]) -> str | tuple[float, tuple[float, ...]]
     return (0, dash) if dash else "-"
 
 
-def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
+def thin(x: Array, y: Array, points: int = 800) -> ArrayPair:
     """Return at most about `points` samples: first, last and the extremes of equal bins, so that no peak is lost."""
     if x.size <= points:
         return x, y
@@ -58,7 +59,7 @@ def thin(x: Array, y: Array, points: int = 800) -> tuple[Array, Array]:
     return x[index], y[index]
 
 
-def envelope(x: Array, y: Array, bins: int = 40) -> tuple[Array, Array]:
+def envelope(x: Array, y: Array, bins: int = 40) -> ArrayPair:
     """Return the largest magnitude of y in each of `bins` equal parts of the samples, at the parts' middles."""
     edges = np.unique(np.linspace(0, x.size, bins + 1).astype(int))
     return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, np.maximum.reduceat(np.abs(y), edges[:-1])
@@ -95,7 +96,7 @@ class HistoryPanel:
 
     title: str
     histories: Mapping[str, History]
-    static: Mapping[str, float]  # static values by column, in its unit
+    static: NumbersByName  # static values by column, in its unit
     reference: str | None  # the solver that differences are taken from
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
@@ -111,7 +112,7 @@ class HistoryPanel:
 HistoryPanels = Sequence[HistoryPanel]
 
 
-def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
+def common_range(panels: HistoryPanels, column: str) -> NumberPair:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     kinds = [kind for panel in panels if (kind := kind_of(column, panel.own))]
     from_zero = all(kind.from_zero for kind in kinds)
@@ -132,7 +133,7 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
     return float(np.clip(values.min(), -limit, limit)), float(np.clip(values.max(), -limit, limit))
 
 
-def differences(panel: HistoryPanel, column: str) -> dict[str, tuple[Array, Array]]:
+def differences(panel: HistoryPanel, column: str) -> dict[str, ArrayPair]:
     """Return the envelope of each solver's scaled difference from the reference."""
     base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:

@@ -50,7 +50,7 @@ class Sketch:
             self.polygon(body, facecolor=FACE, edgecolor="black", lw=0.35)
 
     def _placed(self, points: ArrayLike) -> Array:
-        placed: Array = np.asarray(points, dtype=float) @ self._turn
+        placed = np.asarray(points, dtype=float) @ self._turn
         self._drawn.append(placed)
         return placed
 

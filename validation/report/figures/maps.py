@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import matplotlib as mpl
 import numpy as np
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from validation.report.figures.histories import Margins, axes_grid, house_style
+from validation.runs.aliases import NamePair
 from validation.runs.history import Array
 
 GAP = 6.0  # mm between two maps, and above each line for its titles
@@ -41,7 +41,7 @@ def map_figure(
     maps: Sequence[Sequence[NumberMap]],
     rows: Sequence[str],
     columns: Sequence[str],
-    labels: tuple[str, str],
+    labels: NamePair,
     scale: MapScale,
 ) -> Figure:
     """Draw lines of maps; rows are labelled at the left, columns below the last line, as both axes are by `labels`."""
@@ -52,22 +52,20 @@ def map_figure(
             is_last = line_axes is grid[-1]
             for axes, number_map in zip(line_axes, line, strict=True):
                 is_first = axes is line_axes[0]
-                _draw(axes, number_map, scale)
+                image = axes.imshow(number_map.values, cmap=scale.colors, vmin=0, vmax=scale.greatest, aspect="auto")
+                colors = mpl.colormaps[scale.colors](np.asarray(image.norm(number_map.values)))
+                for (r, c), value in np.ndenumerate(number_map.values):
+                    if not number_map.texts[r][c]:
+                        continue
+                    red, green, blue, _ = colors[r, c]
+                    luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue
+                    is_dark = np.isfinite(value) and luminance < MIDDLE
+                    axes.text(
+                        c, r, number_map.texts[r][c], ha="center", va="center", color="white" if is_dark else "black"
+                    )
+                axes.set_title(number_map.title)
                 axes.set_xticks(range(len(columns)), list(columns) if is_last else [""] * len(columns))
                 axes.set_yticks(range(len(rows)), list(rows) if is_first else [""] * len(rows))
                 axes.tick_params(length=0)
                 axes.set(xlabel=labels[0] if is_last else "", ylabel=labels[1] if is_first else "")
     return figure
-
-
-def _draw(axes: Axes, number_map: NumberMap, scale: MapScale) -> None:
-    image = axes.imshow(number_map.values, cmap=scale.colors, vmin=0, vmax=scale.greatest, aspect="auto")
-    colors = mpl.colormaps[scale.colors](np.asarray(image.norm(number_map.values)))
-    for (r, c), value in np.ndenumerate(number_map.values):
-        if not number_map.texts[r][c]:
-            continue
-        red, green, blue, _ = colors[r, c]
-        luminance = 0.2126 * red + 0.7152 * green + 0.0722 * blue
-        is_dark = np.isfinite(value) and luminance < MIDDLE
-        axes.text(c, r, number_map.texts[r][c], ha="center", va="center", color="white" if is_dark else "black")
-    axes.set_title(number_map.title)

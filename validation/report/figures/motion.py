@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, common_range, differences, engineering
 from validation.report.figures.histories import LETTER, SLIDE, TITLE_LETTER, TITLE_LINE, WIDTH, Margins, size_of
+from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.columns import NO_OWN, axis_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import Role
@@ -67,7 +68,7 @@ def history_figure(
     rows = [*[(height, 3.0)] * (len(columns) - 1), (height, gap), *below]
     rows[-1] = (rows[-1][0], 13.0 + extra)
     ticks = 3 if room < NARROW else 5
-    charts: list[ChartPanel | None] = []
+    charts = []
     bands = [drawn[first : first + across] for first in range(0, len(drawn), across)]
     for band in bands:
         in_rows = [_history_row(band, drawn, column, notes) for column in columns]
@@ -101,7 +102,7 @@ def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
 
     One that repeats another by other arithmetic, such as the printed recursion, is named only where it departs.
     """
-    lines: dict[str, dict[str, float]] = {}
+    lines: dict[str, NamedNumbers] = {}
     for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
         for line, others in lines.items():
             off = _apart(panels, columns, line, name)
@@ -195,7 +196,7 @@ def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes:
     label = f"{name}\n[{unit}]" if unit else name
     charts = []
     for panel in band:
-        lines: list[ChartLine] = []
+        lines = []
         for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
             line = ChartLine(solver, history.time, values, note=notes.get(solver, ""))
@@ -253,5 +254,5 @@ def _difference_row(band: HistoryPanels, column: str, notes: Mapping[str, str]) 
     return _with_all_names(charts)
 
 
-def _span(panel: HistoryPanel) -> tuple[float, float]:
+def _span(panel: HistoryPanel) -> NumberPair:
     return 0.0, max((float(history.time[-1]) for history in panel.histories.values()), default=1.0)

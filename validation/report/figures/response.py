@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -13,9 +12,10 @@ from matplotlib.figure import Figure
 from validation.report.figures.charts import ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import engineering, style_of
 from validation.report.figures.histories import Margins, house_style, save
+from validation.runs.aliases import Fields
 from validation.runs.columns import axis_of
 from validation.runs.files import write_atomically
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, ArrayPair
 
 DASHED = (4.0, 1.6)
 BETWEEN = 12.0  # two panels [mm]: the powers of ten of the right one stand there
@@ -32,12 +32,12 @@ class ResponseCurve:
     solver: str  # whose colour it has
     dashed: bool  # exact in time
     frequency: Array  # Hz
-    columns: Mapping[str, tuple[Array, Array]]  # column -> amplitude and phase
+    columns: Mapping[str, ArrayPair]  # column -> amplitude and phase
 
 
 def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metre: bool = False) -> Figure:
     """Draw amplitudes on a logarithmic axis above phases, displacement beside contact pressure."""
-    axes: dict[str, Any] = {"x_range": (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))}
+    axes: Fields = {"x_range": (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))}
     panels = []
     for column in (DISPLACEMENT, PRESSURE):
         name, unit = axis_of(column)

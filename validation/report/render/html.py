@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from validation.report.blocks import Block, as_data
 from validation.report.names import unescaped
 from validation.report.references import CITED, marked, references
+from validation.runs.aliases import NamedTexts
 from validation.runs.text import shown, visible
 
 if TYPE_CHECKING:
@@ -64,7 +65,7 @@ def page(
         What is filled: that of all pages, or one that extends it with parts of its own, which `values` fill.
     """
     data = [as_data(block, lambda text: _cleaned(unescaped(text, marked))) for block in blocks]
-    anchors: set[str] = set()
+    anchors = set()
     for block in data:
         if block["block"] == "Heading":
             place = anchor(block["text"])
@@ -82,7 +83,7 @@ def anchor(heading: str) -> str:
     return re.sub(r"\W+", "-", heading).strip("-").lower()
 
 
-def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:
+def _spans(columns: Sequence[NamedTexts]) -> list[tuple[str, int]]:
     """Return the titles that neighbouring columns share, and how many do; nothing where none does."""
     if not any(column["group"] for column in columns):
         return []

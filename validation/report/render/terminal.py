@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable, Iterator
 
-from validation.advice.plain import Line, in_columns, in_rows
+from validation.advice.plain import in_columns, in_rows
 from validation.report.blocks import (
     Beside,
     Block,
@@ -72,8 +72,8 @@ def table_lines(table: Table, width: int | None) -> Iterator[StyledLine]:
     if table.caption:
         yield from wrapped(table.caption, width)
     titles = tuple(f"{column.group} {column.title}".strip() for column in table.columns)
-    heads: list[Line] = [titles] if any(titles) else []
-    rows: list[Line] = [*heads, *(row for row in table.rows if len(row) == len(table.columns))]
+    heads = [titles] if any(titles) else []
+    rows = [*heads, *(row for row in table.rows if len(row) == len(table.columns))]
     right = [place for place, column in enumerate(table.columns) if column.kind == "decimal"]
     texts = iter(in_rows(rows, width, right=right))
     for _ in heads:

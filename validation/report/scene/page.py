@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 from validation.advice.plain import Line
-from validation.report.blocks import Blocks, Callout, Listing, Table, TableColumn, table
+from validation.report.blocks import Blocks, Callout, Listing, TableColumn, table
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing
 from validation.report.scene.hooks import Number, ShowingHooks
+from validation.runs.aliases import Fields
 from validation.runs.numbers import stated_text
 from validation.scenes import features
 from validation.scenes.keys import described, stated
@@ -82,7 +82,7 @@ class SceneDescription:
             rows.append((name, " .. ".join(ends), number.unit, number.says))
         return [
             Listing("\n".join(drawing(self.cases[0], width))),
-            _fact_table(list(self._facts())),
+            table(("", TableColumn("", "fill")), list(self._facts()), ruled=False),
             table(("", TableColumn("value"), "", TableColumn("what it is", "fill")), rows, caption, ruled=False),
             *(
                 Callout(f"{text} (in {count} of {sample} cases)" if sample > 1 else text, "warn")
@@ -107,10 +107,6 @@ class SceneDescription:
             yield "gates", f"{self.gates} in the scene"
 
 
-def _fact_table(facts: Sequence[Line]) -> Table:
-    return table(("", TableColumn("", "fill")), facts, ruled=False)
-
-
 def _other_keys(scene: Scene) -> Iterator[str]:
     """Yield the keys of a scene that are neither in the drawing nor in the lines above."""
     for place, section in scene.tables().items():
@@ -120,7 +116,7 @@ def _other_keys(scene: Scene) -> Iterator[str]:
                     yield described(name, value, key)
 
 
-def as_data(scene: Scene) -> dict[str, Any]:
+def as_data(scene: Scene) -> Fields:
     """Return the scene as a file states it, and each number's range, as plain data."""
     description = SceneDescription.of(scene)
     return {

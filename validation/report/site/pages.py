@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import itertools
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Paragraph, References, figures_of
@@ -22,6 +22,7 @@ from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
 from validation.report.verification import matrix
+from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
 from validation.runs.results import Results
@@ -32,7 +33,6 @@ CALCULATORS = "calculators.html"
 VERIFIED = "verification.html"
 DECISIONS = "decisions.html"
 SCRIPTS = ("damping.js", "adviser.js", "calculators.js")
-Progress = Callable[[int, int, str], None]
 
 
 def build(
@@ -172,7 +172,7 @@ class Site:
             "Blocks on springs, computed by DDA, by finite elements and exactly, judged by gates with a band and a "
             "reason each."
         )
-        index: Blocks = [
+        index = [
             Heading("Discontinuous Deformation Analysis against finite elements"),
             Paragraph(lead, "lead"),
             Paragraph(f"The model is that of {PAPER}.", "small"),
@@ -204,10 +204,10 @@ def picture_of(page: str, blocks: Blocks) -> str:
     return f"{page.removesuffix('.html')}/{figures[0].file}" if figures else ""
 
 
-def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
+def page_names(kind: str, names: Sequence[str]) -> NamedTexts:
     """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
-    pages: dict[str, str] = {}
-    used: set[str] = set()
+    pages = {}
+    used = set()
     for name in names:
         stem = f"{kind}-{re.sub(r'[^A-Za-z0-9_.-]+', '-', name).strip('-.') or 'unnamed'}"[:100]
         unique = stem

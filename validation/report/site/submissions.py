@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from importlib import metadata
 from pathlib import Path
@@ -27,6 +27,7 @@ from validation.report.chapters.answers import (
 from validation.report.chapters.judged import page
 from validation.report.render import html
 from validation.report.site.places import check_place, write
+from validation.runs.aliases import Progress, Words
 from validation.runs.files import atomic_directory
 from validation.runs.text import visible
 from validation.suite.judging import JudgedSet
@@ -35,7 +36,6 @@ VERDICTS = "verdicts.json"  # marks a directory as such a site
 COLORS = {Status.PASS: "#1c6b2f", Status.PARTIAL: "#8a5a00", Status.FAIL: "#a80f0f"}
 LETTER = 7  # px, width of a badge's letter, amply
 MARGIN = 12  # px, beside a text
-Progress = Callable[[int, int, str], None]
 
 
 def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path:
@@ -79,7 +79,7 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
     return out / "index.html"
 
 
-def _by_address(judged: JudgedSet) -> tuple[str, ...]:
+def _by_address(judged: JudgedSet) -> Words:
     return judged.answers.address
 
 
@@ -107,7 +107,7 @@ class Site:
         asks = asks_of(sets)
         missing = [name for name in names() if name not in asks]
         unanswered = [Paragraph(f"Not answered by any of them: {', '.join(missing)}.", "small")] if missing else []
-        blocks: Blocks = [
+        blocks = [
             Paragraph(f"{LEAD} All verdicts as plain data: {VERDICTS}.", "lead"),
             answer_table(sets),
             *unanswered,

@@ -12,56 +12,29 @@ P L^3 / (3 EI) + P L (1/G + 1/(g E)) / w, since squares keep plane rows.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import partial
+from collections.abc import Sequence
+from itertools import starmap
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished, NothingToDerive
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Row
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band
 
-ORDER = "order"
-FREQUENCIES = tuple(f"frequency.{number}" for number in (1, 2, 3, 4))
-SCENES = ("beams-triangles", "beams-weight", "beams-squares", "beams-glue", "beams-wanted-glue", "beams-supported")
-CONVERGING = ("beams-triangles", "beams-weight", "beams-supported")
+READ = ("displacement.static", *(f"frequency.{number}" for number in (1, 2, 3, 4)))
 
 
-def over_elements() -> tuple[Derived, ...]:
-    """Return what the blocks do over what elements on the same outline do, and the order of its error."""
-    rows = []
-    for name in SCENES:
-        for case in cases(name):
-            rows.append(Derived(case.name, "blocks", (), partial(_blocks, case)))
-            for solver in ("dda", "fenicsx"):
-                if solver in case.run.solvers:
-                    needs = ((case.name, solver), (case.name, "fem"))
-                    compute = partial(_ratios, case.name, solver)
-                    rows.append(Derived(case.name, f"{solver} over fem", needs, compute, READ))
-    for name in CONVERGING:
-        names = [case.name for case in cases(name)]
-        of_order = tuple((case, solver) for case in names for solver in ("dda", "fem"))
-        rows.append(Derived(name, ORDER, of_order, partial(_orders, names), READ))
-    return tuple(rows)
-
-
-READ = ("displacement.static", *FREQUENCIES)
-
-
-def _blocks(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def blocks(case: Scene) -> Metrics:
     """Return the blocks across the beam, and the glue over n / sqrt(24)."""
     plane = case.table(PlaneSection)
     across = min(plane.subdivide or (1, 1))
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
 
-def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
-    row, elements = (finished.row(name, each) for each in (solver, "fem"))
-    if row is None or elements is None:
-        raise NothingToDerive(f"needs {solver} and fem")
-    ratios: dict[str, Value] = {}
+def ratios(case: Scene, row: Row, elements: Row) -> NewMetrics:
+    """Return what a solver's static displacement and frequencies are over those of elements on the same outline."""
+    ratios: NewMetrics = {}
     for metric, value in row.metrics.items():
         other = elements.metrics.get(metric)
         if metric in READ and isinstance(value, float) and isinstance(other, float):
@@ -69,10 +42,10 @@ def _ratios(name: str, solver: str, finished: Finished) -> Mapping[str, Value]:
     return ratios
 
 
-def _orders(names: Sequence[str], finished: Finished) -> Mapping[str, Value]:
+def orders(levels: Sequence[tuple[Scene, Row, Row]]) -> Metrics:
     """Return the order of the last halving of the block, by metric."""
-    coarse, fine = (_ratios(name, "dda", finished) for name in names[-2:])
-    orders: dict[str, Value] = {}
+    coarse, fine = starmap(ratios, levels[-2:])
+    orders = {}
     for metric, ratio in fine.items():
         before = coarse[metric]
         if isinstance(ratio, float) and isinstance(before, float):

@@ -7,83 +7,53 @@ steps are DDA's own; a history keeps the rows alone.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import History
-from validation.runs.row import Value
-from validation.scenes.outline import area
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
-
-Against = Callable[[Scene, History, History], Mapping[str, Value]]
+from validation.suite.bands import Band
 
 
 def masses(case: Scene) -> list[float]:
     """Return the masses of the boxes, from the lowest up [kg]."""
     blocks = case.table(PlaneSection).assembly.blocks
-    return [block.density * area(block.vertices) for block in blocks if not block.fixed]
+    return [block.mass for block in blocks if not block.fixed]
 
 
-def slide(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+def slide(case: Scene, own: History, exact: History) -> Metrics:
     """Return how far the box is ahead at the end [m], and its normal force over the exact one, less one."""
     force = "box-ground.normal"
     return {
-        "lead": float(own.columns["box.x"][-1] - exact.columns["box.x"][-1]),
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "lead": own.columns["box.x"][-1] - exact.columns["box.x"][-1],
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 
-def rock(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+def rock(case: Scene, own: History, exact: History) -> Metrics:
     """Return the greatest rotation over the exact one, less one."""
     angle = "box.angle"
-    return {"rotation": float(np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1)}
+    return {"rotation": np.max(own.columns[angle]) / np.max(exact.columns[angle]) - 1}
 
 
-def stack(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+def stack(case: Scene, own: History, exact: History) -> Metrics:
     """Return the sinking of the top over that of all springs, and the force below the lowest, each less one."""
     above = np.cumsum(masses(case)[::-1])
     springs = float(np.sum(above)) * -case.table(PlaneSection).gravity[1] / (2 * OWN_STIFFNESS)
     force = "A-ground.normal"
     return {
         "sinking": float(exact.columns["E.y"][-1] - own.columns["E.y"][-1]) / springs - 1,
-        "force": float(own.columns[force][-1] / exact.columns[force][-1] - 1),
+        "force": own.columns[force][-1] / exact.columns[force][-1] - 1,
     }
 
 
-def land(case: Scene, own: History, exact: History) -> Mapping[str, Value]:
+def land(case: Scene, own: History, exact: History) -> Metrics:
     """Return the greatest force over the exact one, less one, and the size of that."""
     force = "box-ground.normal"
     error = float(np.max(own.columns[force]) / np.max(exact.columns[force]) - 1)
     return {"peak force": error, "peak size": abs(error)}
-
-
-AGAINST: Mapping[str, Against] = {
-    "boxes-sliding": slide,
-    "boxes-rocking": rock,
-    "boxes-pile": stack,
-    "boxes-landing": land,
-}
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return a row a case: the run of `dda` against the exact motion."""
-    rows = []
-    for name, against in AGAINST.items():
-        for case in cases(name):
-            needs = ((case.name, "dda"), (case.name, "rigid-exact"))
-            rows.append(Derived(case.name, "against", needs, partial(measured, case, against)))
-    return tuple(rows)
-
-
-def measured(case: Scene, against: Against, finished: Finished) -> Mapping[str, Value]:
-    """Return what is measured on both histories of a case."""
-    histories = [finished.needed_history(case.name, solver) for solver in ("dda", "rigid-exact")]
-    return against(case, *histories)
 
 
 def settlement(case: Scene) -> Band:

@@ -9,26 +9,22 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
-from typing import Any
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.runs.aliases import Fields
+from validation.runs.beside import table_beside
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.suite import tables
-from validation.suite.bands import Band, cases, fitted_order
+from validation.suite.bands import Band, fitted_order
 from validation.theory import columns
 from validation.theory.stepping import Stepping
 
-DDA = "dda"
-EVENTS = "column-events"
 BARS = "bars-events"
 SAMPLES, PIECES, PARTS, REST = "samples", "pieces", "parts", "rest"
-DROPS = ("columns-drop-average", "columns-drop-constant")
 SPALL_BARS, SPALL_BLOCKS = "columns-spall-bars", "columns-spall-pieces"
 JOINT = "columns-joint"
 SLIPS = "columns-slips-steps"
@@ -54,20 +50,9 @@ def jointed() -> Iterator[Scene]:
 # ---- rows that are computed from finished cases ---------------------------------------------------------------------
 
 
-@functools.cache
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that are computed from finished cases."""
-    rows = []
-    for name in DROPS:
-        levels = tuple(cases(name))
-        needs = tuple((case.name, solver) for case in levels for solver in (DDA, EVENTS))
-        rows.append(Derived(name, "order", needs, functools.partial(order, levels)))
-    return tuple(rows)
-
-
-def samples(scene: Scene, history: History) -> Mapping[str, Value]:
+def samples(scene: Scene, history: History) -> Metrics:
     """Return the values of a history that were printed, each named as ``displacement_1 at 0.02 s``."""
-    values: dict[str, Value] = {}
+    values = {}
     for name in printed("samples")[scene.name]:
         column, _, time = name.removesuffix(" s").partition(" at ")
         row = int(np.argmin(np.abs(history.time - float(time))))
@@ -76,32 +61,27 @@ def samples(scene: Scene, history: History) -> Mapping[str, Value]:
 
 
 @functools.cache
-def printed(row: str) -> dict[str, dict[str, Any]]:
+def printed(row: str) -> dict[str, Fields]:
     """Return the printed numbers of a row, by case and metric."""
-    numbers: dict[str, dict[str, Any]] = {}
-    for entry in tables.read(__file__)["gate"]:
+    numbers: dict[str, Fields] = {}
+    for entry in table_beside(__file__, "study.toml")["gate"]:
         if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
             numbers |= entry["numbers"]
     return numbers
 
 
-def order(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
     """Return the order in the time step, fitted to the displacement's error of the blocks over the whole history."""
     errors = []
-    for case in levels:
-        history, exact = (finished.needed_history(case.name, solver) for solver in (DDA, EVENTS))
-        errors.append(_error(history, exact))
-    return {"displacement": fitted_order([case.time.step for case in levels], errors)}
+    for _, history, exact in runs:
+        # The largest error of the blocks' displacements over the largest displacement.
+        names = [name for name in exact.columns if name.startswith("displacement")]
+        differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
+        errors.append(float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names)))
+    return {"displacement": fitted_order([case.time.step for case, *_ in runs], errors)}
 
 
-def _error(history: History, exact: History) -> float:
-    """Return the largest error of the blocks' displacements over the largest displacement."""
-    names = [name for name in exact.columns if name.startswith("displacement")]
-    differences = [np.max(np.abs(history.columns[name] - exact.columns[name])) for name in names]
-    return float(max(differences) / max(np.max(np.abs(exact.columns[name])) for name in names))
-
-
-def pieces(scene: Scene, history: History) -> Mapping[str, Value]:
+def pieces(scene: Scene, history: History) -> Metrics:
     """Return the velocities of the equal pieces of a column over the last 2 h / c, in which their waves average out."""
     column = column_of(scene)
     layer = column.layer[0]
@@ -109,14 +89,14 @@ def pieces(scene: Scene, history: History) -> Mapping[str, Value]:
     speed = math.sqrt(column.modulus(layer) / layer.density)
     rows = round(2 * column.height / len(middles) / speed / scene.time.step)
     elapsed = rows * scene.time.step
-    values: dict[str, Value] = {}
+    values = {}
     for number, name in enumerate(middles, start=1):
         before, after = history.columns[name][[-1 - rows, -1]]
         values[f"piece {number}"] = float(after - before) / elapsed
     return values
 
 
-def parts(scene: Scene, history: History) -> Mapping[str, Value]:
+def parts(scene: Scene, history: History) -> Metrics:
     """Return transmitted, reflected and absorbed parts of the energy of a sine at a joint, as square roots.
 
     Above the joint there is the transmitted wave alone, below it the incident one, which is known, and the reflected
@@ -141,14 +121,14 @@ def parts(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def rest(scene: Scene, history: History) -> Mapping[str, Value]:
+def rest(scene: Scene, history: History) -> Metrics:
     """Return the time after which the top stays within a thousandth of its settlement."""
     moved = history.displacement
     settled = settlement(scene)
     outside = np.flatnonzero(np.abs(moved - settled) > 1e-3 * abs(settled))
     if outside.size == len(moved):
         return {"time": "undefined"}
-    return {"time": float(history.time[outside[-1]]) if outside.size else 0.0, "final": float(moved[-1] / settled)}
+    return {"time": history.time[outside[-1]] if outside.size else 0.0, "final": moved[-1] / settled}
 
 
 def settlement(scene: Scene) -> float:
@@ -163,29 +143,29 @@ def settlement(scene: Scene) -> float:
     return -sum(force / contact.stiffness for force, contact in zip(forces, column.contacts, strict=True))
 
 
-def residual(scene: Scene, history: History) -> Mapping[str, Value]:
+def residual(scene: Scene, history: History) -> Metrics:
     """Return the slips that remain of the lowest and the highest joint [m]."""
-    return {"lowest": float(history.columns["slip_1"][-1]), "highest": float(history.columns["slip_5"][-1])}
+    return {"lowest": history.columns["slip_1"][-1], "highest": history.columns["slip_5"][-1]}
 
 
-def exact_joint(case: Scene) -> Mapping[str, Value]:
+def exact_joint(case: Scene) -> Metrics:
     """Return the strength of a joint over the stress of the wave, and its parts in closed form."""
     strength = float(case.name.rpartition("-")[2])
     return {"strength": strength} | dict(zip(PART_NAMES, exact_parts()[strength], strict=True))
 
 
-def stiffness_of_steps(case: Scene) -> Mapping[str, Value]:
+def stiffness_of_steps(case: Scene) -> Metrics:
     """Return w dt of the stiffest mode of a stack of rigid blocks."""
     return {"omega dt": round(STIFF * case.time.step, 3)}
 
 
-def blocks_of_pieces(case: Scene) -> Mapping[str, Value]:
+def blocks_of_pieces(case: Scene) -> Metrics:
     """Return how many blocks stand for a piece."""
     column = column_of(case)
     return {"blocks a piece": column.layer[0].blocks // len(column.heights)}
 
 
-def settling(case: Scene) -> Mapping[str, Value]:
+def settling(case: Scene) -> Metrics:
     """Return the time in which the lowest vibration of a stack falls to a thousandth, its contacts closed [s]."""
     column = column_of(case)
     layer = column.layer[0]
@@ -208,7 +188,8 @@ def proven_solves(case: Scene) -> Band:
 def scenes() -> tuple[str | Scene, ...]:
     """Return the scenes: those of files, and joints of every strength."""
     return (
-        *DROPS,
+        "columns-drop-average",
+        "columns-drop-constant",
         "columns-domino",
         "columns-spall",
         "columns-weight",

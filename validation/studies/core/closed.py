@@ -65,7 +65,7 @@ def steps_for(scene: Scene, ratios: Iterable[float]) -> list[float | None]:
 
     steps = np.geomspace(LOWEST, HIGHEST, POINTS) / spectra.dda_frequency(scene)
     damping = over_steps(scene, steps)
-    least: list[float | None] = []
+    least = []
     for ratio in ratios:
         with np.errstate(invalid="ignore"):
             crossed = np.flatnonzero((damping[:-1] < ratio) & (damping[1:] >= ratio))[:1]

@@ -7,12 +7,12 @@ closed form at the operator's own frequency, and that of the ratio measured on i
 from __future__ import annotations
 
 import functools
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
-from validation.engine.finished import Derived, Finished
-from validation.runs.row import Row, Value
+from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.runs.beside import table_beside
+from validation.runs.row import Metrics, Row, Value
 from validation.scenes.scene import Scene
-from validation.suite import tables
 from validation.suite.bands import Band, about, cases
 from validation.theory import spectra
 
@@ -24,7 +24,7 @@ UNDAMPED = 1e-12
 
 def compared_cases() -> Iterator[Scene]:
     """Return the cases of the study."""
-    return cases(*tables.read(__file__)["study"]["scenes"])
+    return cases(*table_beside(__file__, "study.toml")["study"]["scenes"])
 
 
 def solvers(scene: Scene) -> list[str]:
@@ -33,7 +33,7 @@ def solvers(scene: Scene) -> list[str]:
     return [name for name in SOLVERS if name in scene.run.solvers and (bar or name != "bar")]
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the derived row of every case."""
     rows = []
     for scene in compared_cases():
@@ -42,7 +42,7 @@ def derived() -> tuple[Derived, ...]:
     return tuple(rows)
 
 
-def compare(finished: Finished, scene: Scene) -> Mapping[str, Value]:
+def compare(finished: Finished, scene: Scene) -> Metrics:
     """Return the distances of every solver, and the largest of each kind."""
     rows = {solver: finished.rows[scene.name, solver] for solver in solvers(scene)}
     operator = {f"{solver}.operator": operator_distance(scene, row) for solver, row in rows.items()}
@@ -50,7 +50,7 @@ def compare(finished: Finished, scene: Scene) -> Mapping[str, Value]:
     return operator | history | {"operator": _worst(operator), "history": _worst(history)}
 
 
-def _worst(values: Mapping[str, Value]) -> Value:
+def _worst(values: Metrics) -> Value:
     """Return the largest value, or the first that is none."""
     missing = [value for value in values.values() if not isinstance(value, float)]
     return missing[0] if missing else max(v for v in values.values() if isinstance(v, float))

@@ -13,15 +13,16 @@ from __future__ import annotations
 
 import cmath
 import functools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
+from validation.runs.aliases import Data
 from validation.runs.history import Array
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.core import closed
 from validation.suite.bands import cases
@@ -55,7 +56,7 @@ def at_rate() -> Scene:
 # ---- rows -----------------------------------------------------------------------------------------------------------
 
 
-def springs(case: Scene) -> Mapping[str, Value]:
+def springs(case: Scene) -> Metrics:
     """Return what the springs of a case add at rest [m], and what the scheme makes of the contact."""
     return {
         "at rest": statics.static_displacement(case),
@@ -67,7 +68,7 @@ def springs(case: Scene) -> Mapping[str, Value]:
     }
 
 
-def first_peak(case: Scene, dda: Row, bar: Row) -> Mapping[str, Value]:
+def first_peak(case: Scene, dda: Row, bar: Row) -> Metrics:
     """Return how far DDA's first peak of the pressure is above the bar's, its tension [Pa], whether it rests right."""
     peak, exact = (or_nan(row.metrics.get("pressure.peak")) for row in (dda, bar))
     least, at_rest = (or_nan(dda.metrics.get(f"pressure.{name}")) for name in ("minimum", "static"))
@@ -83,7 +84,7 @@ def first_peak(case: Scene, dda: Row, bar: Row) -> Mapping[str, Value]:
 
 def derived() -> Iterator[Derived]:
     """Yield the rows in closed form."""
-    rows: dict[str, Callable[[Finished], Mapping[str, Value]]] = {"closed": _closed}
+    rows = {"closed": _closed}
     rows |= {f"p = {ratio:g}E": functools.partial(_stiffness, ratio) for ratio in RATIOS}
     rows |= {f"stepped at {step:g}": functools.partial(_stepped, step) for step in STEPPED}
     rows |= {f"gg = {gg:g}": functools.partial(_discount, gg) for gg in DISCOUNTS}
@@ -92,7 +93,7 @@ def derived() -> Iterator[Derived]:
         yield Derived(PAPER, name, (), compute)
 
 
-def _closed(_: Finished) -> Mapping[str, Value]:
+def _closed(_: Finished) -> Metrics:
     scene = paper()
     base = closed.constant(scene)
     most_damped = closed.most_damped(base)
@@ -107,7 +108,7 @@ def _closed(_: Finished) -> Mapping[str, Value]:
     }
 
 
-def _stiffness(ratio: float, _: Finished) -> Mapping[str, Value]:
+def _stiffness(ratio: float, _: Finished) -> Metrics:
     scene = closed.stiffer(closed.constant(paper()), ratio)
     frequency = spectra.dda_frequency(scene)
     excess = frequency / spectra.bar_frequency(scene) - 1
@@ -115,7 +116,7 @@ def _stiffness(ratio: float, _: Finished) -> Mapping[str, Value]:
     return {"frequency": frequency, "excess": excess, **steps}
 
 
-def _stepped(step: float, _: Finished) -> Mapping[str, Value]:
+def _stepped(step: float, _: Finished) -> Metrics:
     scene = paper()
     excess = stepped_frequency(closed.timed(scene, step=step)) / spectra.bar_frequency(scene) - 1
     return {"excess": abs(excess), "side": "above" if excess > 0 else "below"}
@@ -123,18 +124,17 @@ def _stepped(step: float, _: Finished) -> Mapping[str, Value]:
 
 def stepped_frequency(scene: Scene) -> float:
     """Return the undamped frequency of DDA's first axial mode as stepped [rad/s]: |ln lambda| / dt."""
-    root = spectra.roots(scene, spectra.dda_frequency(scene))[0]
-    return abs(cmath.log(root)) / scene.time.step
+    return abs(cmath.log(spectra.roots(scene, spectra.dda_frequency(scene))[0])) / scene.time.step
 
 
-def _discount(gg: float, _: Finished) -> Mapping[str, Value]:
+def _discount(gg: float, _: Finished) -> Metrics:
     scene = closed.average(paper(), gg)
     ratios = {name: closed.first_damping(closed.timed(scene, step=step)) for name, step in DISCOUNTED.items()}
     rate = abs(np.log(gg)) / DISCOUNTED["1 ms"]
     return {**ratios, "overdamped": closed.overdamped_below(scene), "removed": 1 - gg, "rate": float(rate)}
 
 
-def _held(step: float, _: Finished) -> Mapping[str, Value]:
+def _held(step: float, _: Finished) -> Metrics:
     scene = closed.timed(at_rate(), step=step)
     return {"damping": closed.first_damping(scene), "turn": spectra.dda_frequency(scene) * step}
 
@@ -142,12 +142,12 @@ def _held(step: float, _: Finished) -> Mapping[str, Value]:
 # ---- curves ---------------------------------------------------------------------------------------------------------
 
 
-def curves() -> Mapping[str, Any]:
+def curves() -> Data:
     """Return the damping ratio over the time step, and what springs add and keep over p/E."""
     return {"over_steps": [*_over_steps()], "over_springs": [*_over_springs()]}
 
 
-def _over_steps() -> Iterator[Mapping[str, Any]]:
+def _over_steps() -> Iterator[Data]:
     """Yield the curves of three charts: of the paper's block, of its springs, of discounts."""
     grid = np.geomspace(1e-5, 2e-2, 240)
     yield _curve("first", "DDA", np.geomspace(5e-5, 2e-2, 200), paper())
@@ -159,12 +159,12 @@ def _over_steps() -> Iterator[Mapping[str, Any]]:
     yield {**_curve("discount", f"gg = exp(−{held.time.gg_rate:.3g} dt)", grid, held), "setting": "rate"}
 
 
-def _curve(chart: str, name: str, steps: Array, scene: Scene) -> Mapping[str, Any]:
+def _curve(chart: str, name: str, steps: Array, scene: Scene) -> Data:
     damping = closed.over_steps(scene, steps)
     return {"chart": chart, "name": name, "setting": name, "x": _listed(steps), "y": _listed(damping)}
 
 
-def _over_springs() -> Iterator[Mapping[str, Any]]:
+def _over_springs() -> Iterator[Data]:
     ratios = np.geomspace(0.1, 1e5, 240)
     base = closed.constant(paper(), step=2e-3)
     scenes = [closed.stiffer(base, float(ratio)) for ratio in ratios]

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import itertools
-from collections.abc import Mapping
+from collections.abc import Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
-from validation.metrics.catalogue import pair
+from validation.engine.finished import DerivedRows
 from validation.metrics.values import or_nan
-from validation.runs.row import Row, Value
+from validation.runs.history import History
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
 from validation.studies.core.damping import derived as damping_rows
@@ -19,12 +18,9 @@ from validation.studies.core.decisions import curves as curves
 from validation.studies.core.decisions import derived as closed_rows
 from validation.studies.core.decisions import first_peak as first_peak
 from validation.studies.core.decisions import springs as springs
-from validation.suite.bands import Band, about, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, about, convergence, near
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
-
-MESHES = "mesh-convergence"
-POINT_SPRINGS = "corner-springs"
 
 
 def static_displacement(case: Scene) -> Band:
@@ -86,7 +82,7 @@ def damping_of_the_history(case: Scene) -> Band:
     return about(spectra.damping_ratio(case, spectra.dda_frequency(case)), 1e-6)
 
 
-def dispersion(case: Scene) -> dict[str, Band] | None:
+def dispersion(case: Scene) -> Bands | None:
     """Mesh error of weakly damped waves, which is that of the elements' dispersion."""
     if case.time.alpha == 0.5 and case.time.step >= 1e-3:
         return None  # the figure's constant acceleration: damped within the window, judged with Figures 3 to 6
@@ -94,10 +90,9 @@ def dispersion(case: Scene) -> dict[str, Band] | None:
     return {f"{quantity}.l2": (0.75 * error, 1.1 * error) for quantity, error in errors.items()}
 
 
-def distance_from_the_finest_mesh(case: Scene) -> dict[str, Band]:
+def distance_from_the_finest_mesh(case: Scene) -> Bands:
     """Differences of meshes of 4 and of 8 elements a side from one of 16, this suite's own, within half of each."""
-    last_values = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}
-    displacement, pressure = last_values[case.fem.per_side]
+    displacement, pressure = {4: (1.3e-4, 2.4e-5), 8: (2.2e-5, 4.4e-6)}[case.fem.per_side]
     return {
         "displacement.l2": (displacement / 1.5, displacement * 1.5),
         "pressure.l2": (pressure / 1.5, pressure * 1.5),
@@ -109,36 +104,23 @@ def same_recursion(case: Scene) -> Band:
     return 0.0, spectra.rounding(case)
 
 
-def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
     """Return how far DDA's displacement at rest is from that of the elements, relative to it."""
     first, second = (or_nan(row.metrics.get("displacement.static")) for row in (dda, fem))
     return {"displacement": abs(first / second - 1)}
 
 
-def drift(finished: Finished) -> Mapping[str, Value]:
+def drift(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
     """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
-    levels = tuple(cases(POINT_SPRINGS))
-    settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
-    return {"halving": float(np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0])}
+    settled = [or_nan(fem.metrics.get("displacement.static")) for _, fem in levels]
+    return {"halving": np.polyfit(np.log2([case.fem.per_side for case, _ in levels]), settled, 1)[0]}
 
 
-def order(finished: Finished) -> Mapping[str, Value]:
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
     """Return the power of the elements a side with which the error against the bar falls."""
-    levels = tuple(cases(MESHES))
-    errors = []
-    for case in levels:
-        elements, bar = (finished.needed_history(case.name, solver) for solver in ("fem", "bar"))
-        errors.append(or_nan(pair("displacement.l2", elements, bar)))
-    return {"power": fitted_order([case.fem.per_side for case in levels], errors)}
+    return {"power": convergence(runs, "fem.per_side")["displacement"]}
 
 
-def further_rows() -> tuple[Derived, ...]:
-    """Return the rows of damping, of the first pages, of the order of elements, and of their drift on point springs."""
-    points = tuple((case.name, "fem") for case in cases(POINT_SPRINGS))
-    meshes = tuple(itertools.product((case.name for case in cases(MESHES)), ("fem", "bar")))
-    return (
-        *damping_rows(),
-        *closed_rows(),
-        Derived(MESHES, "order", meshes, order),
-        Derived(POINT_SPRINGS, "drift", points, drift, ("displacement.static",)),
-    )
+def further_rows() -> DerivedRows:
+    """Return the rows of damping, and of the first pages."""
+    return (*damping_rows(), *closed_rows())

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
-
 from validation.report.blocks import Blocks, Paragraph, TableColumn, table
+from validation.runs.aliases import Data
 from validation.runs.numbers import DASH, short
 from validation.runs.records import Manifest
 from validation.studies.cost.measures import ANY, ELEMENTS, OWN, REFERENCE
@@ -20,7 +18,7 @@ def answer(manifest: Manifest) -> Blocks:
     rows = []
     measured = ""
     for derived in manifest["derived"]:
-        metrics: Mapping[str, Any] = derived["metrics"]
+        metrics: Data = derived["metrics"]
         if derived["name"] == REFERENCE and metrics:
             measured = (
                 f"Relative L2 error over {1e3 * metrics['window']:.3g} ms, of means of means over "
@@ -28,21 +26,17 @@ def answer(manifest: Manifest) -> Blocks:
                 "of Python, ranks; ms are the least of some repeats, by the processor."
             )
         if "who" in metrics:
-            rows.append(_line(metrics))
+            numbers = []
+            for name, factor in (("step", 1e3), ("seconds", 1e3), ("setup", 1e3), ("work", 1.0)):
+                numbers.append(short(factor * metrics[name], 3) if name in metrics else DASH)
+            rows.append([metrics["quantity"], metrics["accuracy"], WHO[metrics["who"]], metrics["way"], *numbers])
     return [table([*COLUMNS, *(TableColumn(title, "decimal") for title in NUMBERS)], rows), Paragraph(measured)]
 
 
-def _uncertainty(metrics: Mapping[str, Any]) -> str:
+def _uncertainty(metrics: Data) -> str:
     """Say how far the reference itself may be off, where it is not exact."""
     values = []
     for key, value in metrics.items():
         if key.startswith("uncertainty."):
             values.append(f"{100 * value:.2g} % in {key.removeprefix('uncertainty.')}")
     return f", uncertain by {' and '.join(values)}" if values else ""
-
-
-def _line(metrics: Mapping[str, Any]) -> list[str]:
-    numbers = []
-    for name, factor in (("step", 1e3), ("seconds", 1e3), ("setup", 1e3), ("work", 1.0)):
-        numbers.append(short(factor * metrics[name], 3) if name in metrics else DASH)
-    return [metrics["quantity"], metrics["accuracy"], WHO[metrics["who"]], metrics["way"], *numbers]

@@ -9,21 +9,21 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array
+from validation.runs.aliases import Fields
+from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.records import Annotations
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.studies.cost.ladder import Ladder
 from validation.studies.cost.measures import BlockRows
-from validation.suite.bands import fitted_order
+from validation.suite.bands import Runs, fitted_order
 
 BLOCKS = ("paper", "granite", "opening")
 OWN_BLOCK = "own"  # what the block of a user's scene is called in the rows
@@ -50,7 +50,7 @@ def ladder_of(name: str) -> Ladder:
     return Ladder.of(load_scene(f"cost-{name}"))
 
 
-def of_scene(base: Scene) -> dict[str, Any]:
+def of_scene(base: Scene) -> Fields:
     """Return the fields of the study of a user's block: the same methods, and no gates.
 
     Raises
@@ -80,8 +80,7 @@ def nothing(scenes: Sequence[Scene], finished: Finished) -> Annotations:
 # ---- orders ---------------------------------------------------------------------------------------------------------
 
 
-def _columns(finished: Finished, case: str, solver: str, every: int = 1) -> dict[str, Array]:
-    history = finished.needed_history(case, solver)
+def _columns(history: History, every: int = 1) -> dict[str, Array]:
     return {name: history.columns[column][every - 1 :: every] for name, column in QUANTITIES.items()}
 
 
@@ -90,59 +89,45 @@ def order_in_time(name: str) -> Derived:
     levels = load_scene(name).expand()[:ORDER_LEVELS]
     reference = load_scene(IN_TIME[-1]).expand()[-1].name
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        exact = _columns(finished, reference, "dda", REFERENCE)
-        solutions = [_columns(finished, case.name, "dda", 2**k) for k, case in enumerate(levels)]
+    def compute(finished: Finished) -> Metrics:
+        exact = _columns(finished.needed_history(reference, "dda"), REFERENCE)
+        histories = [finished.needed_history(case.name, "dda") for case in levels]
+        solutions = [_columns(history, 2**k) for k, history in enumerate(histories)]
         return _orders([case.time.step for case in levels], solutions, [exact] * len(levels))
 
     needs = ((reference, "dda"), *((case.name, "dda") for case in levels))
     return Derived(name, "order", needs, compute)
 
 
-def _orders(
-    sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]
-) -> Mapping[str, Value]:
-    orders: dict[str, Value] = {}
+def _orders(sizes: list[float], solutions: list[dict[str, Array]], exact: list[dict[str, Array]]) -> Metrics:
+    orders = {}
     for quantity in QUANTITIES:
         errors = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in zip(solutions, exact, strict=True)]
         orders[f"order.{quantity}"] = fitted_order(sizes, errors)
     return orders
 
 
-def order_in_mesh(name: str) -> Derived:
-    """Return the row of the order in h, against the bar."""
-    levels = load_scene(name).expand()
-
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        solutions = [_columns(finished, case.name, "fem") for case in levels]
-        exact = [_columns(finished, case.name, "bar") for case in levels]
-        return _orders([1 / n for n in MESHES], solutions, exact)
-
-    needs = itertools.product((case.name for case in levels), ("fem", "bar"))
-    return Derived(name, "order", tuple(needs), compute)
+def order_in_mesh(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
+    """Return the order in h, against the bar."""
+    solutions = [_columns(history) for _, history, _ in runs]
+    return _orders([1 / n for n in MESHES], solutions, [_columns(exact) for *_, exact in runs])
 
 
-def grid_convergence() -> Derived:
-    """Return the row of the grid-convergence index: order from successive changes, uncertainty of the finest mesh."""
-    levels = load_scene(WITHOUT_EXACT).expand()
-
-    def compute(finished: Finished) -> Mapping[str, Value]:
-        histories = [_columns(finished, case.name, "fem") for case in levels]
-        metrics: dict[str, Value] = {}
-        for quantity in QUANTITIES:
-            changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
-            order = fitted_order([1 / n for n in MESHES[1:]], changes)
-            metrics[f"order.{quantity}"] = order
-            metrics[f"gci.{quantity}"] = SAFETY * changes[-1] / (2**order - 1)
-        return metrics
-
-    return Derived(WITHOUT_EXACT, "gci", tuple((case.name, "fem") for case in levels), compute)
+def grid_convergence(runs: Runs) -> Metrics:
+    """Return the grid-convergence index: order from successive changes, uncertainty of the finest mesh."""
+    histories = [_columns(history) for _, history in runs]
+    metrics: NewMetrics = {}
+    for quantity in QUANTITIES:
+        changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
+        order = fitted_order([1 / n for n in MESHES[1:]], changes)
+        metrics[f"order.{quantity}"] = order
+        metrics[f"gci.{quantity}"] = SAFETY * changes[-1] / (2**order - 1)
+    return metrics
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
-    """Return the rows of orders, of the grid-convergence index, and of the blocks."""
+def derived() -> DerivedRows:
+    """Return the rows of orders in dt, and of the blocks."""
     times = map(order_in_time, IN_TIME)
-    meshes = map(order_in_mesh, IN_MESH)
     blocks = itertools.chain.from_iterable(BlockRows(ladder_of(name), name).rows() for name in BLOCKS)
-    return (*times, *meshes, grid_convergence(), *blocks)
+    return (*times, *blocks)

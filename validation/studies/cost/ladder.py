@@ -32,15 +32,14 @@ from __future__ import annotations
 import functools
 import math
 import operator
-import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.history import Array
+from validation.runs.aliases import Fields, NamedNumbers
+from validation.runs.beside import table_beside
+from validation.runs.history import ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene, parse_scene
 
@@ -52,7 +51,6 @@ RIGID = 1e6  # E W / H, in place of an infinite stiffness
 LEVEL_OF_CHOICES = 32  # steps a period
 CUTS = {"few": 4, "many": 16}  # sub-blocks upwards
 SQUARE_CUTS = {"few": 3, "many": 6}  # along both sides, where the motion is not that of a column
-TABLE = Path(__file__).with_name("methods.toml")
 
 
 @dataclass(frozen=True)
@@ -80,19 +78,19 @@ class Method:
     id: str
     label: str
     solver: str
-    time: dict[str, Any]
+    time: Fields
     levels: tuple[int, ...]
-    fem: dict[str, Any] = field(default_factory=dict)
+    fem: Fields = field(default_factory=dict)
     per_element: int = 0
     cut: str = ""
-    scaled: dict[str, float] = field(default_factory=dict)
+    scaled: NamedNumbers = field(default_factory=dict)
     is_choice: bool = False
 
 
 @functools.cache
 def methods() -> tuple[Method, ...]:
     """Return the methods, and at the end what a choice changes of one of them."""
-    table = tomllib.loads(TABLE.read_text(encoding="utf-8"))
+    table = table_beside(__file__, "methods.toml")
     schemes = table["schemes"]
     listed = [Method(time=schemes[row.pop("scheme")], **row) for row in table["method"]]
     for choice in table["choice"]:
@@ -102,7 +100,7 @@ def methods() -> tuple[Method, ...]:
     return tuple(listed)
 
 
-def one_strain(scene: Scene) -> tuple[Array, Array]:
+def one_strain(scene: Scene) -> ArrayPair:
     """Return mass and stiffness of a block of one strain on closed springs, for displacement and strain."""
     height = scene.block.extent[1]
     k = min(2 * scene.contact.stiffness, RIGID * scene.block.young * scene.block.base_length / height)
@@ -114,8 +112,7 @@ def one_strain(scene: Scene) -> tuple[Array, Array]:
 def first_period(scene: Scene) -> float:
     """Return the period of the first mode of one strain on its springs [s]."""
     mass, stiffness = one_strain(scene)
-    squares = np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real
-    return 2 * math.pi / math.sqrt(min(squares))
+    return 2 * math.pi / math.sqrt(min(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
 
 
 def landing(scene: Scene) -> float:
@@ -126,8 +123,7 @@ def landing(scene: Scene) -> float:
     InputError
         It never comes down.
     """
-    width = scene.block.base_length
-    acceleration = scene.load.gravity + scene.load.pressure * width / scene.block.mass
+    acceleration = scene.load.gravity + scene.load.pressure * scene.block.base_length / scene.block.mass
     speed = scene.block.velocity
     gap = scene.contact.gap
     if gap == 0 and speed <= 0:
@@ -218,7 +214,7 @@ class Ladder:
     def scene(self, method: Method) -> Scene:
         """Return the scene of a method, its levels as a sweep."""
         definition = self.base.definition()
-        tables: dict[str, dict[str, Any]] = {}
+        tables = {}
         for name in ("block", "contact", "fem"):
             tables[name] = dict(definition.get(name, {}))
         tables["fem"] = {key: value for key, value in tables["fem"].items() if key not in ("mesh", "elements")}
@@ -232,7 +228,7 @@ class Ladder:
             section, _, name = key.partition(".")
             tables[section][name] *= factor
         counts = [self.steps(level) for level in method.levels]
-        sweep: dict[str, Any] = {"mode": "zip", "time.steps": counts}
+        sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
             sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]

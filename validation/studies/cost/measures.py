@@ -7,7 +7,7 @@ which `NUMBERS_A_LINE` take as long as a line. Seconds are told beside it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,8 +15,9 @@ import numpy as np
 from validation.engine.finished import Derived, Finished
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan, ratio
+from validation.runs.aliases import NamedNumbers
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, NewMetrics, Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
@@ -57,16 +58,15 @@ def running_mean(values: Array, count: int) -> Array:
     return np.asarray((integral - before) / count)
 
 
-def errors(ladder: Ladder, history: History, reference: History) -> dict[str, float]:
+def errors(ladder: Ladder, history: History, reference: History) -> NamedNumbers:
     """Return the relative L2 errors of the running means of running means, by quantity."""
     grid = np.append(0.0, reference.time)
     count = max(1, round(ladder.mean / float(reference.time[0])))
     error_of = {}
     for quantity, column in QUANTITIES.items():
-        smooth = []
-        for motion in (history, reference):
-            mean = running_mean(on_grid(motion, column, grid), count)
-            smooth.append(running_mean(mean, count))
+        smooth = [
+            running_mean(running_mean(on_grid(motion, column, grid), count), count) for motion in (history, reference)
+        ]
         error_of[quantity] = or_nan(relative_l2(*smooth))
     return error_of
 
@@ -88,7 +88,7 @@ class Run:
 
     method: Method
     level: int
-    metrics: Mapping[str, Value]
+    metrics: Metrics
 
     def number(self, name: str) -> float:
         """Return one of its numbers, NaN where it has none."""
@@ -127,14 +127,13 @@ class BlockRows:
             for accuracy in ACCURACIES:
                 for who in (ANY, OWN, ELEMENTS):
                     name = f"cheapest {quantity} {accuracy} {who}"
-                    compute = self._cheapest(quantity, accuracy, who)
-                    yield Derived(self.ladder.base.name, name, every, compute)
+                    yield Derived(self.ladder.base.name, name, every, self._cheapest(quantity, accuracy, who))
             yield Derived(self.ladder.base.name, f"facts of {quantity}", every, self._facts(quantity))
 
-    def _reference(self, finished: Finished) -> Mapping[str, Value]:
+    def _reference(self, finished: Finished) -> Metrics:
         """Return what the errors are measured in, and the uncertainty of the reference."""
         ladder = self.ladder
-        metrics: dict[str, Value] = {"block": self.name, "label": ladder.reference.label}
+        metrics: NewMetrics = {"block": self.name, "label": ladder.reference.label}
         metrics |= {"period": ladder.period, "window": ladder.window, "mean": ladder.mean}
         finest = finished.needed_history(*self.reference)
         for coarser in self.coarser:
@@ -142,12 +141,12 @@ class BlockRows:
             metrics |= {f"uncertainty.{name}": value / RICHARDSON for name, value in distances.items()}
         return metrics
 
-    def _run(self, method: Method, level: int, case: Scene) -> Callable[[Finished], Mapping[str, Value]]:
-        def compute(finished: Finished) -> Mapping[str, Value]:
+    def _run(self, method: Method, level: int, case: Scene) -> Callable[[Finished], Metrics]:
+        def compute(finished: Finished) -> Metrics:
             reference = finished.needed_history(*self.reference)
             row = finished.rows[case.name, method.solver]
             history = finished.needed_history(case.name, method.solver)
-            metrics: dict[str, Value] = {"block": self.name, "method": method.id, "label": method.label}
+            metrics: NewMetrics = {"block": self.name, "method": method.id, "label": method.label}
             metrics |= {"level": level, "step": case.time.step}
             if method.per_element:
                 metrics["mesh"] = case.fem.per_side
@@ -171,10 +170,10 @@ class BlockRows:
                 completed.append(Run(method, level, row.metrics))
         return completed
 
-    def _cheapest(self, quantity: str, accuracy: str, who: str) -> Callable[[Finished], Mapping[str, Value]]:
-        def compute(finished: Finished) -> Mapping[str, Value]:
+    def _cheapest(self, quantity: str, accuracy: str, who: str) -> Callable[[Finished], Metrics]:
+        def compute(finished: Finished) -> Metrics:
             runs = [run for run in self.runs(finished) if who in (ANY, run.method.solver)]
-            metrics: dict[str, Value] = {"block": self.name, "quantity": quantity, "accuracy": accuracy, "who": who}
+            metrics: NewMetrics = {"block": self.name, "quantity": quantity, "accuracy": accuracy, "who": who}
             within = reaching(runs, quantity, ACCURACIES[accuracy])
             if not within:
                 return {**metrics, "way": "no run gets there"}
@@ -183,17 +182,17 @@ class BlockRows:
 
         return compute
 
-    def _facts(self, quantity: str) -> Callable[[Finished], Mapping[str, Value]]:
+    def _facts(self, quantity: str) -> Callable[[Finished], Metrics]:
         """Return what gates and the chapter ask.
 
         How seconds rank the runs beside work (Spearman), how many accuracies are reached by whom, orders, and two
         models against two others.
         """
 
-        def compute(finished: Finished) -> Mapping[str, Value]:
+        def compute(finished: Finished) -> Metrics:
             runs = self.runs(finished)
             places = [np.argsort(np.argsort([run.number(name) for run in runs])) for name in ("work", "seconds")]
-            facts: dict[str, Value] = {"rank": float(np.asarray(np.corrcoef(places))[0, 1])}
+            facts: NewMetrics = {"rank": np.asarray(np.corrcoef(places))[0, 1]}
             for who in (ANY, OWN, ELEMENTS):
                 facts[f"reached.{who}"] = reached([run for run in runs if who in (ANY, run.method.solver)], quantity)
             one_strain = [run for run in runs if run.method.solver == OWN and not run.method.cut]

@@ -8,16 +8,16 @@ stop; friction that lags by a pass, and dead bands, let it go on, the faster the
 from __future__ import annotations
 
 import functools
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import APART, Band, cases, near, order_row
+from validation.suite.bands import APART, Band, cases, convergence, near
 from validation.theory import friction
 
 EXACT = "creep-exact"
@@ -25,8 +25,6 @@ STEPS = "creep-steps"
 LAGGED = "creep-lagged"
 STIFFNESS = "creep-stiffness"
 DAMPED = "creep-damped"
-REFINED = ("slope-exact-constant", "slope-exact-average")
-EVENTS = "block-events"
 DDA = "dda"
 # Way of the centroid in a second under lagged friction by an established program [m], by time step [s].
 PROGRAM = {0.01: 1.0e-3, 0.002: 2.2e-3, 0.001: 5.2e-3, 0.0002: 499e-3}
@@ -34,28 +32,25 @@ DIGIT = 5e-5  # m: half a unit of its last digit
 SHUFFLED = 0.2  # of the way: rounding, or 0.2 % on the springs, changes the order of stick and slip at the finest step
 
 
-def slid(columns: Mapping[str, Any]) -> np.ndarray:
+def slid(columns: Data) -> np.ndarray:
     """Return the mean slide of the two corners [m]."""
     return np.asarray((columns["slide_m"] + columns["slide_n"]) / 2)
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
-    return (
-        *(_nearest(step) for step in PROGRAM),
-        *(order_row(name, (DDA, EVENTS), "time.step", ("displacement", "horizontal")) for name in REFINED),
-    )
+    return tuple(map(_nearest, PROGRAM))
 
 
-def base(scene: Scene, history: History) -> Mapping[str, Value]:
+def base(scene: Scene, history: History) -> Metrics:
     """Return the mean slide of the corners at quarters of the run, and its mean speed over the second half."""
     mean_slide = slid(history.columns)
     n = len(history.time)
-    values: dict[str, Value] = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
+    values = {f"way.{k}": float(mean_slide[k * n // 4 - 1]) for k in (1, 2, 3, 4)}
     speed = (mean_slide[-1] - mean_slide[n // 2 - 1]) / (history.time[-1] - history.time[n // 2 - 1])
     mean_speed = mean_slide[-1] / history.time[-1]
     scale = friction.creep_scale(scene)
-    return values | {"speed": float(speed), "mean_speed": float(mean_speed), "share": float(mean_speed / scale)}
+    return values | {"speed": speed, "mean_speed": mean_speed, "share": mean_speed / scale}
 
 
 def _nearest(step: float) -> Derived:
@@ -65,7 +60,7 @@ def _nearest(step: float) -> Derived:
     return Derived(LAGGED, f"at {1e3 * step:g} ms", needs, functools.partial(_beside, like_cases, PROGRAM[step]))
 
 
-def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Mapping[str, Value]:
+def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finished) -> Metrics:
     """Return how far the program's way is from those of the springs, over what their spread and its digits allow."""
     histories = [finished.needed_history(case.name, DDA) for case in like_cases]
     slides = [float(history.columns["horizontal_displacement"][-1]) for history in histories]
@@ -75,6 +70,11 @@ def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finis
     if program_slide > 0.1:
         allowed = max(allowed, SHUFFLED * program_slide)
     return {"distance": (program_slide - middle) / allowed, "way": middle, "spread": spread}
+
+
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
+    """Return the orders in the step of both displacements against the exact block."""
+    return convergence(runs, quantities=("displacement", "horizontal"))
 
 
 def exact_speed(case: Scene) -> Band:
@@ -99,11 +99,11 @@ def lag(case: Scene) -> Band:
     return APART, friction.lag(case)
 
 
-def closed(case: Scene) -> Mapping[str, Value]:
+def closed(case: Scene) -> Metrics:
     """Return p/E, and the speed g / w_n that the creep scales with [m/s]."""
     return {"p/E": case.contact.stiffness / case.block.young, "scale": friction.creep_scale(case)}
 
 
-def program(case: Scene) -> Mapping[str, Value]:
+def program(case: Scene) -> Metrics:
     """Return the slip in a second under lagged friction by an established program [m]."""
     return {"slip": PROGRAM[case.time.step]}

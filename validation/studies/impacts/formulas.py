@@ -6,24 +6,19 @@ springs are soft enough to count (p h / E finite, where the publications have a 
 
 from __future__ import annotations
 
-import functools
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
-from validation.engine.finished import Derived, Finished
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics, Row
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, about, cases, near
+from validation.suite.bands import Band, Bands, about, near
 
-BLOCK = "block-events"
-BAR = "bar-events"
 SWITCHES = {  # of the bouncing bar on a rigid wall
     "release": "switches.first_opening",
     "impact": "switches.second_closing",
     "second release": "switches.second_opening",
 }
-LIMIT = "rigid wall"
 
 
 def transit(scene: Scene) -> float:
@@ -85,7 +80,7 @@ def impact_duration(scene: Scene) -> float:
     return impact_length(scene) * transit(scene)
 
 
-def wall(scene: Scene) -> dict[str, Band]:
+def wall(scene: Scene) -> Bands:
     """Return the impact of a bar on springs next to rigid: all of its momentum in 2 h / c, and the force rho c V."""
     compliance = 2 * impact_length(scene) ** 2
     force = math.sqrt(scene.block.density * scene.block.young) * scene.block.base_length * -scene.block.velocity
@@ -96,7 +91,7 @@ def wall(scene: Scene) -> dict[str, Band]:
     }
 
 
-def stiff_springs(scene: Scene) -> dict[str, Band]:
+def stiff_springs(scene: Scene) -> Bands:
     """Return the impact of a bar on stiff springs, which no load accelerates."""
     return {
         "switches.first_closing": near(scene.contact.gap / -scene.block.velocity, 1e-12),
@@ -105,7 +100,7 @@ def stiff_springs(scene: Scene) -> dict[str, Band]:
     }
 
 
-def mass(scene: Scene) -> dict[str, Band]:
+def mass(scene: Scene) -> Bands:
     """Return the exact impact of a mass on its spring."""
     landing, leaving, depth = bounce(scene)
     return {
@@ -120,18 +115,11 @@ def depth_by_steps(scene: Scene) -> Band:
     return near(bounce(scene)[2], 2e-4)
 
 
-def derived() -> tuple[Derived, ...]:
-    """Return the row of the bouncing bar's times, extrapolated to a rigid wall."""
-    levels = tuple(cases("bouncing-bar"))[-2:]
-    needs = tuple((case.name, BAR) for case in levels)
-    return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, levels), tuple(SWITCHES.values())),)
-
-
-def rigid(levels: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
-    """Return the times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
-    a, b = (1 / stiffness_ratio(case) for case in levels)
-    times: dict[str, Value] = {}
+def rigid(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
+    """Return the bouncing bar's times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
+    a, b = (1 / stiffness_ratio(case) for case, _ in levels[-2:])
+    times: NewMetrics = {}
     for name, switch in SWITCHES.items():
-        x, y = (or_nan(finished.rows[case.name, BAR].metrics.get(switch)) for case in levels)
+        x, y = (or_nan(row.metrics.get(switch)) for _, row in levels[-2:])
         times[name] = finite((a * y - b * x) / (a - b))
     return times

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import or_nan
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, cases
 from validation.theory.spectra import EPS
@@ -37,7 +37,7 @@ def scenes() -> tuple[str | Scene, ...]:
     return "locking", *fine(), "long-run"
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return displacements at rest over each other: linear over quadratic elements, coarse over fine ones."""
     cases_by_data = {(case.block.poisson, case.fem.degree): case for case in cases("locking")}
     rows = []
@@ -54,7 +54,7 @@ def derived() -> tuple[Derived, ...]:
 def _over(name: str, metric: str, case: Scene, other: Scene, of_ratio: Callable[[float], float]) -> Derived:
     """Return the row of a case: what a function makes of its displacement at rest over that of another."""
 
-    def compute(finished: Finished) -> Mapping[str, Value]:
+    def compute(finished: Finished) -> Metrics:
         first, second = (or_nan(finished.rows[one.name, "fem"].metrics[STATIC]) for one in (case, other))
         return {metric: of_ratio(first / second)}
 

@@ -16,17 +16,17 @@ said:
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array, History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Bands, cases
 from validation.theory.spectra import EPS
 
 SAME = ("locked", "drop", "land", "stack", "weight", "cradle", "tower")  # one model
@@ -41,7 +41,7 @@ def pairs_of(name: str) -> list[tuple[Scene, Scene]]:
     return list(zip(cases(f"meeting-{name}-plane"), special, strict=True))
 
 
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that compare two bodies: a case of the plane, and two cases of a sweep."""
     rows = []
     for name in SAME + BY_STRAIN + BY_LOAD:
@@ -90,15 +90,15 @@ def contact_force(plane: History, block: str) -> Array:
     return total
 
 
-def differences(case: Scene, special: Scene, finished: Finished) -> Mapping[str, Value]:
+def differences(case: Scene, special: Scene, finished: Finished) -> Metrics:
     """Return how far a case of the plane is from the special body: places and turns since the first row, and forces.
 
     ``place`` is over the largest coordinate, ``force`` over the spring times it; ``displacement`` and ``rotation`` are
     over the largest of the special body.
     """
     plane, other = (finished.needed_history(each.name, "dda") for each in (case, special))
-    largest: dict[str, float] = {}
-    apart: dict[str, float] = {}
+    largest: NamedNumbers = {}
+    apart: NamedNumbers = {}
     for column, values in other.columns.items():
         ours = in_plane(plane, column)
         if "force" in column or "pressure" in column:
@@ -111,7 +111,7 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Mapping[str,
         largest[quantity] = max(largest.get(quantity, 0.0), float(np.max(np.abs(values))))
         apart[quantity] = max(apart.get(quantity, 0.0), float(np.max(np.abs(ours - values))))
     size = largest_coordinate(case)
-    found: dict[str, Value] = {
+    found = {
         "place": apart["displacement"] / size,
         "force": apart["force"] / (stiffness_of(case) * size),
         "displacement": apart["displacement"] / largest["displacement"],
@@ -121,7 +121,7 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Mapping[str,
     return found
 
 
-def order(name: str, large: tuple[Scene, Scene], small: tuple[Scene, Scene], finished: Finished) -> Mapping[str, Value]:
+def order(name: str, large: tuple[Scene, Scene], small: tuple[Scene, Scene], finished: Finished) -> Metrics:
     """Return the order in the strain, or in the load, of what lies between the two bodies over their motion."""
     first, second = (differences(*pair, finished) for pair in (large, small))
     ratio = 10.0 if name in BY_STRAIN else 2.0
@@ -155,7 +155,7 @@ def rounding(case: Scene) -> Band:
     return 0.0, case.time.steps * EPS
 
 
-def first_order(case: Scene) -> dict[str, Band]:
+def first_order(case: Scene) -> Bands:
     """Return 1 -/+ the next term's share, of the row `order` of a case: p/E by strain, what changes arms by load."""
     plane = case.table(PlaneSection)
     name = case.name.split("-")[1]

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
-from validation.runs.row import Value
+from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import closed
 from validation.theory import spectra, statics
@@ -31,11 +31,11 @@ def paper_block(stiffness: float = 1e9) -> Scene:
     return load_scene("figures-3-4").with_values({"contact.stiffness": stiffness, "time.step": MILLISECOND})
 
 
-def impacts(finished: Finished) -> Mapping[str, Value]:
+def impacts(finished: Finished) -> Metrics:
     """Return the mean rebound of a rigid mass on a spring over the phase of its landing, W = w_c dt."""
     stages = {"forward Euler": EXPLICIT_EULER, "symplectic Euler": LEAPFROG}
     stages |= {name: Stepping(1.0, *scheme).stages for name, scheme in SCHEMES.items()}
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for name, scheme in stages.items():
         for omega in (0.1, 0.3, 1.0):
             numbers[f"{name} at W = {omega:g}"] = rebound_statistics(spring_steps(scheme, omega), count=200).mean
@@ -43,10 +43,10 @@ def impacts(finished: Finished) -> Mapping[str, Value]:
     return numbers | {"(1/4, 1/2), greatest at any W": stiff.most}
 
 
-def dashpots(finished: Finished) -> Mapping[str, Value]:
+def dashpots(finished: Finished) -> Metrics:
     """Return the damping ratio of one mode with a dashpot over W, and of the block with one at its contact."""
     unit = np.eye(1)
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for name, (alpha, delta) in SCHEMES.items():
         for omega in (0.01, 0.1, 0.3, 1.0, 3.0):
             ratios = closed.damped_roots(Stepping(omega, alpha, delta), unit, 2 * ZETA * unit, unit)
@@ -65,7 +65,7 @@ def dashpots(finished: Finished) -> Mapping[str, Value]:
     return numbers
 
 
-def passes(finished: Finished) -> Mapping[str, Value]:
+def passes(finished: Finished) -> Metrics:
     """Return r C of a pass of the augmented Lagrangian at p = 1E, and the passes to 1e-6 of the penetration.
 
     A pass leaves 1/(1 + r C) of the penetration, with r = 2 p and C the compliance of a step at the base.
@@ -74,7 +74,7 @@ def passes(finished: Finished) -> Mapping[str, Value]:
     width, height = statics.size(block)
     modulus, _ = statics.moduli(block)
     m = block.block.mass
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for step in (1e-2, 2e-3, 1e-3, 1e-4):
         weight = 0.5 * step**2
         strain = m * height**2 / 12 + weight * modulus * width * height
@@ -84,7 +84,7 @@ def passes(finished: Finished) -> Mapping[str, Value]:
     return numbers
 
 
-def at_rest(finished: Finished) -> Mapping[str, Value]:
+def at_rest(finished: Finished) -> Metrics:
     """Return where the passes bring the block to rest, and how far that is from its own shortening."""
     block = load_scene(AUGMENTED)
     last = float(finished.needed_history(AUGMENTED, "dda").displacement[-1])
@@ -93,18 +93,18 @@ def at_rest(finished: Finished) -> Mapping[str, Value]:
     return {"displacement, mm": 1e3 * last, "penetration left, nm": -1e9 * (last + shortening)}
 
 
-def explicit_limits(finished: Finished) -> Mapping[str, Value]:
+def explicit_limits(finished: Finished) -> Metrics:
     """Return the largest step of the leapfrog on the locked block [ms]."""
-    limits: dict[str, Value] = {}
+    limits = {}
     for stiffness, word in ((1e9, "1E"), (1e10, "10E"), (1e11, "100E")):
         omega = spectra.contact_frequency(paper_block(stiffness))
         limits[f"p = {word}"] = 1e3 * Stepping.named("leapfrog").critical_omega / omega
     return limits
 
 
-def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finished: Finished) -> Mapping[str, Value]:
+def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finished: Finished) -> Metrics:
     """Return the relative L2 error of the displacement over 0.05 s where contact opens, by words for scheme and p."""
-    errors: dict[str, Value] = {}
+    errors = {}
     for word, case in runs.items():
         rows = round(0.05 / case.time.step)
         history = finished.needed_history(case.name, "dda").displacement[:rows]
@@ -114,7 +114,7 @@ def opened_errors(runs: Mapping[str, Scene], exact: Mapping[str, Scene], finishe
     return errors
 
 
-def derived(runs: Mapping[str, Scene], exact: Mapping[str, Scene]) -> tuple[Derived, ...]:
+def derived(runs: Mapping[str, Scene], exact: Mapping[str, Scene]) -> DerivedRows:
     """Return the rows: runs of contact that opens by words for scheme and p, the exact ones by p."""
     computed = {
         "mean rebound": impacts,

@@ -14,17 +14,18 @@ from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import or_nan
+from validation.runs.aliases import Data, Fields, NamePair, NumberPair
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import significant
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import facts
 from validation.studies.methods.closed import exact_locked
 from validation.studies.methods.methods import METHODS, SCHEMES, Method, method
-from validation.suite.bands import Band, about, fitted_order
+from validation.suite.bands import Band, Bands, about, fitted_order
 from validation.theory import friction, rebound, spectra
 from validation.theory.stepping import Stepping
 
@@ -63,9 +64,7 @@ FRICTIONAL = tuple(scheme for scheme in IMPLICIT if scheme.id != "conserving")  
 # ---- scenes ---------------------------------------------------------------------------------------------------------
 
 
-def varied(
-    scheme: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]
-) -> Scene:
+def varied(scheme: Method, base: str, name: str, title: str, values: Data, **lists: Sequence[float]) -> Scene:
     """Return a built-in scene under a method, whose lists of values are varied together; a key is ``time_step``."""
     scene = scheme.scene(load_scene(base), {"run.solvers": ["dda"], **values})
     sweep = {"mode": "zip"} | {key.replace("_", ".", 1): list(row) for key, row in lists.items()}
@@ -74,7 +73,7 @@ def varied(
     )
 
 
-def over_springs(rows: Sequence[tuple[float, float]], duration: float) -> dict[str, list[float]]:
+def over_springs(rows: Sequence[NumberPair], duration: float) -> dict[str, list[float]]:
     """Return the lists of p/E and dt [s] on the paper's block."""
     young = load_scene("figures-3-4").block.young
     return {
@@ -145,7 +144,7 @@ def sliding(scheme: Method) -> Scene:
     return varied(scheme, "slope-sliding", "sliding", "A block that slides", values, time_step=[SLIDING_STEP])
 
 
-STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
+STOPS: Mapping[str, tuple[str, Fields]] = {  # what turns a block back at a rigid stop: id -> words, values
     "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
     "impulses": (
         "Moreau and Jean, e = 0, theta = 1/2",
@@ -162,15 +161,15 @@ STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back a
 def rigid(stop: str) -> Scene:
     """Return the block on a rigid stop, over halved steps."""
     words, values = STOPS[stop]
-    rigid_stop: dict[str, Any] = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
+    rigid_stop = {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0, "run.solvers": ["dda"]}
     base = load_scene("unlocked-average").model_copy(update={"sweep": {}})
     lists = halved(RIGID_COARSEST, RIGID_LEVELS)
-    sweep: dict[str, Any] = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
+    sweep = {"mode": "zip", "time.step": lists["time_step"], "time.steps": lists["time_steps"]}
     update = {"name": f"methods-rigid-{stop}", "title": f"A rigid stop: {words}", "sweep": sweep}
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
 
-def exact(base: str, case: tuple[str, str], title: str, step: float, duration: float, **values: Any) -> Scene:
+def exact(base: str, case: NamePair, title: str, step: float, duration: float, **values: Any) -> Scene:
     """Return a built-in scene, exact in time."""
     name, solver = case
     steps = {"time.step": step, "time.steps": round(duration / step)}
@@ -236,7 +235,7 @@ def opened_exactly() -> dict[str, Scene]:
     return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
 
 
-def exact_cases() -> tuple[tuple[str, str], ...]:
+def exact_cases() -> tuple[NamePair, ...]:
     """Return the cases whose exact motion is run, beside the solvers of their scenes."""
     return tuple((case.name, "block-events") for case in opened_exactly().values())
 
@@ -250,13 +249,13 @@ def sliding_cases() -> Iterator[Scene]:
 # ---- what is derived from the runs ----------------------------------------------------------------------------------
 
 
-def locked_error(case: Scene, history: History) -> Mapping[str, Value]:
+def locked_error(case: Scene, history: History) -> Metrics:
     """Return the largest displacement error over the largest exact displacement."""
     expected = exact_locked(case, history.time)
-    return {"largest": float(np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected)))}
+    return {"largest": np.max(np.abs(history.displacement - expected)) / np.max(np.abs(expected))}
 
 
-def final_energy(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def final_energy(case: Scene, finished: Finished) -> Metrics:
     """Return the energy at the last step over W0, that of the start being zero."""
     metrics = finished.rows[case.name, "dda"].metrics
     return {"share": sum(or_nan(metrics.get(name)) for name in ENERGIES) / ENERGY}
@@ -274,22 +273,22 @@ def error_of_steps(case: Scene, finished: Finished) -> float:
     return relative_error(displacement, finished.needed_history(*BLOCK_EVENTS).displacement)
 
 
-def refined_error(scheme: Method, case: Scene, finished: Finished) -> Mapping[str, Value]:
+def refined_error(scheme: Method, case: Scene, finished: Finished) -> Metrics:
     """Return the error of a run, and its steps times the solves of one."""
     return {"error": error_of_steps(case, finished), "solves": case.time.steps * scheme.solves}
 
 
-def order(scheme: Method, finished: Finished) -> Mapping[str, Value]:
+def order(scheme: Method, finished: Finished) -> Metrics:
     """Return the order of the last halving, and the steps times solves that reach the target."""
     errors = {case.time.steps: error_of_steps(case, finished) for case in expanded(refined(scheme))}
     *_, coarse, fine = errors.values()
     reached = [count for count, error in errors.items() if error <= TARGET]
-    values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
+    values: NewMetrics = {"last halving": math.log2(coarse / fine), "finest error": fine}
     values["solves to 1 %"] = float(min(reached) * scheme.solves) if reached else "undefined"
     return values | {f"error of {count} steps": error for count, error in errors.items()}
 
 
-def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
+def slow_and_fast(finished: Finished) -> Metrics:
     """Return how many times as many solves DDA's own scheme needs for 1 % of the motion as schemes of second order."""
     slow = or_nan(order(method("constant"), finished)["solves to 1 %"])
     counts = {name: or_nan(order(method(name), finished)["solves to 1 %"]) for name in FAST}
@@ -300,7 +299,7 @@ def slow_and_fast(finished: Finished) -> Mapping[str, Value]:
 PLASTIC = {0.01: -0.00350963748, 0.02: -0.00744841152, 0.05: -0.00275254957}
 
 
-def approach(stop: str, finished: Finished) -> Mapping[str, Value]:
+def approach(stop: str, finished: Finished) -> Metrics:
     """Return the orders in the step of the distance from the plastic motion and of the peak pressure."""
     steps = []
     errors = []
@@ -319,20 +318,20 @@ def approach(stop: str, finished: Finished) -> Mapping[str, Value]:
     }
 
 
-def column_error(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def column_error(case: Scene, finished: Finished) -> Metrics:
     """Return the relative L2 error of the mean displacement at the coarser steps."""
     stride = round(COLUMN_STEPS[0] / case.time.step)
     displacement = finished.needed_history(case.name, "dda").displacement[stride - 1 :: stride]
     return {"l2": relative_error(displacement, finished.needed_history(*COLUMN_EVENTS).displacement)}
 
 
-def slid_distance(case: Scene, history: History) -> Mapping[str, Value]:
+def slid_distance(case: Scene, history: History) -> Metrics:
     """Return the relative error of the distance slid, a t^2 / 2 with a = g (sin b - tan(phi) cos b)."""
     distance = float(history.columns["horizontal_displacement"][-1])
     return {"error": abs(distance) / friction.run_out(case, case.time.duration) - 1}
 
 
-def compared_map(scheme: Method, finished: Finished) -> Mapping[str, Value]:
+def compared_map(scheme: Method, finished: Finished) -> Metrics:
     """Return the largest difference of DDA's restitution from the map, and the greatest restitution."""
     differences = []
     restitutions = []
@@ -353,7 +352,7 @@ def rigid_statistics(scheme: Method) -> rebound.ReboundStatistics:
     return rebound.rebound_statistics(scheme.step_of_impact(math.inf), count=RIGID_PHASES)
 
 
-def rigid_map(scheme: Method, finished: Finished) -> Mapping[str, Value]:
+def rigid_map(scheme: Method, finished: Finished) -> Metrics:
     """Return mean, least, greatest and mean square of the restitution on a rigid contact."""
     return dict(rigid_statistics(scheme)._asdict())
 
@@ -364,7 +363,7 @@ def cost_cases() -> dict[str, Scene]:
     return compared | {"average": expanded(locked(method("average")))[-1]}
 
 
-def equal_cost(finished: Finished) -> Mapping[str, Value]:
+def equal_cost(finished: Finished) -> Metrics:
     """Return the errors of composite schemes over that of average acceleration at equal cost."""
     errors = {}
     for name, case in cost_cases().items():
@@ -383,7 +382,7 @@ def row(
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
     declared = [row(COST, ERROR, [*cost_cases().values()], equal_cost)]
     compared = [case for name in ("constant", *FAST) for case in expanded(refined(method(name)))]
@@ -414,12 +413,12 @@ MAP_PHASES = 40
 
 
 @functools.cache
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
     damping = []
     landings = []
     for scheme in map(method, CURVES):
-        named: dict[str, Any] = {"method": scheme.id, "label": scheme.label}
+        named: Fields = {"method": scheme.id, "label": scheme.label}
         ratios = [scheme.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
         damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
         if scheme.id in MAP_CURVES:
@@ -436,7 +435,7 @@ def _short(value: float) -> float | None:
 # ---- bands ----------------------------------------------------------------------------------------------------------
 
 
-def damping_ratios(case: Scene) -> dict[str, Band]:
+def damping_ratios(case: Scene) -> Bands:
     """Return the damping ratios of both modes of the locked block, where the scheme's roots swing."""
     stepping = Stepping.of(case)
     ratios = {}

@@ -3,28 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Sequence
 
-from validation.engine.finished import Derived
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import order_row
+from validation.suite.bands import convergence
 
 SCENE = "unlocked"
 INSTANTS = (3, 6, 9)  # wave transits a / c
-BLOCK = ("dda", "block-events")
-REFINED = {  # scene -> what converges to what, the step or mesh width that is refined
-    "unlocked-constant": (BLOCK, "time.step"),
-    "unlocked-average": (BLOCK, "time.step"),
-    "unlocked-average-zero": (BLOCK, "time.step"),
-    "unlocked-mesh": (("fem", "bar"), "fem.elements"),
-}
 
 
-def samples(case: Scene, history: History) -> Mapping[str, Value]:
+def samples(case: Scene, history: History) -> Metrics:
     """Return displacement and contact pressure at the instants."""
-    values: dict[str, Value] = {}
+    values = {}
     for n in INSTANTS:
         values[f"displacement.{n}"] = float(history.displacement[n - 1])
         values[f"pressure.{n}"] = float(history.contact_pressure[n - 1])
@@ -41,6 +33,6 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-def orders() -> tuple[Derived, ...]:
-    """Return the rows of orders."""
-    return tuple(order_row(name, *refined) for name, refined in REFINED.items())
+def order_in_mesh(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
+    """Return the order of elements against the exact bar, of meshes that are refined."""
+    return convergence(runs, "fem.elements")

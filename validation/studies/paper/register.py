@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.suite.claims import Evidence, Tests, named, whole
@@ -30,7 +31,7 @@ def cell(p: float, step: float) -> str:
     )
 
 
-def steps_of(evidence: Evidence, case: str) -> dict[str, float]:
+def steps_of(evidence: Evidence, case: str) -> NamedNumbers:
     """Return the settling steps at 1 %."""
     return {
         "displacement, steps": evidence.settles(case, "displacement"),
@@ -38,7 +39,7 @@ def steps_of(evidence: Evidence, case: str) -> dict[str, float]:
     }
 
 
-def equilibrium(e: Evidence) -> dict[str, float]:
+def equilibrium(e: Evidence) -> NamedNumbers:
     """Return the largest distance of the last pressure from q, over q, and the least remaining."""
     distances = [abs(e.scaled(case, "pressure")[-1] - 1) for case in (*A34, *A56)]
     return {"final distance from q, largest of six runs": max(distances)}
@@ -51,14 +52,13 @@ def settling_tolerance(e: Evidence, case: str, quantity: str, count: int) -> flo
     t, and that from step n - 1 on is greater: so the tolerances of a count are one interval, of which only the part
     from 1e-4 to 0.5 counts.
     """
-    distance = np.abs(e.scaled(case, quantity) - 1)
-    remaining = np.maximum.accumulate(distance[::-1])[::-1]
+    remaining = np.maximum.accumulate(np.abs(e.scaled(case, quantity) - 1)[::-1])[::-1]
     least = max(remaining[count - 1], TOLERANCES[0])
     greatest = min(remaining[count - 2], TOLERANCES[1])
     return float(greatest) if least < greatest else whole(0.0)
 
 
-def force_first(e: Evidence) -> dict[str, float]:
+def force_first(e: Evidence) -> NamedNumbers:
     """Return the settling steps, the tolerances that give the paper's, and the least steps that the force is later."""
     tolerances = np.geomspace(*TOLERANCES, 200)
     late = [e.settles(COARSE, "pressure", t) - e.settles(COARSE, "displacement", t) for t in tolerances]
@@ -69,7 +69,7 @@ def force_first(e: Evidence) -> dict[str, float]:
     }
 
 
-def two_answers(e: Evidence) -> dict[str, float]:
+def two_answers(e: Evidence) -> NamedNumbers:
     """Return the settling steps of Figures 3 to 6 at dt = 0.002 s, and the tolerances that give the paper's."""
     return steps_of(e, MIDDLE) | {
         "greatest tolerance of 34 steps, displacement (0: none)": settling_tolerance(e, MIDDLE, "displacement", 34),
@@ -79,7 +79,7 @@ def two_answers(e: Evidence) -> dict[str, float]:
     }
 
 
-def stiff_steps(e: Evidence) -> dict[str, float]:
+def stiff_steps(e: Evidence) -> NamedNumbers:
     """Return the settling steps at p = 10E, and the tolerances that give the paper's."""
     return steps_of(e, STIFF) | {
         "greatest tolerance of 20 steps, displacement (0: none)": settling_tolerance(e, STIFF, "displacement", 20),
@@ -87,9 +87,9 @@ def stiff_steps(e: Evidence) -> dict[str, float]:
     }
 
 
-def stiff_alike(e: Evidence) -> dict[str, float]:
+def stiff_alike(e: Evidence) -> NamedNumbers:
     """Return the difference of settling steps between p = 10E and 100E, at 1 % and at 1e-4."""
-    differences: dict[str, float] = {}
+    differences = {}
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
         for quantity, word in (("displacement", "displacement"), ("pressure", "contact force")):
             steps = [e.settles(case, quantity, tolerance) for case in (STIFF, STIFFEST)]
@@ -97,7 +97,7 @@ def stiff_alike(e: Evidence) -> dict[str, float]:
     return differences | {"contact root at 100E": e.number(STIFFEST, "contact.least_root")}
 
 
-def over_steps(e: Evidence) -> dict[str, float]:
+def over_steps(e: Evidence) -> NamedNumbers:
     """Return how xi of the first mode rises with dt at p = 1E below and above Omega = 3.27."""
     pairs = []
     for name, s in MAP.items():
@@ -107,14 +107,14 @@ def over_steps(e: Evidence) -> dict[str, float]:
     rise = np.diff(xi)
     below = omega[1:] < 3.28
     return {
-        "least rise of xi below w dt = 3.27": float(rise[below].min()),
-        "least rise of xi above": float(rise[~below].min()),
-        "greatest xi": float(xi.max()),
-        "at w dt": float(omega[np.argmax(xi)]),
+        "least rise of xi below w dt = 3.27": rise[below].min(),
+        "least rise of xi above": rise[~below].min(),
+        "greatest xi": xi.max(),
+        "at w dt": omega[np.argmax(xi)],
     }
 
 
-def over_stiffness(e: Evidence) -> dict[str, float]:
+def over_stiffness(e: Evidence) -> NamedNumbers:
     """Return how damping changes with p: first mode below and above dt = 6.2 ms, and contact mode."""
     ladder = (1.0, 10.0, 100.0)
     rises = []
@@ -125,7 +125,7 @@ def over_stiffness(e: Evidence) -> dict[str, float]:
     return {
         "least rise of xi with p, dt to 6.2 ms": min(rises),
         **{f"|lambda| at dt = 0.01, p = {p:g}E": value for p, value in zip(ladder, first, strict=True)},
-        "fall of |lambda| at dt = 0.01": float(-np.diff(first).max()),
+        "fall of |lambda| at dt = 0.01": -np.diff(first).max(),
         "contact |lambda| at dt = 0.01, p = 100E": e.number(cell(100.0, 0.01), "contact.spectral_radius"),
     }
 
@@ -134,18 +134,18 @@ def peaks(displacement: Array) -> Array:
     """Return the heights of a history's maxima above the static value."""
     middle = displacement[1:-1]
     is_peak = (middle > displacement[:-2]) & (middle >= displacement[2:]) & (middle > 1)
-    return np.asarray(middle[is_peak])
+    return middle[is_peak]
 
 
-def small_step(e: Evidence) -> dict[str, float]:
+def small_step(e: Evidence) -> NamedNumbers:
     """Return first and last peak over static, xi, and what a few periods take, for the stiffnesses of Figure 7."""
-    values: dict[str, float] = {}
+    values: NamedNumbers = {}
     falls = []
     lost = []
     for case, p in zip(A7, ("1E", "10E", "100E"), strict=True):
         heights = peaks(e.scaled(case, "displacement"))
         xi = e.number(case, "mode1.damping")
-        values |= {f"first peak at {p}": float(heights[0]), f"last peak at {p}": float(heights[-1]), f"xi at {p}": xi}
+        values |= {f"first peak at {p}": heights[0], f"last peak at {p}": heights[-1], f"xi at {p}": xi}
         falls.append(float(heights[0] - heights[-1]))
         lost.append(1 - math.exp(-2 * math.pi * PERIODS * xi / math.sqrt(1 - xi * xi)))
     return values | {
@@ -155,13 +155,13 @@ def small_step(e: Evidence) -> dict[str, float]:
     }
 
 
-def stiffness_of_small_steps(e: Evidence) -> dict[str, float]:
+def stiffness_of_small_steps(e: Evidence) -> NamedNumbers:
     """Return xi of the first mode for the three stiffnesses of Figure 7."""
     xi = [e.number(case, "mode1.damping") for case in A7]
     return {"xi at 10E over 1E": xi[1] / xi[0], "xi at 100E over 1E": xi[2] / xi[0]}
 
 
-def sensitivity(e: Evidence) -> dict[str, float]:
+def sensitivity(e: Evidence) -> NamedNumbers:
     """Return the exponents of dt and p in xi of the first mode at small steps, from neighbours in the damping map."""
     xi = {(p, step): e.number(cell(p, step), "mode1.damping") for p in (1.0, 10.0, 100.0) for step in (1e-4, 5e-4)}
     exponents = {f"of p, {p:g}E to {10 * p:g}E": math.log10(xi[10 * p, 1e-4] / xi[p, 1e-4]) for p in (1.0, 10.0)}
@@ -171,29 +171,29 @@ def sensitivity(e: Evidence) -> dict[str, float]:
     return exponents | {"least of dt over greatest of p": least / greatest}
 
 
-def quasi_static(e: Evidence) -> dict[str, float]:
+def quasi_static(e: Evidence) -> NamedNumbers:
     """Return the settling steps of Figure 8's two schemes, of average acceleration whether it settles at all."""
     undamped, damped = A8
     distance = np.abs(e.scaled(undamped, "displacement") - 1)
     return {
         "constant acceleration, steps to 1 %": e.settles(damped, "displacement"),
-        "its last distance from static": float(abs(e.scaled(damped, "displacement")[-1] - 1)),
-        "average acceleration, greatest distance over the last 50 steps": float(distance[-50:].max()),
+        "its last distance from static": abs(e.scaled(damped, "displacement")[-1] - 1),
+        "average acceleration, greatest distance over the last 50 steps": distance[-50:].max(),
     }
 
 
-def discounted_amplitudes(e: Evidence) -> dict[str, float]:
+def discounted_amplitudes(e: Evidence) -> NamedNumbers:
     """Return what a step leaves of the first mode of Figure 9, by discount."""
     radii = [e.number(case, "mode1.spectral_radius") for case in A9]
     left = {f"|lambda| at gg = {s.time.discount:g}": radius for s, radius in zip(FIGURE_9, radii, strict=True)}
     squares = [radius**2 / s.time.discount for s, radius in zip(FIGURE_9, radii, strict=True)]
     return left | {
-        "least fall from one discount to the next": float(-np.diff(radii).max()),
+        "least fall from one discount to the next": -np.diff(radii).max(),
         "|lambda|^2 / gg - 1, largest": max(abs(square - 1) for square in squares),
     }
 
 
-def dominance(e: Evidence) -> dict[str, float]:
+def dominance(e: Evidence) -> NamedNumbers:
     """Return the diagonal dominance of (31), the same block in metres and in centimetres, and of a longer block.
 
     The least over the rows of (diagonal - sum of the others) / diagonal; a row mixes displacements, in the unit of
@@ -230,7 +230,7 @@ def dominance_margin(scene: Scene, side: float, step: float, units_in_a_metre: f
     return float(((diagonal - others) / diagonal).min())
 
 
-def conditionally_stable(e: Evidence) -> dict[str, float]:
+def conditionally_stable(e: Evidence) -> NamedNumbers:
     """Return |lambda| of the contact mode 1 % below and above its limit, under linear acceleration and differences."""
     values = {}
     for name, scene in CONDITIONAL.items():
@@ -240,7 +240,7 @@ def conditionally_stable(e: Evidence) -> dict[str, float]:
     return values
 
 
-def average(e: Evidence) -> dict[str, float]:
+def average(e: Evidence) -> NamedNumbers:
     """Return what average acceleration damps: both modes' |lambda| - 1, and the ratio measured on the history."""
     return {
         f"|lambda| - 1, {mode} mode": e.number(A8[0], f"{key}.spectral_radius") - 1
@@ -248,7 +248,7 @@ def average(e: Evidence) -> dict[str, float]:
     } | {"measured xi": e.number(A8[0], "mode1.measured_damping")}
 
 
-def high_frequencies(e: Evidence) -> dict[str, float]:
+def high_frequencies(e: Evidence) -> NamedNumbers:
     """Return |lambda| over w dt, from both modes of the map."""
     pairs = []
     for name, s in MAP.items():
@@ -259,18 +259,17 @@ def high_frequencies(e: Evidence) -> dict[str, float]:
     below = omega < 4
     above = omega > 4
     return {
-        "greatest rise of |lambda| below w dt = 4": float(np.diff(radius[below]).max()),
-        "least |lambda|": float(radius.min()),
-        "greatest w dt of the map": float(omega[-1]),
-        "|lambda| there": float(radius[-1]),
-        "least rise of |lambda| above w dt = 4": float(np.diff(radius[above]).min()),
+        "greatest rise of |lambda| below w dt = 4": np.diff(radius[below]).max(),
+        "least |lambda|": radius.min(),
+        "greatest w dt of the map": omega[-1],
+        "|lambda| there": radius[-1],
+        "least rise of |lambda| above w dt = 4": np.diff(radius[above]).min(),
     }
 
 
-def boundary(e: Evidence) -> dict[str, float]:
+def boundary(e: Evidence) -> NamedNumbers:
     """Return alpha - (1/2 + delta)^2 / 4 of both schemes, and how far a stiff contact's roots are from real."""
-    cases = named("figure-8")
-    margins = [s.time.alpha - (0.5 + s.time.delta) ** 2 / 4 for s in cases.values()]
+    margins = [s.time.alpha - (0.5 + s.time.delta) ** 2 / 4 for s in named("figure-8").values()]
     root, radius = (e.number(STIFFEST, f"contact.{part}") for part in ("least_root", "spectral_radius"))
     return {
         "margin of (14), average": margins[0],
@@ -279,9 +278,9 @@ def boundary(e: Evidence) -> dict[str, float]:
     }
 
 
-def discount_alone(e: Evidence) -> dict[str, float]:
+def discount_alone(e: Evidence) -> NamedNumbers:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
-    ratios: dict[str, float] = {}
+    ratios = {}
     squares = []
     for name, s in DISCOUNTS.items():
         ratios[f"xi at dt = {s.time.step:g}"] = e.number(name, "mode1.damping")
@@ -294,7 +293,7 @@ def discount_alone(e: Evidence) -> dict[str, float]:
     }
 
 
-def last_discount(e: Evidence) -> dict[str, float]:
+def last_discount(e: Evidence) -> NamedNumbers:
     """Return the share of the velocity that each of Figure 9's steps takes away, from |lambda|^2 = gg."""
     shares = [1 - e.number(case, "mode1.spectral_radius") ** 2 for case in A9]
     return {f"discount {i + 1}": share for i, share in enumerate(shares)}

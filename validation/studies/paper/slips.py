@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from validation.runs.aliases import NamedNumbers
 from validation.runs.case_name import scene_of
 from validation.studies.paper.register import MAP, SOFT
 from validation.suite.claims import Evidence, Tests, named
@@ -25,11 +26,10 @@ def model(case: str, **values: float) -> Any:
     """Return the DDA model of a built-in case, with values set."""
     from validation.solvers.dda import model_of
 
-    scene = named(scene_of(case))[case]
-    return model_of(scene.with_values(dict(values)))
+    return model_of(named(scene_of(case))[case].with_values(dict(values)))
 
 
-def radius(e: Evidence) -> dict[str, float]:
+def radius(e: Evidence) -> NamedNumbers:
     """Return |lambda| over sqrt(1 + h) on both sides of w dt = 4."""
     pairs = []
     for name, s in MAP.items():
@@ -39,46 +39,46 @@ def radius(e: Evidence) -> dict[str, float]:
             pairs.append((math.sqrt(square), e.number(name, f"{mode}.spectral_radius") / math.sqrt(1 + h)))
     omega, ratio = np.array(sorted(pairs)).T
     return {
-        "largest |lambda| / sqrt(1 + h) - 1 below w dt = 4": float(np.abs(ratio[omega < 4] - 1).max()),
-        "largest above": float(np.abs(ratio[omega > 4] - 1).max()),
+        "largest |lambda| / sqrt(1 + h) - 1 below w dt = 4": np.abs(ratio[omega < 4] - 1).max(),
+        "largest above": np.abs(ratio[omega > 4] - 1).max(),
     }
 
 
-def inertia(e: Evidence) -> dict[str, float]:
+def inertia(e: Evidence) -> NamedNumbers:
     """Return entries (3, 6) and (6, 6) of a 1 m x 2 m block's inertia over rho, and (1, 1) over the area."""
     block_model = model(SOFT, **OBLONG)
     mass = block_model.mass / block_model.block.material.density
     return {
-        "entry (3, 6)": float(mass[2, 5]),
-        "entry (6, 6)": float(mass[5, 5]),
-        "entry (1, 1) over the area, kg/m3": float(block_model.mass[0, 0] / 2.0),
+        "entry (3, 6)": mass[2, 5],
+        "entry (6, 6)": mass[5, 5],
+        "entry (1, 1) over the area, kg/m3": block_model.mass[0, 0] / 2.0,
     }
 
 
-def energy(e: Evidence) -> dict[str, float]:
+def energy(e: Evidence) -> NamedNumbers:
     """Return the strain energy of ey = 1 over s/2 times the area integral of E."""
     block_model = model(SOFT)
     elastic = block_model.block.elastic()[4, 4]
     area = 4.0
     young = block_model.block.material.young
-    return {"strain energy over that of (20)": float(elastic / 2 / (area / 2 * young * area))}
+    return {"strain energy over that of (20)": elastic / 2 / (area / 2 * young * area)}
 
 
-def modulus(e: Evidence) -> dict[str, float]:
+def modulus(e: Evidence) -> NamedNumbers:
     """Return entry (4, 4) of the elastic submatrix over the area [Pa], at mu = 0.3."""
-    return {"entry (4, 4) over area, Pa": float(model(LATERAL).block.elastic()[3, 3] / 4.0)}
+    return {"entry (4, 4) over area, Pa": model(LATERAL).block.elastic()[3, 3] / 4.0}
 
 
-def load(e: Evidence) -> dict[str, float]:
+def load(e: Evidence) -> NamedNumbers:
     """Return the load on v over a q, and the static displacement that it causes."""
     block_model = model(SOFT)
     return {
-        "load on v over a q": float(block_model.force[1] / (2.0 * block_model.load.pressure)),
+        "load on v over a q": block_model.force[1] / (2.0 * block_model.load.pressure),
         "static displacement, mm": 1e3 * e.number(SOFT, "displacement.static"),
     }
 
 
-def lateral(e: Evidence) -> dict[str, float]:
+def lateral(e: Evidence) -> NamedNumbers:
     """Return statics at mu = 0.3, p = 1E: ours, and without the shear springs' stretch, where sigma_x = 0."""
     s = named("poisson-statics")[LATERAL]
     a = s.block.base_length
@@ -90,7 +90,7 @@ def lateral(e: Evidence) -> dict[str, float]:
     }
 
 
-def shear_load(e: Evidence) -> dict[str, float]:
+def shear_load(e: Evidence) -> NamedNumbers:
     """Return the sideways force of the springs at rest, where they hold no shear, and that of (25) and (28) over a q.
 
     As printed the load of a shear spring is -(p s0 / l) e_r with the s0 of (23), and s0 / l is the normal gap.
@@ -103,7 +103,7 @@ def shear_load(e: Evidence) -> dict[str, float]:
     load_force = 2 * HALF * block_model.load.pressure
     return {
         "sideways force at rest over a q": float(-p * sum(stretches) / load_force) + 0.0,
-        "by (25) and (28) as printed": float(-p * sum(gaps) / load_force),
+        "by (25) and (28) as printed": -p * sum(gaps) / load_force,
     }
 
 

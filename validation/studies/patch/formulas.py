@@ -11,6 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NumberPair
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 from validation.theory.spectra import EPS
@@ -33,7 +34,17 @@ def elongation_of_the_continuum(case: Scene) -> Band | None:
 
 def elongation(case: Scene) -> Band | None:
     """Return the same of glued blocks: with the openings of the joints between its ends [m]."""
-    return _about(_elastic(case) + _opening(case), case)
+    # The mean opening in x of the joints on a way from the left to the right end: at a height between the ends it
+    # crosses one joint of two blocks, two of four blocks about a crossing, and n - 1 of a strip of n.
+    plane = case.table(PlaneSection)
+    s_xx, _, s_xy = plane.stress
+    opening = 0.0
+    for (x0, y0), (x1, y1) in _joints(plane):
+        # s n l, n from the left to the right: (y1 - y0, x0 - x1) of a joint that runs upwards
+        force = s_xx * (y1 - y0) + s_xy * (x0 - x1)
+        height = y1 - y0
+        opening += force / (2 * plane.glue * plane.young) * height
+    return _about(_elastic(case) + opening, case)
 
 
 def _about(value: float, case: Scene) -> Band | None:
@@ -56,24 +67,7 @@ def _elastic(case: Scene) -> float:
     return length * (s_xx - ratio * s_yy) / modulus
 
 
-def _opening(case: Scene) -> float:
-    """Return the mean opening in x of the joints that a way from the left to the right end crosses [m].
-
-    At a height between the ends a way crosses one joint of two blocks, two of four blocks about a crossing, and n - 1
-    of a strip of n; what the ends observe is the mean over the height.
-    """
-    plane = case.table(PlaneSection)
-    s_xx, _, s_xy = plane.stress
-    opening = 0.0
-    for (x0, y0), (x1, y1) in _joints(plane):
-        # s n l, n from the left to the right: (y1 - y0, x0 - x1) of a joint that runs upwards
-        force = s_xx * (y1 - y0) + s_xy * (x0 - x1)
-        height = y1 - y0
-        opening += force / (2 * plane.glue * plane.young) * height
-    return opening
-
-
-def _joints(plane: PlaneSection) -> list[tuple[tuple[float, float], tuple[float, float]]]:
+def _joints(plane: PlaneSection) -> list[tuple[NumberPair, NumberPair]]:
     """Return the shared edges that do not lie level, each from below."""
     edges = set()
     joints = []

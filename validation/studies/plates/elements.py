@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, identity, kron
 from scipy.sparse.linalg import spsolve
 
 from validation.runs.history import Array
 from validation.theory.statics import elasticity
 
 Point = tuple[float, float]
-Node = tuple[int, Point]  # the triangle whose own it is, or 0, and its place
 Load = tuple[Point, Point, Sequence[float], Sequence[float]]  # both ends of an edge [m], and the forces on them [N]
 
 
@@ -31,56 +30,44 @@ def displacements(
     glue, in N/m, each triangle has nodes of its own, which springs of that stiffness join at both ends of every shared
     edge, in all directions alike.
     """
-    parts = range(len(triangles)) if math.isfinite(glue) else [0] * len(triangles)
-    nodes: list[list[Node]] = []
-    for part, triangle in zip(parts, triangles, strict=True):
-        nodes.append([(part, point) for point in triangle])
-    numbers: dict[Node, int] = {}
-    at_point: dict[Point, set[int]] = {}
-    on_edge: dict[tuple[Point, Point], tuple[int, int]] = {}
-    for corners in nodes:
-        own_numbers = [numbers.setdefault(node, len(numbers)) for node in corners]
-        for k, number in enumerate(own_numbers):
-            following = (k + 1) % 3
-            at_point.setdefault(corners[k][1], set()).add(number)
-            on_edge[corners[k][1], corners[following][1]] = number, own_numbers[following]
+    points: Array = np.reshape(triangles, (-1, 2))
+    numbers = np.arange(len(points))
+    if math.isinf(glue):
+        points, numbers = np.unique(points, axis=0, return_inverse=True)
+    own = numbers.reshape(-1, 3)
+    on_edge: dict[tuple[Point, Point], list[int]] = {}
+    matrices = []
     elastic = elasticity(young, poisson)
-    rows: list[Array] = []
-    columns: list[Array] = []
-    values: list[Array] = []
-    for triangle, own_nodes in zip(triangles, nodes, strict=True):
+    for triangle, nodes in zip(triangles, own.tolist(), strict=True):
         strain, double = _strain(triangle)
-        own = np.ravel([[2 * numbers[node], 2 * numbers[node] + 1] for node in own_nodes])
-        rows.append(np.repeat(own, 6))
-        columns.append(np.tile(own, 6))
-        values.append(np.ravel(double / 2 * strain.T @ elastic @ strain))
-    for first, second in _joined(nodes) if math.isfinite(glue) else ():
-        for axis in range(2):
-            i = 2 * numbers[first] + axis
-            j = 2 * numbers[second] + axis
-            rows.append(np.array([i, i, j, j]))
-            columns.append(np.array([i, j, i, j]))
-            values.append(glue * np.array([1.0, -1.0, -1.0, 1.0]))
-    unknowns = 2 * len(numbers)
-    force = np.zeros(unknowns)
+        matrices.append(double / 2 * strain.T @ elastic @ strain)
+        on_edge |= {(triangle[k], triangle[k - 2]): [nodes[k], nodes[k - 2]] for k in range(3)}
+    unknowns = np.stack([2 * own, 2 * own + 1], axis=2).reshape(-1, 6)
+    places_of = np.repeat(unknowns, 6, axis=1).ravel(), np.tile(unknowns, 6).ravel()
+    stiffness = coo_matrix((np.ravel(matrices), places_of)).tocsc()
+    if math.isfinite(glue):
+        shared = [(edge, edge[::-1]) for edge in on_edge if edge[0] < edge[1] and edge[::-1] in on_edge]
+        # The neighbour runs along the edge the other way.
+        joined = np.array([[on_edge[edge], on_edge[other][::-1]] for edge, other in shared])
+        rows = np.arange(joined.size // 2).reshape(-1, 1, 2).repeat(2, axis=1)
+        signs = np.broadcast_to([[1.0], [-1.0]], joined.shape)
+        jumps = coo_matrix((signs.ravel(), (rows.ravel(), joined.ravel())))
+        stiffness += glue * kron(jumps.T @ jumps, identity(2))
+    force = np.zeros((len(points), 2))
     for start, end, *forces in loads:
-        for number, (x, y) in zip(on_edge[start, end], forces, strict=True):
-            force[2 * number] += x
-            force[2 * number + 1] += y
-    stiffness = coo_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns)))).tocsc()
-    pin, roller = (min(at_point[place]) for place in places[:2])
-    kept = np.setdiff1d(np.arange(unknowns), [2 * pin, 2 * pin + 1, 2 * roller + 1])
-    solution = np.zeros(unknowns)
-    solution[kept] = spsolve(stiffness[np.ix_(kept, kept)], force[kept])
-    by_node = solution.reshape(-1, 2)
-    return np.array([by_node[sorted(at_point[place])].mean(axis=0) for place in places])
+        force[on_edge[start, end]] += forces
+    nodes_at = [np.flatnonzero((points == place).all(axis=1)) for place in places]
+    pin, roller = (of_place[0] for of_place in nodes_at[:2])
+    kept = np.setdiff1d(np.arange(force.size), [2 * pin, 2 * pin + 1, 2 * roller + 1])
+    solution = np.zeros(force.size)
+    solution[kept] = spsolve(stiffness[np.ix_(kept, kept)], force.ravel()[kept])
+    return np.array([solution.reshape(-1, 2)[of_place].mean(axis=0) for of_place in nodes_at])
 
 
 def stress(triangle: Sequence[Point], corners: Array, young: float, poisson: float) -> Array:
     """Return the stress of a triangle whose corners are displaced [m], shape (3, 2), as [Pa], shape (3,)."""
     strain, _ = _strain(triangle)
-    components: Array = elasticity(young, poisson) @ strain @ corners.ravel()
-    return components
+    return elasticity(young, poisson) @ strain @ corners.ravel()
 
 
 def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
@@ -95,17 +82,3 @@ def _strain(triangle: Sequence[Point]) -> tuple[Array, float]:
     strain[2, ::2] = c
     strain[2, 1::2] = b
     return strain, double
-
-
-def _joined(nodes: Sequence[Sequence[Node]]) -> Iterator[tuple[Node, Node]]:
-    """Yield the nodes of two triangles that meet at an end of an edge which they share."""
-    edges: dict[frozenset[Point], list[Node]] = {}
-    for corners in nodes:
-        for start, end in zip(corners, (*corners[1:], corners[0]), strict=True):
-            edge = frozenset((start[1], end[1]))
-            if edge not in edges:
-                edges[edge] = [start, end]
-                continue
-            first, second = edges[edge]  # the neighbour runs along the edge the other way
-            yield first, end
-            yield second, start

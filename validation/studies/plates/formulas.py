@@ -11,17 +11,17 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Mapping
-from functools import partial
+from collections.abc import Sequence
+from itertools import starmap
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
 from validation.models.plane.blocks import Vertices
 from validation.models.plane.glued import Loads, PlateSection
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Value
+from validation.runs.aliases import NamedNumbers, NumberPair
+from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.plates.closed import disc_centre, disc_widening, hole_displacement
@@ -34,6 +34,7 @@ STATIC = "displacement.static"
 STRESS = ("stress.xx", "stress.yy")
 FIRM_SCENES = ("plates-hole", "plates-disc")
 SOFT_SCENE = "plates-glue"
+Levels = Sequence[tuple[Scene, Row]]
 
 
 def firm() -> tuple[Scene, ...]:
@@ -59,7 +60,7 @@ def exact(case: Scene) -> float:
     return 2 * hole_displacement(plate.hole, 0.0, plate.tension, plane.young, plane.poisson)
 
 
-def exact_stress(case: Scene) -> tuple[float, float]:
+def exact_stress(case: Scene) -> NumberPair:
     """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
     plane = case.table(PlaneSection)
     if disc := plane.disc:
@@ -75,7 +76,7 @@ def _plate(case: Scene) -> PlateSection:
     return plate
 
 
-def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
+def linear(case: Scene, firm: bool = False) -> NumberPair:
     """Return what linear elements on its triangles have, joined by springs if glued softly and not asked for firm glue.
 
     By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
@@ -90,7 +91,7 @@ def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
 @functools.cache
 def _linear(
     polygons: tuple[Vertices, ...], tractions: Loads, young: float, poisson: float, spring: float, observed: Vertices
-) -> tuple[float, float]:
+) -> NumberPair:
     *apart, stressed = observed
     triangles = [triangle for triangle in polygons if stressed in triangle]
     places = [*apart, *(corner for triangle in triangles for corner in triangle)]
@@ -114,24 +115,24 @@ def cells_of(case: Scene) -> int:
 # ---- rows and bands -------------------------------------------------------------------------------------------------
 
 
-def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def parts(case: Scene, dda: Row, fem: Row | None = None) -> NamedNumbers:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
-    blocks = or_nan(finished.rows[case.name, "dda"].metrics[STATIC])
-    values: dict[str, Value] = {
+    blocks = or_nan(dda.metrics[STATIC])
+    values = {
         "cells": float(cells_of(case)),
         "blocks": float(len(case.table(PlaneSection).polygons)),
         "whole": blocks / exact(case) - 1,
         "size": abs(blocks / exact(case) - 1),
         "glue": blocks / linear(case, firm=True)[0] - 1,
     }
-    stress_xx, stress_yy = (or_nan(finished.rows[case.name, "dda"].metrics[name]) for name in STRESS)
+    stress_xx, stress_yy = (or_nan(dda.metrics[name]) for name in STRESS)
     exact_xx, exact_yy = exact_stress(case)
     values["stress"] = stress_xx / exact_xx - 1
     values["stress size"] = abs(stress_xx / exact_xx - 1)
     if case.table(PlaneSection).disc:  # at the hole it is none
         values["stress along"] = stress_yy / exact_yy - 1
-    if (case.name, "fem") in finished.rows:
-        elements = or_nan(finished.rows[case.name, "fem"].metrics[STATIC])
+    if fem is not None:
+        elements = or_nan(fem.metrics[STATIC])
         values |= {
             "outline": elements / exact(case) - 1,
             "outline size": abs(elements / exact(case) - 1),
@@ -140,49 +141,27 @@ def parts(case: Scene, finished: Finished) -> Mapping[str, Value]:
     return values
 
 
-def orders(scene: str, finished: Finished) -> Mapping[str, Value]:
+def orders(levels: Levels) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
-    coarse, fine = (parts(case, finished) for case in [*cases(scene)][-2:])
-    values: dict[str, Value] = {}
+    coarse, fine = starmap(parts, levels[-2:])
+    values: NamedNumbers = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
-            errors = abs(float(str(coarse[name])) / float(str(fine[name])))
-            values[name] = math.log(errors) / math.log(float(str(fine["cells"])) / float(str(coarse["cells"])))
+            errors = abs(coarse[name] / fine[name])
+            values[name] = math.log(errors) / math.log(fine["cells"] / coarse["cells"])
     return values
 
 
-def glue_order(finished: Finished) -> Mapping[str, Value]:
+def glue_order(levels: Levels) -> Metrics:
     """Return the order with which glue's error falls with its stiffness."""
-    softs = []
-    glues = []
-    for case in [*cases(SOFT_SCENE)][-2:]:
-        softs.append(or_nan(finished.rows[case.name, "dda"].metrics[STATIC]) / linear(case, firm=True)[0] - 1)
-        glues.append(case.table(PlaneSection).glue)
+    softs = [or_nan(dda.metrics[STATIC]) / linear(case, firm=True)[0] - 1 for case, dda in levels[-2:]]
+    glues = [case.table(PlaneSection).glue for case, _ in levels[-2:]]
     return {"order": math.log(abs(softs[0] / softs[1])) / math.log(glues[1] / glues[0])}
 
 
-def second_program(case: Scene, finished: Finished) -> Mapping[str, Value]:
+def second_program(case: Scene, fem: Row, fenicsx: Row) -> Metrics:
     """Return the displacement of the second program of elements over that of the first."""
-    first, second = (or_nan(finished.rows[case.name, solver].metrics[STATIC]) for solver in ("fem", "fenicsx"))
-    return {STATIC: second / first}
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows of all scenes, and the orders."""
-    rows = []
-    for case in scenes():
-        solvers = [solver for solver in case.run.solvers if solver != "fenicsx"]
-        needs = tuple((case.name, solver) for solver in solvers)
-        rows.append(Derived(case.name, "parts", needs, partial(parts, case), (STATIC, *STRESS)))
-    for scene in FIRM_SCENES:
-        needs = tuple((case.name, "dda") for case in cases(scene))
-        rows.append(Derived(scene, "order", needs, partial(orders, scene), (STATIC, *STRESS)))
-    needs = tuple((case.name, "dda") for case in cases(SOFT_SCENE))
-    rows.append(Derived(SOFT_SCENE, "order", needs, glue_order, (STATIC,)))
-    for case in firm():
-        needs = ((case.name, "fem"), (case.name, "fenicsx"))
-        rows.append(Derived(case.name, "fenicsx over fem", needs, partial(second_program, case), (STATIC,)))
-    return tuple(rows)
+    return {STATIC: or_nan(fenicsx.metrics[STATIC]) / or_nan(fem.metrics[STATIC])}
 
 
 def glued(case: Scene) -> Band:

@@ -18,6 +18,8 @@ from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
+from validation.runs.aliases import NumberPair
+
 SAMPLES = 64  # of a piece's span, between which an event is looked for: a quarter of a period has 16 at least
 LONGEST = 0.05  # s, of a span without an oscillation
 
@@ -26,22 +28,22 @@ LONGEST = 0.05  # s, of a span without an oscillation
 class Pushing:
     """Two blocks on a slope, the upper one first."""
 
-    masses: tuple[float, float]  # kg
-    friction: tuple[float, float]  # tan(phi) on the slope
+    masses: NumberPair  # kg
+    friction: NumberPair  # tan(phi) on the slope
     slope: float  # b [rad]
     stiffness: float  # of the spring between them [N/m]
     gap: float = 0.0  # m, at t = 0
-    speeds: tuple[float, float] = (0.0, 0.0)  # at t = 0, down the slope [m/s]
+    speeds: NumberPair = (0.0, 0.0)  # at t = 0, down the slope [m/s]
     gravity: float = 9.81
 
     @property
-    def drive(self) -> tuple[float, float]:
+    def drive(self) -> NumberPair:
         """Weight along the slope [N]."""
         first, second = (m * self.gravity * math.sin(self.slope) for m in self.masses)
         return first, second
 
     @property
-    def resistance(self) -> tuple[float, float]:
+    def resistance(self) -> NumberPair:
         """Friction of a block that slides [N]."""
         cosine = math.cos(self.slope)
         first, second = (mu * m * self.gravity * cosine for mu, m in zip(self.friction, self.masses, strict=True))
@@ -53,8 +55,8 @@ class Moment:
     """The state at the start of a piece."""
 
     time: float  # s
-    ways: tuple[float, float]  # s1, s2 [m]
-    speeds: tuple[float, float]  # m/s
+    ways: NumberPair  # s1, s2 [m]
+    speeds: NumberPair  # m/s
     signs: tuple[int, int]  # of the slides; 0: at rest
     closed: bool
 
@@ -177,7 +179,7 @@ def _first_zero(function: Callable[[float], float], span: float) -> float | None
     for k in range(1, SAMPLES + 1):
         t = span * k / SAMPLES
         if function(t) < 0:
-            return float(brentq(function, before, t, xtol=1e-16, rtol=1e-14)) if function(before) > 0 else before
+            return brentq(function, before, t, xtol=1e-16, rtol=1e-14) if function(before) > 0 else before
         before = t
     return None
 

@@ -7,23 +7,21 @@ correction is the band of what is exact for rigid blocks.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import ACTIVE, PASSIVE, wedges_of
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NumberPair
 from validation.runs.history import Array, History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.studies.pushing.exact import Pushing, at
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 
-PUSHING = ("pushing-both", "pushing-held")
 LOCKED = "pushing-locked"
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
@@ -59,7 +57,7 @@ def down(history: History, block: str, angle: float) -> Array:
     return way
 
 
-def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
+def errors_at_end(scene: Scene, history: History) -> NumberPair:
     """Return how far both blocks are from the exact motion at the end [m]."""
     problem = problem_of(scene)
     start, end = at(problem, float(history.time[0])), at(problem, float(history.time[-1]))
@@ -69,7 +67,7 @@ def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
     return upper, lower
 
 
-def against_exact(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_exact(scene: Scene, history: History) -> Metrics:
     """Return how far both blocks and their centre of mass are from the exact motion at the end [m]."""
     upper, lower = errors_at_end(scene, history)
     first, second = problem_of(scene).masses
@@ -79,12 +77,12 @@ def against_exact(scene: Scene, history: History) -> Mapping[str, Value]:
         "upper": upper,
         "lower": lower,
         "centre": (first * upper + second * lower) / (first + second),
-        "largest push": float(np.max(push)),
-        "balance": float(np.max(np.abs(history.columns["energy.balance"])) / np.max(energy)),
+        "largest push": np.max(push),
+        "balance": np.max(np.abs(history.columns["energy.balance"])) / np.max(energy),
     }
 
 
-def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
+def push_at_end(scene: Scene, history: History) -> NumberPair:
     """Return the push that is left at the end, and that of the exact motion [N]."""
     problem = problem_of(scene)
     upper, lower, _, _ = at(problem, float(history.time[-1]))
@@ -92,41 +90,29 @@ def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
     return float(history.columns["slope_2.4-slope_1.1.normal"][-1]), exact
 
 
-def against_rest(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_rest(scene: Scene, history: History) -> Metrics:
     """Return the push that is locked in between two blocks at rest [N], and over the exact one, less one."""
     push, exact = push_at_end(scene, history)
     return {"push": push, "exact": exact, "over exact": push / exact - 1}
 
 
-def order_of_push(finished: Finished) -> Mapping[str, Value]:
+def order_of_push(runs: Runs) -> Metrics:
     """Return the error of the push that is left over twice that of half the step."""
-    pushes = [push_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(LOCKED)]
-    coarse, fine = (push - exact for push, exact in pushes)
+    coarse, fine = (push - exact for push, exact in itertools.starmap(push_at_end, runs))
     return {"push": coarse / (2 * fine)}
 
 
-def orders(name: str, finished: Finished) -> Mapping[str, Value]:
+def orders(runs: Runs) -> Metrics:
     """Return the error of each block over twice that of half the step."""
-    coarse, fine = (errors_at_end(case, finished.needed_history(case.name, "dda")) for case in cases(name))
+    coarse, fine = itertools.starmap(errors_at_end, runs)
     return {block: coarse[number] / (2 * fine[number]) for number, block in enumerate(("upper", "lower"))}
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare two steps, and two stiffnesses."""
-    rows = []
-    for name in PUSHING:
-        needs = tuple((case.name, "dda") for case in cases(name))
-        rows.append(Derived(name, "order", needs, partial(orders, name)))
-    locked = tuple((case.name, "dda") for case in cases(LOCKED))
-    rows.append(Derived(LOCKED, "order", locked, order_of_push))
-    return tuple(rows)
 
 
 def first_correction(case: Scene) -> float:
     """Return W/(p l): all weight on one corner spring over the thinnest block that moves."""
     plane = case.table(PlaneSection)
     moving = [block for block in plane.assembly.blocks if not block.fixed]
-    weight = sum(block.density * area(block.vertices) for block in moving) * math.hypot(*plane.gravity)
+    weight = sum(block.mass for block in moving) * math.hypot(*plane.gravity)
     stiffness = plane.contact.stiffness if plane.contact else math.inf
     return weight / (stiffness * plane.assembly.thinnest)
 
@@ -146,7 +132,7 @@ def first_order() -> Band:
 
     Both scenes have the same blocks, spring and steps.
     """
-    return _first_order(PUSHING[0])
+    return _first_order("pushing-both")
 
 
 def first_order_of_push() -> Band:
@@ -171,7 +157,7 @@ def up_dip(history: History, block: str, dip: float) -> Array:
     return way
 
 
-def against_wedges(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_wedges(scene: Scene, history: History) -> Metrics:
     """Return accelerations and mean forces over those of rigid wedges, less one, and the larger speed at the end."""
     plane = scene.table(PlaneSection)
     late = history.time > SETTLED
@@ -203,7 +189,7 @@ def factor_of_safety(case: Scene) -> float:
     return wedges_of(case).factor_of_safety
 
 
-def limit(case: Scene) -> Mapping[str, Value]:
+def limit(case: Scene) -> Metrics:
     """Return the factor of safety of the wedges and their angles of friction [rad], below and between them."""
     wedges = wedges_of(case)
     angles = {"below": math.atan(wedges.below), "between": math.atan(wedges.between)}

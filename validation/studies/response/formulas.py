@@ -17,13 +17,14 @@ from typing import Any
 import numpy as np
 
 from validation.advice.response import Response, polar, response
-from validation.engine.finished import Derived, Finished
+from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
+from validation.runs.aliases import Data, Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene, load_scene
-from validation.suite.bands import about, cases, gate, short
+from validation.suite.bands import Band, about, cases, gate, short
 from validation.theory import vibration
 from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
 from validation.theory.statics import moduli, size
@@ -31,7 +32,6 @@ from validation.theory.stepping import Complex, Stepping
 
 BASE = "response-base"
 DAMPING = "response-damping"
-VISCOUS = "viscous"
 FREQUENCIES = (20.0, 52.0, 80.0, 150.0)  # Hz
 RESONANCE = 52.0  # Hz, next to the first frequency
 LOW = (5.0, 10.0, 20.0)  # Hz
@@ -89,11 +89,11 @@ def row_name(solver: str, frequency: float) -> str:
     return f"{solver} at {frequency:g} Hz"
 
 
-def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Mapping[str, Value]:
+def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metrics:
     """Return amplitudes under the pressure and how far they are from the closed form; of elements also from the bar."""
     reported = answer.reported(solver, frequency)
     closed = answer.closed(solver, frequency)
-    values: dict[str, Value] = {}
+    values: NewMetrics = {}
     for column, part in COLUMNS.items():
         amplitude = complex(reported.columns[column][0])
         expected = complex(getattr(closed, column)[0])
@@ -104,10 +104,10 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Mappi
     return values
 
 
-def _removed(_: Finished) -> Mapping[str, Value]:
+def _removed(_: Finished) -> Metrics:
     """Return the share of the displacement near the first frequency that the step takes."""
     exact, stepped, _average = (abs(one.reported("dda", RESONANCE).columns[DISPLACEMENT][0]) for one in answers())
-    return {"removed": float(1 - stepped / exact)}
+    return {"removed": 1 - stepped / exact}
 
 
 def loaded_gates() -> Iterator[Gate]:
@@ -137,7 +137,7 @@ def mesh_gates() -> Iterator[Gate]:
                 yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
-def amplitudes() -> Iterator[dict[str, Any]]:
+def amplitudes() -> Iterator[Fields]:
     """Yield the closed forms of block and bar, a row a frequency, as the reference pack has them."""
     for answer in answers():
         t = answer.scene.time
@@ -177,11 +177,11 @@ def _record(scene: Scene) -> str:
     return scene.name.partition("[")[0]
 
 
-def _stepped(scene: Scene, solver: str, frequency: float, finished: Finished) -> Mapping[str, Value]:
+def _stepped(scene: Scene, solver: str, frequency: float, finished: Finished) -> Metrics:
     """Return amplitudes per metre of the base, and how far from the response, of those of the record in all."""
     steady_state = steady(finished, scene, solver, frequency)
     reported = response(scene, FREQUENCIES, solver)
-    values: dict[str, Value] = {}
+    values: NewMetrics = {}
     for column, part in COLUMNS.items():
         expected = reported.columns[column]
         difference = abs(steady_state[column] - expected[FREQUENCIES.index(frequency)]) / abs(expected).sum()
@@ -225,7 +225,7 @@ def remaining_transients(scene: Scene, solver: str) -> float:
 # ---- the damping that a step hides ----------------------------------------------------------------------------------
 
 
-def _hidden(frequency: float, finished: Finished) -> Mapping[str, Value]:
+def _hidden(frequency: float, finished: Finished) -> Metrics:
     """Return |Im W| / |W| from the block's momentum, -W2 m v = P w, in the steps and in the response."""
     (scene,) = cases(DAMPING)
     reported = {name: complex(values[0]) for name, values in response(scene, frequency, "dda").columns.items()}
@@ -275,18 +275,16 @@ def viscous_damping_ratio(scene: Scene) -> float:
     return float(-logarithm.real / abs(logarithm))
 
 
-def viscous_gates() -> Iterator[Gate]:
-    """Yield the gates on the damping of the first mode under 5 % of viscous damping."""
-    why = "the quadratic of a step with viscous damping, written apart; band: rounding"
-    for case in cases(VISCOUS):
-        yield gate(case, "dda", "mode1.damping", about(viscous_damping_ratio(case), 1e-12), why)
+def viscous(case: Scene) -> Band:
+    """Return the damping of the first mode under 5 % of viscous damping."""
+    return about(viscous_damping_ratio(case), 1e-12)
 
 
 # ---- the study ------------------------------------------------------------------------------------------------------
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows under the pressure, of the steps, and of the damping."""
     rows = []
     for answer in answers():
@@ -306,10 +304,10 @@ def _row(scene: str, solver: str, frequency: float, compute: Callable[..., Any],
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates(), *viscous_gates())
+    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates())
 
 
-def curves() -> Mapping[str, Any]:
+def curves() -> Data:
     """Return amplitude and phase over frequency: DDA as stepped, DDA exact in time, the continuum."""
     exact, stepped, _ = answers()
     responses = {
@@ -319,7 +317,7 @@ def curves() -> Mapping[str, Any]:
     }
     drawn = []
     for name, reported in responses.items():
-        curve: dict[str, Any] = {"name": name, "frequency": short(DRAWN)}
+        curve = {"name": name, "frequency": short(DRAWN)}
         for column, values in reported.columns.items():
             size, phase = polar(values)
             curve |= {column: short(size), f"{column}_phase": short(phase)}

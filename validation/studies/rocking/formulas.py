@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 import numpy as np
 
 from validation.metrics.rotation import crossing, landing
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band
+from validation.suite.bands import Band, Bands
 from validation.theory.rocking import rectangle, settlement
 
 PULSED = "rocking-pulse"
@@ -20,7 +20,7 @@ PUSH = 5.0  # acceleration [m/s2]
 DURATION = 0.36  # s
 
 
-def swing(scene: Scene, history: History) -> Mapping[str, Value]:
+def swing(scene: Scene, history: History) -> Metrics:
     """Return quarter period over that of a rigid block, and the rate after the impact over that before it.
 
     The rate is that of a rigid block which rises to the greatest tilt on the other side.
@@ -38,7 +38,7 @@ def swing(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def passage(scene: Scene, history: History) -> Mapping[str, Value]:
+def passage(scene: Scene, history: History) -> Metrics:
     """Return the greatest tilt over that of a rigid block, or the time at which the block passes over its corner."""
     rotation = history.columns["rotation"]
     exact = after_pulse(scene)
@@ -47,10 +47,10 @@ def passage(scene: Scene, history: History) -> Mapping[str, Value]:
     return {"peak": float(np.max(rotation)) / exact(1.0), "tipping": float(np.max(rotation)) / rectangle(scene).alpha}
 
 
-def rigid(scene: Scene) -> Mapping[str, Value]:
+def rigid(scene: Scene) -> Metrics:
     """Return the rigid block: its shape and its tilt, or the pulse over the least one that overturns it."""
     block = rectangle(scene)
-    values: dict[str, Value] = {"slenderness": block.height / block.width, "tipping": block.alpha}
+    values = {"slenderness": block.height / block.width, "tipping": block.alpha}
     if scene.name.startswith(PULSED):
         return values | {"size": PUSH / block.gravity / block.pulse_threshold(DURATION)}
     tilt = math.radians(scene.block.tilt)
@@ -84,7 +84,7 @@ def quarter_period(case: Scene) -> Band:
     return 1 - early, 1 + late
 
 
-def pulsed(case: Scene) -> dict[str, Band]:
+def pulsed(case: Scene) -> Bands:
     """Return what a pulse that is sampled does, over what the pulse does to a rigid block."""
     exact = after_pulse(case)
     off = (case.time.step / DURATION) ** 2

@@ -7,22 +7,19 @@ So the run-out, what a discount takes of it and the slope at which a block begin
 
 from __future__ import annotations
 
-import functools
 import itertools
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
+from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.sliding import rigid_motion, rigid_slide
 from validation.studies.slopes import closed as closed_forms
-from validation.suite.bands import APART, Band, about, cases, near, short
+from validation.suite.bands import APART, Band, Bands, Runs, about, cases, near, short
 from validation.theory import friction
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
@@ -35,7 +32,6 @@ MANUAL = "slope-manual"
 SHAKEN = "slope-base"
 QUAKE = "slope-quake"
 STIFFNESS = "slope-stiffness"
-FACTS = "slope-facts"  # owner of rows without a run
 FACT_STEPS = (1e-4, 1e-3, 5e-3, 1e-2)  # s
 RINGS_FROM = 0.05  # s: what the block rings is seen beside a way of some millimetres
 RINGING = 1e-3  # of the error by ringing: the own vibration of a block whose strain follows at rest
@@ -47,23 +43,10 @@ CYCLES = 4
 RATE = 2.0  # Hz
 
 
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that are computed from finished cases."""
-    pair = tuple(cases(THRESHOLD))
-    needs = tuple((case.name, "dda") for case in pair)
-    return (
-        Derived(THRESHOLD, "threshold", needs, functools.partial(_threshold, pair)),
-        Derived(FACTS, "ringing of a rigid block", (), rigid_ringing),
-        Derived(FACTS, "friction of the step before", (), late_friction),
-        Derived(FACTS, "discount", (), discounted),
-    )
-
-
 def sliding(scene: Scene, history: History) -> np.ndarray:
     """Return u_t + tan(phi) u_n of the centroid [m]."""
     along = history.columns["horizontal_displacement"]
-    across = history.displacement
-    return np.asarray(along + friction.coefficient(scene) * across)
+    return along + friction.coefficient(scene) * history.displacement
 
 
 def acceleration(scene: Scene, history: History) -> float:
@@ -79,7 +62,7 @@ def acceleration(scene: Scene, history: History) -> float:
     return float(gained / (quarter * scene.time.step) ** 2)
 
 
-def identity(scene: Scene, history: History) -> Mapping[str, Value]:
+def identity(scene: Scene, history: History) -> Metrics:
     """Return what the sliding identity leaves, and how far the block is ahead [m]."""
     if scene.name.startswith((THRESHOLD, MANUAL)):  # shear springs stick at first: only the rate is known
         return {"acceleration": acceleration(scene, history)}
@@ -89,32 +72,32 @@ def identity(scene: Scene, history: History) -> Mapping[str, Value]:
     return {"largest difference": float(difference), "offset": float(offset)}
 
 
-def ringing(scene: Scene, history: History) -> Mapping[str, Value]:
+def ringing(scene: Scene, history: History) -> Metrics:
     """Return the largest error of a sliding block over its exact way, from a start on."""
     way = friction.sliding_acceleration(scene) * history.time**2 / 2
     late = history.time >= RINGS_FROM - closed_forms.TOLERANCE
-    return {"error": float(np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late]))}
+    return {"error": np.max(np.abs(history.columns["horizontal_displacement"] / way - 1)[late])}
 
 
-def rigid_ringing(finished: Finished) -> Mapping[str, Value]:
+def rigid_ringing() -> Metrics:
     """Return the error of a rigid block that slides and stays closed, over penalty and step."""
     scene = next(iter(cases(STIFFNESS)))
-    numbers: dict[str, Value] = {}
+    numbers = {}
     for p, step in itertools.product((1e8, 1e9), FACT_STEPS):
         numbers[f"p = {p:g}, dt = {1e3 * step:g} ms"] = closed_forms.normal_ringing_error(scene, p, step)
     return numbers
 
 
-def late_friction(finished: Finished) -> Mapping[str, Value]:
+def late_friction() -> Metrics:
     """Return the error after a second of a sliding block whose friction is that of the step before."""
     scene = next(iter(cases(STIFFNESS)))
     return {f"dt = {1e3 * step:g} ms": closed_forms.lagging_friction_error(scene, step, 1.0) for step in FACT_STEPS}
 
 
-def discounted(finished: Finished) -> Mapping[str, Value]:
+def discounted() -> Metrics:
     """Return what gg = 0.98 a step is: a rate, damping ratios, and the way that a shaken block keeps."""
     gg = 0.98
-    numbers: dict[str, Value] = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
+    numbers = {"frequency of 2 % times dt": -math.log(gg) / (2 * 0.02) / (2 * math.pi)}
     for step in (1e-2, 5e-3, 2.5e-3, 1e-3):
         numbers[f"rate at dt = {1e3 * step:g} ms, 1/s"] = -math.log(gg) / step
     for step in (1e-2, 2.5e-3):
@@ -127,17 +110,17 @@ def discounted(finished: Finished) -> Mapping[str, Value]:
     return numbers | {"way without a discount at dt = 10 ms": closed_forms.shaken_way(1e-2, 1.0) / exact}
 
 
-def against_rigid(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_rigid(scene: Scene, history: History) -> Metrics:
     """Return the slide over the base at the end, and how far it ever is from that of a rigid mass [m]."""
     slide = (history.columns["slide_m"] + history.columns["slide_n"]) / 2
     rigid = rigid_slide(scene, smooth=scene.name.startswith(QUAKE)).slide
-    return {"slide": float(slide[-1]), "largest difference": float(np.max(np.abs(slide - rigid)))}
+    return {"slide": slide[-1], "largest difference": np.max(np.abs(slide - rigid))}
 
 
-def _threshold(pair: tuple[Scene, ...], finished: Finished) -> Mapping[str, Value]:
+def threshold(runs: Runs) -> Metrics:
     """Return the slope at which the sliding acceleration of two cases passes through zero [deg]."""
-    below, above = (acceleration(case, finished.needed_history(case.name, "dda")) for case in pair)
-    low, high = (case.load.slope for case in pair)
+    below, above = itertools.starmap(acceleration, runs)
+    low, high = (case.load.slope for case, _ in runs)
     return {"angle": low - below * (high - low) / (above - below) if above > below else "undefined"}
 
 
@@ -179,7 +162,7 @@ def late_waves(case: Scene) -> Band:
     return about(0.0, 2 * size(case)[1] / math.sqrt(moduli(case)[0] / case.block.density) / case.time.duration)
 
 
-def shaken(case: Scene) -> dict[str, Band]:
+def shaken(case: Scene) -> Bands:
     """Return the slide on a base that shakes, and its distance from that of a rigid mass [m]."""
     resisted = friction.coefficient(case) * friction.across(case)
     stretch = case.block.mass * resisted / (2 * case.contact.shear)
@@ -188,7 +171,7 @@ def shaken(case: Scene) -> dict[str, Band]:
     return _beside(rigid.at([rigid.end])[0][0], 2 * CYCLES * stretch + late)
 
 
-def in_an_earthquake(case: Scene) -> dict[str, Band]:
+def in_an_earthquake(case: Scene) -> Bands:
     """Return the same on a base that follows a record of several frequencies [m]."""
     rigid = rigid_motion(case, smooth=True)
     ends = [*(t for t, _ in rigid.switches[1:]), case.time.duration]
@@ -204,25 +187,25 @@ def lag(case: Scene) -> Band:
     return APART, friction.lag(case)
 
 
-def _beside(slide: float, allowed: float) -> dict[str, Band]:
+def _beside(slide: float, allowed: float) -> Bands:
     return {"slide": about(float(slide), allowed), "largest difference": (APART, allowed)}
 
 
-def closed(case: Scene) -> Mapping[str, Value]:
+def closed(case: Scene) -> Metrics:
     """Return the drag [1/s], the acceleration [m/s2] and the displacement at the end [m] in closed form."""
     acceleration = friction.sliding_acceleration(case)
     displacement, _ = friction.free_motion(case, acceleration)
-    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": float(displacement[-1])}
+    return {"drag": friction.drag_rate(case) + 0.0, "acceleration": acceleration, "free": displacement[-1]}
 
 
-def beside_closed(case: Scene, dda: Row) -> Mapping[str, Value]:
+def beside_closed(case: Scene, dda: Row) -> Metrics:
     """Return how far a run is beyond the closed form [m], and its displacement over that without drag."""
     final = or_nan(dda.metrics.get("horizontal.final"))
     displacement, _ = friction.free_motion(case, friction.sliding_acceleration(case))
     return {"ahead": final - float(displacement[-1]), "share": final / friction.run_out(case, case.time.duration)}
 
 
-def start(case: Scene, dda: Row) -> Mapping[str, Value]:
+def start(case: Scene, dda: Row) -> Metrics:
     """Return the slip a second [m/s], and that a block stands whose corners do not slip."""
     slip_rate = or_nan(dda.metrics.get("contact.slip_rate"))
     if friction.sliding_acceleration(case) < 0 and slip_rate < STANDS:
@@ -230,13 +213,13 @@ def start(case: Scene, dda: Row) -> Mapping[str, Value]:
     return {"slip": slip_rate}
 
 
-def beside_rigid(case: Scene) -> Mapping[str, Value]:
+def beside_rigid(case: Scene) -> Metrics:
     """Return the slide of a rigid mass at the end, and by how much a block may differ from it [m]."""
     low, high = (in_an_earthquake if case.name.startswith(QUAKE) else shaken)(case)["slide"]
     return {"slide": (low + high) / 2, "allowed": (high - low) / 2}
 
 
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
     free = []
     for case in (*tuple(cases(SLIDING))[-1:], *cases(DRAG)):

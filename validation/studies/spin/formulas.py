@@ -2,49 +2,45 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Mapping
-from functools import partial
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished
 from validation.models.plane.canon import moving_blocks, slide_of, spinning_of, stiffness_of
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
-from validation.runs.row import Value
-from validation.scenes.outline import area
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
 
 STRAINS = ("ex", "ey", "gxy")
-SPINNING = ("spin-square", "spin-rectangle")
-TIPPING = ("spin-ledge", "spin-ledge-smooth")
 
 
 # ---- blocks that spin -----------------------------------------------------------------------------------------------
 
 
-def errors_of(scene: Scene, history: History) -> dict[str, float]:
+def errors_of(scene: Scene, history: History) -> NamedNumbers:
     """Return the largest error of the angle [rad] and of each strain."""
     exact = spinning_of(scene).at(history.time)
     return {name: float(np.max(np.abs(history.columns[f"block.{name}"] - values))) for name, values in exact.items()}
 
 
-def accounts(scene: Scene, history: History) -> dict[str, Value]:
+def accounts(scene: Scene, history: History) -> NewMetrics:
     """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    return {"momentum": float(np.max(np.abs(momentum - 1))), "balance": float(balance)}
+    return {"momentum": np.max(np.abs(momentum - 1)), "balance": float(balance)}
 
 
-def against_motion(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_motion(scene: Scene, history: History) -> Metrics:
     """Return the errors of a block that spins unstrained at first, and its accounts."""
     return errors_of(scene, history) | accounts(scene, history)
 
 
-def against_steady(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_steady(scene: Scene, history: History) -> Metrics:
     """Return the strains at the end, the area and the rate of the angle there over those of a steady spin."""
     ex, ey, gxy = (float(history.columns[f"block.{name}"][-1]) for name in STRAINS)
     exact = spinning_of(scene)
@@ -58,16 +54,15 @@ def against_steady(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def orders(name: str, finished: Finished) -> Mapping[str, Value]:
+def orders(runs: Runs) -> Metrics:
     """Return the order of the errors of angle and strains."""
-    levels = list(cases(name))
-    errors = [errors_of(case, finished.needed_history(case.name, "dda")) for case in levels]
-    steps = [case.time.step for case in levels]
-    names = ("angle", "ex") if name == "spin-square" else ("angle", *STRAINS)
+    errors = list(itertools.starmap(errors_of, runs))
+    steps = [case.time.step for case, _ in runs]
+    names = ("angle", "ex") if runs[0][0].name.startswith("spin-square") else ("angle", *STRAINS)
     return {name: fitted_order(steps, [error[name] for error in errors]) for name in names}
 
 
-def second_order() -> dict[str, Band]:
+def second_order() -> Bands:
     """Return 2 -/+ what the largest step departs from the leading term of its error.
 
     A mode of frequency w has in average acceleration the phase 2 atan(w h / 2) = w h - (w h)^3/12 + (w h)^5/80 a step:
@@ -89,7 +84,7 @@ def rounding(case: Scene) -> Band:
     return 0.0, case.time.steps * EPS
 
 
-def steady(case: Scene) -> dict[str, Band]:
+def steady(case: Scene) -> Bands:
     """Return strain, area and rate of a steady spin: each rounded once a step, the rate as a difference of angles."""
     exact = spinning_of(case)
     relative = case.time.steps * EPS
@@ -102,7 +97,7 @@ def steady(case: Scene) -> dict[str, Band]:
 # ---- blocks that fly and slide --------------------------------------------------------------------------------------
 
 
-def against_flight(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_flight(scene: Scene, history: History) -> Metrics:
     """Return how far a block in flight is from its parabola and its even turn, over the largest way and angle."""
     (block,) = moving_blocks(scene)
     t = history.time - history.time[0]
@@ -121,7 +116,7 @@ def weight_over_stiffness(scene: Scene) -> float:
     """Return W/p [m]."""
     plane = scene.table(PlaneSection)
     (block,) = moving_blocks(scene)
-    weight = block.density * area(block.vertices) * -plane.gravity[1]
+    weight = block.mass * -plane.gravity[1]
     return weight / plane.contact.stiffness if plane.contact else 0.0
 
 
@@ -131,7 +126,7 @@ def pitch(scene: Scene) -> float:
     return slide.friction * weight_over_stiffness(scene) * slide.height / slide.width**2
 
 
-def against_stop(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_stop(scene: Scene, history: History) -> Metrics:
     """Return how far the centre is from its parabola before its foot stops [m], and its way at the end [m]."""
     slide = slide_of(scene)
     slowing = slide.friction * slide.gravity
@@ -139,10 +134,10 @@ def against_stop(scene: Scene, history: History) -> Mapping[str, Value]:
     way = history.columns["block.x"] - slide.start
     parabola = slide.speed * t - slowing * t**2 / 2
     sliding = t < 0.99 * slide.speed / slowing
-    return {"parabola": float(np.max(np.abs((way - parabola)[sliding]))), "distance": float(way[-1])}
+    return {"parabola": np.max(np.abs((way - parabola)[sliding])), "distance": way[-1]}
 
 
-def closed_stop(case: Scene) -> Mapping[str, Value]:
+def closed_stop(case: Scene) -> Metrics:
     """Return the way to rest of the rigid block, and by how much its centre returns on springs [m]."""
     slide = slide_of(case)
     return {"distance": slide.stopping_distance, "back": pitch(case) * slide.height / 2}
@@ -170,15 +165,15 @@ def distance(case: Scene) -> Band:
 # ---- blocks on a ledge ----------------------------------------------------------------------------------------------
 
 
-def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:
+def turn_at_end(scene: Scene, history: History) -> NumberPair:
     """Return the turn, clockwise, and that of the rigid block, at the end [rad]."""
     return -float(history.columns["block.angle"][-1]), slide_of(scene).turn(float(history.time[-1]))
 
 
-def against_ledge(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_ledge(scene: Scene, history: History) -> Metrics:
     """Return the turn at the end over the rigid block's, less one, or where it stops [m]."""
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    accounted: dict[str, Value] = {"balance": float(balance), "stiffness": stiffness_of(scene)}
+    accounted = {"balance": float(balance), "stiffness": stiffness_of(scene)}
     slide = slide_of(scene)
     if slide.tips is None:
         return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}
@@ -186,15 +181,14 @@ def against_ledge(scene: Scene, history: History) -> Mapping[str, Value]:
     return accounted | {"turn": turn / exact - 1, "rigid turn": exact}
 
 
-def extrapolated(name: str, finished: Finished) -> Mapping[str, Value]:
+def extrapolated(runs: Runs) -> Metrics:
     """Return what two stiffnesses extrapolate to, over the rigid block's turn and less one; also over the next term.
 
     The turn is that of the rigid block and a term in 1/p, which both stiffnesses tell; the next term is its square.
     """
-    soft, stiff = cases(name)
-    turns = [turn_at_end(case, finished.needed_history(case.name, "dda")) for case in (soft, stiff)]
-    (first, exact), (second, _) = turns
-    ratio = stiffness_of(stiff) / stiffness_of(soft)
+    (first, exact), (second, _) = itertools.starmap(turn_at_end, runs)
+    soft, stiff = (stiffness_of(case) for case, _ in runs)
+    ratio = stiff / soft
     error = (ratio * second - first) / (ratio - 1) / exact - 1
     term = (first - second) / exact
     return {"turn": error, "over the next term": error / term**2}
@@ -204,16 +198,3 @@ def stops(case: Scene) -> Band:
     """Return how far from the rigid block's place it comes to rest [m]: no more than it sinks, W/2p."""
     half = weight_over_stiffness(case) / 2
     return -half, half
-
-
-# ---- rows -----------------------------------------------------------------------------------------------------------
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare steps, and two stiffnesses."""
-    rows = []
-    for names, row, compute in ((SPINNING, "order", orders), (TIPPING, "rigid limit", extrapolated)):
-        for name in names:
-            needs = tuple((case.name, "dda") for case in cases(name))
-            rows.append(Derived(name, row, needs, partial(compute, name)))
-    return tuple(rows)

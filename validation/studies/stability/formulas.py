@@ -7,11 +7,12 @@ discount; beside it every other datum is driven to its extremes alone.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 from validation.gates.gate import Gate
 from validation.metrics.growth import Stability
+from validation.runs.aliases import Data
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import gate
 from validation.theory import spectra
@@ -41,17 +42,16 @@ def conditional(alpha: float, delta: float) -> bool:
     return not 2 * alpha >= delta >= 0.5
 
 
-def scheme_scene(alpha: float, delta: float, start: str, sweep: Mapping[str, Any]) -> Scene:
+def scheme_scene(alpha: float, delta: float, start: str, sweep: Data) -> Scene:
     """Return the base scene under a scheme, swept."""
     limited = conditional(alpha, delta)
-    values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+    values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
     base = load_scene("extremes")
     if limited:
         values["time.allow_unstable"] = True
     name = f"extremes-{alpha:.4g}-{delta:g}" + ("-consistent" if start == "consistent" else "")
     title = f"Stiffness and step, alpha = {alpha:.4g}, delta = {delta:g}, {start} start"
-    scene = base.with_values(values)
-    return scene.model_copy(update={"name": name, "title": title, "sweep": dict(sweep)})
+    return base.with_values(values).model_copy(update={"name": name, "title": title, "sweep": dict(sweep)})
 
 
 def matrix() -> Iterator[Scene]:
@@ -66,7 +66,7 @@ def factors(names: Sequence[str]) -> Iterator[Scene]:
     """Yield the one-factor extremes of constant acceleration at rest and of average acceleration, consistent."""
     for name, start in itertools.product(names, STARTS):
         ((alpha, delta),) = STARTS[start]
-        values: dict[str, Any] = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
+        values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
         if name.startswith("plane"):
             values["block.hypothesis"] = name.replace("-", " ")
         scene = load_scene("extremes").with_values(values)
@@ -110,8 +110,7 @@ def digits(case: Scene) -> Iterator[Gate]:
 def grown(case: Scene) -> Iterator[Gate]:
     """Yield the gate on the growth of a run beyond its limit."""
     rate = spectra.spectral_radius(case, spectra.contact_frequency(case))
-    slower = spectra.spectral_radius(case, spectra.dda_frequency(case))
-    if slower > 0.9 * rate:
+    if spectra.spectral_radius(case, spectra.dda_frequency(case)) > 0.9 * rate:
         return  # two modes grow alike: which one leads after 300 steps is no matter of the scheme
     why = "beyond the limit the history grows by the spectral radius of its stiffest mode, from trace and determinant"
     yield gate(case, "dda", "stability.growth", ((1 - 1e-6) * rate, (1 + 1e-6) * rate), why)
@@ -139,6 +138,6 @@ def gates_of_corners() -> Iterator[Gate]:
     return gates_of(corners())
 
 
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return what the ends of runs are, in words."""
     return {"kinds": [f"{kind}: {kind.sentence}" for kind in Stability]}

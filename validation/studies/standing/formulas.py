@@ -7,6 +7,7 @@ falling: no speed is left of what stands, and what is beyond its limit by a shar
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
@@ -14,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.engine.finished import Derived, Finished
+from validation.metrics.values import or_nan
 from validation.models.plane.canon import friction_of, half_truss, stiffness_of
 from validation.models.plane.limits import (
     flat_height,
@@ -27,10 +28,11 @@ from validation.models.plane.limits import (
     stepped_friction,
 )
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import Array, History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 
 REST = 1e-6  # of the weight: what is left of oscillations after a second of a damping of 5/s and more, exp(-c t)
 LEVER = 0.1  # least share of an unbalanced weight that moves the centroid which moves most
@@ -44,7 +46,7 @@ def moving(plane: PlaneSection, history: History | None = None) -> list[str]:
     return [name for name in names if history is None or f"{name}.x" in history.columns]
 
 
-def unbalanced(scene: Scene, history: History) -> Mapping[str, Value]:
+def unbalanced(scene: Scene, history: History) -> Metrics:
     """Return the unbalanced share of the weight at the end, the greatest way of a centroid [m], and the limit."""
     plane = scene.table(PlaneSection)
     columns = history.columns
@@ -58,7 +60,7 @@ def unbalanced(scene: Scene, history: History) -> Mapping[str, Value]:
 # ---- limits -------------------------------------------------------------------------------------------------------
 
 
-def limit_of(scene: Scene) -> dict[str, Value]:
+def limit_of(scene: Scene) -> NewMetrics:
     """Return the limit of a scene in closed form, and how far it is above it, negative where it stands."""
     quantity, compute = LIMITS[scene.name.partition("[")[0]]
     limit, beyond = compute(scene.table(PlaneSection))
@@ -71,7 +73,7 @@ def _heights(plane: PlaneSection) -> list[float]:
     return [float(np.ptp(outline[:, 1])) for outline in outlines.values()]
 
 
-def _keyed(plane: PlaneSection) -> tuple[float, float]:
+def _keyed(plane: PlaneSection) -> NumberPair:
     heights = _heights(plane)
     limit = keyed_dip(heights[-1], len(heights), 1.0)
     return math.degrees(limit), _dip(plane) / limit - 1
@@ -82,13 +84,13 @@ def _dip(plane: PlaneSection) -> float:
     return math.atan2(plane.gravity[0], -plane.gravity[1])
 
 
-def _stepped(plane: PlaneSection) -> tuple[float, float]:
+def _stepped(plane: PlaneSection) -> NumberPair:
     columns = plane.columns[0]
     limit = stepped_dip(columns.heights, columns.width, columns.rise, friction_of(plane))
     return math.degrees(limit), math.radians(columns.dip) / limit - 1
 
 
-def _arch(plane: PlaneSection) -> tuple[float, float]:
+def _arch(plane: PlaneSection) -> NumberPair:
     """Least thickness by the linear program, and what springs ask for besides: 1.5 rho g R / p of the radius R.
 
     That is what an independent program found of 24 voussoirs; 1/p is so small here that a third of it would not show.
@@ -122,12 +124,12 @@ def bracket_of(plane: PlaneSection) -> Bracket:
     return Bracket(recursion, program, height / recursion, height / program)
 
 
-def _bracket(plane: PlaneSection) -> tuple[float, float]:
+def _bracket(plane: PlaneSection) -> NumberPair:
     bounds = bracket_of(plane)
     return bounds.program, bounds.over_program - 1
 
 
-def settings(scene: Scene, history: History) -> Mapping[str, Value]:
+def settings(scene: Scene, history: History) -> Metrics:
     """Return how columns with friction between them rest, beside both limits and the springs that they have."""
     plane = scene.table(PlaneSection)
     bounds = bracket_of(plane)
@@ -140,20 +142,20 @@ def settings(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def _overhang(plane: PlaneSection) -> tuple[float, float]:
+def _overhang(plane: PlaneSection) -> NumberPair:
     pile = plane.stack[0]
     limit = harmonic(pile.count, pile.rectangle[0])
     return limit, (sum(pile.offsets) + pile.rectangle[0] / 2) / limit - 1
 
 
-def _leaning(plane: PlaneSection) -> tuple[float, float]:
+def _leaning(plane: PlaneSection) -> NumberPair:
     block = plane.block[0]
     length, thickness = block.rectangle or (math.nan, math.nan)
     limit = leaning_friction(math.radians(block.turned), length / thickness)
     return limit, 1 - friction_of(plane) / limit
 
 
-def _keystone(plane: PlaneSection) -> tuple[float, float]:
+def _keystone(plane: PlaneSection) -> NumberPair:
     """A stone that is wider below has no rest on springs without prestress; its lean over the friction's angle."""
     outline = np.array(plane.block[0].vertices)
     first, second = (float(np.ptp(outline[k : k + 2, 0])) for k in (0, 2))
@@ -161,7 +163,7 @@ def _keystone(plane: PlaneSection) -> tuple[float, float]:
     return 0.0, math.copysign(narrowing / math.atan(friction_of(plane)), -narrowing * plane.gravity[1])
 
 
-LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] = {
+LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], NumberPair]]] = {
     "standing-keyed": ("dip [°]", _keyed),
     "standing-stepped": ("dip [°]", _stepped),
     "standing-flat": ("height [m]", _bracket),
@@ -176,7 +178,7 @@ LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] 
 
 def verdict(case: Scene) -> Band:
     """Return the unbalanced share of the weight: none below the limit, above it at least a tenth of the excess."""
-    beyond = float(str(limit_of(case)["beyond"]))
+    beyond = or_nan(limit_of(case)["beyond"])
     return (LEVER * min(beyond, 1.0), 1.0) if beyond > 0 else (0.0, REST)
 
 
@@ -189,7 +191,7 @@ def bracket(case: Scene) -> Band | None:
 # ---- columns that turn ----------------------------------------------------------------------------------------------
 
 
-def turning(scene: Scene, history: History) -> Mapping[str, Value]:
+def turning(scene: Scene, history: History) -> Metrics:
     """Return the angular acceleration of keyed columns over that of rigid ones, less one, at the toe and the top.
 
     Both from a parabola through the second half of the history: what the springs give in the first instants is a
@@ -204,7 +206,7 @@ def turning(scene: Scene, history: History) -> Mapping[str, Value]:
 
     columns = [-history.columns[f"{name}.angle"] for name in moving(scene.table(PlaneSection))]
     ratios = [acceleration(column) / acceleration(exact) - 1 for column in columns]
-    return {"toe": ratios[0], "top": ratios[-1], "turn": float(exact[-1])}
+    return {"toe": ratios[0], "top": ratios[-1], "turn": exact[-1]}
 
 
 def turned_columns(scene: Scene, times: Array) -> Array:
@@ -239,22 +241,21 @@ def overlap_of_turning(case: Scene) -> Band:
 # ---- three blocks that overhang -------------------------------------------------------------------------------------
 
 
-def seats(finished: Finished) -> Mapping[str, Value]:
+def seats(runs: Runs) -> Metrics:
     """Return the forces at the inner corner of each seat over rigid ones, less one: soft, stiff, in the limit."""
-    soft, stiff, *_ = cases(OVERHANG)
+    (soft, softer), (stiff, stiffer), *_ = runs
     pile = soft.table(PlaneSection).stack[0]
     share = (sum(pile.offsets) + pile.rectangle[0] / 2) / harmonic(pile.count, pile.rectangle[0])
     weight = soft.table(PlaneSection).density * math.prod(pile.rectangle) * 9.81
-    values: dict[str, Value] = {}
+    values = {}
     for number, (_, inner) in enumerate(seat_forces(pile.count, pile.rectangle[0], share), start=1):
         upper = pile.count + 1 - number
         column = f"pile_{upper}.0-" + (f"pile_{upper - 1}.2.normal" if upper > 1 else "table.2.normal")
-        forces = [float(finished.needed_history(case.name, "dda").columns[column][-1]) for case in (soft, stiff)]
-        ratios = [force / (weight * inner) - 1 for force in forces]
-        stiffer = stiffness_of(stiff) / stiffness_of(soft)
+        ratios = [float(history.columns[column][-1]) / (weight * inner) - 1 for history in (softer, stiffer)]
+        times = stiffness_of(stiff) / stiffness_of(soft)
         values[f"soft {number}"] = ratios[0]
         values[f"stiff {number}"] = ratios[1]
-        values[f"rigid {number}"] = (stiffer * ratios[1] - ratios[0]) / (stiffer - 1)
+        values[f"rigid {number}"] = (times * ratios[1] - ratios[0]) / (times - 1)
     return values
 
 
@@ -277,15 +278,14 @@ def second_correction() -> Band:
 # ---- half a truss ---------------------------------------------------------------------------------------------------
 
 
-def at_rest(scene: Scene, history: History) -> Mapping[str, Value]:
+def at_rest(scene: Scene, history: History) -> Metrics:
     """Return turn and forces at the end over those of the closed form, less one; and the load over its limit."""
     truss = half_truss(scene)
-    loads = scene.table(PlaneSection).load
-    load = -2 * sum(one.force[1] for one in loads if one.force)
+    load = -2 * sum(one.force[1] for one in scene.table(PlaneSection).load if one.force)
     weight = truss.mass * truss.gravity
     _, most = truss.limit
     turn = -float(history.columns["half.angle"][-1])
-    values: dict[str, Value] = {"load": (load + weight) / (most + weight), "turned": turn}
+    values = {"load": (load + weight) / (most + weight), "turned": turn}
     u, _ = truss.limit
     values["beyond"] = turn - (math.atan2(truss.height, truss.length) - u)
     exact = truss.rest(load)
@@ -293,7 +293,7 @@ def at_rest(scene: Scene, history: History) -> Mapping[str, Value]:
         return values
     measured = {
         "turn": turn,
-        "thrust": float(history.columns["half.0-abutment.1.normal"][-1]),
+        "thrust": history.columns["half.0-abutment.1.normal"][-1],
         "shear": abs(float(history.columns["half.0-abutment.1.shear"][-1])),
     }
     return values | {name: value / exact[name] - 1 for name, value in measured.items()}
@@ -311,7 +311,7 @@ def snaps(case: Scene) -> Band:
     return (-math.inf, 0.0) if half_truss(case).rest(0.0) else (0.0, math.inf)
 
 
-def motion_errors(scene: Scene, history: History) -> dict[str, float]:
+def motion_errors(scene: Scene, history: History) -> NamedNumbers:
     """Return the errors at the end of the way of the centre [m] and of the turn [rad]."""
     exact = half_truss(scene).motion(np.array([history.time[-1]]))[0]
     names = ("half.x", "half.y", "half.angle")
@@ -323,7 +323,7 @@ def motion_errors(scene: Scene, history: History) -> dict[str, float]:
     return {"x": x, "y": y, "turn": turn}
 
 
-def against_motion(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_motion(scene: Scene, history: History) -> Metrics:
     """Return the errors at the end, and what the account of energies leaves over the work of the weight."""
     columns = history.columns
     balance = float(np.max(np.abs(columns["energy.balance"])) / np.max(np.abs(columns["energy.load"])))
@@ -331,9 +331,9 @@ def against_motion(scene: Scene, history: History) -> Mapping[str, Value]:
     return {**errors, **{f"size {name}": abs(error) for name, error in errors.items()}, "balance": balance}
 
 
-def drop_orders(finished: Finished) -> Mapping[str, Value]:
+def drop_orders(runs: Runs) -> Metrics:
     """Return the orders of the errors from the second finest step to the finest."""
-    errors = [motion_errors(case, finished.needed_history(case.name, "dda")) for case in cases(DROP)]
+    errors = list(itertools.starmap(motion_errors, runs))
     return {name: math.log2(abs(errors[-2][name] / errors[-1][name])) for name in errors[-1]}
 
 
@@ -347,13 +347,3 @@ def second_order() -> Band:
     frequency = math.sqrt(4 * (truss.abutment + truss.crown) / truss.mass)
     half = (frequency * case.time.step) ** 2
     return 2 - half, 2 + half
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the rows that compare two stiffnesses, and two steps."""
-    soft, stiff, *_ = (case.name for case in cases(OVERHANG))
-    drops = tuple((case.name, "dda") for case in cases(DROP))
-    return (
-        Derived(OVERHANG, "seats", ((soft, "dda"), (stiff, "dda")), seats),
-        Derived(DROP, "order", drops, drop_orders),
-    )

@@ -6,9 +6,7 @@ changes sign every step and is hardly damped; with alpha = 9/16 = (1/2 + delta)^
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, about
 from validation.theory import spectra
@@ -16,10 +14,9 @@ from validation.theory import spectra
 
 def contact_root(case: Scene) -> Band:
     """Return the spectral radius of the contact mode, to the rounding of a root near -1."""
-    radius = spectra.spectral_radius(case, spectra.contact_frequency(case))
-    return about(radius, 1e-11)
+    return about(spectra.spectral_radius(case, spectra.contact_frequency(case)), 1e-11)
 
 
-def springs(case: Scene) -> Mapping[str, Value]:
+def springs(case: Scene) -> Metrics:
     """Return p/E."""
     return {"p/E": case.contact.stiffness / case.block.young}

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import numpy as np
 from scipy.linalg import eigh
 
 from validation.metrics.values import or_nan
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, near
 from validation.theory import spectra, statics
@@ -44,17 +42,16 @@ def rocking_frequency(case: Scene) -> Band:
     M = case.block.density * np.diag([a**2, a**4 / 6, a**4 / 24])
     K = case.contact.stiffness * np.array([[2.0, a, -a / 2], [a, a * a, 0.0], [-a / 2, 0.0, a * a / 4]])
     K[2, 2] += a * a * case.block.young / 2
-    squares = eigh(K, M, eigvals_only=True)
-    return near(float(np.sqrt(squares[0])), 1e-12)
+    return near(float(np.sqrt(eigh(K, M, eigvals_only=True)[0])), 1e-12)
 
 
-def cut(case: Scene) -> Mapping[str, Value]:
+def cut(case: Scene) -> Metrics:
     """Return how many sub-blocks stand on each other, and the width of the patches that carry elements [m]."""
     _, n = case.block.subdivide or (1, 1)
     return {"n": n, "patch": case.fem.patch_width or case.block.base_length}
 
 
-def apart(case: Scene, dda: Row, fem: Row) -> Mapping[str, Value]:
+def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
     """Return the first frequency of DDA over that of elements, less one."""
     first, second = (or_nan(row.metrics.get("mode1.frequency")) for row in (dda, fem))
     return {"first frequency": first / second - 1}

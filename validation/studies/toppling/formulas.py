@@ -7,17 +7,16 @@ the friction that it needs, and as a tower whose centroid stands beyond its lowe
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from validation.metrics.rotation import crossing, increments
+from validation.runs.aliases import Data
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, about, cases, short
+from validation.suite.bands import Band, Bands, about, cases, short
 from validation.theory.friction import coefficient, sliding_acceleration
 from validation.theory.rocking import rectangle, settlement
 
@@ -29,7 +28,7 @@ def beyond(scene: Scene) -> float:
     return math.radians(scene.load.slope - scene.block.tilt) - rectangle(scene).alpha
 
 
-def static(scene: Scene, history: History) -> Mapping[str, Value]:
+def static(scene: Scene, history: History) -> Metrics:
     """Return how far the block moves in the second half of its steps, over what it slides, or its width if it stands.
 
     A step without velocities moves a sliding block by dt^2 / 2 times its acceleration.
@@ -41,7 +40,7 @@ def static(scene: Scene, history: History) -> Mapping[str, Value]:
     return {"moved": displacement / (sliding_distance if sliding_distance > 0 else rectangle(scene).width)}
 
 
-def slide(scene: Scene, history: History) -> Mapping[str, Value]:
+def slide(scene: Scene, history: History) -> Metrics:
     """Return what the sliding identity leaves, and the run-out over that of a rigid block.
 
     While both corners slip or are open u + tan(phi) v is a t^2 / 2, free motion under a = g (sin b - tan(phi) cos b).
@@ -50,15 +49,15 @@ def slide(scene: Scene, history: History) -> Mapping[str, Value]:
     v = history.displacement
     sliding_distance = sliding_acceleration(scene) * history.time**2 / 2
     return {
-        "identity": float(np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1]),
-        "run-out": float(u[-1] / sliding_distance[-1]),
+        "identity": np.max(np.abs(u + coefficient(scene) * v - sliding_distance)) / sliding_distance[-1],
+        "run-out": u[-1] / sliding_distance[-1],
     }
 
 
-def fall(scene: Scene, history: History) -> Mapping[str, Value]:
+def fall(scene: Scene, history: History) -> Metrics:
     """Return when a block has turned by `TURN` over a rigid one's time, its greatest turn, and its area."""
     rotation = -history.columns["rotation"]
-    values: dict[str, Value] = {"turned": float(np.max(np.abs(rotation)))}
+    values = {"turned": np.max(np.abs(rotation))}
     if beyond(scene) > 0:
         exact = rectangle(scene).fall_time(beyond(scene), TURN)
         values["time"] = crossing(history.time, rotation, TURN) / exact
@@ -104,7 +103,7 @@ def straight(scene: Scene) -> float:
     return (scene.time.step / rectangle(scene).fall_time(beyond(scene), TURN)) ** 2
 
 
-def let_go(case: Scene) -> dict[str, Band]:
+def let_go(case: Scene) -> Bands:
     """Return time, area and growth of a tower that is released on its lower corner, by its kind of rotation."""
     block = rectangle(case)
     grown = growth(case)
@@ -129,7 +128,7 @@ def growth(scene: Scene) -> float:
     return scene.time.step * rectangle(scene).squared_rate(beyond(scene), scene.time.duration)
 
 
-def data() -> Mapping[str, Any]:
+def data() -> Data:
     """Return the fall of the rigid tower that is released on its corner, over the time that is run."""
     (case,) = cases("toppling-fall")
     block = rectangle(case)

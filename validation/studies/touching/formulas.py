@@ -7,20 +7,20 @@ its end, so that the first force belongs to the first step that ends after the t
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from validation.engine.finished import Derived, Finished
+from validation.metrics.values import or_nan
 from validation.models.plane.canon import TOGETHER, falling, polygons
 from validation.models.plane.tables import PlaneSection
+from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
-from validation.runs.row import Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.solvers.plane.blocks import first_contact
-from validation.suite.bands import Band, cases
+from validation.suite.bands import Band, Runs, cases
 from validation.theory.corner_impact import FallingRectangle, Rebound, on_springs, rigid_impulse
 from validation.theory.first_touch import FirstTouch, first_touches, normals
 
@@ -39,7 +39,7 @@ def touch_of(scene: Scene) -> FirstTouch | None:
     return touches[0] if touches else None
 
 
-def query(scene: Scene, row: Row) -> Mapping[str, Value]:
+def query(scene: Scene, row: Row) -> Metrics:
     """Return what `dda.first_contact` says beside the roots: how much later, foot apart, and another pair or none."""
     bodies = polygons(scene)
     first, second = ((*body.centroid, 0.0, *body.velocity, body.spin) for body in bodies)
@@ -57,14 +57,14 @@ def query(scene: Scene, row: Row) -> Mapping[str, Value]:
     return {"wrong": float(foot is None), "foot": touch.foot if foot is None else foot - touch.foot, **later}
 
 
-def motion(scene: Scene, history: History) -> Mapping[str, Value]:
+def motion(scene: Scene, history: History) -> Metrics:
     """Return when the first contact pressed, in steps after the touch, and how far beside its normals [rad]."""
     columns = history.columns
     u, v = (columns[f"A.{part}"] - columns[f"A.{part}"][0] for part in ("vx", "vy"))
     pressed = np.flatnonzero(np.hypot(u, v) > TOUCHED)
     touch = touch_of(scene)
     energy = columns["energy.kinetic"]
-    gain = {"gain": float(np.max(energy) / energy[0] - 1)}
+    gain = {"gain": np.max(energy) / energy[0] - 1}
     if touch is None or not len(pressed):
         return {"missed": float((touch is None) != (not len(pressed))), **gain}
     first = int(pressed[0])
@@ -89,7 +89,7 @@ def turned_in_a_step(case: Scene) -> Band | None:
     speed = sum(math.hypot(*body.velocity) for body in bodies)
     plane = case.table(PlaneSection)
     stiffness = plane.contact.stiffness if plane.contact else 0.0
-    lightest = plane.density * min(area(block.vertices) for block in plane.assembly.blocks)
+    lightest = plane.density * min(block.area for block in plane.assembly.blocks)
     starts = speed * step * min(1.0, step**2 * stiffness / lightest * 4)
     return 0.0, 2 * step * sum(abs(body.spin) for body in bodies) + starts
 
@@ -109,7 +109,7 @@ def first_step(case: Scene) -> Band | None:
 # ---- a square that lands on two corners -----------------------------------------------------------------------------
 
 
-def landing(scene: Scene, history: History) -> Mapping[str, Value]:
+def landing(scene: Scene, history: History) -> Metrics:
     """Return how far velocity and spin after it are from those of the closed pieces, over the speed of landing."""
     first, second = polygons(scene)
     columns = history.columns
@@ -125,7 +125,7 @@ def landing(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def two_corners(arms: tuple[float, float], radius_squared: float) -> tuple[float, float]:
+def two_corners(arms: NumberPair, radius_squared: float) -> NumberPair:
     """Return the velocity and the spin over the speed at which a body leaves two springs it lands on flat.
 
     In times of sqrt(m/p): y'' = sum f, theta'' = sum a f/r^2, f = -(y + a theta) while that is positive.
@@ -166,7 +166,7 @@ def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:
     return body, on_springs(body, stiffness, shear, mu, scene.time.duration)
 
 
-def against_springs(scene: Scene, history: History) -> Mapping[str, Value]:
+def against_springs(scene: Scene, history: History) -> Metrics:
     """Return errors of the velocities after the impact beside the exact motion on the same springs, and impulses."""
     body, exact = rebound(scene)
     columns = history.columns
@@ -193,20 +193,17 @@ def against_springs(scene: Scene, history: History) -> Mapping[str, Value]:
     }
 
 
-def rigid(scene: Scene) -> dict[str, float]:
+def rigid(scene: Scene) -> NamedNumbers:
     """Return the impulses of the rigid limit, of the same friction, whose springs along the plane are far stiffer."""
     contact = scene.table(PlaneSection).contact
     along, across = rigid_impulse(falling(scene), (contact.friction_coefficient if contact else None) or 0.0, 1.0)
     return {"rigid J_t": along, "rigid J_n": across}
 
 
-def in_the_limit(finished: Finished) -> Mapping[str, Value]:
+def in_the_limit(runs: Runs) -> Metrics:
     """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
-    soft, stiff = (
-        float(str(against_springs(case, finished.needed_history(case.name, "dda"))["J_n"])) / smooth_limit() - 1
-        for case in cases(STIFF)
-    )
-    first, second = (case.table(PlaneSection).contact for case in cases(STIFF))
+    soft, stiff = (or_nan(against_springs(*run)["J_n"]) / smooth_limit() - 1 for run in runs)
+    first, second = (case.table(PlaneSection).contact for case, _ in runs)
     root = math.sqrt(second.stiffness / first.stiffness) if first and second else math.nan
     return {"soft": soft, "stiff": stiff, "rigid": (root * stiff - soft) / (root - 1)}
 
@@ -221,12 +218,6 @@ def square_of_the_first() -> Band:
     _, exact = rebound(next(iter(cases(STIFF))))
     half = (exact.impulse[1] / smooth_limit() - 1) ** 2
     return -half, half
-
-
-def derived() -> tuple[Derived, ...]:
-    """Return the row that compares two stiffnesses."""
-    stiff = tuple((case.name, "dda") for case in cases(STIFF))
-    return (Derived(STIFF, "limit", stiff, in_the_limit),)
 
 
 def events_in_steps(case: Scene) -> Band:

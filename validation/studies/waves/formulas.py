@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
-from validation.engine.finished import Derived
+from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
+from validation.runs.aliases import NamePair
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
-from validation.studies.waves import oblique, rows
+from validation.studies.waves import rows
+from validation.studies.waves.oblique import energies as energies
+from validation.studies.waves.oblique import reflections as reflections
 from validation.studies.waves.rows import curves as curves
-from validation.suite.bands import APART, gate
 
 SITE = "waves-site"
 USUAL = {"time.alpha": 0.5, "time.delta": 1.0, "time.step": 0.01, "time.steps": 900}
-CONVERGED = 0.005  # of the surface's maximum and of the whole history
 
 
 def usual_site() -> Scene:
@@ -35,7 +36,7 @@ def scenes() -> tuple[str | Scene, ...]:
 
 
 @functools.cache
-def derived() -> tuple[Derived, ...]:
+def derived() -> DerivedRows:
     """Return the rows that are measured on histories."""
     needs = tuple((wave.scene.name, wave.solver) for wave in rows.averaged())
     return (
@@ -43,28 +44,15 @@ def derived() -> tuple[Derived, ...]:
         *(wave.row(rows.parted) for wave in rows.jointed()),
         *(wave.row(rows.sent_back) for wave in rows.returned()),
         Derived(needs[-1][0], "order", needs, rows.joint_order),
-        *oblique.derived(),
     )
 
 
 def gates() -> tuple[Gate, ...]:
-    """Return all gates of the study."""
-    waves = (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates(), *oblique.gates())
-    return (*waves, *site())
+    """Return the gates on waves that are measured."""
+    return (*rows.travelling_gates(), *rows.joint_gates(), *rows.base_gates())
 
 
-def site() -> Iterator[Gate]:
-    """Yield the gates on the site against the exact layers."""
-    why = (
-        "40 blocks a wavelength of 8 Hz in the softest layer, c dt/h at most 0.7, average acceleration: closed forms "
-        "give a phase error below 1e-3 a wavelength at 8 Hz and far below at what carries the motion"
-    )
-    for solver in ("dda", "fem"):
-        for metric in ("displacement.l2", "displacement.max", "pressure.l2", "pressure.max"):
-            yield gate(SITE, (solver, "layers"), metric, (APART, CONVERGED), why, uncertainty=1e-4)
-
-
-def fem_too() -> tuple[tuple[str, str], ...]:
+def fem_too() -> tuple[NamePair, ...]:
     """Return the cases that line elements run beside the blocks."""
     return tuple(
         dict.fromkeys((w.scene.name, w.solver) for w in (*rows.travelling(), *rows.jointed()) if w.solver == "fem")
@@ -77,14 +65,14 @@ def all_cases() -> Iterator[Scene]:
         yield from (load_scene(declared) if isinstance(declared, str) else declared).expand()
 
 
-def closed(case: Scene) -> Mapping[str, Value]:
+def closed(case: Scene) -> Metrics:
     """Return c dt/h of the lowest layer, its glue over that of its own blocks, and the weights of the scheme."""
     column = column_of(case)
     layer = column.layer[0]
     height = layer.thickness / layer.blocks
     speed = math.sqrt(column.modulus(layer) / layer.density)
     time = case.time
-    values: dict[str, Value] = {
+    values: NewMetrics = {
         "courant": round(speed * time.step / height, 6),
         "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
     }
@@ -97,9 +85,9 @@ def sites() -> Iterator[Scene]:
     yield from usual_site().expand()
 
 
-def largest(case: Scene, history: History) -> Mapping[str, Value]:
+def largest(case: Scene, history: History) -> Metrics:
     """Return the largest displacement of the surface [m] and the largest stress on the base [Pa]."""
     return {
-        "displacement": float(np.abs(history.displacement).max()),
-        "pressure": float(np.abs(history.contact_pressure).max()),
+        "displacement": np.abs(history.displacement).max(),
+        "pressure": np.abs(history.contact_pressure).max(),
     }

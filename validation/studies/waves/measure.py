@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.metrics.transform import Complex, spectrum
+from validation.metrics.transform import spectrum
+from validation.runs.aliases import NumberPair
 from validation.runs.history import History
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
@@ -47,7 +48,7 @@ class Guide:
         """Wavenumber of the closed form [rad/m]."""
         return complex(self.column.wavenumber(self.stepping.squared_frequency(self.omega)))
 
-    def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> tuple[float, float]:
+    def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> NumberPair:
         """Return the error of the phase speed of a wavenumber, and the share left after some wavelengths."""
         distance = wavelengths * 2 * np.pi * self.speed / self.omega
         return self.omega / k.real / self.speed - 1, float(np.exp(-abs(k.imag) * distance))
@@ -59,7 +60,7 @@ class Guide:
     def measured(self, history: History, names: Sequence[str]) -> complex:
         """Return k from three equal steps along the column, x- + x+ = 2 cos(kh) x [rad/m]."""
         low, middle, high = self.amplitudes(history, names)
-        sine: Complex = np.sqrt((2 * middle - low - high) / middle) / 2
+        sine = np.sqrt((2 * middle - low - high) / middle) / 2
         return complex(2 * np.arcsin(sine) / self.column.height)
 
     def parts(self, history: History, names: Sequence[str], heights: ArrayLike) -> tuple[complex, complex]:

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import functools
 import itertools
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.engine.finished import Derived, Finished, from_history
+from validation.engine.finished import Derived, Finished, derived_row
 from validation.gates.gate import Gate
 from validation.runs.history import History
-from validation.runs.row import Value
+from validation.runs.row import Metrics
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
 from validation.studies.waves.measure import Guide, joint_parts
@@ -64,9 +64,11 @@ class Wave:
         """Its closed forms."""
         return Guide.of(self.scene, self.blocks)
 
-    def row(self, compute: Callable[[Wave, History], Mapping[str, Value]]) -> Derived:
+    def row(self, compute: Callable[[Wave, History], Metrics]) -> Derived:
         """Return the derived row that a function of the wave and its history computes."""
-        return from_history(self.scene, self.solver, self.name, lambda _, history: compute(self, history))
+        return derived_row(
+            self.scene.name, self.name, [self.scene], lambda _, history: compute(self, history), [self.solver]
+        )
 
 
 @functools.cache
@@ -83,7 +85,7 @@ def travelling() -> tuple[Wave, ...]:
     return tuple(waves_measured)
 
 
-def travelled(wave: Wave, history: History) -> Mapping[str, Value]:
+def travelled(wave: Wave, history: History) -> Metrics:
     """Return the measured error of the phase speed, and the share left after ten wavelengths."""
     speed, remaining_share = wave.guide.speed_error_and_share(wave.guide.measured(history, COLUMNS))
     return {"wave.speed_error": speed, "wave.left": remaining_share}
@@ -133,7 +135,7 @@ def echoes(blocks: int, delta: float) -> float:
     return 1.6 if blocks <= 20 and delta == 0.5 else 0.6
 
 
-def parted(wave: Wave, history: History) -> Mapping[str, Value]:
+def parted(wave: Wave, history: History) -> Metrics:
     """Return |T|, |R| and the sum of their squares."""
     T, R = joint_parts(wave.guide, wave.scene, history)
     return {"joint.transmitted": abs(T), "joint.reflected": abs(R), "joint.energy": abs(T) ** 2 + abs(R) ** 2}
@@ -154,7 +156,7 @@ def joint_gates() -> Iterator[Gate]:
             yield Gate(*name, "joint.energy", *about(1.0, JOINT), energy)
 
 
-def joint_order(finished: Finished) -> Mapping[str, Value]:
+def joint_order(finished: Finished) -> Metrics:
     """Return the order in 1/N at which |T| tends to that of the continuum, fitted with its sign."""
     errors_by_blocks = []
     for wave in averaged():
@@ -171,12 +173,6 @@ def averaged() -> list[Wave]:
     return [w for w in jointed() if w.solver == "dda" and w.scene.time.delta == 0.5]
 
 
-def order_gate() -> Gate:
-    """Return the gate on the order."""
-    why = "blocks are linear elements and the scheme is of second order: 2; a tenth for the next order"
-    return gate(averaged()[-1].scene, "order", "joint.order", (1.9, 2.1), why)
-
-
 # ---- transmitting base ----------------------------------------------------------------------------------------------
 
 
@@ -186,7 +182,7 @@ def returned() -> tuple[Wave, ...]:
     return tuple(itertools.starmap(Wave, itertools.product(cases("waves-base"), BASE)))
 
 
-def sent_back(wave: Wave, history: History) -> Mapping[str, Value]:
+def sent_back(wave: Wave, history: History) -> Metrics:
     """Return |R| of the base."""
     up, down = wave.guide.parts(history, COLUMNS[:2], column_of(wave.scene).heights)
     return {"base.reflected": abs(up / down)}
@@ -206,7 +202,7 @@ def base_gates() -> Iterator[Gate]:
 
 def curves() -> dict[str, list[dict[str, object]]]:
     """Return the closed forms of welded blocks for each scheme and c dt/h, over blocks a wavelength."""
-    drawn: list[dict[str, object]] = []
+    drawn = []
     blocks = np.geomspace(7.5, 110, 60)
     for case in cases("waves-blocks"):
         guide = Guide.of(case, 10)
