@@ -1,7 +1,7 @@
 """The motion of a block from switch to switch, with the base below it and impacts on a rigid contact.
 
 An impact on a rigid contact changes the rates at an instant that is enclosed like that of a switch. Where impacts
-follow each other as short hops they are followed in balls, each number by itself, until they are over or until infinitely many
+follow each other as short hops, each number is followed in its own ball until they are over or until infinitely many
 of them are proven to accumulate (`block_impacts`).
 """
 
