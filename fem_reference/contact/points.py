@@ -109,8 +109,8 @@ def build(problem: Problem, full: bool = False) -> ContactModel:
     ValueError
         If the block cannot be meshed, or its base is not where the block stands at t = 0.
     """
-    if problem.motion is not None and np.any(start := problem.motion(np.zeros(1))[0]):
-        raise ValueError(f"motion: must be zero at t = 0 where contact opens, got {tuple(start.tolist())}")
+    begun = moved_base(problem.motion, np.zeros(1), np.zeros((1, 1))).ravel().tolist()
+    require(not any(begun), "motion", "must be zero at t = 0 where contact opens", begun)
     return column(problem) if column_applies(problem) and not full else whole(problem)
 
 
@@ -149,7 +149,7 @@ def whole(problem: Problem) -> ContactModel:
     """
     assembled = assemble(problem)
     basis = assembled.basis
-    rule = merged(problem, basis, base_rule(problem, basis, block_mesh(problem).base))
+    rule = base_rule(problem, basis, block_mesh(problem).base)
     return ContactModel(
         problem=problem,
         M=assembled.M,
@@ -165,15 +165,12 @@ def whole(problem: Problem) -> ContactModel:
 
 
 def base_rule(problem: Problem, basis: Basis, facets: Indices) -> elasticity.Rule:
-    """Points of the base with weights; a node that two facets share comes twice."""
-    if problem.foundation != "distributed":
-        return elasticity.foundation_rule(problem, basis, facets)
-    lumped = elasticity.LUMPED[problem.degree]
-    return elasticity.edge_rule(basis.mesh, facets, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
-
-
-def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> elasticity.Rule:
-    """The rule with each place once, in the order along the base."""
+    """Points of the base with weights, each place once, in the order along it."""
+    if problem.foundation == "distributed":
+        lumped = elasticity.LUMPED[problem.degree]
+        rule = elasticity.edge_rule(basis.mesh, facets, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
+    else:
+        rule = elasticity.foundation_rule(problem, basis, facets)
     rule, along = elasticity.in_order(basis, rule, problem.tangent)
     fresh = np.append(True, np.diff(along) > SAME_PLACE * problem.base_length)
     weights = np.add.reduceat(rule.weights, np.flatnonzero(fresh))

@@ -12,6 +12,7 @@ from fem_reference.contact.iteration import CONVERGED, UNSETTLED, fall_back
 from fem_reference.contact.law import Law, States
 from fem_reference.contact.march import SUMS, ContactStage, ContactState, Record, Watch, load, march, part_of
 from fem_reference.contact.system import ContactSystem
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.stages import Stage
 from fem_reference.scheme.newmark import Operator, Work, inverses, operator, start_velocity
@@ -58,8 +59,9 @@ class ContactStepper:
     work: Work = field(default_factory=Work)
 
     def __post_init__(self) -> None:
-        if self.rule == "implicit" and (self.scheme.alpha, self.scheme.delta) != AVERAGE:
-            raise ValueError(f"alpha, delta: must be {AVERAGE} for implicit contact, got {self.scheme}")
+        is_average = (self.scheme.alpha, self.scheme.delta) == AVERAGE
+        is_sound = is_average or self.rule != "implicit"
+        require(is_sound, "alpha, delta", f"must be {AVERAGE} for implicit contact", self.scheme)
         system = self.system
         if system.to_modes is not None:
             self.work.factorisations += 1

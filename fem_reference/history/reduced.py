@@ -154,8 +154,7 @@ def _stiffness(stepper: Stepper, shapes: Array) -> Array:
     extended = shapes.astype(np.longdouble)
     forces = (stepper.K.astype(np.longdouble) @ extended.T).T
     scale = stepper.scheme.stages[0].stiffness_weight * stepper.scheme.step**2
-    kappa: Array = (scale * np.sum(extended * forces, axis=1)).astype(float)
-    return kappa
+    return np.asarray((scale * np.sum(extended * forces, axis=1)).astype(float))
 
 
 def history(modes: Modes, scheme: Scheme, steps: int) -> Array:

@@ -126,11 +126,7 @@ def solve_unilateral(
 
 def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilateral) -> ContactState:
     """The block unstrained with one velocity upwards, all of its points a gap above the base."""
-    count = len(stepper.system.rows.compliance)
-    points = len(model.share)
-    place = np.zeros(count)
-    place[:points] = contact.gap
-    states = np.full(count, INSIDE, dtype=np.int8)
-    if contact.gap > 0:
-        states[:points] = AT_LOWER
+    is_normal = np.arange(len(stepper.system.rows.compliance)) < len(model.share)
+    place = np.where(is_normal, contact.gap, 0.0)
+    states = np.where(place > 0, AT_LOWER, INSIDE).astype(np.int8)
     return stepper.start(stepper.system.unknowns(contact.velocity * model.upwards), place, states)

@@ -239,9 +239,8 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     ValueError
         If the point lies outside the mesh.
     """
-    rule = _cells_at(basis, point)
-    u, v = values(basis, _first(rule))
-    return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
+    u, v = values(basis, point_rule(basis, point))
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, _cells_at(basis, point))
 
 
 def point_rule(basis: Basis, point: Array) -> Rule:
@@ -252,10 +251,7 @@ def point_rule(basis: Basis, point: Array) -> Rule:
     ValueError
         If the point lies outside the mesh.
     """
-    return _first(_cells_at(basis, point))
-
-
-def _first(rule: Rule) -> Rule:
+    rule = _cells_at(basis, point)
     return Rule(rule.points[:, :1], rule.cells[:1], np.ones(1))
 
 
@@ -298,5 +294,4 @@ def _reference(basis: Basis, point: Array, cells: Indices) -> Array:
         for _ in range(12):
             inverse = basis.mapping.invDF(local, cells)
             local = local + np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
-    result: Array = local[:, :, 0]
-    return result
+    return np.asarray(local[:, :, 0])

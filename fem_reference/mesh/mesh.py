@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from skfem import Mesh, MeshQuad, MeshTri
 
 from fem_reference.mesh.files import read_mesh
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Indices, Problem
 
 
@@ -88,9 +89,7 @@ def from_file(problem: Problem) -> TaggedMesh:
     origin = np.asarray(problem.vertices[problem.base], float)
     mesh = type(mesh)(mesh.p - origin[:, None], mesh.t).with_boundaries(mesh.boundaries or {})
     tags = mesh.boundaries or {}
-    for name in ("base", "top"):
-        if name not in tags:
-            raise ValueError(f"mesh: must tag the edges 'base' and 'top', {problem.mesh!r} has {sorted(tags)}")
+    require({"base", "top"} <= set(tags), "mesh", f"must tag 'base' and 'top' in {problem.mesh!r}", sorted(tags))
     tagged = TaggedMesh(mesh, np.asarray(tags["base"]), np.asarray(tags["top"]))
     _check_outline(problem, tagged)
     return tagged

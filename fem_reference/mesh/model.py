@@ -27,6 +27,7 @@ from skfem.models.poisson import mass as line_mass
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import TaggedMesh, block_mesh, structured
 from fem_reference.problem import digits
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Flags, Problem
 
 CORNER_WARNING = (
@@ -155,9 +156,8 @@ def line_of(problem: Problem) -> ColumnLine:
     ValueError
         If the block is not an upright rectangle.
     """
-    if problem.rectangle is None:
-        raise ValueError(f"vertices: must be an upright rectangle for one column, got {problem.vertices!r}")
-    width, height = problem.rectangle
+    width, height = problem.rectangle or (0.0, 0.0)
+    require(width > 0, "vertices", "must be an upright rectangle for one column", problem.vertices)
     mesh = MeshLine(height * np.arange(problem.elements + 1) / problem.elements)
     basis = Basis(mesh, (ElementLineP1 if problem.degree == 1 else ElementLineP2)())
     y = basis.doflocs[0]

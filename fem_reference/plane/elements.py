@@ -107,12 +107,7 @@ class BodyElements:
         parts = [_displacement.assemble(self.basis, x_part=x, y_part=y) for x, y in ((1.0, 0.0), (0.0, 1.0))]
         u_x, u_y, v_x, v_y = (_gradient.assemble(self.basis, i=i, j=j) for i in (0, 1) for j in (0, 1))
         parts += [(v_x - u_y) / 2, u_x, v_y, u_y + v_x]
-        return np.array(parts) / self.area
-
-    @cached_property
-    def area(self) -> float:
-        """Area of the mesh [m2]."""
-        return float(self.basis.dx.sum())
+        return np.array(parts) / float(self.basis.dx.sum())
 
     @property
     def means(self) -> Array:

@@ -102,8 +102,7 @@ class Problem(Elastic):
     def outline(self) -> Array:
         """Corners from the start of the base on, relative to that point, shape (count, 2) [m]."""
         corners = np.roll(np.asarray(self.vertices, float), -self.base, axis=0)
-        relative: Array = corners - corners[0]
-        return relative
+        return np.asarray(corners - corners[0])
 
     @cached_property
     def base_length(self) -> float:
@@ -167,14 +166,12 @@ class Problem(Elastic):
     @cached_property
     def tangent(self) -> Array:
         """Unit vector along the base, shape (2,)."""
-        t: Array = self.outline[1] / self.base_length
-        return t
+        return np.asarray(self.outline[1] / self.base_length)
 
     @cached_property
     def normal(self) -> Array:
         """Unit vector normal to the base, into the block, shape (2,)."""
-        n: Array = np.array([-self.tangent[1], self.tangent[0]])
-        return n
+        return np.array([-self.tangent[1], self.tangent[0]])
 
     @cached_property
     def _cross(self) -> tuple[Array, Array]:
@@ -191,8 +188,7 @@ class Problem(Elastic):
     def centroid(self) -> Array:
         """Area centroid relative to the start of the base, shape (2,) [m]."""
         cross, sums = self._cross
-        point: Array = cross @ sums / (6 * self.area)
-        return point
+        return np.asarray(cross @ sums / (6 * self.area))
 
     @property
     def rectangle(self) -> tuple[float, float] | None:

@@ -64,8 +64,7 @@ def _carried(problem: Problem, model: Model) -> Array:
     component = model.places[2]
     motion = problem.motion
     ways = [i for i, part in enumerate(((), ()) if motion is None else (motion.x, motion.y)) if any(part)] or [1]
-    inertia: Array = model.M @ np.isin(component, ways).astype(float)
-    return inertia
+    return np.asarray(model.M @ np.isin(component, ways).astype(float))
 
 
 def lowest(K: csr_array, M: csr_array, count: int, shift: float = 0.0) -> tuple[Array, Array]:

@@ -41,8 +41,7 @@ class Work:
 
         def solve(right: Array) -> Array:
             self.solves += 1
-            solution: Array = lu.solve(right)
-            return solution
+            return np.asarray(lu.solve(right))
 
         return solve
 
