@@ -57,8 +57,7 @@ class World:
         self.turns = [start[2] for start in pile.starts]
 
     def _shape(self, half_width, half_depth, half_height):
-        extents = [half_width, half_depth, half_height]
-        return self.bullet.createCollisionShape(self.bullet.GEOM_BOX, halfExtents=extents)
+        return self.bullet.createCollisionShape(self.bullet.GEOM_BOX, halfExtents=[half_width, half_depth, half_height])
 
     def _linked(self, base, joints, masses, shape):
         """Return a body of links on joints, the last of which has the shape; its base does not move."""
@@ -84,7 +83,7 @@ class World:
     def _ground(self):
         """Return a ground that is a box, and its link; as a multi-body on a joint where it moves."""
         pile = boxes_of(self.scene)
-        left, right = boxes_of(self.scene).ends
+        left, right = pile.ends
         shape = self._shape((right - left) / 2, THICKNESS, THICKNESS / 2)
         position = [(left + right) / 2, 0.0, -THICKNESS / 2]
         if pile.base_amplitude:
@@ -97,7 +96,7 @@ class World:
         self._set(body, link)
         if pile.stiffness is not None:
             # A damping of zero is none; the share of the box's own is set to zero as well.
-            self._change(body, link, contactStiffness=pile.stiffness / CORNERS, contactDamping=0.0)
+            self.bullet.changeDynamics(body, link, contactStiffness=pile.stiffness / CORNERS, contactDamping=0.0)
         return body, link
 
     def _free(self, box, start):
@@ -128,7 +127,7 @@ class World:
         along, up = box.velocity
         for joint, (value, velocity) in enumerate(((0.0, along), (0.0, up), (angle, box.spin))):
             self.bullet.resetJointState(body, joint, value, velocity)
-        self._change(body, BASE, linearDamping=0.0, angularDamping=0.0)
+        self.bullet.changeDynamics(body, BASE, linearDamping=0.0, angularDamping=0.0)
         self._set(body, len(joints) - 1)
         return body
 
@@ -136,12 +135,9 @@ class World:
         """Set friction and restitution; a pair has the product of its two coefficients."""
         pile = boxes_of(self.scene)
         restitution = 0.0 if pile.stiffness is not None else pile.rebound  # a spring returns what it took
-        self._change(
+        self.bullet.changeDynamics(
             body, link, lateralFriction=math.sqrt(pile.friction_coefficient), restitution=math.sqrt(restitution)
         )
-
-    def _change(self, body, link, **values):
-        self.bullet.changeDynamics(body, link, **values)
 
     def advance(self, start, step):
         """Make one step of Bullet, and follow the angles of boxes that are free in space, which are folded at pi."""

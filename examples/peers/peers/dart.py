@@ -29,7 +29,7 @@ class World:
             options.mEnabled = False
             self.world.setDeactivationOptions(options)
         # A box and not a plane: on DART's PlaneShape a box gets fewer than four points of contact and turns about them.
-        left, right = boxes_of(scene).ends
+        left, right = self.boxes.ends
         self.ground, _ = self._body("ground", (right - left, 1.0, GROUND_DEPTH))
         self._place(self.ground, ((left + right) / 2, -0.5, 0.0), (0.0, 0.0, 0.0))
         # The velocity is prescribed: contact forces do not move it.

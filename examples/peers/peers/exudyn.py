@@ -14,7 +14,6 @@ from peers.boxes import corners_of, named, on_endless_ground, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 
-PACKAGE = "exudyn"
 RECIPE = "pip install exudyn==1.13.6"
 DEFAULT_STEP = 0.01  # s: endTime 1 in numberOfSteps 100, the defaults of its TimeIntegrationSettings
 EARTH = 9.81  # m/s2
@@ -30,7 +29,7 @@ class Exudyn(ExternalProgram):
     """Exudyn with a contact stiffness, a friction and an integrator chosen for accuracy."""
 
     program = "Exudyn"
-    package = PACKAGE
+    package = "exudyn"
     recipe = RECIPE
     model = "planar rigid bodies; spheres at their corners on triangles: penalty contact, impact model 2"
     own_step = 5e-5  # s

@@ -19,7 +19,6 @@ from peers.boxes import on_endless_ground, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 
-PACKAGE = "compas_lmgc90"
 RECIPE = "pip install compas==2.15.1 && pip install --no-deps compas_lmgc90==0.1.11"
 DEFAULT_STEP = 1e-2  # s: dt of compas_lmgc90.Solver
 DEFAULT_ALERT = 1e-3  # m: of its contact_law
@@ -36,7 +35,7 @@ class LMGC90(ExternalProgram):
     """LMGC90 at a step and a distance of detection chosen for accuracy."""
 
     program = "LMGC90 (compas_lmgc90)"
-    package = PACKAGE
+    package = "compas_lmgc90"
     recipe = RECIPE
     model = "polyhedra kept in a plane; IQS_CLB, with restitution RST_CLB, with stiffness ELASTIC_REPELL_CLB"
     own_step = 1e-3  # s

@@ -13,7 +13,7 @@ from peers.programs import ExternalProgram
 from validation.scenes import features
 from validation.solvers.columns.elements import ground_of
 
-PACKAGE, RECIPE = "openseespy", "pip install openseespy==3.7.1.2"
+RECIPE = "pip install openseespy==3.7.1.2"
 RIGID = 1e-4  # strain by weight and impact up to which a block that turns is taken for rigid
 COARSEST, FINER = 2, 4  # sub-steps in a step at first, and how many times more in the next round
 ENOUGH = 1e-3  # relative change of a history by the last round
@@ -33,7 +33,7 @@ class OpenSees(ExternalProgram):
     """OpenSees, its sub-steps refined until the history stays."""
 
     program = "OpenSees"
-    package = PACKAGE
+    package = "openseespy"
     recipe = RECIPE
     model = MODEL
     handles = (
