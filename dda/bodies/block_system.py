@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import D_COLUMNS, free_block
-from dda.bodies.joints import FIXED, Joint, gap_groups
+from dda.bodies.joints import FIXED, Joint, Point, gap_groups
 from dda.linear import elimination
 from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
@@ -36,9 +36,9 @@ class SurfaceLoad:
     """A uniform traction on a straight piece of a block's boundary, switched on at t = 0."""
 
     block: int
-    start: tuple[float, float]  # [m]
-    end: tuple[float, float]  # [m]
-    traction: tuple[float, float]  # in x and y [Pa]
+    start: Point  # [m]
+    end: Point  # [m]
+    traction: Point  # in x and y [Pa]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +53,12 @@ class BlockSystem:
 
     blocks: Sequence[Block]
     joints: Sequence[Joint]
-    observed: tuple[float, float] | None = None  # point whose displacement is reported, the mean where blocks meet [m]
+    observed: Point | None = None  # point whose displacement is reported, the mean where blocks meet [m]
     base_length: float = 1.0  # a, over which the supports' normal force is spread [m]
     loads: Sequence[SurfaceLoad] = ()
     gravity: float = 0.0  # downwards [m/s^2]
     motion: BaseMotion | None = None  # of all that is fixed
-    base_normal: tuple[float, float] = (0.0, 1.0)  # unit normal of the supports, into the blocks
+    base_normal: Point = (0.0, 1.0)  # unit normal of the supports, into the blocks
     slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
@@ -131,11 +131,11 @@ class BlockSystem:
             F[load.block] += without_rounding(acting, np.max(np.abs(acting)) * lever)
         return F.ravel()
 
-    def blocks_at(self, point: tuple[float, float]) -> list[int]:
+    def blocks_at(self, point: Point) -> list[int]:
         """Return the numbers of the blocks that hold a point, their boundaries included."""
         return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(point))]
 
-    def rows_at(self, point: tuple[float, float]) -> Array:
+    def rows_at(self, point: Point) -> Array:
         """Return the rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
 
         Raises
@@ -254,20 +254,11 @@ class Equations:
             return self
         modes = reached[: len(self.k)]
         gaps = reached[len(self.k) :]
-        return replace(
-            self,
-            k=self.k[modes],
-            shapes=self.shapes[:, modes],
-            rigid=self.rigid[modes],
-            B=self.B[gaps][:, modes],
-            G=self.G[gaps],
-            kappa=self.kappa[gaps][:, gaps],
-            C=self.C[gaps][:, gaps],
-            F=self.F[modes],
-            inertia=self.inertia[modes],
-            observers={name: row[modes] for name, row in self.observers.items()},
-            pressure=self.pressure[gaps],
-        )
+        kept = {name: getattr(self, name)[modes] for name in ("k", "rigid", "F", "inertia")}
+        kept |= {name: getattr(self, name)[gaps] for name in ("G", "pressure")}
+        kept |= {name: getattr(self, name)[gaps][:, gaps] for name in ("kappa", "C")}
+        observers = {name: row[modes] for name, row in self.observers.items()}
+        return replace(self, shapes=self.shapes[:, modes], B=self.B[gaps][:, modes], observers=observers, **kept)
 
     def rows(self, columns: Sequence[str]) -> ArrayPair:
         """Return the rows of some columns by z and by lambda."""

@@ -159,9 +159,9 @@ def make_linear_stage(
 ) -> Solved:
     """Go to the end of a stage as `make_column_stage` does, in arrays, where no row opens or slips.
 
-    Nothing is searched, and the matrix of the rows is factorised once, in room that a band leaves unused.
+    Nothing is searched: the rows are one elimination.
     """
-    from scipy.linalg.lapack import dpttrf, dpttrs
+    from scipy.linalg.lapack import dptsv
 
     body = march.body
     room = march.room
@@ -183,10 +183,8 @@ def make_linear_stage(
     )
     march.work.q[:] = before.rows.opening + moved
     hold_base(march, stage, length, start, before, after)
-    factor = length.flexible.paired
-    if factor[0, 0] == 0:
-        factor[0], factor[1, :-1], _ = dpttrf(length.flexible.W[0] + march.laws.compliance, length.flexible.W[1, :-1])
-    force = dpttrs(factor[0], factor[1, :-1], -march.work.q)[0]
+    W = length.flexible.W
+    force = dptsv(W[0] + march.laws.compliance, W[1, :-1], -march.work.q)[2]
     room.pushed[:] = np.bincount(modes.ravel(), (body.weight * force[:, None]).ravel(), len(room.pushed))
     after.rows.force[:] = force
     after.rows.opening[:] = -march.laws.compliance * force

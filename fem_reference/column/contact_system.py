@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import block_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
@@ -22,8 +21,8 @@ from fem_reference.contact.iteration import CONVERGED, fall_back, find_contact
 from fem_reference.contact.law import AT_LOWER, INSIDE, Law, States, equations_of
 from fem_reference.contact.march import ContactState
 from fem_reference.contact.stepper import SINGLY_UNIQUE, ContactStepper
-from fem_reference.contact.system import ContactSystem, opening_rows, slipping_rows
-from fem_reference.problem.problem import Array, Scheme
+from fem_reference.contact.system import ContactRows, ContactSystem, opening_rows, slipping_rows
+from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.scheme.stage import Motion
 
 TOGETHER = 2
@@ -115,9 +114,7 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, model: Model
     opens = column.law == "unilateral"
     place = np.array([contact.gap for contact in column.contacts]) if opens else np.zeros(n)
     states = np.full(n, AT_LOWER if opens else INSIDE, dtype=np.int8)
-    V = _velocities(column, model.mesh)[model.free]
-    if system.to_modes is not None:
-        V = system.to_modes @ V
+    V = system.unknowns(_velocities(column, model.mesh)[model.free])
     D = np.zeros_like(V)
     force = np.zeros(n)
     if column.settled:
@@ -133,7 +130,7 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, model: Model
 
 
 def _at_once(
-    system: ContactSystem, states: States, touching: NDArray[np.intp], mass: Any, A: Array, V: Array, force: Array
+    system: ContactSystem, states: States, touching: Indices, mass: Any, A: Array, V: Array, force: Array
 ) -> tuple[Array, Array]:
     """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once.
 
@@ -156,17 +153,8 @@ def _at_once(
     B = system.B[touching] if system.to_modes is not None else system.B[touching].toarray()
     mobility = np.array([mass * row for row in B]).T
     count = len(touching)
-    law = Law(
-        W=B @ mobility,
-        compliance=rows.compliance[touching],
-        lower=rows.lower[touching],
-        upper=rows.upper[touching],
-        friction=np.zeros(count),
-        partner=np.arange(count),
-        slips=rows.slips[touching],
-        limit=TOGETHER * count + 3,
-        single_limit=SINGLY_UNIQUE * count,
-    )
+    held = ContactRows._make(part[touching] for part in rows)._replace(partner=np.arange(count))
+    law = Law(B @ mobility, *held, limit=TOGETHER * count + 3, single_limit=SINGLY_UNIQUE * count)
     q = B @ A - system.ground[touching, 0] * system.start_parts[2]
     begun = states[touching]
     equations = equations_of(law, begun, np.ones(count))
@@ -182,16 +170,13 @@ def _velocities(column: ContactColumn, mesh: LineMesh) -> Array:
     """Velocity of each unknown at t = 0: that of its stratum, between two the mean by their masses."""
     V = np.zeros(mesh.size)
     for run in mesh.parts:
-        nodes = run.basis.mesh.p[0]
-        ends = nodes[run.basis.mesh.t]
+        ends = run.basis.mesh.p[0][run.basis.mesh.t]
         stratum = np.searchsorted(column.ground.tops, ends.mean(axis=0))
-        share = run.densities * abs(ends[1] - ends[0])
-        momentum = np.zeros(run.size)
-        mass = np.zeros(run.size)
-        for local in run.basis.element_dofs:
-            np.add.at(momentum, local, share * np.asarray(column.velocities)[stratum])
-            np.add.at(mass, local, share)
-        V[run.first : run.first + run.size] = momentum / mass
+        dofs = run.basis.element_dofs
+        share = np.broadcast_to(run.densities * np.ptp(ends, axis=0), dofs.shape)
+        momentum = share * np.asarray(column.velocities)[stratum]
+        weights = [np.bincount(dofs.ravel(), part.ravel()) for part in (momentum, share)]
+        V[run.first : run.first + run.size] = weights[0] / weights[1]
     return V
 
 

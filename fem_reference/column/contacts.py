@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from time import perf_counter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_reference.column.contact_model import ContactColumn
 from fem_reference.column.contact_system import column_at_start, model_of, stepper_of, system_of
@@ -16,6 +15,7 @@ from fem_reference.column.stepping import MEAN_VELOCITY, observed_by
 from fem_reference.contact import compilation
 from fem_reference.contact.driver import OUTCOMES, histories
 from fem_reference.contact.iteration import CONVERGED, NONE, OVERFLOW
+from fem_reference.contact.law import States
 from fem_reference.contact.march import Record
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Scheme
@@ -29,7 +29,7 @@ class ColumnContactResult(Result):
     """Histories of the steps that were reached; element 0 is step 1."""
 
     step_solves: Array  # solutions of the contacts in each step, the confirming one included [-], shape (steps,)
-    states: NDArray[np.int8]  # (contacts, steps)
+    states: States  # (contacts, steps)
     openings: Array  # gap y, or slip r [m], (contacts, steps)
     mean_velocity: Array  # of the centre of mass [m/s], (steps,)
 

@@ -13,12 +13,12 @@ from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from fem_reference.column.mesh import LineMesh, line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground
-from fem_reference.problem.problem import Array, Scheme
+from fem_reference.problem.checks import require
+from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.problem.result import Result, just_ended
 from fem_reference.scheme.newmark import Stepper
 
@@ -88,7 +88,7 @@ class Model:
         return self.impedance is None and not self.base_is_free
 
     @cached_property
-    def free(self) -> NDArray[np.intp]:
+    def free(self) -> Indices:
         """Numbers of the unknowns that are solved for."""
         return np.delete(np.arange(self.mesh.size), [self.mesh.base_node] * self.holds_base)
 
@@ -106,10 +106,8 @@ class Model:
         ValueError
             If its velocity is that of half a step before.
         """
-        if scheme.staggered and self.impedance is not None:
-            raise ValueError(
-                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
-            )
+        has_velocity = not scheme.staggered or self.impedance is None
+        require(has_velocity, "scheme", "must have the velocity that a half-space's dashpot needs", scheme.name)
 
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
@@ -121,7 +119,7 @@ class Model:
             loads[:, 2] = -self.mesh.M[[base]].toarray()[0]
         elif self.impedance is not None:
             loads[base, 1] = 2 * self.impedance
-        return np.asarray(loads[self.free])
+        return loads[self.free]
 
 
 class Observation(NamedTuple):

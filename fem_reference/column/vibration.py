@@ -51,11 +51,11 @@ def line_response(
     ground.check_request(columns, ())
     model = Model(line_mesh(ground, elements, degree), ground.impedance)
     observed = observed_by(model, columns, ())
-    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    w = 2 * np.pi * np.array(frequencies, float, ndmin=1)
     drive: Complex = np.zeros((4, len(w)), complex)
     drive[:] = [[0], [0], [0], [1]] if at_top else np.array([np.ones_like(w), 1j * w, -w * w, 0 * w])
     system = step_system(frequencies, scheme, exact)
-    X = _solutions(model, np.asarray(model.loads() @ drive, complex), system)
+    X = _solutions(model, model.loads() @ drive, system)
     V = np.einsum("fs,usf->uf", system.velocity, X)
     A = np.einsum("fs,usf->uf", system.acceleration, X)
     amplitudes = observed.parts @ drive

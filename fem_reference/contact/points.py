@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 from skfem import Basis
 
@@ -22,7 +21,7 @@ from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
 from fem_reference.problem.checks import require
 from fem_reference.problem.motion import moved_base
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.problem import Array, Indices, Problem
 from fem_reference.scheme.stage import Motion
 
 OBSERVED = ("displacement", "horizontal_displacement", "rotation")
@@ -165,20 +164,12 @@ def whole(problem: Problem) -> ContactModel:
     )
 
 
-def base_rule(problem: Problem, basis: Basis, facets: NDArray[np.int64]) -> elasticity.Rule:
+def base_rule(problem: Problem, basis: Basis, facets: Indices) -> elasticity.Rule:
     """Points of the base with weights; a node that two facets share comes twice."""
     if problem.foundation != "distributed":
         return elasticity.foundation_rule(problem, basis, facets)
-    ends = elasticity.node_rule(basis.mesh, facets)
-    if problem.degree == 1:
-        return ends
-    count = len(facets)
-    middle = (ends.points[:, :count] + ends.points[:, count:]) / 2
-    return elasticity.Rule(
-        np.hstack([ends.points, middle]),
-        np.concatenate([ends.cells, ends.cells[:count]]),
-        np.concatenate([ends.weights / 3, 4 * ends.weights[:count] / 3]),
-    )
+    lumped = elasticity.LUMPED[problem.degree]
+    return elasticity.edge_rule(basis.mesh, facets, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
 
 
 def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> elasticity.Rule:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +16,8 @@ from fem_reference.problem.motion import Motion
 from fem_reference.problem.stages import Stage, StageTable, newmark_stage
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 HYPOTHESES = ("plane stress", "plane strain")
 FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
@@ -23,13 +25,6 @@ CELLS = ("quadrilaterals", "triangles")
 STARTS = ("zero", "consistent")
 SAME_MATRIX = 1e-15
 """Relative difference of two stages' weights, by rounding, below which they share a matrix."""
-
-
-class Rectangle(NamedTuple):
-    """An upright rectangle that stands on its base."""
-
-    width: float  # length of the base [m]
-    height: float  # distance from the base to the top [m]
 
 
 @dataclass(frozen=True)
@@ -200,7 +195,7 @@ class Problem(Elastic):
         return point
 
     @property
-    def rectangle(self) -> Rectangle | None:
+    def rectangle(self) -> tuple[float, float] | None:
         """Width and height if the block is an upright rectangle loaded opposite its base, else None."""
         corners = self.outline
         opposite = len(corners) == 4 and (self.top - self.base) % 4 == 2
@@ -212,7 +207,7 @@ class Problem(Elastic):
         # A corner that is off by rounding of its coordinates is still this rectangle's corner.
         slack = 4 * np.finfo(float).eps * max(width, height, float(np.abs(self.vertices).max()))
         upright = width > 0 and height > 0 and bool(np.all(np.abs(corners - expected) <= slack))
-        return Rectangle(width, height) if upright else None
+        return (width, height) if upright else None
 
 
 @dataclass(frozen=True)
@@ -280,7 +275,5 @@ class Scheme:
 
     def stage_times(self, steps: int) -> Array:
         """Instants at which the stages of so many steps end, the first one t = 0, shape (steps * stages + 1,) [s]."""
-        if len(self.stages) == 1:
-            return self.step * np.arange(steps + 1.0)
         ends = np.array([stage.end for stage in self.stages])
         return np.append(0.0, (self.step * (np.arange(float(steps))[:, None] + ends)).ravel())

@@ -50,12 +50,12 @@ def step_system(frequencies: Array, scheme: Scheme, exact: bool = False) -> Step
         If gg is zero where the exact motion is asked for: it has no rate.
     """
     dt = scheme.step
-    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))[:, None]
+    w = 2 * np.pi * np.array(frequencies, float, ndmin=1)[:, None]
     if exact:
         if scheme.gg == 0:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         one = np.ones(w.shape, complex)
-        square: Complex = np.asarray(-w * (w + 1j * np.log(scheme.gg) / dt))
+        square: Complex = -w * (w + 1j * np.log(scheme.gg) / dt)
         rate: Complex = np.asarray(1j * w)
         return StepSystem(square[:, None], rate[:, None], one[:, None], one, square, rate)
 

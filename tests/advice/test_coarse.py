@@ -40,10 +40,6 @@ def kinds(case):
 
 KINDS = {"AGREEMENT": AGREEMENT, "SAMPLED": SAMPLED}
 ROWS = tomllib.loads(Path(__file__).with_name("coarse.toml").read_text(encoding="utf-8"))["row"]
-BOTH = {AGREEMENT, SAMPLED}
-FINE = 1.2e-5  # s, w dt = 0.073
-UNLOCKED = {"law": "unilateral", "stiffness": 5e11}
-CH = {"scheme": "chung-hulbert", "rho_inf": 0.0, "steps": 200}
 
 
 @pytest.mark.parametrize("row", ROWS, ids=str)

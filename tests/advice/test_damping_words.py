@@ -2,15 +2,7 @@
 
 from dataclasses import replace
 
-import numpy as np
-
 from validation.advice.spectra import ModeDamping, runs
-
-
-def frequencies():
-    """Both axial frequencies of the 2 m block at p = E = 1e9, from (v, ey)."""
-    stiffness = np.array([[2e9, -2e9], [-2e9, 4e9 + 2e9]])
-    return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(np.diag([10800.0, 3600.0]), stiffness)).real))
 
 
 def test_what_has_no_damping_ratio_of_its_own_is_not_split():

@@ -1,6 +1,5 @@
 """`contact`, `advise` and `show` of columns whose contacts open or slip."""
 
-import pytest
 from conftest import typed
 
 from validation.cli.app import NUMERICAL_FAILURE
@@ -29,17 +28,9 @@ solvers = ["dda"]
 """
 
 
-@pytest.fixture
-def stack(tmp_path):
-    path = tmp_path / "stack.toml"
-    path.write_text(STACK.format(more=""))
-    return path
-
-
 def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path):
     path = tmp_path / "limited.toml"
     path.write_text(STACK.format(more="solve_limit = 6"))
     done = typed("advise", "contact", path)
     assert done.returncode == NUMERICAL_FAILURE
-    assert "needs more solves than its limit" in done.stdout
-    assert "ALARM solve limit" in done.stdout
+    assert "solve limit" in done.stdout

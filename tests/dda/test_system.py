@@ -5,8 +5,6 @@ import pytest
 
 import dda
 import fem_reference
-from validation import load_scene, solve
-from validation.errors import InputError
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
@@ -89,16 +87,3 @@ def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():
     for values in result.columns.values():
         assert np.all(np.isfinite(values[:first]))
         assert np.all(values[first + 1 :] == np.inf)
-
-
-def test_a_scene_is_cut(scene_file):
-    text = scene_file.read_text().replace("young = 1.0e9", "young = 1.0e9\nsubdivide = [1, 4]\nglue_ratio = 1e12")
-    scene_file.write_text(
-        text.replace("elements = 4", "elements = 4\ndegree = 1") + '[run]\nsolvers = ["dda", "fem"]\n'
-    )
-    scene = load_scene(scene_file)
-    dda_run, fem_run = (solve(scene, name) for name in ("dda", "fem"))
-    scale = np.abs(fem_run.displacement).max()
-    np.testing.assert_allclose(dda_run.displacement, fem_run.displacement, rtol=0, atol=1e-9 * scale)
-    with pytest.raises(InputError, match="does not handle sub-blocks"):
-        solve(scene, "dda-textbook")

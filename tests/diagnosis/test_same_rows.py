@@ -71,6 +71,18 @@ def test_a_factor_that_may_as_well_be_ten_times_as_large_is_no_number(factor: fl
     assert is_determined(target, fit_one(target, own), explanation) is determined
 
 
+@pytest.mark.long
+def test_springs_beside_a_missing_coupling_are_no_block_ten_million_times_as_stiff() -> None:
+    """Springs 1.8e-5 stiffer make up for a block that is 1e6 times as stiff; every other row, six digits."""
+    base = Plain(dt=0.026, steps=90, side=3.8, rho=6520.0, E=1.34e8, p=1.84e9, q=93300.0, consistent=True)
+    displacement, _ = run(replace(base, p=1.39 * base.p, coupling=0.0))
+    rows = np.array([float(f"{value:.5e}") for value in displacement[1::2]])
+    scene = scene_of(base).with_values({"block.side": base.side})
+    answer = compare(scene, Foreign(base.dt * np.arange(2, 91, 2), rows))
+    assert answer.causes == ["springs-factor", "coupling"]
+    assert answer.values["springs-factor"] == pytest.approx(1.39, rel=1e-5)
+
+
 def test_a_contact_that_is_never_reached_has_no_number() -> None:
     column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 5e-4, "gravity": 9.81}
     layer = {"thickness": 3.0, "density": 2500.0, "young": math.inf, "blocks": 3, "velocity": -1.0}

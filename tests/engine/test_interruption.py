@@ -3,7 +3,6 @@
 import json
 import os
 import resource
-import subprocess
 import sys
 from multiprocessing import Barrier, Process
 
@@ -19,13 +18,6 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 # A solver that has not answered before it may.
-
-
-def start(scene, results, jobs=2):
-    command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(results), "--jobs", str(jobs)]
-    return subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
 
 
 def rows_of(results):

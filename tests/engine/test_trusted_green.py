@@ -154,15 +154,15 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_p
     run_study(study(load_scene(scene_file)), results)
     shutil.copy(tmp_path / "r/studies/test.json", tmp_path / "r/studies/other.json")
     for words in (["rows", "other"], ["report", "other", "--figures", "f"]):
-        assert "holds the study 'test'" in refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
+        assert "'test'" in refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
     report = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
     assert report.returncode == 0
-    assert "note: other is left out" in report.stderr and "holds the study 'test'" in report.stderr
+    assert "other" in report.stderr and "'test'" in report.stderr
     (tmp_path / "r/studies/other.json").unlink()
     (tmp_path / "r/rows.jsonl").write_text("\n")
     for words in (["rows", "test"], ["report", "--out", tmp_path / "r.pdf"], ["report", "test", "--figures", "f"]):
         said = refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
-        assert "the row of small dda is missing; run test again" in said
+        assert "small dda" in said
 
 
 # ---- cases that end badly -------------------------------------------------------------------------------------------

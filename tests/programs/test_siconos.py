@@ -80,12 +80,6 @@ def test_a_chain_has_the_columns_mass_and_compliance():
 
 
 both = pytest.mark.parametrize("solver", [siconos.Siconos(), siconos.AsItComes()], ids=["chosen", "default"])
-GAUSS_SEIDEL = 1e-3  # ten times the tolerance of Siconos' own iteration; pivots leave rounding
-
-
-def tolerance(solver):
-    """Return how far a contact impulse may be from what it should be, relative."""
-    return 1e-9 if solver.fine else GAUSS_SEIDEL
 
 
 def test_springs_of_a_box_that_turns_or_rubs_are_refused():

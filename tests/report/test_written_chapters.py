@@ -221,7 +221,9 @@ def queries(folder):
             yield from walk(f"{kind}.{name}", part, {})
 
 
-@pytest.mark.parametrize("name", FOLDERS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name == "standing")) for name in FOLDERS]
+)
 def test_a_chapter_asks_for_what_its_study_has(name):
     folder = FOLDERS[name]
     study = get_study(name)

@@ -46,6 +46,7 @@ def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished
     assert all(evaluate(gate, finished).status is Status.PASS for gate in PAPER.gates())
 
 
+@pytest.mark.long
 def test_a_changed_threshold_turns_the_verdict_over(finished):
     for claim in CLAIMS:
         numbers = claim.measure(Evidence(finished))
@@ -61,6 +62,7 @@ def test_a_changed_threshold_turns_the_verdict_over(finished):
         assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
 
 
+@pytest.mark.long
 def test_the_page_in_docs_is_what_a_fresh_run_writes(finished):
     rows = [_derived_record(finished, REGISTER, claim.id) for claim in CLAIMS]
     text = (ROOT / CLAIMS_OF_THE_PAPER.page).read_text(encoding="utf-8")

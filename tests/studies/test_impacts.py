@@ -8,7 +8,7 @@ from faults.kill_matrix import check_study
 from validation.studies.impacts import formulas as impacts
 from validation.suite.bands import cases
 
-BLOCK, BAR = (impacts.BLOCK,), (impacts.BAR,)
+BLOCK, BAR = ("block-events",), ("bar-events",)
 FAULTS = [
     Fault("block: springs", BLOCK, seams.EVENTS_BLOCK, scaled(stiffness=1.01)),
     Fault("block: speed and fall", BLOCK, seams.EVENTS_BLOCK, scaled(velocity=1 + 1e-9, gap=1 + 1e-9)),

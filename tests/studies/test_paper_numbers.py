@@ -63,11 +63,3 @@ def order(rate):
 def test_a_rate_of_discount_converges_in_the_order_of_the_scheme():
     """Without a rate the orders from both starts are gates of the study `cost`."""
     assert order(60.0) == pytest.approx(2.0, abs=0.03)
-
-
-def test_first_pressures_at_one_millisecond_and_towards_zero():
-    base = load_scene("figures-3-4")
-    coarse = solve(base.with_values({"time.step": 1e-3}), "dda").contact_pressure
-    assert coarse[:2] == pytest.approx([-0.338e6, -0.435e6], abs=500)
-    fine = solve(base.with_values({"time.step": 1e-6, "time.steps": 4000}), "dda").contact_pressure
-    assert fine.min() == pytest.approx(-1.39e6, abs=5e3)

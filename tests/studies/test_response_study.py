@@ -7,7 +7,7 @@ from faults.kill_matrix import check_kill_matrix, failed
 
 from validation.engine.run import finish
 from validation.runs.results import Results
-from validation.studies.response.formulas import BASE, VISCOUS
+from validation.studies.response.formulas import BASE
 from validation.suite.folders import get_study
 
 STUDY = get_study("response")
@@ -48,6 +48,6 @@ def reached(gate, solver):
 
 @pytest.mark.long
 def test_gates_on_steps_are_bitten(tmp_path, finished_cases):
-    stepped = (BASE, VISCOUS)
+    stepped = (BASE, "viscous")
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)

@@ -45,6 +45,7 @@ def test_limits_are_those_of_another_program():
     assert forces == pytest.approx(np.array(OVERHANG_FORCES), abs=5e-4)
 
 
+@pytest.mark.long
 def test_the_columns_of_the_book_need_the_friction_that_is_printed():
     dip = math.radians(30)
     for falls, friction in ((6.2, 0.7850566613), (6.0, 0.7855442214)):  # printed: 0.7855, with heights of 34, 28, ...

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import operator
 from collections.abc import Iterator, Sequence
 from functools import cache
@@ -11,11 +10,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
-from validation.runs.aliases import NamePair, Words
+from validation.runs.aliases import Words
 from validation.runs.history import History
 from validation.runs.numbers import significant
 from validation.runs.row import Metrics
@@ -62,33 +60,26 @@ def short(values: ArrayLike, digits: int = 5) -> list[float]:
     return [significant(value, digits) for value in np.asarray(values)]
 
 
-def order_row(name: str, solvers: NamePair, key: str, quantities: Words = ("displacement",)) -> Derived:
-    """Return the row `order` of a scene that is refined: the order of one solver's error against another.
+def convergence(
+    runs: Sequence[tuple[Scene, History, History]], key: str = "time.step", quantities: Words = ("displacement",)
+) -> Metrics:
+    """Return the order of one solver's error against another, of cases that are refined.
 
     Parameters
     ----------
-    name
-        The scene, and so of the row.
-    solvers
-        The one that converges, and the one that it converges to.
+    runs
+        The cases, each with the history that converges and that which it converges to.
     key
-        The swept value that is refined, such as ``time.step``.
+        The swept value that is refined.
     quantities
         Those whose order is fitted to the relative L2 error.
     """
-    levels = load_scene(name).expand()
-
-    def compute(finished: Finished) -> Metrics:
-        errors: dict[str, list[float]] = {quantity: [] for quantity in quantities}
-        for case in levels:
-            history, exact = (finished.needed_history(case.name, solver) for solver in solvers)
-            for quantity, norms in errors.items():
-                norms.append(or_nan(pair(f"{quantity}.l2", history, exact)))
-        sizes = [float(operator.attrgetter(key)(case)) for case in levels]
-        return {quantity: fitted_order(sizes, norms) for quantity, norms in errors.items()}
-
-    needs = itertools.product((case.name for case in levels), solvers)
-    return Derived(name, "order", tuple(needs), compute)
+    sizes = [operator.attrgetter(key)(case) for case, _, _ in runs]
+    orders = {}
+    for quantity in quantities:
+        norms = [or_nan(pair(f"{quantity}.l2", history, exact)) for _, history, exact in runs]
+        orders[quantity] = fitted_order(sizes, norms)
+    return orders
 
 
 def half_unit(printed: str | float) -> float:
@@ -123,26 +114,3 @@ def gate(
     name = case if isinstance(case, str) else case.name
     names = (solvers,) if isinstance(solvers, str) else solvers
     return Gate(name, names, metric, *band, reason, kind, uncertainty, **window)
-
-
-def printed(
-    scene: Scene | str,
-    solvers: str | Words,
-    metric: str,
-    value: float,
-    half: float,
-    reason: str,
-    **window: Any,
-) -> Gate:
-    """Return the gate on a number that an independent program printed.
-
-    Parameters
-    ----------
-    scene, solvers, metric
-        What is judged.
-    value, half
-        The number, and half a unit of its last digit: the half width of the band.
-    reason, window
-        Why it is so, and further fields of the gate, such as `until`.
-    """
-    return gate(scene, solvers, metric, about(value, half), reason, OTHER, half, **window)

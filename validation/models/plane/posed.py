@@ -65,14 +65,9 @@ class PlaneProblem(NamedTuple):
     name: str  # its scene is `PREFIX` + name
     asks: str
     quantities: Numbers
-    variants: tuple[PlaneCase, ...]  # beside the problem's own scene
+    cases: tuple[PlaneCase, ...]  # the problem's own scene first
     forces: bool  # whether forces are asked for where a program reports them
     changeable: tuple[str, ...]  # keys of `[plane]` that may be others than in the problem's scene
-
-    @property
-    def cases(self) -> tuple[PlaneCase, ...]:
-        """All cases, the problem's own scene first."""
-        return (PlaneCase(""), *self.variants)
 
     def scene(self, case: PlaneCase | None = None) -> Scene:
         """Return the scene of a case; the problem's own by default."""
@@ -108,7 +103,7 @@ def problems_of(
             name,
             stated["asks"],
             numbers[stated.get("numbers", name)],
-            (*cases, *more.get(name, ())),
+            (PlaneCase(""), *cases, *more.get(name, ())),
             stated.get("forces", False),
             stated.get("changeable", ()),
         )

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import itertools
+from collections.abc import Sequence
 
 import numpy as np
 
-from validation.engine.finished import Derived, DerivedRows, Finished
-from validation.metrics.catalogue import pair
+from validation.engine.finished import DerivedRows
 from validation.metrics.values import or_nan
+from validation.runs.history import History
 from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.core.damping import compared_cases as compared_cases
@@ -18,12 +18,9 @@ from validation.studies.core.decisions import curves as curves
 from validation.studies.core.decisions import derived as closed_rows
 from validation.studies.core.decisions import first_peak as first_peak
 from validation.studies.core.decisions import springs as springs
-from validation.suite.bands import Band, Bands, about, cases, fitted_order, near
+from validation.suite.bands import Band, Bands, about, convergence, near
 from validation.theory import spectra, statics
 from validation.theory.spectra import elements_per_front as elements_per_front
-
-MESHES = "mesh-convergence"
-POINT_SPRINGS = "corner-springs"
 
 
 def static_displacement(case: Scene) -> Band:
@@ -113,30 +110,17 @@ def apart(case: Scene, dda: Row, fem: Row) -> Metrics:
     return {"displacement": abs(first / second - 1)}
 
 
-def drift(finished: Finished) -> Metrics:
+def drift(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
     """Return by how much elements on corner point springs settle more with every halving of the mesh [m]."""
-    levels = tuple(cases(POINT_SPRINGS))
-    settled = [or_nan(finished.rows[case.name, "fem"].metrics.get("displacement.static")) for case in levels]
-    return {"halving": np.polyfit(np.log2([case.fem.per_side for case in levels]), settled, 1)[0]}
+    settled = [or_nan(fem.metrics.get("displacement.static")) for _, fem in levels]
+    return {"halving": np.polyfit(np.log2([case.fem.per_side for case, _ in levels]), settled, 1)[0]}
 
 
-def order(finished: Finished) -> Metrics:
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
     """Return the power of the elements a side with which the error against the bar falls."""
-    levels = tuple(cases(MESHES))
-    errors = []
-    for case in levels:
-        elements, bar = (finished.needed_history(case.name, solver) for solver in ("fem", "bar"))
-        errors.append(or_nan(pair("displacement.l2", elements, bar)))
-    return {"power": fitted_order([case.fem.per_side for case in levels], errors)}
+    return {"power": convergence(runs, "fem.per_side")["displacement"]}
 
 
 def further_rows() -> DerivedRows:
-    """Return the rows of damping, of the first pages, of the order of elements, and of their drift on point springs."""
-    points = tuple((case.name, "fem") for case in cases(POINT_SPRINGS))
-    meshes = tuple(itertools.product((case.name for case in cases(MESHES)), ("fem", "bar")))
-    return (
-        *damping_rows(),
-        *closed_rows(),
-        Derived(MESHES, "order", meshes, order),
-        Derived(POINT_SPRINGS, "drift", points, drift, ("displacement.static",)),
-    )
+    """Return the rows of damping, and of the first pages."""
+    return (*damping_rows(), *closed_rows())

@@ -8,6 +8,7 @@ stop; friction that lags by a pass, and dead bands, let it go on, the faster the
 from __future__ import annotations
 
 import functools
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -16,7 +17,7 @@ from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import APART, Band, cases, near, order_row
+from validation.suite.bands import APART, Band, cases, convergence, near
 from validation.theory import friction
 
 EXACT = "creep-exact"
@@ -24,8 +25,6 @@ STEPS = "creep-steps"
 LAGGED = "creep-lagged"
 STIFFNESS = "creep-stiffness"
 DAMPED = "creep-damped"
-REFINED = ("slope-exact-constant", "slope-exact-average")
-EVENTS = "block-events"
 DDA = "dda"
 # Way of the centroid in a second under lagged friction by an established program [m], by time step [s].
 PROGRAM = {0.01: 1.0e-3, 0.002: 2.2e-3, 0.001: 5.2e-3, 0.0002: 499e-3}
@@ -40,10 +39,7 @@ def slid(columns: Data) -> np.ndarray:
 
 def derived() -> DerivedRows:
     """Return the rows that are computed from finished cases."""
-    return (
-        *(_nearest(step) for step in PROGRAM),
-        *(order_row(name, (DDA, EVENTS), "time.step", ("displacement", "horizontal")) for name in REFINED),
-    )
+    return tuple(map(_nearest, PROGRAM))
 
 
 def base(scene: Scene, history: History) -> Metrics:
@@ -74,6 +70,11 @@ def _beside(like_cases: tuple[Scene, ...], program_slide: float, finished: Finis
     if program_slide > 0.1:
         allowed = max(allowed, SHUFFLED * program_slide)
     return {"distance": (program_slide - middle) / allowed, "way": middle, "spread": spread}
+
+
+def order(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
+    """Return the orders in the step of both displacements against the exact block."""
+    return convergence(runs, quantities=("displacement", "horizontal"))
 
 
 def exact_speed(case: Scene) -> Band:

@@ -6,23 +6,19 @@ springs are soft enough to count (p h / E finite, where the publications have a 
 
 from __future__ import annotations
 
-import functools
 import math
+from collections.abc import Sequence
 
-from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Metrics
+from validation.runs.row import Metrics, NewMetrics, Row
 from validation.scenes.scene import Scene
-from validation.suite.bands import Band, Bands, about, cases, near
+from validation.suite.bands import Band, Bands, about, near
 
-BLOCK = "block-events"
-BAR = "bar-events"
 SWITCHES = {  # of the bouncing bar on a rigid wall
     "release": "switches.first_opening",
     "impact": "switches.second_closing",
     "second release": "switches.second_opening",
 }
-LIMIT = "rigid wall"
 
 
 def transit(scene: Scene) -> float:
@@ -119,18 +115,11 @@ def depth_by_steps(scene: Scene) -> Band:
     return near(bounce(scene)[2], 2e-4)
 
 
-def derived() -> DerivedRows:
-    """Return the row of the bouncing bar's times, extrapolated to a rigid wall."""
-    levels = tuple(cases("bouncing-bar"))[-2:]
-    needs = tuple((case.name, BAR) for case in levels)
-    return (Derived("bouncing-bar", LIMIT, needs, functools.partial(rigid, levels), tuple(SWITCHES.values())),)
-
-
-def rigid(levels: tuple[Scene, ...], finished: Finished) -> Metrics:
-    """Return the times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
-    a, b = (1 / stiffness_ratio(case) for case in levels)
-    times = {}
+def rigid(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
+    """Return the bouncing bar's times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
+    a, b = (1 / stiffness_ratio(case) for case, _ in levels[-2:])
+    times: NewMetrics = {}
     for name, switch in SWITCHES.items():
-        x, y = (or_nan(finished.rows[case.name, BAR].metrics.get(switch)) for case in levels)
+        x, y = (or_nan(row.metrics.get(switch)) for _, row in levels[-2:])
         times[name] = finite((a * y - b * x) / (a - b))
     return times

@@ -3,22 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
-from validation.engine.finished import DerivedRows
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
-from validation.suite.bands import order_row
+from validation.suite.bands import convergence
 
 SCENE = "unlocked"
 INSTANTS = (3, 6, 9)  # wave transits a / c
-BLOCK = ("dda", "block-events")
-REFINED = {  # scene -> what converges to what, the step or mesh width that is refined
-    "unlocked-constant": (BLOCK, "time.step"),
-    "unlocked-average": (BLOCK, "time.step"),
-    "unlocked-average-zero": (BLOCK, "time.step"),
-    "unlocked-mesh": (("fem", "bar"), "fem.elements"),
-}
 
 
 def samples(case: Scene, history: History) -> Metrics:
@@ -40,6 +33,6 @@ def front(case: Scene) -> float:
     return 4 * math.ulp(case.time.duration) * 2 * case.load.pressure * kappa
 
 
-def orders() -> DerivedRows:
-    """Return the rows of orders."""
-    return tuple(order_row(name, *refined) for name, refined in REFINED.items())
+def order_in_mesh(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
+    """Return the order of elements against the exact bar, of meshes that are refined."""
+    return convergence(runs, "fem.elements")

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from dda.scheme.spectral import spectral_radius
-from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.engine.finished import DerivedRows
 from validation.gates.gate import Gate
-from validation.metrics.values import as_number
+from validation.metrics.values import as_number, or_nan
 from validation.runs.aliases import Data
-from validation.runs.row import Metrics
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.paper import open_close, register, slips
-from validation.suite.bands import cases, short
+from validation.suite.bands import short
 from validation.suite.claims import Register, read_claims
 
 CLAIMS = read_claims(
@@ -34,7 +34,6 @@ CLAIMS_OF_THE_PAPER = Register(
 COARSE = 6  # steps a period; with fewer the undamped continuum is not a curve any more
 OMEGA = (0.1, 100.0)  # w dt from and to which Figure 1 is drawn
 MODES = ("mode1", "contact")
-FIGURES = ("figures-3-4", "figures-5-6", "figure-7", "figure-8", "figure-9")
 SCHEMES = {  # of Figure 1: name -> alpha, delta
     "average acceleration (1/4, 1/2)": (0.25, 0.5),
     "constant acceleration (1/2, 1)": (0.5, 1.0),
@@ -68,30 +67,17 @@ def gates() -> tuple[Gate, ...]:
 
 
 def rows() -> DerivedRows:
-    """Return the rows of the claims, and what Figures 1 and 3 to 9 draw beside histories and metrics."""
-    of_figures = (_period(case) for case in cases(*FIGURES))
-    of_map = (_angles(case) for case in cases("damping-map"))
-    return (*CLAIMS_OF_THE_PAPER.rows(), *of_figures, *of_map)
+    """Return the rows of the claims."""
+    return CLAIMS_OF_THE_PAPER.rows()
 
 
-def _period(case: Scene) -> Derived:
-    """Return the row of the steps in a period of the bar, and whether the continuum is a curve with so few."""
-
-    def compute(finished: Finished) -> Metrics:
-        frequency = as_number(finished.rows[case.name, "bar"].metrics["mode1.frequency"])
-        steps = 2 * math.pi / (frequency * case.time.step)
-        return {"steps": steps, "continuum": "curve" if steps >= COARSE else "none"}
-
-    return Derived(case.name, "period", ((case.name, "bar"),), compute, ("mode1.frequency",))
+def period(case: Scene, bar: Row) -> Metrics:
+    """Return the steps in a period of the bar, and whether the continuum is a curve with so few."""
+    steps = 2 * math.pi / (as_number(bar.metrics["mode1.frequency"]) * case.time.step)
+    return {"steps": steps, "continuum": "curve" if steps >= COARSE else "none"}
 
 
-def _angles(case: Scene) -> Derived:
-    """Return the row of w dt of both modes of the block, as far as Figure 1 reaches."""
-
-    def compute(finished: Finished) -> Metrics:
-        metrics = finished.rows[case.name, "dda"].metrics
-        frequencies = {mode: metrics.get(f"{mode}.frequency") for mode in MODES}
-        angles = {mode: w * case.time.step for mode, w in frequencies.items() if isinstance(w, float)}
-        return {mode: angle for mode, angle in angles.items() if OMEGA[0] <= angle <= OMEGA[1]}
-
-    return Derived(case.name, "w dt", ((case.name, "dda"),), compute, tuple(f"{mode}.frequency" for mode in MODES))
+def angles(case: Scene, dda: Row) -> Metrics:
+    """Return w dt of both modes of the block, as far as Figure 1 reaches."""
+    of_modes = {mode: or_nan(dda.metrics.get(f"{mode}.frequency")) * case.time.step for mode in MODES}
+    return {mode: angle for mode, angle in of_modes.items() if OMEGA[0] <= angle <= OMEGA[1]}

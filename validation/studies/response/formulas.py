@@ -24,7 +24,7 @@ from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene, load_scene
-from validation.suite.bands import about, cases, gate, short
+from validation.suite.bands import Band, about, cases, gate, short
 from validation.theory import vibration
 from validation.theory.spectra import EPS, bar_frequency, dda_frequency, roots
 from validation.theory.statics import moduli, size
@@ -32,7 +32,6 @@ from validation.theory.stepping import Complex, Stepping
 
 BASE = "response-base"
 DAMPING = "response-damping"
-VISCOUS = "viscous"
 FREQUENCIES = (20.0, 52.0, 80.0, 150.0)  # Hz
 RESONANCE = 52.0  # Hz, next to the first frequency
 LOW = (5.0, 10.0, 20.0)  # Hz
@@ -276,11 +275,9 @@ def viscous_damping_ratio(scene: Scene) -> float:
     return float(-logarithm.real / abs(logarithm))
 
 
-def viscous_gates() -> Iterator[Gate]:
-    """Yield the gates on the damping of the first mode under 5 % of viscous damping."""
-    why = "the quadratic of a step with viscous damping, written apart; band: rounding"
-    for case in cases(VISCOUS):
-        yield gate(case, "dda", "mode1.damping", about(viscous_damping_ratio(case), 1e-12), why)
+def viscous(case: Scene) -> Band:
+    """Return the damping of the first mode under 5 % of viscous damping."""
+    return about(viscous_damping_ratio(case), 1e-12)
 
 
 # ---- the study ------------------------------------------------------------------------------------------------------
@@ -307,7 +304,7 @@ def _row(scene: str, solver: str, frequency: float, compute: Callable[..., Any],
 
 def gates() -> tuple[Gate, ...]:
     """Return all gates of the study."""
-    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates(), *viscous_gates())
+    return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates())
 
 
 def curves() -> Data:

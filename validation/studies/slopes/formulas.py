@@ -32,7 +32,6 @@ MANUAL = "slope-manual"
 SHAKEN = "slope-base"
 QUAKE = "slope-quake"
 STIFFNESS = "slope-stiffness"
-FACTS = "slope-facts"  # owner of rows without a run
 FACT_STEPS = (1e-4, 1e-3, 5e-3, 1e-2)  # s
 RINGS_FROM = 0.05  # s: what the block rings is seen beside a way of some millimetres
 RINGING = 1e-3  # of the error by ringing: the own vibration of a block whose strain follows at rest
