@@ -58,11 +58,10 @@ def solve_textbook(
         raise ValueError(f"model: the printed recursion does not apply: {reason}")
     began = perf_counter()
     with np.errstate(all="ignore"):
-        recursion = _Recursion(model, scheme)
+        K = recursion_matrix(model, scheme)
         ready = perf_counter()
-        states = recursion.run(steps)
-    still = np.zeros(steps)
-    observed = np.array([states[:, _STATE[name]] if name in _STATE else still for name in columns])
+        states = recursion(model, scheme, K, steps)
+    observed = np.array([states[_STATE[name]] if name in _STATE else np.zeros(steps) for name in columns])
     return linear_result(
         scheme,
         (began, ready),
@@ -70,60 +69,58 @@ def solve_textbook(
         observed,
         model.load.pressure,
         unknowns=3,
-        nonzeros=int(np.count_nonzero(recursion.K)),
+        nonzeros=int(np.count_nonzero(K)),
         factorisations=1,
         solves=steps,
     )
 
 
-class _Recursion:
-    """Eq. (31), (32) in (dv, dex, dey)."""
+def inertia(model: TwoBlockModel) -> Array:
+    """Return that of (v, ex, ey)."""
+    width, height = np.ptp(model.block.corners, axis=0)
+    return np.asarray(model.block.total_mass * np.array([1.0, width**2 / 12, height**2 / 12]))
 
-    def __init__(self, model: TwoBlockModel, scheme: Scheme) -> None:
-        """Form the matrix of eq. (31) and its inverse."""
-        self.scheme = scheme
-        self.q = model.load.pressure
-        self.p = model.contact.normal
-        p = self.p
-        b, h = np.ptp(model.block.corners, axis=0).tolist()
-        self.width = b
-        self.height = h
-        self.area = b * h
-        self.C = model.block.material.elasticity()[:2, :2]
-        self.M = model.block.material.density * self.area * np.array([1.0, b**2 / 12, h**2 / 12])
-        self.K = np.diag(self.M / (scheme.alpha * scheme.step**2))
-        shear = model.contact.shear * b * b / 2
-        self.K += np.array([[2 * p, 0.0, -p * h], [0.0, shear, 0.0], [-p * h, 0.0, p * h * h / 2]])
-        self.K[1:, 1:] += self.area * self.C
-        self.inverse = np.linalg.inv(self.K)
 
-    def _force(self, stretch: float, stress: Array) -> Array:
-        """Return load, spring and initial-stress parts of eq. (32); stretch is v_M + v_N [m]."""
-        force = np.array([-self.width * self.q, 0.0, -self.area * self.q / 2])
-        force += self.p * stretch * np.array([-1.0, 0.0, self.height / 2])
-        force[1:] -= self.area * stress
-        return force
+def recursion_matrix(model: TwoBlockModel, scheme: Scheme) -> Array:
+    """Return the matrix of eq. (31) in (dv, dex, dey)."""
+    width, height = np.ptp(model.block.corners, axis=0)
+    p = model.contact.normal
+    K = np.diag(inertia(model) / (scheme.alpha * scheme.step**2))
+    shear = model.contact.shear * width * width / 2
+    K += np.array([[2 * p, 0.0, -p * height], [0.0, shear, 0.0], [-p * height, 0.0, p * height * height / 2]])
+    K[1:, 1:] += model.block.section.area * model.block.material.elasticity()[:2, :2]
+    return np.asarray(K)
 
-    def run(self, steps: int) -> Array:
-        """Return v, ex, ey and the contact pressure of every step, (steps, 4)."""
-        s = self.scheme
-        dt = s.step
-        stretch = 0.0
-        stress = np.zeros(2)
-        D, V, A = np.zeros((3, 3))
-        if s.start == "consistent":
-            A = self._force(0.0, stress) / self.M
-        states = np.empty((steps, 4))
-        for n in range(steps):
-            inertia = s.gg * V / (s.alpha * dt) + (1 / (2 * s.alpha) - 1) * A
-            dD = self.inverse @ (self._force(stretch, stress) + self.M * inertia)
-            # eq. (7)
-            V = s.delta / (s.alpha * dt) * dD + s.gg * (1 - s.delta / s.alpha) * V
-            V = V + (1 - s.delta / (2 * s.alpha)) * dt * A
-            A = dD / (s.alpha * dt**2) - inertia
-            D = D + dD
-            stress = stress + self.C @ dD[1:]
-            stretch += 2 * dD[0] - self.height * dD[2]
-            states[n, :3] = D
-            states[n, 3] = -self.p * stretch / self.width
-        return states
+
+def recursion(model: TwoBlockModel, scheme: Scheme, K: Array, steps: int) -> Array:
+    """Return v, ex, ey and the contact pressure of every step, (4, steps)."""
+    width, height = np.ptp(model.block.corners, axis=0)
+    area = model.block.section.area
+    C = model.block.material.elasticity()[:2, :2]
+    M = inertia(model)
+    q = model.load.pressure
+    p = model.contact.normal
+    inverse = np.linalg.inv(K)
+    alpha = scheme.alpha
+    delta = scheme.delta
+    dt = scheme.step
+    stretch = 0.0  # v_M + v_N [m]
+    D, V, A, stress = np.zeros((4, 3))
+    states = np.empty((4, steps))
+    for n in range(steps):
+        # load, spring and initial-stress parts of eq. (32)
+        force = np.array([-width * q, 0.0, -area * q / 2]) + p * stretch * np.array([-1.0, 0.0, height / 2])
+        force -= area * stress
+        if n == 0 and scheme.start == "consistent":
+            A = force / M
+        held = scheme.gg * V / (alpha * dt) + (1 / (2 * alpha) - 1) * A
+        dD = inverse @ (force + M * held)
+        # eq. (7)
+        V = delta / (alpha * dt) * dD + scheme.gg * (1 - delta / alpha) * V + (1 - delta / (2 * alpha)) * dt * A
+        A = dD / (alpha * dt**2) - held
+        D = D + dD
+        stress[1:] += C @ dD[1:]
+        stretch += 2 * dD[0] - height * dD[2]
+        states[:3, n] = D
+        states[3, n] = -p * stretch / width
+    return states

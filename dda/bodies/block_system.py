@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import D_COLUMNS, free_block
-from dda.bodies.joints import FIXED, Joint, gap_groups
+from dda.bodies.joints import FIXED, Joint, Point, gap_groups
 from dda.linear import elimination
 from dda.linear.krylov import amplitudes
-from dda.model.arrays import Array, without_rounding
+from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block, displacement_rows
 from dda.model.load import BaseMotion, falling
 from dda.result.result import COLUMNS
@@ -36,9 +36,9 @@ class SurfaceLoad:
     """A uniform traction on a straight piece of a block's boundary, switched on at t = 0."""
 
     block: int
-    start: tuple[float, float]  # [m]
-    end: tuple[float, float]  # [m]
-    traction: tuple[float, float]  # in x and y [Pa]
+    start: Point  # [m]
+    end: Point  # [m]
+    traction: Point  # in x and y [Pa]
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,12 +53,12 @@ class BlockSystem:
 
     blocks: Sequence[Block]
     joints: Sequence[Joint]
-    observed: tuple[float, float] | None = None  # point whose displacement is reported, the mean where blocks meet [m]
+    observed: Point | None = None  # point whose displacement is reported, the mean where blocks meet [m]
     base_length: float = 1.0  # a, over which the supports' normal force is spread [m]
     loads: Sequence[SurfaceLoad] = ()
     gravity: float = 0.0  # downwards [m/s^2]
     motion: BaseMotion | None = None  # of all that is fixed
-    base_normal: tuple[float, float] = (0.0, 1.0)  # unit normal of the supports, into the blocks
+    base_normal: Point = (0.0, 1.0)  # unit normal of the supports, into the blocks
     slope: float = 0.0  # by which gravity is turned, to g (sin, -cos) [deg]
 
     def __post_init__(self) -> None:
@@ -131,11 +131,11 @@ class BlockSystem:
             F[load.block] += without_rounding(acting, np.max(np.abs(acting)) * lever)
         return F.ravel()
 
-    def blocks_at(self, point: tuple[float, float]) -> list[int]:
+    def blocks_at(self, point: Point) -> list[int]:
         """Return the numbers of the blocks that hold a point, their boundaries included."""
         return [i for i, block in enumerate(self.blocks) if _holds(block.corners, np.array(point))]
 
-    def rows_at(self, point: tuple[float, float]) -> Array:
+    def rows_at(self, point: Point) -> Array:
         """Return the rows of displacements, rotation and strains at a point, the mean where blocks meet, (6, 6 blocks).
 
         Raises
@@ -171,7 +171,7 @@ class Equations:
     C: csr_array  # (gaps, gaps) [m/N]
     F: Array  # (modes,)
     inertia: Array  # (modes,) load of a unit acceleration of the base, or upwards
-    observers: dict[str, Array]  # column -> (modes,) row
+    observers: Columns  # column -> (modes,) row
     pressure: Array  # (gaps,) row of the contact pressure by lambda [1/m]
 
     @cached_property
@@ -186,12 +186,12 @@ class Equations:
         """The solver of `saddle`."""
         return factor(self.saddle, definite=False)
 
-    def at_rest(self, F: Array, g: Array) -> tuple[Array, Array]:
+    def at_rest(self, F: Array, g: Array) -> ArrayPair:
         """Return z and lambda of k z + B' lambda = F, B z - C lambda = g; the matrix is factorised once."""
         solution = self._factor(np.concatenate([F / self.scale, g]))
         return solution[: len(F)], self.scale * solution[len(F) :]
 
-    def at_base(self, F: Array, base: Array) -> tuple[Array, Array]:
+    def at_base(self, F: Array, base: Array) -> ArrayPair:
         """Return z and lambda at rest, where what is fixed has moved by (x, y) [m]."""
         return self.at_rest(F, self.G @ base)
 
@@ -200,7 +200,7 @@ class Equations:
         return self.F if np.any(self.F) else self.inertia
 
     def steady(
-        self, rows: tuple[Array, Array], F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
+        self, rows: ArrayPair, F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
     ) -> Complex:
         """Return what rows observe of a steady vibration, (rows, frequencies)."""
         W2, factor = answering(scheme, frequencies, exact)
@@ -254,22 +254,13 @@ class Equations:
             return self
         modes = reached[: len(self.k)]
         gaps = reached[len(self.k) :]
-        return replace(
-            self,
-            k=self.k[modes],
-            shapes=self.shapes[:, modes],
-            rigid=self.rigid[modes],
-            B=self.B[gaps][:, modes],
-            G=self.G[gaps],
-            kappa=self.kappa[gaps][:, gaps],
-            C=self.C[gaps][:, gaps],
-            F=self.F[modes],
-            inertia=self.inertia[modes],
-            observers={name: row[modes] for name, row in self.observers.items()},
-            pressure=self.pressure[gaps],
-        )
+        kept = {name: getattr(self, name)[modes] for name in ("k", "rigid", "F", "inertia")}
+        kept |= {name: getattr(self, name)[gaps] for name in ("G", "pressure")}
+        kept |= {name: getattr(self, name)[gaps][:, gaps] for name in ("kappa", "C")}
+        observers = {name: row[modes] for name, row in self.observers.items()}
+        return replace(self, shapes=self.shapes[:, modes], B=self.B[gaps][:, modes], observers=observers, **kept)
 
-    def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
+    def rows(self, columns: Sequence[str]) -> ArrayPair:
         """Return the rows of some columns by z and by lambda."""
         by_modes = np.zeros((len(columns), len(self.k)))
         by_force = np.zeros((len(columns), len(self.pressure)))

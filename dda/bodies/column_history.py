@@ -32,19 +32,21 @@ from dda.bodies.column_step import (
     WELDED,
     Observed,
     make_column_steps,
+    make_linear_steps,
 )
 from dda.contact.rows import INSIDE
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.compiled import run_loop
 from dda.march.energy import energies_of
 from dda.march.step import history_of, march_of, reached_history
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.checks import check_columns, check_count
 from dda.result.contact_result import MarchResult, run_fields
 from dda.scheme.newmark import Scheme
 
 DISPLACEMENT = "displacement"  # of the top [m]
 PRESSURE = "contact_pressure"  # on the base [Pa]
+IN_LISTS = 10  # blocks up to which plain Python is faster on lists than on arrays
 AT_HEIGHTS = (DISPLACEMENT, "stress", "velocity", "force", "gap", "slip")  # the last three where a contact is
 
 
@@ -137,6 +139,7 @@ def solve_column(
     march.room.end[:] = course.value[0]
     start = start_of(column, scheme, drive, options.settled, march)
     march = march._replace(between=deepcopy(start))
+    linear = n > IN_LISTS and not (options.energies or march.laws.opens.any() or np.isfinite(march.laws.upper).any())
     history = history_of(steps, len(columns) + (RECORDED if options.energies else 1), 0, 0, options.energies)
     history = history._replace(state=np.zeros((steps + 1 if options.states else 0, n), dtype=np.int8))
     ready = perf_counter()
@@ -146,12 +149,13 @@ def solve_column(
         (march, start, deepcopy(start), course),  # compiled code works on these themselves
         (history, steps, 0.5),
         steps * options.repeats,
+        make_linear_steps if linear else None,
     )
     solves = int(history.solves.sum())  # those of the step that was not reached, too
     history = reached_history(history, reached)
     record = history.motion[:, len(columns) :].T
 
-    def balance() -> dict[str, Array]:
+    def balance() -> Columns:
         """Return the energies; that of the load is minus the work of all that drives, less what is stored at first."""
         kinetic, strain, springs = record[[KINETIC, STRAINED, SPRINGS]]
         load = np.full_like(kinetic, -(strain[0] + springs[0]))

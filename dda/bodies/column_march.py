@@ -23,7 +23,7 @@ from dda.bodies.column_step import (
 from dda.contact.band import find_in_band
 from dda.contact.rows import INSIDE, LOWER, Laws, flexibility_for, rows_of
 from dda.march.step import Body, Course, Length, March, moved_row, write_flexibility
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.scheme.newmark import Scheme, late_momentum
 
 ROUNDING = 1e-12  # of the fastest row: what a common velocity of welded blocks leaves of a difference
@@ -275,7 +275,7 @@ def row_rates(march: March, rates: Array, base: float) -> Array:
     return np.asarray(np.array(moved) - march.body.ground[:, 1] * base)
 
 
-def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> tuple[Array, Array]:
+def static(column: Column, blocks: Blocks, laws: Laws, base: float) -> ArrayPair:
     """Return modes and forces at rest: every contact carries the weight above it; a pressure acts from t = 0 on."""
     weights = column.gravity * inertia(column)
     carried = np.append(np.cumsum(weights[::-1])[::-1], 0.0)

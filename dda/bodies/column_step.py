@@ -36,9 +36,11 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from dda.contact.band import find_in_band
 from dda.contact.dense import Matrix, Vector
-from dda.contact.rows import FOUND, LOWER, Rows
+from dda.contact.rows import FOUND, LOWER, Rows, Solved
 from dda.march.account import account, half_square, over_stages
 from dda.march.energy import DAMPING, GIVEN, IMPULSE
 from dda.march.step import (
@@ -63,7 +65,7 @@ from dda.march.step import (
     push_modes,
     steps_by,
 )
-from dda.scheme.stage import predictor, velocity_corrector
+from dda.scheme.stage import inertia_force, predictor, velocity_corrector
 
 SWEEPS = 4  # solves for each contact with all states updated at once
 ROW, ABSENT, HALF_SPACE, SPRUNG = range(4)  # what is below the lowest block; SPRUNG: a spring and a half-space
@@ -121,9 +123,8 @@ def make_column_stage(
     after: AnyState,
     course: Course,
     part: Part,
-) -> tuple[int, int]:
+) -> Solved:
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
-    base = march.method.base
     work = march.work
     rows = after.rows
     length = length_of(march, stage, part.ratio)
@@ -131,18 +132,13 @@ def make_column_stage(
     begin_step(march, start, length)
     free_modes(march, stage, length, before)
     free_rows(march, before)
-    if base == HALF_SPACE:
-        free_half_space(march, stage, length, before)
-    elif base == SPRUNG:
-        free_surface(march, stage, length, start, before, after)
-    if length.numbers[3] == 0:
-        hold_welds(march, length, before)
+    hold_base(march, stage, length, start, before, after)
     outcome, solves = find_in_band(march.laws, before.rows, length.flexible, rows, work)
     if outcome != FOUND:
         return outcome, solves
     push_modes(march, rows.force)
     end_modes(march, stage, length, before, after)
-    if base == SPRUNG:
+    if march.method.base == SPRUNG:
         end_surface(march, stage, length, after)
     end_paths(march, length.flexible, before, after)
     place_blocks(march, after)
@@ -152,13 +148,85 @@ def make_column_stage(
     return outcome, solves
 
 
+def make_linear_stage(
+    march: March,
+    stage: StageRoom,
+    start: AnyState,
+    before: AnyState,
+    after: AnyState,
+    course: Course,
+    part: Part,
+) -> Solved:
+    """Go to the end of a stage as `make_column_stage` does, in arrays, where no row opens or slips.
+
+    Nothing is searched: the rows are one elimination.
+    """
+    from scipy.linalg.lapack import dptsv
+
+    body = march.body
+    room = march.room
+    blocks = march.method
+    numbers = stage.numbers
+    length = stage.whole
+    h2 = length.numbers[2] * length.numbers[2]
+    instant = int(part.begun) * march.scheme.stages + (march.scheme.stages if stage is march.last else 1)
+    room.end[:] = course.value[instant]  # whose instants are the ends of the stages
+    room.p[:] = length.numbers[1] * start.p
+    room.a[:] = start.a
+    room.R[:] = start.R
+    room.load[:] = room.end[2:] @ body.loads
+    held = inertia_force(numbers, h2 * (room.load - body.k * before.z), room.R, room.a)
+    room.x[:] = length.inverse * (predictor(numbers, room.p, room.a, before.p, before.a) + numbers.alpha * held)
+    modes = body.first[:, None] + np.arange(body.weight.shape[1])  # that each row feels
+    moved = np.einsum("rm,rm->r", body.weight, room.x[modes]) - body.ground[:, 1] * (
+        room.end[1] - course.value[instant - 1, 1]
+    )
+    march.work.q[:] = before.rows.opening + moved
+    hold_base(march, stage, length, start, before, after)
+    W = length.flexible.W
+    force = dptsv(W[0] + march.laws.compliance, W[1, :-1], -march.work.q)[2]
+    room.pushed[:] = np.bincount(modes.ravel(), (body.weight * force[:, None]).ravel(), len(room.pushed))
+    after.rows.force[:] = force
+    after.rows.opening[:] = -march.laws.compliance * force
+    after.z[:] = before.z + room.x + length.numbers[3] * length.inverse * room.pushed
+    after.R[:] = h2 * (room.load - body.k * after.z + room.pushed)
+    after.a[:] = inertia_force(numbers, after.R, room.R, room.a)
+    after.p[:] = velocity_corrector(numbers, room.p, room.a, before.a, after.a)
+    if blocks.base == SPRUNG:
+        end_surface(march, stage, length, after)
+    lowest, below = lowest_face(march, after)
+    half = blocks.half[lowest:] * after.z[1 + 2 * lowest :: 2]
+    tops = below + np.cumsum((after.rows.opening - blocks.gap + after.path)[lowest:] + 2 * half)
+    after.z[2 * lowest :: 2] = blocks.root[lowest:] * (tops - half)
+    return FOUND, 1
+
+
+def hold_base(
+    march: March, stage: StageRoom, length: Length, start: AnyState, before: AnyState, after: AnyState
+) -> None:
+    """Make the rows of what is below the column, and welds of an explicit stage, what they are."""
+    if march.method.base == HALF_SPACE:
+        free_half_space(march, stage, length, before)
+    elif march.method.base == SPRUNG:
+        free_surface(march, stage, length, start, before, after)
+    if length.numbers[3] == 0:
+        hold_welds(march, length, before)
+
+
+def lowest_face(march: March, state: AnyState) -> tuple[int, float]:
+    """Return the first block that is placed by its row, and where the face below it is [m]."""
+    blocks = march.method
+    if blocks.base == ROW or blocks.base == WELDED:
+        return 0, march.room.end[1]
+    return 1, march.room.end[1] if blocks.base == CARRIED else of_top(blocks, state.z, 0)
+
+
 def place_blocks(march: March, state: AnyState) -> None:
     """Write the means from gaps, slips and stretches, above the base or the lowest block."""
     blocks = march.method
     rows = state.rows
     z = state.z
-    lowest = 0 if blocks.base == ROW or blocks.base == WELDED else 1
-    below = march.room.end[1] if lowest == 0 or blocks.base == CARRIED else of_top(blocks, z, 0)
+    lowest, below = lowest_face(march, state)
     for i in range(lowest, len(rows.state)):
         half = blocks.half[i] * z[2 * i + 1]
         mean = below + (rows.opening[i] - blocks.gap[i]) + state.path[i] + half
@@ -428,3 +496,4 @@ def keep_states(march: March, state: AnyState, history: History, number: int) ->
 
 add_feet = over_stages(add_foot)
 make_column_steps = steps_by(make_column_stage, account_column, keep_observed, keep_states)
+make_linear_steps = steps_by(make_linear_stage, account_column, keep_observed, keep_states)

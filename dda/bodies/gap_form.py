@@ -28,7 +28,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from dda.contact.springs import Contact, base_directions
 from dda.linear.natural_modes import free_modes, graded_modes
-from dda.model.arrays import Array, without_rounding
+from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block
 from dda.model.load import Load, pressed_part
 from dda.model.material import Material
@@ -61,7 +61,7 @@ class GapForm:
     F: Array  # (n,) load, the largest of its stresses 1 Pa
     R: Array  # (n, 2) rigid translation by the base's displacement in x and y
     Q: Array  # (6, n): D = Q (x + R y)
-    observers: dict[str, Array]  # column -> (n,) row
+    observers: Columns  # column -> (n,) row
     corners: Array  # (2, n, 2) displacements along and away from the base, of its corners M and N
 
     def reduced(self) -> GapForm:
@@ -85,13 +85,13 @@ class GapForm:
         """The form in its own modes."""
         return modal_form(self)
 
-    def rows(self, columns: Sequence[str]) -> tuple[Array, Array]:
+    def rows(self, columns: Sequence[str]) -> ArrayPair:
         """Return the rows of some columns by x and by the displacement of the base in x and y."""
         own = {"horizontal_displacement": [1.0, 0.0], "displacement": [0.0, 1.0]}
         by_base = [own.get(name, [0.0, 0.0]) for name in columns]
         return np.array([self.observers[name] for name in columns]), np.array(by_base)
 
-    def at_base(self, F: Array, base: Array) -> tuple[Array, Array]:
+    def at_base(self, F: Array, base: Array) -> ArrayPair:
         """Return x at rest under a load, and the displacement of the base."""
         return F / self.K, base
 
@@ -110,7 +110,7 @@ class GapForm:
         return float(np.max(self.modal.frequencies))
 
     def steady(
-        self, rows: tuple[Array, Array], F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
+        self, rows: ArrayPair, F: Array, base: Array, scheme: Scheme, frequencies: ArrayLike, exact: bool
     ) -> Complex:
         """Return what rows observe of a steady vibration, mode by mode, (rows, frequencies)."""
         modal = self.modal
@@ -183,7 +183,7 @@ def _moments(i: AreaIntegrals) -> Array:
     return np.array([[i.area, x, i.y], [x, i.xx, xy], [i.y, xy, i.yy]])
 
 
-def free_block(M: Array, block: Block) -> tuple[Array, Array]:
+def free_block(M: Array, block: Block) -> ArrayPair:
     """Return w^2 and shapes, one column a mode, of a block that nothing holds, by its inertia M in its six unknowns.
 
     In ex, e2 = ey + c ex and gxy, c the free lateral contraction, its stiffness is a diagonal.
@@ -241,7 +241,7 @@ def _to_block_unknowns(moves: Array, centroid: Array, axes: Array) -> Array:
     return np.array([*(axes.T @ (moves @ centroid)), rotation, strain[0, 0], strain[1, 1], 2 * strain[0, 1]])
 
 
-def _observers(Q: Array, contact: Contact, a: float) -> dict[str, Array]:
+def _observers(Q: Array, contact: Contact, a: float) -> Columns:
     """Return the row of every column: the block's unknowns and -2 pn w / a."""
     rows = dict(zip(D_COLUMNS, Q, strict=True))
     rows["contact_pressure"] = np.array([0.0, -2 * contact.normal / a, 0.0, 0.0, 0.0, 0.0])

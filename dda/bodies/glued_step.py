@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from dda.bodies.block_system import Equations, factor
-from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, find, rows_of, unpair
+from dda.contact.rows import FOUND, INSIDE, LOWER, Flexibility, Laws, Rows, Solved, find, rows_of, unpair
 from dda.march.account import account_with
 from dda.march.compiled import as_lists, as_record, called_often
 from dda.march.energy import ALGORITHMIC, bulk_loss
@@ -48,7 +48,7 @@ from dda.march.step import (
     reached_history,
     steps_by,
 )
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.scheme.newmark import Scheme, late_momentum
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, predictor, velocity_corrector
 
@@ -72,7 +72,7 @@ class Glue:
     C: csr_array  # C/dt^2
     contact: Array  # (m, n) openings of the contacts, by the modes
     paired: bool  # whether two of them are the mean and the difference of two ways
-    observed: tuple[Array, Array]  # (c, n) and (c, gaps) rows of what is kept of every step, by z and by dt^2 mu
+    observed: ArrayPair  # (c, n) and (c, gaps) rows of what is kept of every step, by z and by dt^2 mu
     energies: bool  # whether kinetic and strain energy are kept too
     compiled: Any  # `dda.contact.rows.find` compiled, and records of all that it takes, or None
     lag: float  # a1/dt
@@ -135,7 +135,7 @@ class StageSolver:
             self.flexible = as_lists(flexible)
             self.record = as_record(flexible) if glue.compiled else None
 
-    def increments(self, r: Array, push: Array) -> tuple[Array, Array]:
+    def increments(self, r: Array, push: Array) -> ArrayPair:
         """Return x and dmu of s x + b B' dmu = r, B x - C dmu = G dy.
 
         Where a block's stiffness outweighs its inertia in s, its rigid motion is a small difference
@@ -168,7 +168,7 @@ def glued_march(
     scheme: Scheme,
     laws: Laws,
     contact: Array,
-    observed: tuple[Array, Array],
+    observed: ArrayPair,
     energies: bool,
     steps: int,
 ) -> March:
@@ -270,7 +270,7 @@ def run_glued(
 
 def make_stage(
     march: March, stage: StageRoom, start: GluedState, before: GluedState, after: GluedState, course: Course, part: Part
-) -> tuple[int, int]:
+) -> Solved:
     """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
     glue = march.method
     room = march.room
@@ -319,7 +319,7 @@ def make_stage(
     return outcome, solves
 
 
-def find_rows(march: March, solver: StageSolver, before: Rows, after: Rows) -> tuple[int, int]:
+def find_rows(march: March, solver: StageSolver, before: Rows, after: Rows) -> Solved:
     """Find the contacts of a stage, by compiled code where it is at hand; lists are faster for all else."""
     if march.method.compiled is None:
         return find(march.laws, before, solver.flexible, after, march.work)

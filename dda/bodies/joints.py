@@ -29,6 +29,7 @@ from dda.model.block import Block, displacement_rows
 from dda.model.checks import check_positive
 
 Point = tuple[float, float]
+End = tuple[int, int]  # a joint, and which of its ends
 
 FIXED = -1  # the body that all fixed parts form
 _SAME_PLACE = 1e-9  # of the system's extent
@@ -90,7 +91,7 @@ def gap_groups(blocks: Sequence[Block], joints: Sequence[Joint]) -> list[Gaps]:
     return groups
 
 
-def _springs_at_points(joints: Sequence[Joint]) -> list[list[tuple[int, int]]]:
+def _springs_at_points(joints: Sequence[Joint]) -> list[list[End]]:
     """Return the springs (joint, end) that share a point, a list for each point."""
     points = np.array([place for joint in joints for place in (joint.start, joint.end)]).reshape(-1, 2)
     if not len(points):
@@ -100,7 +101,7 @@ def _springs_at_points(joints: Sequence[Joint]) -> list[list[tuple[int, int]]]:
     for axis, x in enumerate(points.T):
         order = np.argsort(x)
         places[order[1:], axis] = np.cumsum(np.diff(x[order]) > slack)
-    springs_by_point: dict[tuple[int, int], list[tuple[int, int]]] = {}
+    springs_by_point: dict[tuple[int, int], list[End]] = {}
     for number, (i, j) in enumerate(places.tolist()):
         springs_by_point.setdefault((i, j), []).append((number // 2, number % 2))
     return list(springs_by_point.values())
@@ -118,7 +119,7 @@ def _plain(blocks: Sequence[Block], joint: Joint) -> Gaps:
     return Gaps(bodies, np.diag([2 * joint.shear, 2 * joint.normal, joint.normal / 2, joint.shear / 2]))
 
 
-def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[tuple[int, int]]) -> Gaps:
+def _meeting(blocks: Sequence[Block], joints: Sequence[Joint], met: list[End]) -> Gaps:
     """Return the gaps where springs meet in a point: the vector across each branch of a spanning tree."""
     met = sorted(met, key=lambda s: -(joints[s[0]].normal + joints[s[0]].shear))
     springs = [joints[j] for j, _ in met]

@@ -12,7 +12,7 @@ from dda.bodies.glued_step import glued_march, run_glued
 from dda.contact.rows import laws_of
 from dda.contact.unilateral import Unilateral
 from dda.march.step import March, course_of
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.model.checks import check_damping
 from dda.model.load import BaseMotion
 from dda.result.result import Result, check_request, linear_result
@@ -58,7 +58,7 @@ def stepped(
     scheme: Scheme,
     steps: int,
     names: Sequence[str],
-    rows: tuple[Array, Array],
+    rows: ArrayPair,
     began: float,
 ) -> Result:
     """Step a system from rest and return what some rows, of z and of the joint forces, observe of it.

@@ -21,7 +21,7 @@ from dda.contact.rows import INSIDE, LOWER
 from dda.contact.springs import Contact, base_directions
 from dda.linear.natural_modes import free_modes
 from dda.march.step import Body, History, State, state_of
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.load import BaseMotion, LoadedBlock, load_share
 from dda.scheme.newmark import Scheme, initial_acceleration, late_momentum
 
@@ -43,7 +43,7 @@ class OpeningBlock:
     contacts: int  # 1 or 2
     multiplicity: float  # corners that a contact stands for
     start: Array  # (n,) x at t = 0
-    observers: dict[str, Array]  # displacement column -> (n,) row over x - start
+    observers: Columns  # displacement column -> (n,) row over x - start
     slide: Array  # (2, n) way of M and N along the base by x
     translation: Array  # (n, 2) x of a rigid translation by 1 m along the base and away from it
     body: Body

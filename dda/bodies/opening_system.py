@@ -26,7 +26,7 @@ from dda.contact.unilateral import CONSISTENT, LAGGED, Unilateral
 from dda.march.compiled import COMPILED, PLAIN
 from dda.march.energy import energies_of
 from dda.march.step import course_of
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.load import BaseMotion
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import step_times
@@ -87,7 +87,7 @@ class OpeningSystem:
             base = 0.0 if self.motion is None else self.motion.at(step_times(scheme, reached)) @ self.axes[0]
             return np.asarray(slides[:, 1:] - base)
 
-        def balance() -> dict[str, Array]:
+        def balance() -> Columns:
             springs = (history.force * history.force) @ np.asarray(laws.compliance) / 2
             return energies_of((*stored, springs, 0.0 - done[0]), history.sums, scheme.table is not None)
 

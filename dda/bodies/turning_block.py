@@ -30,7 +30,7 @@ from dda.march.energy import IMPULSE, energies_of
 from dda.march.run import run
 from dda.march.step import Body as ModalBody
 from dda.march.step import History, course_of, state_of
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair, Columns
 from dda.model.load import BaseMotion, LoadedBlock, at_once, pressed_part
 from dda.result.contact_result import ContactResult, run_fields
 from dda.result.result import COLUMNS
@@ -80,7 +80,7 @@ class RollingModel(LoadedBlock):
         return np.asarray(self.load.gravity * (self.body.to_base @ self.load.falling))
 
     @property
-    def dead(self) -> tuple[Array, Array]:
+    def dead(self) -> ArrayPair:
         """Return where the resultants of pressure and traction act, and these, along and across the base."""
         load = self.load
         start, end = self.block.edge(self.top)
@@ -230,7 +230,7 @@ def base_motion(model: RollingModel) -> BaseMotion | None:
     return model.load.motion and model.load.motion.along(model.body.to_base)
 
 
-def observed(body: Body, states: RollingMotion, history: History) -> dict[str, Array]:
+def observed(body: Body, states: RollingMotion, history: History) -> Columns:
     """Return all of `dda.COLUMNS`."""
     out = body.to_base.T
     moved = (states.c[1:] - states.c[0]) @ out.T
@@ -241,9 +241,7 @@ def observed(body: Body, states: RollingMotion, history: History) -> dict[str, A
     return dict(zip(COLUMNS, values, strict=True))
 
 
-def energies(
-    model: RollingModel, rotation: str, laws: Laws, states: RollingMotion, history: History
-) -> dict[str, Array]:
+def energies(model: RollingModel, rotation: str, laws: Laws, states: RollingMotion, history: History) -> Columns:
     """Return the energies [J] after every step, the losses summed from t = 0 on.
 
     They are those of `dda.march.energy`, but for the algorithmic loss, which is what the others leave of the total:

@@ -25,7 +25,7 @@ import numpy as np
 
 from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
 from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
-from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, States, find, flexed, rows_of, work_for
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
     AnyState,
@@ -202,7 +202,7 @@ def make_stage(
     after: RollingState,
     course: Course,
     part: Part,
-) -> tuple[int, int]:
+) -> Solved:
     """Go from the end of the stage before, or the start of the step, to the end of a stage.
 
     Which corners may touch is guessed from the stage without contact, and it is made again with those that turn out to
@@ -328,7 +328,7 @@ def another_crossed(rolling: Rolling, after: RollingState) -> bool:
 
 def settle(
     march: March, stage: StageRoom, length: Length, before: RollingState, after: RollingState, near: int
-) -> tuple[int, int]:
+) -> Solved:
     """Make the stage with the corners `at`, and again with the turn that it found until nothing changes."""
     rolling = march.method
     room = march.room

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from dda.bodies.gap_form import GapForm, gap_form
 from dda.contact.springs import Contact, contact_stiffness
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.load import BaseMotion, LoadedBlock, pressed_part
 from dda.result.result import COLUMNS
 
@@ -87,7 +87,7 @@ class TwoBlockModel(LoadedBlock):
         return self.gap_form.reduced()
 
 
-def carried(motion: BaseMotion | None, instants: ArrayLike) -> dict[str, Array]:
+def carried(motion: BaseMotion | None, instants: ArrayLike) -> Columns:
     """Return what a moving base adds to the columns: its own displacement [m]."""
     if motion is None:
         return {}

@@ -26,7 +26,7 @@ from dda.march.energy import IMPACT as IMPACT_LOSS
 from dda.march.methods import Method, make_augmented_steps, make_conserving_steps, make_impact_steps, make_steps
 from dda.march.run import run
 from dda.march.step import History, course_of, march_of
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.checks import check_count, check_finite, check_positive
 from dda.model.load import LoadedBlock, at_once
 from dda.result.contact_result import ContactResult, run_fields
@@ -249,7 +249,7 @@ def energies(
     scheme: Scheme,
     history: History,
     rule: str,
-) -> dict[str, Array]:
+) -> Columns:
     """Return the energies [J] after every step, the losses summed from t = 0 on.
 
     They are those of `dda.march.energy`, with "dashpot" or "impact" where contact has one. Energy-conserving contact

@@ -20,6 +20,7 @@ from dda.contact.rows import (
     Flexibility,
     Laws,
     Rows,
+    Solved,
     States,
     Work,
     next_state,
@@ -28,7 +29,7 @@ from dda.contact.rows import (
 ONE_BY_ONE = 1000  # solves for each row with one state changed at a time, beyond any known problem
 
 
-def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def find_in_band(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Find states, forces and openings at the end of a step, as `dda.contact.rows.find` does.
 
     `flexible.W` holds the main diagonal and that beside it, (2, m).

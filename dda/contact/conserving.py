@@ -19,13 +19,13 @@ from __future__ import annotations
 
 import math
 
-from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Flexibility, Laws, Rows, Work
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Flexibility, Laws, Rows, Solved, Work
 
 ROUNDS = 400  # of two contacts, which take about five; a slender block that lands takes more
 SETTLED = 2e-16  # change of a force by which the rounds end
 
 
-def conserving(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def conserving(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Find the contacts at the end of a step, and in `work.mean` their forces over the step.
 
     A contact is closed if its gap is negative at the end; its force there is that of its spring.

@@ -46,6 +46,7 @@ from dda.contact.dense import Matrix, Vector, copy, eliminate, scale_of, zeros
 from dda.contact.unilateral import LAGGED, Unilateral
 
 States = Any  # (m,) array, or a list of ints
+Solved = tuple[int, int]  # an outcome, and how many solves it took
 
 LOWER = -1  # of a row: its force is at the lower bound, open or slipping forwards
 INSIDE = 0  # closed, sticking
@@ -197,7 +198,7 @@ def rows_of(opening: Vector, state: States) -> Rows:
 # ---- the iteration ---------------------------------------------------------------------------------------------------
 
 
-def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def find(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Find states, forces and openings at the end of a step; return the outcome and the number of solves.
 
     Parameters
@@ -340,7 +341,7 @@ def is_smooth(laws: Laws, i: int) -> bool:
     return bool(laws.upper[r] == 0 and laws.friction[i] == 0 and laws.compliance[r] == 0)
 
 
-def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def one_by_one(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Set the first row that disagrees, alone, until all agree or states come back."""
     m = laws.rows
     copy(work.tried, work.saved)
@@ -370,7 +371,7 @@ def all_equal(states: States, saved: States, m: int) -> bool:
     return True
 
 
-def every_state(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def every_state(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Try all states; take the only ones that agree with their forces, but for rounding.
 
     Of contacts with dashpots, which may have several (`with_dashpot`), the first ones.
@@ -450,7 +451,7 @@ def with_dashpot(laws: Laws, flexible: Flexibility, after: Rows, work: Work, r: 
     return INSIDE if alone < 0 and not pulls else LOWER
 
 
-def lagged(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> tuple[int, int]:
+def lagged(laws: Laws, before: Rows, flexible: Flexibility, after: Rows, work: Work) -> Solved:
     """Find the contacts with friction one solve behind and out of the convergence test, as common programs do.
 
     It is here to be recognised and explained, not to be used. What such programs do (Shi's and those that descend

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.model.block import Block
 from dda.model.checks import check_positive
 
@@ -49,7 +49,7 @@ def base_directions(block: Block, base: int) -> tuple[Array, Array, float]:
     return tangent, np.array([-tangent[1], tangent[0]]), length
 
 
-def spring_vectors(block: Block, base: int) -> tuple[Array, Array]:
+def spring_vectors(block: Block, base: int) -> ArrayPair:
     """Return the spring vectors of eq. (24) and (26) for any base edge.
 
     Returns

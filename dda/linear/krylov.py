@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dda.linear.elimination import Elimination
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.scheme.harmonic import Complex
 
 LARGEST = 600  # vectors
@@ -31,7 +31,7 @@ CLOSED = 1e-15  # share of a new vector outside the space, over the largest, bel
 class _Space:
     """The vectors of the recursion, each with what is observed of it behind its modes."""
 
-    def __init__(self, equations: Any, rows: tuple[Array, Array], static: tuple[Array, Array]) -> None:
+    def __init__(self, equations: Any, rows: ArrayPair, static: ArrayPair) -> None:
         """Begin with the static response (modes, joint forces)."""
         self.equations = equations
         self.rows = rows
@@ -94,7 +94,7 @@ class _Space:
         return amplitudes, np.asarray(residual <= small), np.asarray(lost)
 
 
-def amplitudes(equations: Any, rows: tuple[Array, Array], F: Array, g: Array, W2: Complex) -> Complex:
+def amplitudes(equations: Any, rows: ArrayPair, F: Array, g: Array, W2: Complex) -> Complex:
     """Return what rows of z and of lambda observe where (K - W2) z = F, (rows, frequencies).
 
     Parameters

@@ -7,12 +7,12 @@ from itertools import combinations
 
 import numpy as np
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 
 _SWEEPS = 40  # Jacobi's method converges quadratically: six unknowns take about five
 
 
-def graded_modes(M: Array, K: Array) -> tuple[Array, Array]:
+def graded_modes(M: Array, K: Array) -> ArrayPair:
     """Return the frequencies w and mass-normalised shapes of K phi = w^2 M phi, K a positive diagonal.
 
     With a diagonal K the problem is that of G = K^-1/2 M K^-1/2, whose eigenvalues are 1 / w^2.
@@ -25,7 +25,7 @@ def graded_modes(M: Array, K: Array) -> tuple[Array, Array]:
     return 1 / np.sqrt(values), vectors / root[:, None] / np.sqrt(values)
 
 
-def free_modes(M: Array, K: Array) -> tuple[Array, Array]:
+def free_modes(M: Array, K: Array) -> ArrayPair:
     """Return w^2 and mass-normalised shapes, one a column, of a body that nothing holds: strains, then rigid motions.
 
     Parameters
@@ -49,7 +49,7 @@ def free_modes(M: Array, K: Array) -> tuple[Array, Array]:
     return np.concatenate([frequencies**2, np.zeros(len(K) - count)]), shapes
 
 
-def _jacobi(matrix: Array) -> tuple[Array, Array]:
+def _jacobi(matrix: Array) -> ArrayPair:
     """Return eigenvalues and eigenvectors of a positive definite matrix by cyclic rotations."""
     A = matrix.copy()
     V = np.eye(len(A))

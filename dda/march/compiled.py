@@ -35,6 +35,7 @@ from dda.march.one_library import library_option
 from dda.march.structure import Structure
 
 Loop = Callable[..., Any]
+Parts = tuple[Any, ...]
 
 SHORT = 2_000  # steps from which a loop is run compiled where its code is at hand
 LONG = 20_000  # the same from which it is compiled and kept
@@ -51,8 +52,13 @@ logger = logging.getLogger("dda")
 
 
 def run_loop(
-    loop: Loop, records: tuple[Any, ...], series: tuple[Any, ...], rows: tuple[Any, ...], steps: int
-) -> tuple[Any, tuple[Any, ...], str]:
+    loop: Loop,
+    records: Parts,
+    series: Parts,
+    rows: Parts,
+    steps: int,
+    in_arrays: Loop | None = None,
+) -> tuple[Any, Parts, str]:
     """Run a loop over steps; return what it returns, the records and series that it left, and how it ran, in words.
 
     Parameters
@@ -67,6 +73,8 @@ def run_loop(
         Arrays that it fills, or named tuples of these, and numbers.
     steps
         How many steps it makes.
+    in_arrays
+        What does the same by whole arrays, and takes the place of plain Python on lists; without records.
     """
     with np.errstate(all="ignore"):
         if steps >= SHORT:
@@ -75,11 +83,13 @@ def run_loop(
             machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
             if machine_code is not None:
                 return machine_code(*arguments), (*converted, *series), COMPILED
+        if in_arrays is not None:
+            return in_arrays(*series, *rows), series, PLAIN
         left = tuple(as_lists(part) for part in (*records, *series))
         return loop(*left, *rows), left, PLAIN
 
 
-def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[Loop, tuple[Any, ...]] | None:
+def called_often(function: Loop, records: Parts, steps: int) -> tuple[Loop, Parts] | None:
     """Return the compiled code of a function that a loop in plain Python calls at every step, and records for it.
 
     None where it is not worthwhile, or cannot be made.
@@ -100,12 +110,12 @@ def called_often(function: Loop, records: tuple[Any, ...], steps: int) -> tuple[
     return None if machine_code is None else (machine_code, converted)
 
 
-def types_of(arguments: tuple[Any, ...]) -> tuple[Any, ...]:
+def types_of(arguments: Parts) -> Parts:
     """Return what compiled code is made for: the types of its arguments, with the sizes of all arrays of records."""
     return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
 
 
-def is_worthwhile(loop: Loop, steps: int, types: tuple[Any, ...]) -> bool:
+def is_worthwhile(loop: Loop, steps: int, types: Parts) -> bool:
     """Tell whether so many steps pay for compiled code: at hand, to be kept, or to be made each time."""
     if steps < SHORT:  # and nothing is looked for, nor made, in the user's cache
         return False
@@ -114,7 +124,7 @@ def is_worthwhile(loop: Loop, steps: int, types: tuple[Any, ...]) -> bool:
     return steps >= ANEW or cache_directory() is not None
 
 
-def is_kept(loop: Loop, types: tuple[Any, ...]) -> bool:
+def is_kept(loop: Loop, types: Parts) -> bool:
     """Tell whether the user's cache holds a loop as its sources are now, for these types."""
     from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
 
@@ -170,7 +180,7 @@ def _fill(records: Any, value: Any) -> None:
             records[name][0] = part
 
 
-def compiled(loop: Loop, arguments: tuple[Any, ...]) -> Loop | None:
+def compiled(loop: Loop, arguments: Parts) -> Loop | None:
     """Return the compiled loop for such arguments, or None where the plain one is to run."""
     key = loop, types_of(arguments)
     if key not in loops:
@@ -225,7 +235,7 @@ def functions_of(loop: Loop) -> list[FunctionType]:
     return functions
 
 
-def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ...]) -> Loop | None:
+def _compile(loop: Loop, functions: list[FunctionType], arguments: Parts) -> Loop | None:
     """Return the compiled loop, or None where numba, this Python or this machine cannot make it."""
     try:
         import numba
@@ -266,7 +276,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: tuple[Any, ..
             gc.enable()
 
 
-def compile_loop(numba: Any, loop: Loop, types: tuple[Any, ...], directory: Path | None) -> Loop:
+def compile_loop(numba: Any, loop: Loop, types: Parts, directory: Path | None) -> Loop:
     """Return the compiled loop; raise whatever numba raises."""
     before = numba.config.CACHE_DIR
     # nothing is allocated in a loop: without the counting of references a call costs what it does
@@ -292,7 +302,7 @@ def _digest(functions: list[FunctionType], version: str) -> str:
     return digest.hexdigest()[:16]
 
 
-def _types_digest(types: tuple[Any, ...]) -> str:
+def _types_digest(types: Parts) -> str:
     """Return what changes with the types of arguments."""
     return hashlib.sha256(repr(types).encode()).hexdigest()[:16]
 

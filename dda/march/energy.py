@@ -18,7 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 
 STORED = ("kinetic", "strain", "springs", "load")
 LOST = ("algorithmic", "kinetic damping", "switching", "friction")
@@ -43,7 +43,7 @@ def bulk_loss(alpha: float, delta: float, h2: float, stiff: float, kinetic: floa
     return over * stiff + (alpha - delta / 2) * h2 * (kinetic + 2 * over * kinetic_of_change)
 
 
-def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> dict[str, Array]:
+def energies_of(stored: Sequence[Array], sums: Array, by_balance: bool) -> Columns:
     """Return the energies by `ENERGIES` [J] after every step, losses summed from t = 0 on.
 
     Parameters

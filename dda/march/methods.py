@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from dda.contact.conserving import conserving
 from dda.contact.dense import Vector, copy
-from dda.contact.rows import FOUND, INSIDE, LOWER, UNREACHED, Flexibility, Laws, Rows, find, flexed
+from dda.contact.rows import FOUND, INSIDE, LOWER, UNREACHED, Flexibility, Laws, Rows, Solved, find, flexed
 from dda.march.account import account, add_bulk_loss, add_damping, half_square
 from dda.march.energy import ALGORITHMIC, CONTACT, GIVEN, IMPULSE
 from dda.march.step import (
@@ -42,14 +42,14 @@ class Method(NamedTuple):
     restitution: float  # of impacts [-]
 
 
-def at_end(march: March, before: Rows, flexible: Flexibility, after: Rows) -> tuple[int, int]:
+def at_end(march: March, before: Rows, flexible: Flexibility, after: Rows) -> Solved:
     """Find the contacts whose law holds at the end of the step."""
     outcome, solves = find(march.laws, before, flexible, after, march.work)
     copy(after.force, march.work.mean)
     return outcome, solves
 
 
-def by_energy(march: March, before: Rows, flexible: Flexibility, after: Rows) -> tuple[int, int]:
+def by_energy(march: March, before: Rows, flexible: Flexibility, after: Rows) -> Solved:
     """Find the contacts whose forces do the work of their springs."""
     return conserving(march.laws, before, flexible, after, march.work)
 
@@ -60,7 +60,7 @@ def account_conserving(march: March, state: State, after: State, course: Course,
     add_bulk_loss(march, state, after, part, sums)
 
 
-def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) -> tuple[int, int]:
+def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) -> Solved:
     r"""Find the contacts on a rigid stop by passes over springs (Uzawa).
 
     These are preloaded by the forces of the pass before,
@@ -109,7 +109,7 @@ def by_passes(march: March, before: Rows, flexible: Flexibility, after: Rows) ->
 
 def make_impact_stage(
     march: March, stage: StageRoom, start: State, before: State, after: State, course: Course, part: Part
-) -> tuple[int, int]:
+) -> Solved:
     r"""Make a step on rigid contact with a coefficient of restitution, by the theta method (Moreau and Jean).
 
     With u = gg v at the start and impulses P, mode by mode,

@@ -42,6 +42,7 @@ from dda.contact.rows import (
     Flexibility,
     Laws,
     Rows,
+    Solved,
     Work,
     flexed,
     flexibility_for,
@@ -56,6 +57,7 @@ from dda.scheme.newmark import Scheme
 from dda.scheme.stage import Stage, implicit_weight, inertia_force, plain_stage, predictor, velocity_corrector
 
 AnyState = Any  # `State`, or what has its fields
+Finder = Callable[..., Solved]
 SHORTEST = 0.01  # shortest part of a step that a cut may leave
 
 
@@ -568,7 +570,7 @@ def end_paths(march: March, flexible: Flexibility, before: AnyState, after: AnyS
             after.path[r] = before.path[r] + before.rows.opening[r] + way - rows.opening[r]
 
 
-def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int, int]]:
+def stage_with(find: Finder) -> Finder:
     """Return what makes a stage whose contacts are found by a function: `dda.contact.rows.find`, or another rule.
 
     Parameters
@@ -580,7 +582,7 @@ def stage_with(find: Callable[..., tuple[int, int]]) -> Callable[..., tuple[int,
 
     def make_stage(
         march: March, stage: StageRoom, start: State, before: State, after: State, course: Course, part: Part
-    ) -> tuple[int, int]:
+    ) -> Solved:
         """Go from the end of the stage before to the end of a stage; return the outcome and the number of solves."""
         length = length_of(march, stage, part.ratio)
         prescribe(march, course, stage, part)
@@ -615,11 +617,11 @@ def keep_rows(march: March, state: AnyState, history: History, number: int) -> N
 
 
 def steps_by(
-    make_stage: Callable[..., tuple[int, int]],
+    make_stage: Finder,
     account: Callable[..., None],
     keep: Callable[..., bool],
     keep_rows: Callable[..., None] = keep_rows,
-) -> Callable[..., tuple[int, int]]:
+) -> Finder:
     """Return the loop over the steps of a body.
 
     Parameters

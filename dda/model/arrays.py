@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+ArrayPair = tuple[Array, Array]
+Columns = dict[str, Array]  # by the name of what they hold
 ROUNDING = 64 * np.finfo(float).eps  # of the terms of a sum: each carries a few roundings, and there is a handful
 
 

@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.model.material import Material
 from dda.model.polygon import Section, checked_polygon, section
 
@@ -65,7 +65,7 @@ class Block:
         """Density times area [kg]."""
         return self.material.density * self.section.area
 
-    def edge(self, index: int) -> tuple[Array, Array]:
+    def edge(self, index: int) -> ArrayPair:
         """Return the two ends of edge `index`, from corner `index` to the next one [m].
 
         Raises

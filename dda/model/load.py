@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.model.block import Block
 from dda.model.checks import check_finite, check_not_negative
 
@@ -108,7 +108,7 @@ def falling(slope: float) -> tuple[float, float]:
     return math.sin(angle), -math.cos(angle)
 
 
-def pressed_part(start: Array, end: Array, eccentricity: float) -> tuple[Array, Array]:
+def pressed_part(start: Array, end: Array, eccentricity: float) -> ArrayPair:
     """Return the ends of the pressed part of the top edge.
 
     It is the longest part whose middle lies `eccentricity` from the middle of the edge, towards

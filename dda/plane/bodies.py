@@ -48,7 +48,8 @@ RIGID = 3  # modes of a rigid block; a fixed one has none, a strained one three 
 class Blocks(NamedTuple):
     """Constant numbers of all blocks."""
 
-    first: Any  # (b + 1,) first mode of each: the centroid's two, that of H, those of the strains
+    first: Any  # (b,) first mode of each: the centroid's two, that of H, those of the strains
+    modes: Any  # (b,) how many it has
     root_mass: Vector  # (b,) sqrt(m); of a fixed block one
     root_inertia: Vector  # (b,) sqrt(J0)
     j: Matrix  # (b, 3)
@@ -76,23 +77,20 @@ class Poses(NamedTuple):
 def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motion: list[int]) -> tuple[Blocks, Array]:
     """Return the numbers of blocks, and the squares of the frequencies of all modes."""
     b = len(outlines)
-    first = np.zeros(b + 1, dtype=np.int64)
-    start = np.zeros(b + 1, dtype=np.int64)
+    modes = np.array([0 if held else RIGID if stiff else 2 * RIGID for held, stiff in zip(fixed, rigid, strict=True)])
+    corners = [len(block.corners) for block in outlines]
     root_mass, root_inertia = np.ones((2, b))
     j, gamma = np.zeros((2, b, 3))
     M, G, shapes = np.zeros((3, b, 3, 3))
     k: list[Array] = []
     for i, block in enumerate(outlines):
-        start[i + 1] = start[i] + len(block.corners)
-        modes = 0 if fixed[i] else RIGID if rigid[i] else 2 * RIGID
-        first[i + 1] = first[i] + modes
-        if modes == 0:
+        if modes[i] == 0:
             continue
         inertia = block.mass()
         root_mass[i] = np.sqrt(inertia[0, 0])
         root_inertia[i] = np.sqrt(inertia[2, 2])
         k.append(np.zeros(RIGID))
-        if modes == RIGID:
+        if modes[i] == RIGID:
             continue
         natural, unknowns = free_block(inertia, block)  # strains come first there
         shapes[i] = unknowns[3:, :3]
@@ -104,7 +102,8 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
         j[i] = np.einsum("ab,iba->i", S, STRAINS)
         G[i] = np.einsum("ab,kbc,cd,ida->ki", QUARTER_TURN, STRAINS, S, STRAINS)
     return Blocks(
-        first=first,
+        first=np.cumsum(modes) - modes,
+        modes=modes,
         root_mass=root_mass,
         root_inertia=root_inertia,
         j=j,
@@ -114,9 +113,9 @@ def blocks_of(outlines: list[Block], rigid: list[bool], fixed: list[bool], motio
         shapes=shapes,
         centroid=as_complex([block.section.centroid for block in outlines]),
         motion=np.array(motion, dtype=np.int64),
-        start=start,
+        start=np.cumsum([0, *corners]),
         xi=as_complex(np.vstack([block.corners - block.section.centroid for block in outlines])),
-    ), np.concatenate([*k, np.zeros(0)])
+    ), np.concatenate(k)
 
 
 def as_complex(points: Any) -> Points:
@@ -212,7 +211,7 @@ def increments(blocks: Blocks, q: Matrix, x: Vector, chords: Poses, out: Matrix)
     """Write the increments D of all blocks that move, for increments of the modes, and J and gamma of the middle."""
     for i in range(len(blocks.root_mass)):
         first = blocks.first[i]
-        modes = blocks.first[i + 1] - first
+        modes = blocks.modes[i]
         if modes == 0:
             continue
         D = out[i]
@@ -243,7 +242,7 @@ def set_poses(blocks: Blocks, q: Matrix, D: Matrix, chords: Poses, ends: Poses) 
         ends.turn[i] = complex(math.cos(end), math.sin(end))
         ends.spin[i] = 1.0
         ends.stretch[i] = 1.0
-        if blocks.first[i + 1] - blocks.first[i] > RIGID:
+        if blocks.modes[i] > RIGID:
             for k in range(3):
                 ends.e[i][k] = q[i][3 + k] + D[i][3 + k]
             inertia_of(blocks, i, ends.e[i], ends)
@@ -296,8 +295,7 @@ def direction(poses: Poses, i: int, a: complex, z: complex, out: Vector) -> None
 
 def by_modes(blocks: Blocks, i: int, poses: Poses, row: Vector, force: bool, out: Vector) -> None:
     """Write a row over D as one over the modes of a block: of what its modes move, or as that of a force."""
-    first = blocks.first[i]
-    modes = blocks.first[i + 1] - first
+    modes = blocks.modes[i]
     if modes == 0:
         return
     root = blocks.root_inertia[i]

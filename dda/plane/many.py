@@ -81,13 +81,12 @@ class Many(NamedTuple):
 
 def many_of(blocks: Blocks, places: Places, size: float) -> Many:
     """Return room for the equations of these contacts; the smallest block has that size [m]."""
-    modes = np.diff(blocks.first)
-    moving = np.flatnonzero(modes)
-    body = np.full(len(modes), MISSING)
+    moving = np.flatnonzero(blocks.modes)
+    body = np.full(len(blocks.modes), MISSING)
     body[moving] = np.arange(len(moving))
     n = len(moving)
-    m = int(modes.max())
-    x, residual = np.zeros((2, int(blocks.first[-1])))
+    m = int(blocks.modes.max())
+    x, residual = np.zeros((2, int(blocks.modes.sum())))
     kappa, normal = np.zeros((2, len(places.law)))
     return Many(
         blocks=blocks,
@@ -256,7 +255,7 @@ def assemble(many: Many, laws: Laws, length: Length, work: Work) -> None:
         if body < 0:
             continue
         block = matrix.blocks[matrix.number[body][body]]
-        modes = first[i + 1] - first[i]
+        modes = many.blocks.modes[i]
         for e in range(len(many.right[body])):
             many.right[body][e] = 0.0
             block[e][e] = stiffness_of(length, first[i] + e) if e < modes else 1.0
@@ -289,7 +288,7 @@ def stiffness_of(length: Length, mode: int) -> float:
 def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: float) -> None:
     """Add a force constant - slope B x, which pushes by the row `force` and follows the row `row` of a contact."""
     matrix = many.matrix
-    first = many.blocks.first
+    modes = many.blocks.modes
     places = many.places
     for side in range(2):
         i = places.sides[k][side]
@@ -298,8 +297,7 @@ def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: fl
             continue
         F = places.F[force][side]
         right = many.right[body]
-        modes = first[i + 1] - first[i]
-        for e in range(modes):
+        for e in range(modes[i]):
             right[e] += F[e] * constant
         for opposite in range(2):
             j = places.sides[k][opposite]
@@ -308,10 +306,10 @@ def add_row(many: Many, k: int, force: int, row: int, slope: float, constant: fl
                 continue
             B = places.B[row][opposite]
             block = matrix.blocks[matrix.number[body][other]]
-            for e in range(modes):
+            for e in range(modes[i]):
                 push = slope * F[e]
                 if push != 0.0:
-                    for f in range(first[j + 1] - first[j]):
+                    for f in range(modes[j]):
                         block[e][f] += push * B[f]
 
 
@@ -320,7 +318,7 @@ def take_solution(many: Many) -> None:
     solve_blocks(many.matrix, many.right)
     first = many.blocks.first
     for i in range(len(many.body)):
-        for e in range(first[i + 1] - first[i]):
+        for e in range(many.blocks.modes[i]):
             many.x[first[i] + e] = many.right[many.body[i]][e]
 
 
@@ -352,7 +350,7 @@ def refine(many: Many, laws: Laws, length: Length, after: Rows, work: Work) -> N
         many.residual[i] = -many.x[i] * stiffness_of(length, i)
     push_contacts(many.blocks, many.places, after.force, many.residual)
     for i in range(len(many.body)):
-        modes = first[i + 1] - first[i]
+        modes = many.blocks.modes[i]
         if modes > 0:
             right = many.right[many.body[i]]
             for e in range(len(right)):
@@ -418,6 +416,6 @@ def push(many: Many, length: Length, r: int, force: float, after: Rows) -> None:
     n = many.places.count[0]
     for side in range(2):
         i = many.places.sides[r if r < n else r - n][side]
-        for e in range(first[i + 1] - first[i]):
+        for e in range(many.blocks.modes[i]):
             mode = first[i] + e
             many.x[mode] += length.numbers[3] * length.inverse[mode] * many.places.F[r][side][e] * change

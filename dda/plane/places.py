@@ -85,7 +85,7 @@ def write_rows(
         # the edge as it is strained, in the axes of its block, in the middle of the step and at its end
         middle = strained(chords, j, side)
         psi = D[j][2]
-        has_strains = blocks.first[j + 1] - blocks.first[j] > 3
+        has_strains = blocks.modes[j] > 3
         if has_strains:  # |t0| |t1| is |middle|^2 but for the square of a strain's increment
             crossed = middle.conjugate() * stretched(D[j], 3, side)
             psi += crossed.imag / square(middle)
@@ -108,7 +108,7 @@ def write_rows(
                 place = places.at[k] if own == 0 else places.foot[k]
                 sign = 1.0 if own == 0 else -1.0
                 is_driven = blocks.motion[block] >= 0
-                if not is_driven and blocks.first[block + 1] == blocks.first[block]:
+                if not is_driven and blocks.modes[block] == 0:
                     continue
                 scale = sign * half_turn.real
                 direction(chords, block, complex(scale * normal.real, scale * normal.imag), place, chord)
@@ -136,8 +136,7 @@ def contact_displacement(x: Vector, blocks: Blocks, places: Places, r: int) -> f
     total = 0.0
     for side in range(2):
         i = places.sides[k][side]
-        first = blocks.first[i]
-        total += row_times(places.B[r][side], x, first, blocks.first[i + 1] - first)
+        total += row_times(places.B[r][side], x, blocks.first[i], blocks.modes[i])
     return total
 
 
@@ -152,7 +151,7 @@ def push_contacts(blocks: Blocks, places: Places, force: Vector, out: Vector) ->
             i = places.sides[k][side]
             first = blocks.first[i]
             F = places.F[r][side]
-            for e in range(blocks.first[i + 1] - first):
+            for e in range(blocks.modes[i]):
                 out[first + e] += F[e] * force[r]
 
 
@@ -165,15 +164,12 @@ def flexibility_of(blocks: Blocks, places: Places, length: Length, r: int, s: in
     for side in range(2):
         i = of[side]
         first = blocks.first[i]
-        modes = blocks.first[i + 1] - first
-        if modes == 0:
-            continue
         for opposite in range(2):
             if by[opposite] == i:
                 B = places.B[r][side]
                 F = places.F[s][opposite]
                 shared = 0.0
-                for e in range(modes):
+                for e in range(blocks.modes[i]):
                     shared += B[e] * length.inverse[first + e] * F[e]
                 total += length.numbers[3] * shared
     return total

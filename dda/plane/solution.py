@@ -123,13 +123,13 @@ def solve_plane(
     motion = history.motion[:kept, : STATE * b].reshape(kept, b, STATE)
     q = motion[:, :, :6]
     centroid = np.array([part.block.section.centroid for part in model.blocks]) + q[:, :, :2]
-    rates = Rates(march, q, motion[:, :, 6:])
+    velocity, kinetic, momentum = rates_of(march, q, motion[:, :, 6:], centroid)
     time = scheme.step * every * np.arange(float(kept))
     for i, part in enumerate(model.blocks):
         if part.motion is not None:
-            rates.velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
+            velocity[:, i, :2] = part.motion.velocity(time - scheme.step / 2)
     columns, stored = contact_columns(model, march, history, kept)
-    parts = rates.kinetic, strain_energy(model, q), stored, load_energy(model, q), history.sums[: reached + 1 : every]
+    parts = kinetic, strain_energy(model, q), stored, load_energy(model, q), history.sums[: reached + 1 : every]
     repeated = [np.concatenate([part[:1], part]) for part in parts]  # which returns what follows t = 0
     energy = energies_of(repeated[:4], repeated[4], scheme.table is not None)
     total = np.sum(list(energy.values()), axis=0)
@@ -140,10 +140,10 @@ def solve_plane(
         displacement=q[:, :, :2],
         angle=q[:, :, 2],
         strain=q[:, :, 3:],
-        velocity=rates.velocity,
+        velocity=velocity,
         **columns,
         energy=energy | {"balance": total - total[0]},
-        momentum=rates.momentum(centroid),
+        momentum=momentum,
         outcome=sentence(model, reached, outcome, unsettled),
         unsettled=unsettled,
         reached=reached,
@@ -249,7 +249,7 @@ def ramps_of(model: PlaneModel) -> list[float]:
 def loads_of(model: PlaneModel, blocks: Blocks, columns: int) -> tuple[Array, PointLoads]:
     """Return the loads on centroids by their modes, a row for all that is prescribed, and those at other places."""
     ramps = ramps_of(model)
-    rows = np.zeros((columns, int(blocks.first[-1])))
+    rows = np.zeros((columns, int(blocks.modes.sum())))
     for i, part in enumerate(model.blocks):
         if not part.held:
             rows[0, blocks.first[i] :][:2] = blocks.root_mass[i] * np.array(model.gravity)
@@ -304,37 +304,31 @@ def law_of(springs: ContactSprings) -> tuple[float, ...]:
 
 def places_of(model: PlaneModel, blocks: Blocks, most: int) -> Places:
     """Return contacts, then both ends of every bond, as points of their blocks, and room for so many that are found."""
-    stated = len(model.contacts) + 2 * len(model.bonds)
-    n = stated + most
-    at, start, side, foot, normal = np.zeros((5, n), dtype=complex)
-    law, bonded = np.zeros((2, n), dtype=np.int64)
-    sides = np.zeros((n, 2), dtype=np.int64)
+    rows = []
     for k, contact in enumerate(model.contacts):
-        law[k] = k
-        sides[k] = contact.block, contact.on
-        at[k] = blocks.xi[blocks.start[contact.block] + contact.corner]
-        start[k], side[k] = edge_of(blocks, contact.on, contact.edge)
-    k = len(model.contacts)
-    for number, bond in enumerate(model.bonds):
-        edge = model.edge_of(bond.second, bond.start, bond.end)
+        at = blocks.xi[blocks.start[contact.block] + contact.corner]
+        rows.append((k, contact.block, contact.on, 0, at, 0, *edge_of(blocks, contact.on, contact.edge)))
+    for k, bond in enumerate(model.bonds, len(rows)):
+        edge = edge_of(blocks, bond.second, model.edge_of(bond.second, bond.start, bond.end))
         for place in (bond.start, bond.end):
-            law[k] = len(model.contacts) + number
-            sides[k] = bond.first, bond.second
-            bonded[k] = 1
-            at[k] = complex(*place) - blocks.centroid[bond.first]
-            foot[k] = complex(*place) - blocks.centroid[bond.second]
-            start[k], side[k] = edge_of(blocks, bond.second, edge)
-            k += 1
+            points = [complex(*place) - blocks.centroid[block] for block in (bond.first, bond.second)]
+            rows.append((k, bond.first, bond.second, 1, *points, *edge))
+    stated = len(rows)
+    n = stated + most
+    table = np.zeros((8, n), dtype=complex)
+    table[:, :stated] = np.array(rows, dtype=complex).reshape(-1, 8).T
+    law, first, second, bonded = table[:4].real.astype(np.int64)
+    at, foot, start, side = table[4:]
     return Places(
         count=np.array([stated, stated]),
         law=law,
-        sides=sides,
+        sides=np.column_stack([first, second]),
         bonded=bonded,
         at=at,
         start=start,
         side=side,
         foot=foot,
-        normal=normal,
+        normal=np.zeros(n, dtype=complex),
         gap=np.zeros(n),
         over=np.ones(n, dtype=np.int64),
         B=np.zeros((2 * n, 2, 6)),
@@ -405,38 +399,39 @@ def contact_columns(model: PlaneModel, march: March, history: History, kept: int
     Contacts are those that are stated, and those that were found and closed at an instant that is kept.
     """
     plane = march.method
+    corners = len(plane.blocks.xi)
     stated = int(plane.places.count[1])
-    contacts = stated_contacts(model)
-    laws = list(plane.places.law[:stated])
-    columns: dict[int, int] = {}
-    places: list[tuple[int, int, int]] = []  # of what is found: row, number in it, column
     identity = history.motion[:kept, STATE * len(model.blocks) :].astype(np.int64)
-    present = identity[:, 0] if plane.finds else np.full(kept, stated)
-    for row in range(kept):
-        for k in range(stated, int(present[row])):
-            number = int(identity[row, 1 + k - stated])
-            if number not in columns:
-                if history.state[row, k] != INSIDE:
-                    continue
-                columns[number] = len(contacts)
-                contact = found_contact(march, *divmod(number, len(plane.blocks.xi)))
-                contacts.append(contact)
-                laws.append(plane.detection.law[contact.block * len(model.blocks) + contact.on])
-            places.append((row, k, columns[number]))
-    table = {name: np.zeros((kept, len(contacts))) for name in ("normal", "shear", "slip")}
-    table["gap"] = np.full((kept, len(contacts)), np.nan)
-    table["state"] = np.zeros((kept, len(contacts)), dtype=np.int8)
-    numbers = np.arange(stated)
-    of_stated = (np.arange(kept)[:, None], numbers, numbers)
-    of_found = tuple(np.array(places, dtype=np.int64).reshape(-1, 3).T)
-    for at, one, column in (of_stated, of_found):
-        along = present[at] + one
-        table["normal"][at, column] = history.force[at, one]
-        table["shear"][at, column] = history.force[at, along]
-        table["gap"][at, column] = history.opening[at, one]
-        table["slip"][at, column] = history.path[at, one]
-        shear_state = np.where(history.state[at, along] == INSIDE, STICKS, -SLIPS * history.state[at, along])
-        table["state"][at, column] = np.where(history.state[at, one] == INSIDE, shear_state, 0)
+    present = identity[:, :1] if plane.finds else np.full((kept, 1), stated)
+    k = np.arange(history.path.shape[1])
+    # a contact's number: those that are stated, then by corner and edge those that are found
+    number = np.hstack([np.tile(k[:stated], (kept, 1)), stated + identity[:, 1 : 1 + len(k) - stated]])
+    closed = history.state[:kept, : len(k)] == INSIDE
+    told = (k < present) & (closed | (k < stated))
+    numbers, first = np.unique(number[told], return_index=True)
+    begins = np.flatnonzero(told)[first]  # from where on it is told of
+    at, one = np.nonzero(np.isin(number, numbers) & (k < present))
+    known = np.searchsorted(numbers, number[at, one])
+    since = at * len(k) + one >= begins[known]
+    at, one, known = at[since], one[since], known[since]
+    order = np.argsort(begins)
+    column = np.argsort(order)[known]
+    along = present[at, 0] + one
+    shear_state = history.state[at, along]
+    found = (numbers[order][stated:] - stated).tolist()
+    contacts = stated_contacts(model) + [found_contact(march, *divmod(one, corners)) for one in found]
+    pairs = [contact.block * len(model.blocks) + contact.on for contact in contacts[stated:]]
+    laws = [*plane.places.law[:stated], *plane.detection.law[pairs]]
+    table: dict[str, Array] = {}
+    for name, values in (
+        ("normal", history.force[at, one]),
+        ("shear", history.force[at, along]),
+        ("gap", history.opening[at, one]),
+        ("slip", history.path[at, one]),
+        ("state", closed[at, one] * np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state).astype(np.int8)),
+    ):
+        table[name] = np.full((kept, len(contacts)), np.nan if name == "gap" else 0, dtype=values.dtype)
+        table[name][at, column] = values
     stored = table["normal"] ** 2 @ plane.springs.across[laws] + table["shear"] ** 2 @ plane.springs.along[laws]
     glued = np.array([contact.corner < 0 for contact in contacts], dtype=bool)
     bonds = np.stack([table["normal"][:, glued], table["shear"][:, glued]], axis=-1)
@@ -445,31 +440,26 @@ def contact_columns(model: PlaneModel, march: March, history: History, kept: int
     return fields | {"bond": bonds.reshape(kept, -1, 2, 2)}, stored / 2
 
 
-class Rates:
-    """Velocities, kinetic energy and momentum of a history."""
-
-    def __init__(self, march: March, q: Array, modes: Array) -> None:
-        """Form them from the rates of the modes, (k, b, 6)."""
-        blocks = march.method.blocks
-        e = q[:, :, 3:]
-        strained = np.einsum("bij,kbj->kbi", blocks.M, e)
-        J = blocks.root_inertia**2 + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
-        gamma = blocks.gamma + np.einsum("kbm,bmi->kbi", e, blocks.G)
-        strain_rate = np.einsum("bij,kbj->kbi", blocks.shapes, modes[:, :, 3:])
-        turning = np.einsum("kbi,kbi->kb", gamma, strain_rate)
-        self.linear = blocks.root_mass[:, None] * modes[:, :, :2]
-        self.angular = blocks.root_inertia * modes[:, :, 2]  # about the centroid
-        omega = (self.angular - turning) / J
-        translation = modes[:, :, :2] / blocks.root_mass[:, None]
-        self.velocity: Array = np.concatenate([translation, omega[:, :, None], strain_rate], axis=2)
-        deformed = np.einsum("kbi,bij,kbj->kb", strain_rate, blocks.M, strain_rate)
-        turned = J * omega**2 + 2 * omega * turning + deformed
-        self.kinetic: Array = np.sum(np.sum(modes[:, :, :2] ** 2, axis=2) + turned, axis=1) / 2
-
-    def momentum(self, centroid: Array) -> Array:
-        """Return linear momentum and angular momentum about the origin, (k, 3)."""
-        turned = centroid[:, :, 0] * self.linear[:, :, 1] - centroid[:, :, 1] * self.linear[:, :, 0]
-        return np.column_stack([self.linear.sum(axis=1), (turned + self.angular).sum(axis=1)])
+def rates_of(march: March, q: Array, modes: Array, centroid: Array) -> tuple[Array, Array, Array]:
+    """Return velocities (k, b, 6), kinetic energy (k,) and momentum (k, 3) of a history, by the rates of the modes."""
+    blocks = march.method.blocks
+    e = q[:, :, 3:]
+    strained = np.einsum("bij,kbj->kbi", blocks.M, e)
+    J = blocks.root_inertia**2 + np.einsum("kbi,kbi->kb", 2 * blocks.j + strained, e)
+    gamma = blocks.gamma + np.einsum("kbm,bmi->kbi", e, blocks.G)
+    strain_rate = np.einsum("bij,kbj->kbi", blocks.shapes, modes[:, :, 3:])
+    turning = np.einsum("kbi,kbi->kb", gamma, strain_rate)
+    x, y = np.moveaxis(centroid, 2, 0)
+    linear = blocks.root_mass[:, None] * modes[:, :, :2]
+    angular = blocks.root_inertia * modes[:, :, 2]  # about the centroid
+    omega = (angular - turning) / J
+    deformed = np.einsum("kbi,bij,kbj->kb", strain_rate, blocks.M, strain_rate)
+    turned = J * omega**2 + 2 * omega * turning + deformed
+    kinetic = np.sum(np.sum(modes[:, :, :2] ** 2, axis=2) + turned, axis=1) / 2
+    about_origin = x * linear[:, :, 1] - y * linear[:, :, 0] + angular
+    momentum = np.column_stack([linear.sum(axis=1), about_origin.sum(axis=1)])
+    translation = modes[:, :, :2] / blocks.root_mass[:, None]
+    return np.concatenate([translation, omega[:, :, None], strain_rate], axis=2), kinetic, momentum
 
 
 def strain_energy(model: PlaneModel, q: Array) -> Array:

@@ -55,7 +55,6 @@ from dda.plane.taken import (
     place_corners,
     take_found,
     take_memory,
-    take_row,
     write_laws,
 )
 
@@ -195,17 +194,14 @@ def take_contacts(march: March, before: PlaneState) -> int:
     plane = march.method
     blocks = plane.blocks
     detection = plane.detection
-    if plane.finds == 0:
-        for r in range(len(before.path)):
-            take_row(before, r, plane.begun, r)
-        copy(before.slid, plane.begun.slid)
-        return FOUND
-    stand(plane, before.q)
-    place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
-    increments(blocks, before.q, march.room.x, plane.chords, plane.new)
-    set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
-    place_corners(blocks, before.q, plane.new, plane.ends, detection.corners.then)
-    outcome = take_found(detection, blocks, plane.places)
+    outcome = FOUND
+    if plane.finds != 0:
+        stand(plane, before.q)
+        place_corners(blocks, before.q, plane.D, plane.ends, detection.corners.now)
+        increments(blocks, before.q, march.room.x, plane.chords, plane.new)
+        set_poses(blocks, before.q, plane.new, plane.chords, plane.ends)
+        place_corners(blocks, before.q, plane.new, plane.ends, detection.corners.then)
+        outcome = take_found(detection, blocks, plane.places)
     if outcome == FOUND:
         plane.dropped[0] = dropped_energy(detection, plane.springs, plane.places, before.rows)
         take_memory(detection, plane.places, before, plane.begun)
@@ -243,14 +239,10 @@ def push_loads(march: March, after: PlaneState) -> float:
     blocks = plane.blocks
     loads = plane.loads
     loaded = plane.loaded
-    lag = march.scheme.lag
     for i in range(len(loaded)):
         plane.last[i] = loaded[i]
         loaded[i] = 0.0
-        plane.x[i] = after.p[i] + lag * after.a[i]
-    for i in range(len(blocks.root_mass)):
-        if blocks.first[i + 1] - blocks.first[i] > RIGID:
-            inertia_forces(blocks, i, plane.x, after.a, march.scheme.step, plane.ends, plane.spin, loaded)
+    add_inertia(march, after)
     chord = plane.row[0]
     end = plane.row[1]
     weights = plane.row[2]
@@ -263,7 +255,7 @@ def push_loads(march: March, after: PlaneState) -> float:
             chord[m] = (1 - plane.late) * chord[m] + plane.late * end[m]
         by_modes(blocks, i, plane.chords, chord, True, weights)
         first = blocks.first[i]
-        for m in range(blocks.first[i + 1] - first):
+        for m in range(blocks.modes[i]):
             loaded[first + m] += weights[m]
     largest = 0.0
     change = 0.0
@@ -271,6 +263,24 @@ def push_loads(march: March, after: PlaneState) -> float:
         largest = max(largest, abs(loaded[i]))
         change = max(change, abs(loaded[i] - plane.last[i]))
     return change / largest if largest > 0 else 0.0
+
+
+def add_inertia(march: March, state: PlaneState) -> float:
+    """Write the forces of inertia on the modes of strained blocks at a state, whose poses are those of the ends.
+
+    Returns the kinetic energy less that of the modes alone [J].
+    """
+    plane = march.method
+    blocks = plane.blocks
+    for i in range(len(plane.x)):
+        plane.x[i] = state.p[i] + march.scheme.lag * state.a[i]
+    excess = 0.0
+    for i in range(len(blocks.modes)):
+        if blocks.modes[i] > RIGID:
+            excess += inertia_forces(
+                blocks, i, plane.x, state.a, march.scheme.step, plane.ends, plane.spin, plane.loaded
+            )
+    return excess
 
 
 def write_contact_flexibility(march: March, length: Length) -> None:
@@ -334,21 +344,10 @@ def accept(march: March, memory: PlaneState, before: PlaneState, after: PlaneSta
 
 def kinetic_excess(march: March, state: PlaneState) -> float:
     """Return the kinetic energy less that of the modes alone, p' p / 2, which a strained block has [J]."""
-    plane = march.method
-    blocks = plane.blocks
-    lag = march.scheme.lag
-    total = 0.0
-    if plane.strained == 0:
-        return total
-    for i in range(len(plane.x)):
-        plane.x[i] = state.p[i] + lag * state.a[i]
-    stand(plane, state.q)
-    for i in range(len(blocks.root_mass)):
-        if blocks.first[i + 1] - blocks.first[i] > RIGID:
-            total += inertia_forces(
-                blocks, i, plane.x, state.a, march.scheme.step, plane.ends, plane.spin, plane.loaded
-            )
-    return total
+    if march.method.strained == 0:
+        return 0.0
+    stand(march.method, state.q)
+    return add_inertia(march, state)
 
 
 def account(march: March, state: PlaneState, after: PlaneState, course: Course, part: Part, sums: Vector) -> None:
@@ -423,7 +422,6 @@ def account_stage(
 def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
     """Write where the blocks are and the rates of their modes, at the steps that are kept; tell if all is finite."""
     plane = march.method
-    first = plane.blocks.first
     discount = kept_discount(march.scheme, number)
     total = 0.0
     for i in range(len(plane.x)):
@@ -434,7 +432,7 @@ def keep(march: March, state: PlaneState, rows: Array, number: int) -> bool:
             for k in range(6):
                 rows[number // plane.every, STATE * i + k] = state.q[i][k]
                 rows[number // plane.every, STATE * i + 6 + k] = (
-                    plane.x[first[i] + k] if k < first[i + 1] - first[i] else 0.0
+                    plane.x[plane.blocks.first[i] + k] if k < plane.blocks.modes[i] else 0.0
                 )
     return math.isfinite(total)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from dda.contact.rows import FOUND, INSIDE, OUTCOMES
 from dda.contact.unilateral import OPEN, SLIP, STICK
 from dda.march.step import History
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.result.result import Result, times_of
 from dda.scheme.newmark import Scheme
 
@@ -27,7 +27,7 @@ class MarchResult(Result):
 
     outcome: str  # "completed", or why the history ends early, in words
     history: History  # from t = 0 on, by the rows of contact
-    balance: Callable[[], dict[str, Array]] | None  # makes the energies, if they were asked for
+    balance: Callable[[], Columns] | None  # makes the energies, if they were asked for
 
     @property
     def step_solves(self) -> NDArray[np.int_]:
@@ -40,7 +40,7 @@ class MarchResult(Result):
         return np.asarray(self.history.cuts[1:])
 
     @cached_property
-    def energies(self) -> dict[str, Array] | None:
+    def energies(self) -> Columns | None:
         """By `ENERGIES` [J, of a column J/m^2], losses summed from t = 0 on; None if not asked for."""
         if self.balance is None:
             return None

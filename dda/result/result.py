@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, Columns
 from dda.model.checks import check_columns, check_count
 from dda.scheme.newmark import Scheme
 
@@ -29,7 +29,7 @@ class Result:
     """Histories and what they cost; element 0 is step 1."""
 
     time: Array  # (steps,) [s]
-    columns: dict[str, Array]  # name -> (steps,), displacements in m, pressure in Pa
+    columns: Columns  # name -> (steps,), displacements in m, pressure in Pa
     unknowns: int  # number of unknowns that were integrated [-]
     nonzeros: int  # of the matrix that is diagonalised
     factorisations: int  # or diagonalisations

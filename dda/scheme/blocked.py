@@ -19,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.scheme import newmark
 from dda.scheme.newmark import Scheme
 from dda.scheme.roots import polynomial, state_matrix
@@ -104,7 +104,7 @@ def doubled(start: Array, maps: Array) -> Array:
     return rows
 
 
-def _powers(scheme: Scheme, frequencies: Array, levels: int) -> tuple[Array, Array]:
+def _powers(scheme: Scheme, frequencies: Array, levels: int) -> ArrayPair:
     """Return the maps of 1, 2, 4, ... steps of all modes together, and the state at step 1.
 
     The state holds u and the scaled p of every mode and a constant 1, so that the maps are linear.

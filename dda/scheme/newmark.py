@@ -26,7 +26,7 @@ from typing import Literal
 
 import numpy as np
 
-from dda.model.arrays import Array
+from dda.model.arrays import Array, ArrayPair
 from dda.model.checks import check_not_negative, check_positive, check_share
 from dda.scheme.stage import (
     Real,
@@ -202,7 +202,7 @@ def stepped_modes(
     load: Array,
     steps: int,
     shares: Array | None = None,
-    moved: tuple[Array, Array] | None = None,
+    moved: ArrayPair | None = None,
 ) -> Array:
     """Return D of every mode and step from rest, (n, steps), measured from the base where that moves.
 

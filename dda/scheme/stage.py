@@ -103,9 +103,3 @@ def implicit_weight(stage: Stage) -> float:
 def effective_matrix(stage: Stage, M: Real, k: Real) -> Real:
     """Return S = M + weight dt^2 K, alpha dt^2 times the matrix of eq. (9)."""
     return M + implicit_weight(stage) * k
-
-
-def dashpot_matrix(stage: Stage, M: Array, c: Array, k: Array) -> Array:
-    """Return the matrix of the inertia force of a stage with dashpots, M + share (delta dt C + alpha dt^2 K)."""
-    share = (1 - stage.af) / (1 - stage.am)
-    return M + share * stage.delta * c + share * stage.alpha * k

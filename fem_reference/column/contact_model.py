@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from fem_reference.column.problem import NEAR, Ground
+from fem_reference.problem.checks import require
 
 
 @dataclass(frozen=True)
@@ -25,8 +26,8 @@ class ColumnContact:
     strength: float = math.inf  # greatest shear stress of one that slips [Pa]; inf: it never does
 
     def __post_init__(self) -> None:
-        if not (self.height >= 0 and self.stiffness > 0 and self.gap >= 0 and self.strength > 0):
-            raise ValueError(f"contacts: must have positive numbers and a gap of 0 or more, got {self!r}")
+        sound = self.height >= 0 and self.stiffness > 0 and self.gap >= 0 and self.strength > 0
+        require(sound, "contacts", "must have positive numbers and a gap of 0 or more", self)
 
 
 @dataclass(frozen=True)
@@ -50,17 +51,16 @@ class ContactColumn:
 
     def __post_init__(self) -> None:
         heights = [contact.height for contact in self.contacts]
-        if heights != sorted(set(heights)) or not heights or heights[-1] >= self.ground.height * (1 - NEAR):
-            raise ValueError(f"contacts: must be one at least, upwards and below the top, got {heights!r}")
-        if self.ground.joints:
-            raise ValueError(f"joints: must be contacts where others open or slip, got {self.ground.joints!r}")
+        upwards = bool(heights) and heights == sorted(set(heights)) and heights[-1] < self.ground.height * (1 - NEAR)
+        require(upwards, "contacts", "must be one at least, upwards and below the top", heights)
+        require(not self.ground.joints, "joints", "must be contacts where others open or slip", self.ground.joints)
         supported = not self.unsupported and self.ground.impedance is None
-        if heights[0] == 0 and not supported:
-            raise ValueError("contacts: must be above the base where that is a half-space or nothing, got one at it")
-        if self.settled and not (supported and self.law == "unilateral"):
-            raise ValueError("settled: must be False but for contacts that open on a base, got True")
-        if len(self.velocities) != len(self.ground.strata):
-            raise ValueError(f"velocities: must be one for each stratum, got {self.velocities!r}")
+        on_base = heights[0] > 0 or supported
+        require(on_base, "contacts", "must be above the base where that is a half-space or nothing", heights)
+        rests = supported and self.law == "unilateral"
+        require(rests or not self.settled, "settled", "must be False but for contacts that open on a base", True)
+        each = len(self.velocities) == len(self.ground.strata)
+        require(each, "velocities", "must be one for each stratum", self.velocities)
 
     @property
     def foot_contact(self) -> bool:

@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import block_array, csr_array, diags_array
 from scipy.sparse.linalg import splu
 
@@ -22,8 +21,8 @@ from fem_reference.contact.iteration import CONVERGED, fall_back, find_contact
 from fem_reference.contact.law import AT_LOWER, INSIDE, Law, States, equations_of
 from fem_reference.contact.march import ContactState
 from fem_reference.contact.stepper import SINGLY_UNIQUE, ContactStepper
-from fem_reference.contact.system import ContactSystem, opening_rows, slipping_rows
-from fem_reference.problem.problem import Array, Scheme
+from fem_reference.contact.system import ContactRows, ContactSystem, opening_rows, slipping_rows
+from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.scheme.stage import Motion
 
 TOGETHER = 2
@@ -32,49 +31,49 @@ AT_REST = 1e-12
 """Of the fastest contact at t = 0: what the nodes' means leave between two bodies of one velocity."""
 
 
-def mesh_of(column: ContactColumn, elements: Sequence[int], degree: int) -> tuple[LineMesh, Model]:
+def model_of(column: ContactColumn, elements: Sequence[int], degree: int) -> Model:
     """Mesh a column cut at its contacts, without springs; all unknowns are free but those of a prescribed base."""
     ground = column.ground
     cuts = tuple((contact.height, 1.0) for contact in column.contacts if contact.height > 0)
     mesh = line_mesh(Ground(ground.strata, ground.motion, cuts, ground.impedance), elements, degree, springs=False)
-    return mesh, Model.of(mesh, ground.impedance, column.unsupported or column.foot_contact)
+    return Model(mesh, ground.impedance, column.unsupported or column.foot_contact)
 
 
 def system_of(
-    column: ContactColumn, mesh: LineMesh, model: Model, scheme: Scheme, excitation: Excitation, observed: Observation
+    column: ContactColumn, model: Model, scheme: Scheme, excitation: Excitation, observed: Observation
 ) -> ContactSystem:
     """The column on rows that open, or slip at their strength."""
-    free = model.free
-    M, C, K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
+    M, C, K = model.matrices()
     compliance = np.array([1 / contact.stiffness for contact in column.contacts])
     rows = opening_rows(compliance)
     if column.law == "frictional":
         rows = slipping_rows(compliance, np.array([contact.strength for contact in column.contacts]))
     ground = np.zeros((len(compliance), 4))
     ground[0, 0] = column.foot_contact
-    stages = len(scheme.stages)
     parts = excitation.parts
 
     def prescribed(positions: Array, times: Array) -> Array:
-        ends = np.rint(positions).astype(int)[:, None] * stages + np.arange(1, stages + 1)
-        return np.asarray(parts[ends])
+        stages = times.shape[1]
+        return np.asarray(parts[np.rint(positions).astype(int)[:, None] * stages + np.arange(1, stages + 1)])
 
-    held = len(free) < mesh.size
-    weight = -column.gravity * (model.M @ np.ones(mesh.size))
+    mesh = model.mesh
+    held = int(model.holds_base)
+    weight = -column.gravity * (mesh.M @ np.ones(mesh.size))
     return ContactSystem(
         M=M,
         K=K,
         C=None if model.impedance is None else C,
-        F=weight[free],
-        B=csr_array(_openings(column, mesh)[:, free]),
+        F=weight[model.free],
+        B=csr_array(_openings(column, mesh)[:, model.free]),
         rows=rows,
-        watch=Motion(observed.D, observed.V, observed.A),
+        watch=Motion(*observed.motion),
         pushes=model.loads(),
         ground=ground,
         prescribed=prescribed,
         start_parts=parts[0],
-        motions=tuple(
-            np.zeros((run.size - 1, 0)) if held and run.first == 0 else np.ones((run.size, 1)) for run in mesh.parts
+        motions=(
+            *[np.zeros((run.size - 1, 0)) for run in mesh.parts[:held]],
+            *[np.ones((run.size, 1)) for run in mesh.parts[held:]],
         ),
     )
 
@@ -101,24 +100,21 @@ def stepper_of(column: ContactColumn, system: ContactSystem, scheme: Scheme, com
 def _openings(column: ContactColumn, mesh: LineMesh) -> Array:
     """Rows that give the relative displacement of the faces of each contact, less the base's."""
     B = np.zeros((len(column.contacts), mesh.size))
-    runs = mesh.parts if column.foot_contact else mesh.parts[1:]
-    for number, run in enumerate(runs):
-        B[number, run.end(top=False)] = 1.0
-    for number, run in enumerate(mesh.parts[:-1]):
-        B[number + column.foot_contact, run.end(top=True)] = -1.0
+    above = mesh.parts if column.foot_contact else mesh.parts[1:]
+    B[np.arange(len(B)), [run.end(top=False) for run in above]] = 1.0
+    inner = np.arange(int(column.foot_contact), len(B))
+    B[inner, [run.end(top=True) for run in mesh.parts[:-1]]] = -1.0
     return B
 
 
-def column_at_start(stepper: ContactStepper, column: ContactColumn, mesh: LineMesh, model: Model) -> ContactState:
+def column_at_start(stepper: ContactStepper, column: ContactColumn, model: Model) -> ContactState:
     """State at t = 0: unstrained with the gaps of the contacts, or at rest under the weight."""
     system = stepper.system
     n = len(column.contacts)
     opens = column.law == "unilateral"
     place = np.array([contact.gap for contact in column.contacts]) if opens else np.zeros(n)
     states = np.full(n, AT_LOWER if opens else INSIDE, dtype=np.int8)
-    V = _velocities(column, mesh)[model.free]
-    if system.to_modes is not None:
-        V = system.to_modes @ V
+    V = system.unknowns(_velocities(column, model.mesh)[model.free])
     D = np.zeros_like(V)
     force = np.zeros(n)
     if column.settled:
@@ -134,7 +130,7 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, mesh: LineMe
 
 
 def _at_once(
-    system: ContactSystem, states: States, touching: NDArray[np.intp], mass: Any, A: Array, V: Array, force: Array
+    system: ContactSystem, states: States, touching: Indices, mass: Any, A: Array, V: Array, force: Array
 ) -> tuple[Array, Array]:
     """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once.
 
@@ -157,17 +153,8 @@ def _at_once(
     B = system.B[touching] if system.to_modes is not None else system.B[touching].toarray()
     mobility = np.array([mass * row for row in B]).T
     count = len(touching)
-    law = Law(
-        W=B @ mobility,
-        compliance=rows.compliance[touching],
-        lower=rows.lower[touching],
-        upper=rows.upper[touching],
-        friction=np.zeros(count),
-        partner=np.arange(count),
-        slips=rows.slips[touching],
-        limit=TOGETHER * count + 3,
-        single_limit=SINGLY_UNIQUE * count,
-    )
+    held = ContactRows._make(part[touching] for part in rows)._replace(partner=np.arange(count))
+    law = Law(B @ mobility, *held, limit=TOGETHER * count + 3, single_limit=SINGLY_UNIQUE * count)
     q = B @ A - system.ground[touching, 0] * system.start_parts[2]
     begun = states[touching]
     equations = equations_of(law, begun, np.ones(count))
@@ -183,16 +170,13 @@ def _velocities(column: ContactColumn, mesh: LineMesh) -> Array:
     """Velocity of each unknown at t = 0: that of its stratum, between two the mean by their masses."""
     V = np.zeros(mesh.size)
     for run in mesh.parts:
-        nodes = run.basis.mesh.p[0]
-        ends = nodes[run.basis.mesh.t]
+        ends = run.basis.mesh.p[0][run.basis.mesh.t]
         stratum = np.searchsorted(column.ground.tops, ends.mean(axis=0))
-        share = run.densities * abs(ends[1] - ends[0])
-        momentum = np.zeros(run.size)
-        mass = np.zeros(run.size)
-        for local in run.basis.element_dofs:
-            np.add.at(momentum, local, share * np.asarray(column.velocities)[stratum])
-            np.add.at(mass, local, share)
-        V[run.first : run.first + run.size] = momentum / mass
+        dofs = run.basis.element_dofs
+        share = np.broadcast_to(run.densities * np.ptp(ends, axis=0), dofs.shape)
+        momentum = share * np.asarray(column.velocities)[stratum]
+        weights = [np.bincount(dofs.ravel(), part.ravel()) for part in (momentum, share)]
+        V[run.first : run.first + run.size] = weights[0] / weights[1]
     return V
 
 

@@ -16,6 +16,7 @@ from skfem import Basis, BilinearForm, ElementLineP1, ElementLineP2, MeshLine
 from skfem.helpers import grad
 
 from fem_reference.column.problem import NEAR, Ground
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 
 ELEMENTS = {1: ElementLineP1, 2: ElementLineP2}
@@ -44,10 +45,7 @@ class Part:
 
     def matrix(self, form: BilinearForm) -> csr_array:
         """Assemble a form with the material of the elements."""
-        spread = np.ones((1, self.basis.dx.shape[1]))
-        return csr_array(
-            form.assemble(self.basis, modulus=self.moduli[:, None] * spread, density=self.densities[:, None] * spread)
-        )
+        return csr_array(form.assemble(self.basis, modulus=self.moduli[:, None], density=self.densities[:, None]))
 
     @property
     def size(self) -> int:
@@ -62,20 +60,14 @@ class Part:
     def observe(self, height: float, stress: bool) -> tuple[Array, Array]:
         """Unknowns and values of the row that gives displacement, or minus the stress E* u', at a height."""
         nodes = self.basis.mesh.p[0]
-        ends = nodes[self.basis.mesh.t]
-        low = ends.min(axis=0)
-        high = ends.max(axis=0)
-        near = NEAR * float(nodes.max())
-        inside = np.flatnonzero((low < height - near) & (height <= high + near))  # of two that meet there, the lower
-        element = int(inside[0]) if inside.size else int(np.argmin(low))
-        start, end = nodes[self.basis.mesh.t[:, element]]
-        local = np.array([[(height - start) / (end - start)]])
+        near = NEAR * float(nodes[-1])
+        element = max(int(np.searchsorted(nodes, height - near)) - 1, 0)  # of two that meet there, the lower
+        size = nodes[element + 1] - nodes[element]
+        local = np.array([[(height - nodes[element]) / size]])
         unknowns = self.basis.element_dofs[:, element]
-        shape_values = [self.basis.elem.lbasis(local, i) for i in range(len(unknowns))]
-        if stress:
-            factor = -self.moduli[element] / (end - start)
-            return self.first + unknowns, np.array([factor * slope[0, 0] for _, slope in shape_values])
-        return self.first + unknowns, np.array([float(value[0]) for value, _ in shape_values])
+        shapes = [self.basis.elem.lbasis(local, i) for i in range(len(unknowns))]
+        values = [-self.moduli[element] / size * slope[0, 0] if stress else value[0] for value, slope in shapes]
+        return self.first + unknowns, np.array(values)
 
 
 @dataclass(frozen=True)
@@ -120,30 +112,24 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: boo
     ValueError
         For another degree.
     """
-    if degree not in ELEMENTS:
-        raise ValueError(f"degree: must be 1 or 2, got {degree!r}")
-    nodes, moduli, densities = _elements(ground, elements)
-    cuts = sorted(height for height, _ in ground.joints if height > NEAR * ground.height)
-    parts: list[Part] = []
-    for low, high in zip([0.0, *cuts], [*cuts, ground.height], strict=True):
-        inside = (nodes > low - NEAR * ground.height) & (nodes < high + NEAR * ground.height)
-        layer_nodes = nodes[inside]
-        middles = (layer_nodes[:-1] + layer_nodes[1:]) / 2
-        stratum = np.searchsorted(ground.tops, middles)
-        basis = Basis(MeshLine(layer_nodes), ELEMENTS[degree]())
-        first = parts[-1].first + parts[-1].size if parts else 0
-        parts.append(Part(basis, moduli[stratum], densities[stratum], first))
-    return _joined(ground, parts, springs)
-
-
-def _elements(ground: Ground, elements: Sequence[int]) -> tuple[Array, Array, Array]:
-    """Nodes of the mesh with those that the joints ask for, moduli and densities of the strata."""
+    require(degree in ELEMENTS, "degree", "must be 1 or 2", degree)
+    near = NEAR * ground.height
+    heights = sorted(height for height, _ in ground.joints)
     bottoms = ground.tops - [stratum.thickness for stratum in ground.strata]
     lines = [np.linspace(a, b, n + 1) for a, b, n in zip(bottoms, ground.tops, elements, strict=True)]
-    nodes = np.unique(np.concatenate([*lines, np.array([height for height, _ in ground.joints])]))
-    apart = np.concatenate([[True], np.diff(nodes) > NEAR * ground.height])
+    nodes = np.unique(np.concatenate([*lines, heights]))
+    nodes = nodes[np.append(True, np.diff(nodes) > near)]
     moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])
-    return nodes[apart], moduli, np.array([stratum.density for stratum in ground.strata])
+    densities = np.array([stratum.density for stratum in ground.strata])
+    cuts = [height for height in heights if height > near]
+    parts: list[Part] = []
+    first = 0
+    for low, high in itertools.pairwise([0.0, *cuts, ground.height]):
+        own = nodes[(nodes > low - near) & (nodes < high + near)]
+        stratum = np.searchsorted(ground.tops, (own[:-1] + own[1:]) / 2)
+        parts.append(Part(Basis(MeshLine(own), ELEMENTS[degree]()), moduli[stratum], densities[stratum], first))
+        first += parts[-1].size
+    return _joined(ground, parts, springs)
 
 
 def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,16 +10,19 @@ from typing import Literal
 
 import numpy as np
 
+from fem_reference.problem.checks import require
+from fem_reference.problem.material import Elastic
 from fem_reference.problem.problem import Array
 
 # of the surface [m], of the base on the column [Pa]
 DISPLACEMENT = "displacement"
 PRESSURE = "contact_pressure"
+PARTS = ("displacement", "stress")  # of a height: [m], [Pa]
 NEAR = 1e-9  # of the height, within which two levels are one
 
 
 @dataclass(frozen=True)
-class Stratum:
+class Stratum(Elastic):
     """A homogeneous layer."""
 
     thickness: float  # [m]
@@ -26,11 +30,11 @@ class Stratum:
     young: float  # [Pa]
     poisson: float  # [-], below 1/2
 
+    hypothesis = "plane strain"
+
     def modulus(self, motion: str) -> float:
-        """Modulus of a plane wave by Lame's constants: mu in shear, lambda + 2 mu in compression [Pa]."""
-        mu = self.young / (2 + 2 * self.poisson)
-        lame = self.young * self.poisson / ((1 + self.poisson) * (1 - 2 * self.poisson))
-        return mu if motion == "shear" else lame + 2 * mu
+        """Modulus of a plane wave: mu in shear, lambda + 2 mu in compression [Pa]."""
+        return self.shear_modulus if motion == "shear" else self.wave_modulus
 
 
 @dataclass(frozen=True)
@@ -51,16 +55,15 @@ class Ground:
     def __post_init__(self) -> None:
         for stratum in self.strata:
             positive = stratum.thickness, stratum.density, stratum.young
-            if not (np.all(np.isfinite(positive)) and min(positive) > 0 and -1 < stratum.poisson < 0.5):
-                raise ValueError(f"layers: must have positive numbers and poisson in (-1, 1/2), got {stratum!r}")
-        for height, stiffness in self.joints:
-            if not (0 <= height < self.height * (1 - NEAR) and stiffness > 0):
-                raise ValueError(f"joints: must be positive springs below the top, got {(height, stiffness)!r}")
-        levels = sorted(height for height, _ in self.joints)
-        if np.any(np.diff(levels) <= NEAR * self.height):
-            raise ValueError("joints: must not share a height, got two at one")
-        if not self.strata or (self.impedance is not None and not self.impedance > 0):
-            raise ValueError(f"impedance: must be positive, with one layer at least, got {self.impedance!r}")
+            sound = all(0 < value < math.inf for value in positive) and -1 < stratum.poisson < 0.5
+            require(sound, "layers", "must have positive numbers and poisson in (-1, 1/2)", stratum)
+        for joint in self.joints:
+            inside = 0 <= joint[0] < self.height * (1 - NEAR) and joint[1] > 0
+            require(inside, "joints", "must be positive springs below the top", joint)
+        levels = np.sort([height for height, _ in self.joints])
+        require(bool(np.all(np.diff(levels) > NEAR * self.height)), "joints", "must not share a height", self.joints)
+        sound = bool(self.strata) and (self.impedance is None or self.impedance > 0)
+        require(sound, "impedance", "must be positive, with one layer at least", self.impedance)
 
     @property
     def height(self) -> float:
@@ -72,17 +75,29 @@ class Ground:
         """Height of the top of each stratum [m]."""
         return np.cumsum([stratum.thickness for stratum in self.strata])
 
-    def check_heights(self, heights: Sequence[float]) -> None:
-        """Raise for a height that is not in the column.
+    def check_request(self, columns: Sequence[str], heights: Sequence[float], parts: Sequence[str] = PARTS) -> None:
+        """Raise for a column that is not available, or a height that is not in the column.
+
+        Parameters
+        ----------
+        columns
+            That are asked for: of the surface, of the base, or of a height by its number.
+        heights
+            Where the column is observed [m].
+        parts
+            What is known of a height.
 
         Raises
         ------
         ValueError
-            If it is not.
+            If one is neither.
         """
+        known = (DISPLACEMENT, PRESSURE, *(f"{part}_{n + 1}" for part in parts for n in range(len(heights))))
+        for name in columns:
+            require(name in known, "columns", f"must be among {known}", name)
         for height in heights:
-            if not 0 <= height <= self.height * (1 + NEAR):
-                raise ValueError(f"height: must be between 0 and {self.height:g} m, got {height!r}")
+            inside = 0 <= height <= self.height * (1 + NEAR)
+            require(inside, "height", f"must be between 0 and {self.height:g} m", height)
 
 
 @dataclass(frozen=True)
@@ -101,22 +116,3 @@ class Excitation:
     def parts(self) -> Array:
         """All of it, one row an instant, shape (instants, 4)."""
         return np.column_stack([self.displacement, self.velocity, self.acceleration, self.pressure])
-
-
-def asked_columns(heights: Sequence[float]) -> tuple[str, ...]:
-    """Names that a history may have: surface, base, then displacement [m] and stress [Pa] of every height."""
-    numbers = range(1, len(heights) + 1)
-    return (DISPLACEMENT, PRESSURE, *(f"displacement_{n}" for n in numbers), *(f"stress_{n}" for n in numbers))
-
-
-def check_columns(columns: Sequence[str], heights: Sequence[float]) -> None:
-    """Raise for a column that is not available.
-
-    Raises
-    ------
-    ValueError
-        If one is unknown.
-    """
-    for name in columns:
-        if name not in asked_columns(heights):
-            raise ValueError(f"columns: must be among {asked_columns(heights)}, got {name!r}")

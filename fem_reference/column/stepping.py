@@ -8,17 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
-from scipy.sparse import coo_array, csr_array
+from scipy.sparse import csr_array
 
 from fem_reference.column.mesh import LineMesh, line_mesh
-from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground, check_columns
-from fem_reference.problem.problem import Array, Scheme
+from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Ground
+from fem_reference.problem.checks import require
+from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.problem.result import Result, just_ended
 from fem_reference.scheme.newmark import Stepper
+
+MEAN_VELOCITY = "mean_velocity"
+"""Name of the velocity of the centre of mass [m/s] where columns are observed."""
 
 
 def solve_line(
@@ -39,7 +44,7 @@ def solve_line(
     excitation
         What drives it at the scheme's `stage_times`: t = 0 and the ends of all stages.
     columns
-        Of `asked_columns`.
+        Of the surface and the base, and ``displacement_1`` ..., ``stress_1`` ... of the heights.
     heights
         Where displacement [m] and stress (positive in compression) [Pa] are observed.
 
@@ -48,56 +53,50 @@ def solve_line(
     ValueError
         For an unknown column, a height outside, or a mesh that is not possible.
     """
-    check_columns(columns, heights)
-    ground.check_heights(heights)
+    ground.check_request(columns, heights)
     began = perf_counter()
     mesh = line_mesh(ground, elements, degree)
-    model = Model.of(mesh, ground.impedance)
-    rows = [row_of(mesh, model, name, heights) for name in columns]
+    model = Model(mesh, ground.impedance)
+    observed = observed_by(model, columns, heights)
     model.check_scheme(scheme)
-    free = model.free
-    M, C, K = (csr_array(matrix[free][:, free]) for matrix in (model.M, model.C, model.K))
+    M, C, K = model.matrices()
     if scheme.start == "consistent" and np.any(M.diagonal() == 0):
         raise ValueError("start: must be 'zero' where a joint lies between half-space and column, got 'consistent'")
-    stepper = Stepper(M, K, np.zeros(len(free)), scheme, C=None if ground.impedance is None else C)
+    stepper = Stepper(M, K, np.zeros(len(model.free)), scheme, C=None if ground.impedance is None else C)
     ready = perf_counter()
     with np.errstate(all="ignore"):
-        columns_of_steps = histories(model, stepper, excitation, rows)
+        columns_of_steps = histories(model, stepper, excitation, observed)
     return Result(
         **just_ended(scheme.step, columns_of_steps.shape[1], began, ready),
         columns=dict(zip(columns, columns_of_steps, strict=True)),
-        unknowns=len(free),
+        unknowns=len(model.free),
         **vars(stepper.work),
     )
 
 
 @dataclass(frozen=True)
 class Model:
-    """M A + C V + K D = F of all unknowns, and which of them are free."""
+    """M A + C V + K D = F of a meshed column, on a base with prescribed motion, a half-space or a free base."""
 
-    M: csr_array
-    C: csr_array
-    K: csr_array
-    free: NDArray[np.intp]  # numbers of the unknowns that are solved for
-    base: int
-    top: int
-    impedance: float | None
-
-    @classmethod
-    def of(cls, mesh: LineMesh, impedance: float | None, base_is_free: bool = False) -> Model:
-        """Return the model of a mesh on its base, whose motion is prescribed but for a half-space or a free base."""
-        n = mesh.size
-        b = mesh.base_node
-        C = csr_array(coo_array(([impedance or 0.0], ([b], [b])), shape=(n, n)))
-        free = np.arange(n)
-        if impedance is None and not base_is_free:
-            free = np.delete(free, b)
-        return cls(mesh.M, C, mesh.K, free, b, mesh.top, impedance)
+    mesh: LineMesh
+    impedance: float | None  # of the half-space [Pa s/m]
+    base_is_free: bool = False
 
     @property
     def holds_base(self) -> bool:
         """Whether the motion of the base is prescribed."""
-        return bool(len(self.free) < self.M.shape[0])
+        return self.impedance is None and not self.base_is_free
+
+    @cached_property
+    def free(self) -> Indices:
+        """Numbers of the unknowns that are solved for."""
+        return np.delete(np.arange(self.mesh.size), [self.mesh.base_node] * self.holds_base)
+
+    def matrices(self) -> list[csr_array]:
+        """M, C and K of the free unknowns."""
+        base = self.mesh.base_node
+        C = csr_array(([self.impedance or 0.0], ([base], [base])), shape=self.mesh.K.shape)
+        return [csr_array(matrix[self.free][:, self.free]) for matrix in (self.mesh.M, C, self.mesh.K)]
 
     def check_scheme(self, scheme: Scheme) -> None:
         """Raise for a scheme that has no velocity for the dashpot of a half-space.
@@ -107,67 +106,63 @@ class Model:
         ValueError
             If its velocity is that of half a step before.
         """
-        if scheme.staggered and self.impedance is not None:
-            raise ValueError(
-                f"scheme: must not be {scheme.name!r} above a half-space, whose dashpot needs the velocity"
-            )
+        has_velocity = not scheme.staggered or self.impedance is None
+        require(has_velocity, "scheme", "must have the velocity that a half-space's dashpot needs", scheme.name)
 
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
-        loads: Array = np.zeros((self.M.shape[0], 4))
+        base = self.mesh.base_node
+        loads: Array = np.zeros((self.mesh.size, 4))
+        loads[self.mesh.top, 3] = -1.0
         if self.holds_base:
-            loads[:, 0] = -self.K[:, [self.base]].toarray()[:, 0]
-            loads[:, 2] = -self.M[:, [self.base]].toarray()[:, 0]
+            loads[:, 0] = -self.mesh.K[[base]].toarray()[0]
+            loads[:, 2] = -self.mesh.M[[base]].toarray()[0]
         elif self.impedance is not None:
-            loads[self.base, 1] = 2 * self.impedance
-        loads[self.top, 3] = -1.0
-        return np.asarray(loads[self.free])
+            loads[base, 1] = 2 * self.impedance
+        return loads[self.free]
 
 
-@dataclass(frozen=True)
-class Observation:
-    """A column of the history: rows on displacement, velocity, acceleration (all unknowns) and excitation."""
+class Observation(NamedTuple):
+    """What observes the columns of a history."""
 
-    D: Array
-    V: Array
-    A: Array
-    excitation: Array
+    motion: Array  # rows on displacement, velocity and acceleration of the free unknowns, shape (3, columns, unknowns)
+    parts: Array  # on the parts of the excitation, which have the base's own motion, shape (columns, 4)
 
 
-def row_of(mesh: LineMesh, model: Model, name: str, heights: Sequence[float]) -> Observation:
-    """Return how a column of the history is observed."""
-    none = np.zeros(mesh.size)
-    parts = np.zeros(4)
-    if name == PRESSURE and model.impedance is None:  # the force that holds the base's own equation
-        D, A = (matrix[[model.base]].toarray()[0] for matrix in (model.K, model.M))
-        return Observation(D, none, A, parts)
-    if name == PRESSURE:
-        unit = np.eye(1, mesh.size, model.base)[0]
-        return Observation(
-            none, -(model.impedance or 0.0) * unit, none, np.array([0, 2 * (model.impedance or 0), 0, 0])
-        )
-    if name == DISPLACEMENT:
-        return Observation(np.eye(1, mesh.size, mesh.top)[0], none, none, parts)
-    kind, _, number = name.rpartition("_")
-    row = mesh.row(heights[int(number) - 1], stress=kind == "stress")
-    return Observation(none, row, none, parts) if kind == "velocity" else Observation(row, none, none, parts)
-
-
-def observed_by(model: Model, rows: Sequence[Observation]) -> Observation:
-    """Return rows on the free unknowns, one below the other, and on the excitation, which has the base's motion."""
-    D, V, A, excitation = (np.array([getattr(row, part) for row in rows]) for part in ("D", "V", "A", "excitation"))
+def observed_by(model: Model, columns: Sequence[str], heights: Sequence[float]) -> Observation:
+    """Return how columns of a history are observed; of those that only a contact knows nothing is."""
+    mesh = model.mesh
+    motion: Array = np.zeros((3, len(columns), mesh.size))
+    parts: Array = np.zeros((len(columns), 4))
+    for column, name in enumerate(columns):
+        D, V, A = motion[:, column]
+        kind, _, number = name.rpartition("_")
+        if name == DISPLACEMENT:
+            D[mesh.top] = 1.0
+        elif name == PRESSURE and model.holds_base:  # the force that holds the base's own equation
+            D[:] = mesh.K[[mesh.base_node]].toarray()[0]
+            A[:] = mesh.M[[mesh.base_node]].toarray()[0]
+        elif name == PRESSURE and model.impedance is not None:
+            V[mesh.base_node] = -model.impedance
+            parts[column, 1] = 2 * model.impedance
+        elif name == MEAN_VELOCITY:
+            mass = mesh.M @ np.ones(mesh.size)
+            V[:] = mass / mass.sum()
+        elif kind in ("displacement", "velocity", "stress"):
+            row = V if kind == "velocity" else D
+            row[:] = mesh.row(heights[int(number) - 1], stress=kind == "stress")
     if model.holds_base:
-        excitation[:, :3] += np.column_stack([part[:, model.base] for part in (D, V, A)])
-    return Observation(D[:, model.free], V[:, model.free], A[:, model.free], excitation)
+        parts[:, :3] += motion[:, :, mesh.base_node].T
+    return Observation(motion[:, :, model.free], parts)
 
 
-def histories(model: Model, stepper: Stepper, excitation: Excitation, rows: Sequence[Observation]) -> Array:
+def histories(model: Model, stepper: Stepper, excitation: Excitation, observed: Observation) -> Array:
     """Return the observed columns at every step, shape (columns, steps)."""
     parts = excitation.parts
     loads = parts @ model.loads().T
-    by = observed_by(model, rows)
     stages = len(stepper.solves)
-    columns = by.excitation @ parts[stages::stages].T
+    columns = observed.parts @ parts[stages::stages].T
     for n, state in enumerate(stepper.states(columns.shape[1], loads)):
-        columns[:, n] += by.D @ state.D + by.V @ state.V + by.A @ state.A
+        for rows, vector in zip(observed.motion, (state.D, state.V, state.A), strict=True):
+            columns[:, n] += rows @ vector
     return columns

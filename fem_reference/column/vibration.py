@@ -14,10 +14,10 @@ from scipy.sparse import csc_array, kron
 from scipy.sparse.linalg import splu
 
 from fem_reference.column.mesh import line_mesh
-from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Ground, check_columns
-from fem_reference.column.stepping import Model, row_of
+from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Ground
+from fem_reference.column.stepping import Model, observed_by
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.harmonic import Complex, StepSystem, squares, step_system
+from fem_reference.scheme.harmonic import Complex, StepSystem, step_system
 
 
 def line_response(
@@ -48,37 +48,25 @@ def line_response(
     ValueError
         For an unknown column, a mesh that is not possible, or gg = 0 where the exact motion is asked for.
     """
-    check_columns(columns, ())
-    mesh = line_mesh(ground, elements, degree)
-    model = Model.of(mesh, ground.impedance)
-    rows = [row_of(mesh, model, name, ()) for name in columns]
-    w = 2 * np.pi * np.atleast_1d(np.asarray(frequencies, float))
+    ground.check_request(columns, ())
+    model = Model(line_mesh(ground, elements, degree), ground.impedance)
+    observed = observed_by(model, columns, ())
+    w = 2 * np.pi * np.array(frequencies, float, ndmin=1)
     drive: Complex = np.zeros((4, len(w)), complex)
     drive[:] = [[0], [0], [0], [1]] if at_top else np.array([np.ones_like(w), 1j * w, -w * w, 0 * w])
-    system = exact_system(w, squares(frequencies, scheme, exact)) if exact else step_system(frequencies, scheme)
-    X = _solutions(model, np.asarray(model.loads() @ drive, complex), system)
-    D, V, A = np.zeros((3, mesh.size, len(w)), complex)
-    D[model.free] = X[:, -1]
-    V[model.free] = np.einsum("fs,usf->uf", system.velocity, X)
-    A[model.free] = np.einsum("fs,usf->uf", system.acceleration, X)
-    if ground.impedance is None:
-        D[model.base] = drive[0]
-        A[model.base] = drive[2]
-    observed = [row.D @ D + row.V @ V + row.A @ A + row.excitation @ drive for row in rows]
-    return dict(zip(columns, observed, strict=True))
-
-
-def exact_system(w: Array, W2: Complex) -> StepSystem:
-    """The equation of motion itself as the only stage: v = i w x and a = -W2 x."""
-    one = np.ones((len(w), 1), complex)
-    rate: Complex = np.asarray(1j * w[:, None])
-    square = W2[:, None]
-    return StepSystem(-square[:, None], rate[:, None], one[:, None], one, -square, rate)
+    system = step_system(frequencies, scheme, exact)
+    X = _solutions(model, model.loads() @ drive, system)
+    V = np.einsum("fs,usf->uf", system.velocity, X)
+    A = np.einsum("fs,usf->uf", system.acceleration, X)
+    amplitudes = observed.parts @ drive
+    for rows, motion in zip(observed.motion, (X[:, -1], V, A), strict=True):
+        amplitudes = amplitudes + rows @ motion
+    return dict(zip(columns, amplitudes, strict=True))
 
 
 def _solutions(model: Model, loads: Complex, system: StepSystem) -> Complex:
     """Free unknowns of all stages at every frequency, shape (unknowns, stages, frequencies)."""
-    M, C, K = (part[model.free][:, model.free] for part in (model.M, model.C, model.K))
+    M, C, K = model.matrices()
     stages = system.load.shape[1]
     solutions = np.empty((len(loads), stages, loads.shape[1]), complex)
     for i in range(loads.shape[1]):

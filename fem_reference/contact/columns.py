@@ -11,7 +11,6 @@ from fem_reference.problem.problem import Array
 
 ENERGY_COLUMNS = ("kinetic_energy", "strain_energy", "spring_energy", "load_energy")
 LOSS_COLUMNS = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_loss")
-COUNTS = ("solves", "cuts")
 UNILATERAL_COLUMNS = (
     "displacement",
     "contact_pressure",
@@ -25,7 +24,8 @@ UNILATERAL_COLUMNS = (
     "largest_slide",
     *ENERGY_COLUMNS,
     *LOSS_COLUMNS,
-    *COUNTS,
+    "solves",
+    "cuts",
 )
 """Columns of a history, one row a step: v at the centroid [m]; sum of N over the base's length [Pa]; u and rotation at
 the centroid [m, 1]; velocity of the centre of mass upwards [m/s]; sum of T over the base's length [Pa]; share of the
@@ -42,11 +42,11 @@ def columns_of(record: Record, model: ContactModel, rows: ContactRows) -> dict[s
     force = record.force
     return {
         "displacement": displacement,
-        "contact_pressure": force[:, :points].sum(axis=1) / model.length,
+        "contact_pressure": force[:, :points].sum(axis=1) / model.problem.base_length,
         "horizontal_displacement": horizontal,
         "rotation": rotation,
         "velocity": record.velocities[:, 0],
-        "base_shear": force[:, points:].sum(axis=1) / model.length,
+        "base_shear": force[:, points:].sum(axis=1) / model.problem.base_length,
         "open_share": (gap > 0) @ model.share,
         "largest_gap": np.maximum(gap, 0.0).max(axis=1),
         "largest_penetration": np.maximum(-gap, 0.0).max(axis=1),

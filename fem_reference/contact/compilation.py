@@ -68,30 +68,19 @@ def prepared(
     """
     unknowns = len(system.F)
     modal = not full and system.C is None and unknowns <= MODES and steps >= LONG
-    run, note = march(modal, steps)
+    run = None
+    if steps < LONG:
+        note = f"contact in plain Python: below {LONG:,} steps"
+    elif not modal:
+        note = "contact in plain Python: not in natural modes"
+    # What stands in the place of one of the functions is no part of what is compiled.
+    elif any(getattr(sys.modules[module], name) is not function for (module, name), function in FUNCTIONS.items()):
+        note = "contact in plain Python: a function of the step was replaced"
+    else:
+        run, note = compiled()
     if not modal:
         return system, run, (note,)
     return system.in_modes(), run, (f"stepped in its {unknowns} natural modes", note)
-
-
-def march(modal: bool, steps: int) -> tuple[Callable[..., Any] | None, str]:
-    """What is compiled of the march for a history, None where it runs as it stands; a note that says which.
-
-    Parameters
-    ----------
-    modal
-        Whether the block is known by its natural modes, in arrays.
-    steps
-        Number of steps.
-    """
-    if steps < LONG:
-        return None, f"contact in plain Python: below {LONG:,} steps"
-    if not modal:
-        return None, "contact in plain Python: not in natural modes"
-    # What stands in the place of one of the functions is no part of what is compiled.
-    if any(getattr(sys.modules[module], name) is not function for (module, name), function in FUNCTIONS.items()):
-        return None, "contact in plain Python: a function of the step was replaced"
-    return compiled()
 
 
 @functools.cache

@@ -38,12 +38,14 @@ ENUMERATED = 256
 ALIKE = 1e-9
 """Difference of forces below which two sets of states are one contact, over the largest force."""
 
-Fallback = Callable[[Law, Trial, Array, Array, States, States], tuple[Trial, States, int, int]]
+Contact = tuple[Trial, States, int, int]
+"""Forces and places; states; number of solutions; how it has ended."""
+Fallback = Callable[[Law, Trial, Array, Array, States, States], Contact]
 
 
 def find_contact(
     law: Law, equations: Equations, q: Array, gap: Array, states: States, fallback: Fallback | None
-) -> tuple[Trial, States, int, int]:
+) -> Contact:
     """Contact of a step: all states are corrected at once until none changes.
 
     Parameters
@@ -76,9 +78,7 @@ def find_contact(
     return fallback(law, trial, q, gap, states, guess)
 
 
-def fall_back(
-    law: Law, trial: Trial, q: Array, gap: Array, states: States, guess: States
-) -> tuple[Trial, States, int, int]:
+def fall_back(law: Law, trial: Trial, q: Array, gap: Array, states: States, guess: States) -> Contact:
     """Try all sets of states where few points have partners, correct one after the other without or with many."""
     pairs = law.partner != np.arange(len(q))
     if pairs.any():
@@ -91,9 +91,7 @@ def fall_back(
     return singly(law, trial, q, gap, states, guess)
 
 
-def singly(
-    law: Law, trial: Trial, q: Array, gap: Array, states: States, guess: States
-) -> tuple[Trial, States, int, int]:
+def singly(law: Law, trial: Trial, q: Array, gap: Array, states: States, guess: States) -> Contact:
     """Set the states of the first point that is wrong until none is, from where all at once have led."""
     guess = guess.copy()
     unique = not np.any(law.partner != np.arange(len(q)))
@@ -107,9 +105,7 @@ def singly(
     return trial, guess, law.limit + law.single_limit, NONE
 
 
-def only_contact(
-    law: Law, trial: Trial, q: Array, gap: Array, states: States, slides: bool
-) -> tuple[Trial, States, int, int]:
+def only_contact(law: Law, trial: Trial, q: Array, gap: Array, states: States, slides: bool) -> Contact:
     """Try all sets of states for the one whose forces and places ask for it.
 
     Two sets with the same forces are one contact: a point without any force has several names for its state.

@@ -35,7 +35,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from fem_reference.problem.problem import Array
+from fem_reference.problem.problem import Array, Flags, Indices
 
 States = NDArray[np.int8]
 AT_LOWER = -1
@@ -60,8 +60,8 @@ class Law(NamedTuple):
     lower: Array  # bounds of the force but for friction [N]
     upper: Array
     friction: Array  # tan(angle) that the force of the partner counts in the bounds [-]
-    partner: NDArray[np.int64]  # row before it that presses it; its own number where there is none
-    slips: NDArray[np.bool_]  # whether it slips at its bounds, and does not open
+    partner: Indices  # row before it that presses it; its own number where there is none
+    slips: Flags  # whether it slips at its bounds, and does not open
     limit: int  # greatest number of solutions of the open-close iteration [-]
     single_limit: int  # then of changes of one point after the other [-]
 

@@ -36,7 +36,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from fem_reference.contact.iteration import CONVERGED, OVERFLOW, Fallback, find_contact
 from fem_reference.contact.law import INSIDE, Equations, Law, States, Trial, crossed, equations_of, is_pressed
@@ -110,7 +109,7 @@ class Record(NamedTuple):
     place: Array  # of `ContactState`, shape (steps, rows)
     force: Array
     slid: Array
-    states: NDArray[np.int8]
+    states: States
     stored: Array  # kinetic energy, strain energy and work of the constant load [J], shape (steps, 3)
     sums: Array  # shape (steps, SUMS)
     solves: Array  # solutions of the open-close iteration [-], shape (steps,)

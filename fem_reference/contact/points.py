@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 from skfem import Basis
 
@@ -20,10 +20,11 @@ from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
 from fem_reference.problem.checks import require
-from fem_reference.problem.motion import Motion as BaseMotion
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.motion import moved_base
+from fem_reference.problem.problem import Array, Indices, Problem
 from fem_reference.scheme.stage import Motion
 
+OBSERVED = ("displacement", "horizontal_displacement", "rotation")
 SAME_PLACE = 1e-9
 """Distance below which two points of the base are one, as a share of its length [-]."""
 
@@ -32,55 +33,42 @@ SAME_PLACE = 1e-9
 class ContactModel:
     """M D'' + K D = F + normal' N + tangential' T, with the forces N, T of the base's points on the block."""
 
+    problem: Problem
     M: csr_array  # consistent mass matrix [kg], shape (unknowns, unknowns)
     K: csr_array  # elastic stiffness without the springs of the base [N/m]
     F: Array  # constant load [N], shape (unknowns,)
-    normal: csr_array  # rows that give the normal displacement of each point, into the block [-], (points, unknowns)
-    tangential: csr_array  # rows that give the displacement of each point along the base [-], shape (points, unknowns)
+    sides: tuple[csr_array, csr_array]
+    """Rows that give the displacement of each point normal to the base, into the block, and along it [-]."""
     share: Array  # share of the base that belongs to each point [-], shape (points,); its sum is one
-    stiffness: Array  # normal stiffness of each point, 2 p times its share [N/m]
-    shear_stiffness: Array  # tangential stiffness of each point, 2 p_s times its share [N/m]
-    upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
     motions: Array  # rigid motions without the springs of the base, shape (unknowns, 1 or 3)
-    observers: dict[str, Array]  # rows that give v, u and the rotation at the centroid, shape (unknowns,)
+    upwards: Array  # unknowns of a unit translation upwards [-], shape (unknowns,)
+    observers: Array  # rows that give v, u and the rotation at the centroid, shape (3, unknowns)
     kind: str  # ``"whole"`` or ``"column"``
-    length: float  # length a of the base [m]
-    axes: Array  # unit vectors normal to the base, into the block, and along it, shape (2, 2)
-    motion: BaseMotion | None  # motion of the base
 
     def system(self, shear: str = "frictionless", friction: Friction | None = None) -> ContactSystem:
         """The block on rows that open, and on shear springs that hold them where ``shear`` is ``"glued"``."""
-        shear_stiffness = self.shear_stiffness * (shear == "glued")
+        problem = self.problem
+        stiffness = 2 * problem.stiffness * self.share
+        shear_stiffness = 2 * problem.shear_stiffness * self.share * (shear == "glued")
         tangent = None if friction is None else friction.tangent
         cohesion = 0.0 if friction is None else friction.cohesion
-        rows = point_rows(self.stiffness, shear_stiffness, tangent, cohesion * self.length * self.share)
+        rows = point_rows(stiffness, shear_stiffness, tangent, cohesion * problem.base_length * self.share)
         sides = len(rows.compliance) // len(self.share)  # normal to the base, and along it where shear springs are
-        names = ("displacement", "horizontal_displacement", "rotation")
         momentum = self.M @ self.upwards
         size = len(self.F)
         return ContactSystem(
             M=self.M,
             K=self.K,
             F=self.F,
-            B=csr_array(vstack([self.normal, self.tangential][:sides])),
+            B=csr_array(vstack(self.sides[:sides])),
             rows=rows,
-            watch=Motion(
-                np.array([self.observers[name] for name in names]),
-                (momentum / float(self.upwards @ momentum))[None],
-                np.zeros((0, size)),
-            ),
+            watch=Motion(self.observers, (momentum / float(self.upwards @ momentum))[None], np.zeros((0, size))),
             pushes=np.zeros((size, 0)),
-            ground=np.repeat(np.eye(2)[:sides], len(self.share), axis=0),
-            prescribed=self._base,
+            ground=np.repeat([problem.normal, problem.tangent][:sides], len(self.share), axis=0),
+            prescribed=partial(moved_base, problem.motion),
             start_parts=np.zeros(2),
             motions=(self.motions,),
         )
-
-    def _base(self, positions: Array, times: Array) -> Array:
-        """Displacement of the base normal to it and along it, shape (steps, stages, 2) [m]."""
-        if self.motion is None:
-            return np.zeros((*times.shape, 2))
-        return np.asarray(self.motion(times.ravel()) @ self.axes.T).reshape(*times.shape, 2)
 
 
 @dataclass(frozen=True)
@@ -136,27 +124,18 @@ def column(problem: Problem) -> ContactModel:
     """
     line = line_of(problem)
     size = len(line.height)
-    none = np.zeros(size)
+    one = np.ones(size)
     return ContactModel(
+        problem=problem,
         M=line.mass,
         K=problem.young * line.stretch,  # with mu = 0 the modulus of a bar, lam + 2 G, is E
         F=line.load(problem),
-        normal=csr_array(line.base[None]),
-        tangential=csr_array((1, size)),
+        sides=(csr_array(line.base[None]), csr_array((1, size))),
         share=np.ones(1),
-        stiffness=np.array([2 * problem.stiffness]),
-        shear_stiffness=np.array([2 * problem.shear_stiffness]),
-        upwards=np.ones(size),
-        motions=np.ones((size, 1)),
-        observers={
-            "displacement": line.middle,
-            "horizontal_displacement": none,
-            "rotation": none,
-        },
+        motions=one[:, None],
+        upwards=one,
+        observers=np.outer([1, 0, 0], line.middle),
         kind="column",
-        length=line.width,
-        axes=np.array([problem.normal, problem.tangent]),
-        motion=problem.motion,
     )
 
 
@@ -170,54 +149,32 @@ def whole(problem: Problem) -> ContactModel:
     """
     assembled = assemble(problem)
     basis = assembled.basis
-    rule = base_rule(problem, basis, block_mesh(problem).base)
-    rule, weights = merged(problem, basis, rule)
-    u, v = elasticity.values(basis, rule.points, rule.cells)
-    n = problem.normal
-    t = problem.tangent
-    share = weights / weights.sum()
+    rule = merged(problem, basis, base_rule(problem, basis, block_mesh(problem).base))
     return ContactModel(
+        problem=problem,
         M=assembled.M,
         K=assembled.K,
         F=assembled.F,
-        normal=csr_array(n[0] * u + n[1] * v),
-        tangential=csr_array(t[0] * u + t[1] * v),
-        share=share,
-        stiffness=2 * problem.stiffness * share,
-        shear_stiffness=2 * problem.shear_stiffness * share,
-        upwards=elasticity.components(basis),
+        sides=elasticity.across_and_along(problem, basis, rule),
+        share=rule.weights / rule.weights.sum(),
         motions=elasticity.rigid_motions(basis),
-        observers={name: row for name, row in assembled.observers.items() if name != "contact_pressure"},
+        upwards=elasticity.components(basis),
+        observers=np.array([assembled.observers[name] for name in OBSERVED]),
         kind="whole",
-        length=problem.base_length,
-        axes=np.array([n, t]),
-        motion=problem.motion,
     )
 
 
-def base_rule(problem: Problem, basis: Basis, facets: NDArray[np.int64]) -> elasticity.Rule:
+def base_rule(problem: Problem, basis: Basis, facets: Indices) -> elasticity.Rule:
     """Points of the base with weights; a node that two facets share comes twice."""
     if problem.foundation != "distributed":
         return elasticity.foundation_rule(problem, basis, facets)
-    ends = elasticity.node_rule(basis.mesh, facets)
-    if problem.degree == 1:
-        return ends
-    count = len(facets)
-    middle = (ends.points[:, :count] + ends.points[:, count:]) / 2
-    return elasticity.Rule(
-        np.hstack([ends.points, middle]),
-        np.concatenate([ends.cells, ends.cells[:count]]),
-        np.concatenate([ends.weights / 3, 4 * ends.weights[:count] / 3]),
-    )
+    lumped = elasticity.LUMPED[problem.degree]
+    return elasticity.edge_rule(basis.mesh, facets, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
 
 
-def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> tuple[elasticity.Rule, Array]:
-    """The rule with each place once, in the order along the base, and the weights [m]."""
-    x = basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
-    along = problem.tangent @ x
-    order = np.argsort(along, kind="stable")
-    fresh = np.append(True, np.diff(along[order]) > SAME_PLACE * problem.base_length)
-    weights = np.zeros(np.count_nonzero(fresh))
-    np.add.at(weights, np.cumsum(fresh) - 1, rule.weights[order])
-    distinct = order[fresh]
-    return elasticity.Rule(rule.points[:, distinct], rule.cells[distinct], weights), weights
+def merged(problem: Problem, basis: Basis, rule: elasticity.Rule) -> elasticity.Rule:
+    """The rule with each place once, in the order along the base."""
+    rule, along = elasticity.in_order(basis, rule, problem.tangent)
+    fresh = np.append(True, np.diff(along) > SAME_PLACE * problem.base_length)
+    weights = np.add.reduceat(rule.weights, np.flatnonzero(fresh))
+    return elasticity.Rule(rule.points[:, fresh], rule.cells[fresh], weights)

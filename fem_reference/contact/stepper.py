@@ -14,7 +14,7 @@ from fem_reference.contact.march import SUMS, ContactStage, ContactState, Record
 from fem_reference.contact.system import ContactSystem
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.stages import Stage
-from fem_reference.scheme.newmark import Operator, Work, effective_matrix, operator, start_velocity
+from fem_reference.scheme.newmark import Operator, Work, inverses, operator, start_velocity
 from fem_reference.scheme.stage import Body
 
 AVERAGE = (0.25, 0.5)
@@ -172,16 +172,14 @@ class ContactStepper:
             self._lengths = {1.0: self._lengths[1.0]}
         system = self.system
         scheme = replace(self.scheme, step=self.scheme.step * ratio, gg=self.scheme.gg**ratio)
-        matrices: dict[int, tuple[Any, Any, Array]] = {}
+        weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
+        responses: list[tuple[Any, Array]] = []
         stages: list[ContactStage] = []
-        begin = 0.0
+        made = inverses(system.M, system.K, scheme, system.C, self.factor)
         for number, first in enumerate(scheme.stage_matrices):
-            if first == number:
-                inverse = self.factor(effective_matrix(system.M, system.K, scheme, number, system.C))
-                weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
-                matrices[number] = (inverse, *self._responses(inverse, weight))
-            stages.append(self._stage(scheme, number, begin, *matrices[first], ratio))
-            begin = scheme.stages[number].end
+            responses.append(responses[first] if first < number else self._responses(made[number], weight))
+            begin = scheme.stages[number - 1].end if number else 0.0
+            stages.append(self._stage(scheme, number, begin, made[number], *responses[number], ratio))
         self._lengths[ratio] = tuple(stages)
         return self._lengths[ratio]
 
@@ -240,4 +238,4 @@ class ContactStepper:
         for i in range(count):
             response[:, i] = inverse * B[[i]].toarray()[0]
         response *= weight
-        return response, np.asarray(B @ response)
+        return response, B @ response

@@ -8,11 +8,10 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag, cholesky, eigh, solve_triangular
 from scipy.sparse import csr_array, diags_array
 
-from fem_reference.problem.problem import Array
+from fem_reference.problem.problem import Array, Flags, Indices
 from fem_reference.scheme.newmark import Operator
 from fem_reference.scheme.stage import Motion
 
@@ -24,8 +23,8 @@ class ContactRows(NamedTuple):
     lower: Array  # bounds of the force but for friction [N]
     upper: Array
     friction: Array  # tangent of the angle [-]
-    partner: NDArray[np.int64]  # row that presses this one; its own number where there is none
-    slips: NDArray[np.bool_]  # whether it slips at its bounds, and does not open
+    partner: Indices  # row that presses this one; its own number where there is none
+    slips: Flags  # whether it slips at its bounds, and does not open
 
 
 def opening_rows(compliance: Array) -> ContactRows:
@@ -37,15 +36,8 @@ def opening_rows(compliance: Array) -> ContactRows:
 
 def slipping_rows(compliance: Array, strength: Array) -> ContactRows:
     """Rows that bear up to a strength, infinite of those that are bonded."""
-    count = len(compliance)
-    return ContactRows(compliance, -strength, strength, np.zeros(count), np.arange(count), np.ones(count, dtype=bool))
-
-
-def with_friction(pressed: ContactRows, sliding: ContactRows, tangent: float) -> ContactRows:
-    """Rows that open, and after them those that each of them presses."""
-    count = len(pressed.compliance)
-    held = sliding._replace(partner=np.arange(count), friction=np.full(count, tangent))
-    return ContactRows(*(np.concatenate(pair) for pair in zip(pressed, held, strict=True)))
+    rows = opening_rows(compliance)
+    return rows._replace(lower=-strength, upper=strength, slips=~rows.slips)
 
 
 def point_rows(
@@ -70,7 +62,9 @@ def point_rows(
     if not np.any(shear_stiffness):
         return normal
     strength = unlimited if tangent is None else cohesion
-    return with_friction(normal, slipping_rows(1 / shear_stiffness, strength), tangent or 0.0)
+    shear = slipping_rows(1 / shear_stiffness, strength)
+    held = shear._replace(partner=normal.partner, friction=np.full(len(strength), tangent or 0.0))
+    return ContactRows(*(np.concatenate(pair) for pair in zip(normal, held, strict=True)))
 
 
 def with_springs(K: csr_array, B: csr_array, compliance: Array) -> csr_array:
@@ -121,6 +115,10 @@ class ContactSystem:
             return np.asarray(self.K @ strained)
 
         return Operator(forces)
+
+    def unknowns(self, vector: Array) -> Array:
+        """A displacement or velocity of the nodes in the system's unknowns."""
+        return vector if self.to_modes is None else self.to_modes @ vector
 
     def in_modes(self) -> ContactSystem:
         """The system in the natural modes of its bodies, in which M is one and K a diagonal, without damping."""

@@ -9,18 +9,17 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from flint import arb
 from numpy.typing import ArrayLike
 
-from fem_reference.events.bars_march import CLOSED, OPEN, Joint, JointPiece, Wave, WavePiece, nodes_of
+from fem_reference.events.bars_march import CLOSED, OPEN, Joint, Wave, nodes_of, start_of
 from fem_reference.events.bars_model import BarsProblem
 from fem_reference.events.enclosure import bits_of, check_request, precision
-from fem_reference.events.exponential_sum import ORDER, STRETCH, ExponentialSum
+from fem_reference.events.exponential_sum import ORDER, STRETCH
 from fem_reference.events.switches import (
     LostDigitsError,
     Switch,
@@ -91,13 +90,17 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
         bars = range(len(self.problem.bars))
-        with precision(bits_of(self.digits)):
-            velocity = np.array([[self._mean_velocity(i, arb(float(s))) for s in t] for i in bars])
-        joints = [self.joint(number, t) for number in bars]
+        velocity = self._rows(times, lambda time: [self._mean_velocity(i, time) for i in bars])
+        joints = [self.joint(number, times) for number in bars]
         rows = [np.array([getattr(joint, part) for joint in joints]) for part in ("force", "gap", "slip")]
-        return BarsHistory(t, velocity, *rows)
+        return BarsHistory(instants(times, self.end), velocity, *rows)
+
+    def _rows(self, times: ArrayLike, row: Callable[[arb], Sequence[float]]) -> Array:
+        """Numbers of an instant at instants in any order, shape (numbers, times)."""
+        t = instants(times, self.end)
+        with precision(bits_of(self.digits)):
+            return np.array([row(arb(s)) for s in t.tolist() or [0.0]]).T[:, : len(t)]
 
     def joint(self, number: int, times: ArrayLike) -> JointHistory:
         """One joint at instants in any order.
@@ -107,10 +110,7 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
-        with precision(bits_of(self.digits)):
-            rows = np.array([self._joint_row(self.joints[number], arb(float(s))) for s in t]).reshape(len(t), 3)
-        return JointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
+        return JointHistory(*self._rows(times, lambda time: self._joint_row(self.joints[number], time)))
 
     def impulse(self, number: int, times: ArrayLike) -> Array:
         """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
@@ -120,14 +120,18 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
         joint = self.joints[number]
-        if joint is None:
-            return np.zeros_like(t)
-        with precision(bits_of(self.digits)):
-            force = Wave([WavePiece(piece.start, piece.force) for piece in joint.pieces], arb(self.end))
-            integrals = _integrals(force)
-            return np.array([float(_integral(force, integrals, arb(float(s)))) for s in t])
+        data = self.problem.bars[number]
+
+        def row(time: arb) -> list[float]:
+            if joint is None:
+                return [0.0]
+            # N = static + z (p - d) of the waves that leave the foot of the bar and arrive there
+            leaving = self.up[number].at(time)[1] - self.up[number].at(arb(0))[1]
+            arriving = self.down[number].at(time - data.travel)[1] - self.down[number].at(-data.travel)[1]
+            return [float(joint.static * time + (leaving - arriving) * data.impedance)]
+
+        return np.asarray(self._rows(times, row)[0])
 
     def point(self, bar: int, height: float, times: ArrayLike) -> PointHistory:
         """A point of a bar, its height above the foot of the bar [m], at instants in any order.
@@ -137,32 +141,23 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`, or the height is not in the bar.
         """
-        t = instants(times, self.end)
         length = self.problem.bars[bar].length
         if not 0 <= height <= length:
             raise ValueError(f"height: must be from 0 to {length!r}, got {height!r}")
-        with precision(bits_of(self.digits)):
-            rows = np.array([self._point(bar, height, arb(float(s))) for s in t]).reshape(len(t), 3)
-        return PointHistory(rows[:, 0], rows[:, 1], rows[:, 2])
-
-    @cached_property
-    def _integrals_of_waves(self) -> dict[int, list[ExponentialSum]]:
-        """The integral of each wave from its first piece on, piece by piece, by the identity of the wave."""
-        return {id(wave): _integrals(wave) for wave in (*self.up, *self.down)}
+        return PointHistory(*self._rows(times, lambda time: self._point(bar, height, time)))
 
     def _mean_velocity(self, bar: int, time: arb) -> float:
         data = self.problem.bars[bar]
         T = data.travel
         mean = arb(0)
         for wave in (self.up[bar], self.down[bar]):
-            integrals = self._integrals_of_waves[id(wave)]
-            mean += (_integral(wave, integrals, time) - _integral(wave, integrals, time - T)) / T
+            mean += (wave.at(time)[1] - wave.at(time - T)[1]) / T
         return float(mean - self.problem.fall * time)
 
     def _joint_row(self, joint: Joint | None, time: arb) -> tuple[float, float, float]:
         if joint is None:
             return 0.0, 0.0, 0.0
-        piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=_start) - 1]
+        piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=start_of) - 1]
         force = float(piece.force(time - piece.start))
         opening = float(piece.opening(time - piece.start))
         return (force, opening, 0.0) if joint.law.law == "unilateral" else (force, 0.0, opening)
@@ -176,38 +171,12 @@ class BarsMotion:
         displacement -= gravity * time * time / 2
         velocities = []
         for wave, delay in ((self.up[bar], x), (self.down[bar], T - x)):
-            integrals = self._integrals_of_waves[id(wave)]
-            displacement += _integral(wave, integrals, time - delay) - _integral(wave, integrals, -delay)
-            velocities.append(_value(wave, time - delay))
+            velocity, moved = wave.at(time - delay)
+            displacement += moved - wave.at(-delay)[1]
+            velocities.append(velocity)
         up, down = velocities
         stress += (up - down) * data.impedance
         return float(displacement), float(up + down - gravity * time), float(stress)
-
-
-def _start(piece: JointPiece | WavePiece) -> arb:
-    return piece.start.mid()
-
-
-def _value(wave: Wave, time: arb) -> arb:
-    piece = wave.pieces[max(bisect_right(wave.pieces, time.mid(), key=_start) - 1, 0)]
-    return piece.velocity(time - piece.start)
-
-
-def _integral(wave: Wave, integrals: Sequence[ExponentialSum], time: arb) -> arb:
-    """Integral of a wave from the start of its first piece, of the integrals of its pieces."""
-    piece = max(bisect_right(wave.pieces, time.mid(), key=_start) - 1, 0)
-    return integrals[piece](time - wave.pieces[piece].start)
-
-
-def _integrals(wave: Wave) -> list[ExponentialSum]:
-    integrals = []
-    value = arb(0)
-    for number, piece in enumerate(wave.pieces):
-        function = piece.velocity.integral(value)
-        integrals.append(function)
-        if number + 1 < len(wave.pieces):
-            value = function(wave.pieces[number + 1].start - piece.start)
-    return integrals
 
 
 def least_terms(problem: BarsProblem, end: float) -> float:

@@ -14,6 +14,7 @@ their weight, the waves are those of the motion beyond that state, in which the 
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 
@@ -38,6 +39,7 @@ class WavePiece:
 
     start: arb  # [s]
     velocity: ExponentialSum  # of the time since then [m/s]
+    displacement: ExponentialSum  # its integral from the first piece on [m]
 
 
 @dataclass
@@ -47,11 +49,16 @@ class Wave:
     pieces: list[WavePiece]
     known_until: arb  # [s]
 
+    def at(self, time: arb) -> tuple[arb, arb]:
+        """Velocity [m/s] and its integral from the first piece on [m]."""
+        piece = self.pieces[max(bisect_right(self.pieces, time.mid(), key=start_of) - 1, 0)]
+        return piece.velocity(time - piece.start), piece.displacement(time - piece.start)
+
     def append(self, start: arb, velocity: ExponentialSum) -> None:
         """Go on with another function, unless it is the one before."""
         last = self.pieces[-1]
         if (velocity - last.velocity.shifted(start - last.start)).without_noise():
-            self.pieces.append(WavePiece(start, velocity))
+            self.pieces.append(WavePiece(start, velocity, velocity.integral(last.displacement(start - last.start))))
 
 
 @dataclass
@@ -261,6 +268,11 @@ class Joint:
                 self.force = arb(self.law.strength) * (1, -1)[switching]
 
 
+def start_of(piece: JointPiece | WavePiece) -> arb:
+    """Beginning of a piece, without a radius."""
+    return piece.start.mid()
+
+
 def earliest(arrivals: Sequence[Arrival], end: arb) -> arb:
     """The first instant at which an arrival changes or is not known, `end` at most."""
     time = end
@@ -273,11 +285,13 @@ def earliest(arrivals: Sequence[Arrival], end: arb) -> arb:
 
 def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> Arrival:
     """A drive times a factor as a wave; with half the acceleration of gravity, plus that times t."""
-
-    def piece(start: arb, function: ExponentialSum) -> WavePiece:
-        return WavePiece(start, function * factor if fall is None else (function * factor).plus(fall * start, fall))
-
-    pieces = [piece(arb(start), function_of(part, arb(start), rates)) for start, part in drive().parts()]
+    pieces = []
+    for time, part in drive().parts():
+        start = arb(time)
+        velocity = function_of(part, start, rates) * factor
+        if fall is not None:
+            velocity = velocity.plus(fall * start, fall)
+        pieces.append(WavePiece(start, velocity, velocity.integral(arb(0))))
     return Arrival(Wave(pieces, arb("inf")), arb(0))
 
 
@@ -290,7 +304,7 @@ def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | 
     for bar in bars:
         start = ExponentialSum.polynomial(rates, [arb(bar.velocity) / 2])
         for waves in (up, down):
-            waves.append(Wave([WavePiece(-bar.travel.mid(), start)], arb(0)))
+            waves.append(Wave([WavePiece(-bar.travel.mid(), start, start.integral(arb(0)))], arb(0)))
     nodes: list[Node | Joint] = []
     for j, (bar, law) in enumerate(zip(bars, problem.joints, strict=True)):
         above = Arrival(down[j], bar.travel.mid())

@@ -18,19 +18,19 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any
 
 import numpy as np
-from flint import arb, arb_poly
+from flint import arb, arb_mat
 from numpy.typing import ArrayLike
 
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
-from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, RELEASED, RIGHT, STICKS, States, direction
+from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, States, direction
 from fem_reference.events.enclosure import bits_of, check_request, precision
 from fem_reference.events.march import Node
-from fem_reference.events.report import ROUNDING, Part, sampled
-from fem_reference.events.series import column, floats
+from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.series import Start, column, floats
 from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
@@ -46,6 +46,7 @@ _UNKNOWNS = np.zeros((6, 6))
 _UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
 _UNKNOWNS[[3, 4], 2] = -1, 1
 _OUTPUTS = np.linalg.inv(_UNKNOWNS)
+TO_OUTPUTS = arb_mat(_OUTPUTS.tolist())
 REPORT_DIGITS = 40
 """Decimal digits in which the motion is evaluated where it is reported."""
 
@@ -105,134 +106,91 @@ class BlockMotion(ProvenMotion):
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
+        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
+            # without an instant one gives the columns their shapes
+            columns = [
+                self._at(instant) for instant in instants_of(self.model, self.nodes, t if len(t) else np.zeros(1))
+            ]
+        return BlockHistory(time=t, **stacked(columns, len(t)))
+
+    def _at(self, instant: Instant) -> dict[str, Any]:
+        """All columns but the time at an instant."""
         problem = self.problem
         model = self.model
-        contact = model.contacts[0]  # both have the same numbers
-        report = sampled(model, self.nodes, t, min(self.digits, REPORT_DIGITS), self._reported)
-        node = report.node
-        x = report.series[0, :6]
-        rate = report.series[1, :6]
-        gap, slide = np.split(report.rows[0, :4], 2)
-        gap_velocity = report.rows[1, :2]
-        states = np.where(report.states == RELEASED, OPEN, report.states)
-        closed = states != OPEN
-        p = float(contact.stiffness)
-        N = -p * gap - float(contact.damping) * gap_velocity
-        if problem.rigid_contact:
-            N = np.tile(report.rows[0, 4] / 2, (2, 1))
-        N = np.where(closed, N, 0.0)
+        node = instant.node
+        start = instant.start
+        away, speed = base_motion(node, start.time)
+        u = start.u + away
+        u[1, 0] = u[1, 0] - problem.gap
+        v = start.v + speed
+        x = floats(TO_OUTPUTS * u)[:, 0]
+        gap = np.array([float(row) for row in instant.rows[:2]])
+        N = np.array([float(force) for force in instant.forces[:2]])
         pressed = gap
         if not problem.locked:
             N = np.maximum(0.0, N)
             pressed = np.minimum(0.0, gap)
-        # the spring of one that slips keeps the friction, and its reference moves by the rest
-        sign = np.sign(states) * (np.abs(states) == RIGHT)
-        limit = (float(contact.cohesion or 0) - float(contact.friction * contact.stiffness) * gap) * sign
-        ps = problem.shear_stiffness
-        stretch = np.where(
-            states == STICKS, report.held, np.divide(limit, ps, out=np.zeros_like(limit), where=sign != 0)
-        )
-        slips = np.where(sign == 0, 0.0, report.held - stretch)
-        T = 0.0 - ps * stretch
-        ledgers = np.array(self._ledgers)[node].T
-        mass = np.array([float(m) for m in model.masses])
-        load = floats(model.load)[:, 0]
-        radius = np.empty((6, len(t)))
-        work = ledgers[4].copy()
-        for i in np.unique(node).tolist():
-            here = np.flatnonzero(node == i)
-            begun = self.nodes[i]
-            flow = model.flow(begun.states)
-            radius[:, here] = np.abs(_OUTPUTS) @ flow.growth(begun.error, flow.rate * report.passed[here])
-            for axis, speed in enumerate(self._base_velocity(begun)):
-                gained = mass[0] * (rate[axis, here] - float(begun.start.v[axis, 0] + speed))
-                work[here] += float(speed) * (gained - load[axis] * report.passed[here])
-        dissipated = ledgers[3] + report.series[0, 6]
-        nothing = np.zeros_like(t)
+        closed = [state not in CARRIES_NOTHING for state in node.states]
+        ledger = self._ledgers[instant.number] + self._gains(node, start)
+        slipped_m, slipped_n, dissipated, work, released = ledger.entries()
         has_friction = problem.friction is not None
-        strains = x[3:6]
-        elastic = floats(model.stiffness)[np.ix_([2, 5, 3], [2, 5, 3])]
-        return BlockHistory(
-            time=t,
-            displacement=x,
-            velocity=rate,
-            gap=gap,
-            gap_velocity=gap_velocity,
-            normal_force=N,
-            shear_force=T,
-            slide=slide,
-            slipped=ledgers[:2] + slips,
-            states=states.astype(float),
-            closed=closed.astype(float),
-            contact_pressure=N.sum(axis=0) / problem.width,
-            kinetic=mass @ (_UNKNOWNS @ rate) ** 2 / 2,
-            strain=(strains * (elastic @ strains)).sum(axis=0) / 2,
-            springs=(p * pressed**2 - T * stretch).sum(axis=0) / 2,
-            load=-load @ (_UNKNOWNS @ x) - work,
-            released=ledgers[2],
-            friction=dissipated if has_friction else nothing,
-            damped=nothing if has_friction else dissipated,
-            displacement_radius=radius + ROUNDING * np.abs(x),
-        )
-
-    def _reported(self, part: Part) -> list[arb_poly]:
-        """Series of (u, v, r, ex, ey, gxy), and of the energy lost in a step by friction and in dashpots."""
-        node = part.node
-        model = self.model
-        u, v, ux, uy, vx, vy = part.segment.unknowns()
-        span = arb(part.segment.length)
-        along, upwards = (arb_poly(piece.series(part.start.time, part.segment.length, 2)) for piece in node.drives)
-        lost = arb_poly([])
-        if self._dissipates(node.states):
-            lost += model.energy(node.states, node.start) - model.energy(node.states, part.start)
-        for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
-            gap = part.rows[c]
-            if state == RELEASED:
-                lost += (gap(arb(0)) ** 2 - gap * gap) * (contact.stiffness / 2)
-            if state in CARRIES_NOTHING:
-                continue
-            rate = gap.derivative() * (1 / span)
-            lost += (rate * rate).integral() * (contact.damping * span)
-            if direction(state):
-                stretch = model.stretch(c, state, part.rows, node.start.references[c])
-                slip_rate = contact.reference(state, part.rows).derivative()
-                lost += (stretch * slip_rate).integral() * contact.shear_stiffness
-        upwards -= arb(self.problem.gap)
-        return [u + along, v + upwards, (vx - uy) * (arb(1) / 2), ux, vy, uy + vx, lost]
-
-    @staticmethod
-    def _base_velocity(node: Node) -> list[arb]:
-        """Rates of the base along itself and upwards."""
-        return [piece.series(node.start.time, 1.0, 2)[1] for piece in node.drives]
+        shear = instant.forces[2:4]
+        springs = float(model.contacts[0].stiffness) * (pressed**2).sum() / 2
+        if problem.shear_stiffness:
+            springs += float(sum((T * T for T in shear), arb(0)) / problem.shear_stiffness / 2)
+        return {
+            "displacement": x,
+            "velocity": floats(TO_OUTPUTS * v)[:, 0],
+            "gap": gap,
+            "gap_velocity": floats(model.rows * start.v)[:2, 0],
+            "normal_force": N,
+            "shear_force": [float(T) for T in shear],
+            "slide": [float(row) for row in instant.rows[2:4]],
+            "slipped": [float(slipped_m), float(slipped_n)],
+            "states": np.where(closed, node.states, OPEN),
+            "closed": closed,
+            "contact_pressure": N.sum() / problem.width,
+            "kinetic": float((v.transpose() * model.mass * v)[0, 0] / 2),
+            "strain": float((u.transpose() * model.stiffness * u)[0, 0] / 2),
+            "springs": springs,
+            "load": -float((model.load.transpose() * u)[0, 0] + work),
+            "released": float(released),
+            "friction": float(dissipated) * has_friction,
+            "damped": float(dissipated) * (not has_friction),
+            "displacement_radius": np.abs(_OUTPUTS) @ instant.radius + ROUNDING * np.abs(x),
+        }
 
     @cached_property
-    def _ledgers(self) -> list[Ledger]:
-        """What has slipped and been lost until each node."""
-        model = self.model
-        ledgers = [Ledger(0.0, 0.0, 0.0, 0.0, 0.0)]
-        slipped = [arb(0), arb(0)]
-        released = dissipated = work = arb(0)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            for node, following in itertools.pairwise(self.nodes):
-                # its end as seen from the base of this step, whose velocity jumps between two rows of its record
-                base = self._base_velocity(node)
-                jump = [later - speed for later, speed in zip(self._base_velocity(following), base, strict=True)]
-                v = following.start.v + column([*jump, *[arb(0)] * 4])
-                end = following.start._replace(v=v, references=node.start.references)
-                span = end.time - node.start.time
-                gained = [model.masses[0] * (v[i, 0] - node.start.v[i, 0]) - model.load[i, 0] * span for i in (0, 1)]
-                work += base[0] * gained[0] + base[1] * gained[1]
-                if self._dissipates(node.states):
-                    dissipated += model.energy(node.states, node.start) - model.energy(node.states, end)
-                rows = model.values(end.u)
-                for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
-                    if direction(state):
-                        slipped[c] += contact.reference(state, rows) - node.start.references[c]
-                    if state not in CARRIES_NOTHING and following.states[c] in CARRIES_NOTHING:
-                        stretch = model.stretch(c, state, rows, end.references[c])
-                        released += contact.shear_stiffness * stretch * stretch / 2
-                ledgers.append(Ledger(*map(float, (*slipped, released, dissipated, work))))
+    def _ledgers(self) -> list[arb_mat]:
+        """What has slipped at M and N [m], been lost, been done by the base and been released until each node [J]."""
+        ledgers = [arb_mat(5, 1)]
+        for node, following in itertools.pairwise(self.nodes):
+            # its end as seen from the base of this step, whose velocity jumps between two rows of its record
+            time = following.start.time
+            jump = base_motion(following, time)[1] - base_motion(node, time)[1]
+            end = following.start._replace(v=following.start.v + jump, references=node.start.references)
+            ledger = ledgers[-1] + self._gains(node, end)
+            forces = self.model.forces(node.states, end, ())[1]
+            for c, state in enumerate(following.states):
+                T = forces[2 + c]
+                if state in CARRIES_NOTHING and T != 0:
+                    ledger[4, 0] = ledger[4, 0] + T * T / self.problem.shear_stiffness / 2
+            ledgers.append(ledger)
         return ledgers
+
+    def _gains(self, node: Node, end: Start) -> arb_mat:
+        """What a step adds to a ledger until its end, as seen from its base."""
+        model = self.model
+        gains = [arb(0)] * 5
+        rows = model.values(end)
+        for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
+            if direction(state):
+                gains[c] = contact.reference(state, rows) - node.start.references[c]
+        if self._dissipates(node.states):
+            gains[2] = model.energy(node.states, node.start) - model.energy(node.states, end)
+        momentum = model.mass * (end.v - node.start.v) - model.load * (end.time - node.start.time)
+        gains[3] = (base_motion(node, end.time)[1].transpose() * momentum)[0, 0]
+        return column(gains)
 
     def _dissipates(self, states: States) -> bool:
         """Whether energy is lost in a step or at its end."""
@@ -244,14 +202,11 @@ class BlockMotion(ProvenMotion):
         return any(direction(state) for state in states)
 
 
-class Ledger(NamedTuple):
-    """What has slipped and been lost until a node."""
-
-    slipped_m: float  # movement of the reference of M by slipping [m]
-    slipped_n: float  # of that of N
-    released: float  # energy of the shear springs lost by opening [J]
-    dissipated: float  # energy lost by friction, in dashpots or by impacts [J]
-    work: float  # work of the base [J]
+def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:
+    """What the base adds to unknowns and rates that are seen from it, at an instant of a step."""
+    course = [piece.series(time, 1.0, 2) for piece in node.drives]
+    away, speed = (column([*part, *[arb(0)] * 4]) for part in zip(*course, strict=True))
+    return away, speed
 
 
 def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 100_000) -> BlockMotion:

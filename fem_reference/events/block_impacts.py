@@ -90,9 +90,9 @@ class Hops:
         self.contact = contact
         self.e = contact.restitution
         self.motion = model.motion((OPEN, OPEN))
-        flow = model.flow((OPEN, OPEN))
-        self.rate = arb(flow.rate)
-        self.units = State(column(flow.units[:6].tolist()), column(flow.units[6:12].tolist()))
+        rate = model.rate((OPEN, OPEN))
+        self.rate = arb(rate)
+        self.units = State(column((model.sizes / rate).tolist()), column(model.sizes.tolist()))
         self.third = contact.row * self.motion.A  # the gap's third derivative over the rates
         weights = [x * unit for x, unit in zip(self.third.entries(), self.units.v.entries(), strict=True)]
         self.third_norm = euclidean(weights)

@@ -11,14 +11,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from flint import arb, arb_mat, ctx
+from scipy.linalg import block_diag
 
-from fem_reference.events.axes import Axes
 from fem_reference.events.block_impacts import Accumulation, Hops, State
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem, RigidContact
 from fem_reference.events.column_drive import path
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, States
 from fem_reference.events.enclosure import ball, is_blank, precision, radius_of
-from fem_reference.events.flow import SIZE, UNIT
 from fem_reference.events.march import March, Node
 from fem_reference.events.series import INFLATION, Start, column, floats
 from fem_reference.events.switches import (
@@ -46,11 +45,9 @@ INSTANT = 1e-18
 class BlockMarch(March):
     """The motion of a block from t = 0 on."""
 
-    transport: Axes
-
     def __init__(self, problem: BlockProblem, end: float, limit: int) -> None:
         self.block = BlockModel(problem)
-        super().__init__(self.block, Axes(self.block), end, limit, Work())
+        super().__init__(self.block, end, limit, Work())
         self.problem = problem
         base = problem.base or Motion((0.0,), (0.0,), (0.0,))
         self.breaks = base.time  # the rows of the base's record [s]
@@ -100,23 +97,23 @@ class BlockMarch(March):
 
     # -- impacts
 
-    def strike(self, touches: bool) -> bool:
-        """Let the rates jump where the gap of a rigid contact is zero and closes; return whether they do."""
+    def strike(self, touches: bool) -> arb_mat | None:
+        """Let the rates jump where the gap of a rigid contact is zero and closes."""
         contact = self.block.contact
         if contact is None or self.states != (OPEN, OPEN):
-            return False
+            return None
         rows = np.kron(np.eye(2), floats(contact.row))  # of the gap and its rate over unknowns and rates
-        of_gap, of_rate = self.transport.radius(np.pad(rows, [(0, 0), (0, 3)])).tolist()
+        of_gap, of_rate = self.transport.radius(np.pad(rows, [(0, 0), (0, 2)])).tolist()
         if not touches and abs(contact.closing(self.start.u)) > of_gap:
-            return False
-        acceleration = self.block.motion(self.states).acceleration(*self.start[1:])
+            return None
+        acceleration = self.block.accelerations(self.states, self.start, ())
         of_rate += 2 * self.offset * float(abs(contact.closing(acceleration)).upper())
         approach = -contact.closing(self.start.v)
         if not approach > of_rate:
-            return False
+            return None
         self._add_impact(contact, approach)
         self.place(self.start.time, self.start.u, contact.impact * self.start.v)
-        return True
+        return contact.impact
 
     def follow_impact(self) -> None:
         """Record an impact after which the contact is open, and follow the hops after it."""
@@ -151,7 +148,7 @@ class BlockMarch(March):
         time = self.start.time + ball(self.offset)
         hull = self.transport.record()
         state = State(self.start.u + balls(hull[:6]), self.start.v + balls(hull[6:12]))
-        row = np.pad(floats(contact.row), [(0, 0), (6, 3)])
+        row = np.pad(floats(contact.row), [(0, 0), (6, 2)])
         speed = contact.closing(self.start.v) + ball(float(self.transport.radius(row)[0]))
         speed = speed + contact.closing(hops.accelerations(state)) * ball(self.offset)
         cascade_start: float | None = None
@@ -198,8 +195,8 @@ class BlockMarch(March):
 
     def _stand_in(self, state: State, time: arb) -> None:
         """Stand at the middle of balls that hold the state at the middle of an instant."""
-        radii = [radius_of(x) for part in state for x in part.entries()]
-        self.transport.restart(np.array([*radii, 0.0, 0.0, 0.0]))
+        radii = [x.rad() for part in state for x in part.entries()]
+        self.transport.restart([*radii, arb(0), arb(0)])
         self.start = Start(time.mid(), state.u.mid(), state.v.mid(), self.start.references)
         self.offset = radius_of(time)
 
@@ -215,18 +212,16 @@ class BlockMarch(March):
         time
             That instant [s].
         """
-        flow = self.block.flow((OPEN, OPEN))
         error = self.transport.record()
-        error[:12] += float(rest.reach) * flow.units[:12] * INFLATION
+        error[:12] += [float(rest.reach * x) * INFLATION for part in hops.units for x in part.entries()]
         self.nodes.append(Node(self.start, self.states, self.drives, (), error))
         time = time + rest.length
         state = hops.after(state, difference(time.mid(), self.start.time))
         state = hops.pushed(state, rest.speeds, rest.length.upper() + 2 * time.rad())
         second_order = 2 * (hops.rate * time.rad()) ** 2 * hops.change_norm(state) / hops.rate
         self._stand_in(hops.spread(state, second_order.upper()), time)
-        projection = UNIT.copy()
-        projection[:12, :12] = np.kron(np.eye(2), floats(hops.contact.rest))
-        self.transport.transport(projection, np.zeros(SIZE))
+        projection = block_diag(*[floats(hops.contact.rest)] * 2, np.eye(2))
+        self.transport.transport(self.transport.unit @ projection @ self.transport.inverse)
         self.place(self.start.time, hops.contact.rest * self.start.u, hops.contact.rest * self.start.v)
         self.follow()  # springs aside begin where the corners are
         self.settle({(0, NORMAL): 2})

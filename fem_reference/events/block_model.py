@@ -37,13 +37,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
-from fem_reference.events.flow import Flow
 from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
@@ -194,7 +192,6 @@ class BlockModel(System):
             Contact(c, name, c, 2 + c if ps > 0 else None, p, arb(problem.damping), ps, friction, cohesion, force)
             for c, name in enumerate(CORNERS)
         ]
-        self.flows: dict[States, Flow] = {}
 
     def _mobility(self, rigid: bool) -> arb_mat:
         """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
@@ -207,12 +204,6 @@ class BlockModel(System):
         W[3, 3] = W[4, 4] = turning
         W[3, 4] = W[4, 3] = -turning
         return W
-
-    def flow(self, states: States) -> Flow:
-        """Return the motion in a state of the corners as what may be off of it moves."""
-        if states not in self.flows:
-            self.flows[states] = Flow(self, states)
-        return self.flows[states]
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """Yield the functions that are positive as long as the corners keep their states."""
@@ -233,18 +224,14 @@ class BlockModel(System):
         u = start.u
         twice = (u.transpose() * (self.stiffness * u - self.load * 2))[0, 0]
         twice += (start.v.transpose() * self.mass * start.v)[0, 0]
-        rows = self.values(u)
+        rows, forces = self.forces(states, start, ())
         for c, (contact, state) in enumerate(zip(self.contacts, states, strict=True)):
             if state != OPEN:
-                stretch = self.stretch(c, state, rows, start.references[c])
-                twice += contact.stiffness * rows[c] * rows[c] + contact.shear_stiffness * stretch * stretch
+                twice += contact.stiffness * rows[c] * rows[c]
+            if contact.slide is not None:
+                T = forces[contact.slide]
+                twice += T * T / contact.shear_stiffness
         return twice / 2
-
-    def stretch(self, c: int, state: int, rows: Sequence[Any], reference: arb) -> Any:
-        """Stretch s - r of the shear spring of a corner [m], or its series."""
-        contact = self.contacts[c]
-        held = reference if state == STICKS or contact.slide is None else contact.reference(state, rows)
-        return rows[2 + c] - held
 
 
 class RigidContact:

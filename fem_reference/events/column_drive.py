@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cache
 from itertools import pairwise
@@ -36,6 +37,17 @@ def tail_sum(ratio: arb) -> arb:
     if not q < 1:
         return arb("inf")
     return (1 + 4 * q + q * q) / (1 - q) ** 4
+
+
+@contextmanager
+def capped(count: int) -> Iterator[None]:
+    """Power series of so many terms."""
+    before = ctx.cap
+    ctx.cap = count
+    try:
+        yield
+    finally:
+        ctx.cap = before
 
 
 @dataclass(frozen=True)
@@ -90,18 +102,10 @@ class Sine:
 
     def series(self, start: arb, length: float, count: int) -> list[arb]:
         """Coefficients of the first powers of (t - start) / length."""
-        angle = self.rate * (start - arb(self.origin))
-        sine = angle.sin()
-        cosine = angle.cos()
-        turns = [sine, cosine, -sine, -cosine]
-        step = self.rate * arb(length)
-        power = self.amplitude
-        coefficients = []
-        for k in range(count):
-            coefficients.append(power * turns[(k + self.quarters) % 4])
-            power = power * step / (k + 1)
-        coefficients[0] += self.offset
-        return coefficients
+        phase = self.rate * (start - arb(self.origin)) + arb.pi() * self.quarters / 2
+        with capped(count):
+            sine = arb_series([phase, self.rate * arb(length)], prec=count).sin()
+            return [sine[k] * self.amplitude + (0 if k else self.offset) for k in range(count)]
 
     def tail(self, start: arb, length: float, count: int) -> arb:
         """Bound of the terms from `count` on times the cube of their number."""
@@ -137,17 +141,12 @@ class Ricker:
         """Coefficients of the first powers of (t - start) / length."""
         f = arb(self.pulse_frequency)
         late = start - 2 / f
-        before = ctx.cap
-        ctx.cap = count
-        try:
+        with capped(count):
             delay = arb_series([late, arb(length)], prec=count)
             b = delay * (arb.pi() * f)
             bell = (b * b * -1).exp() * arb(self.size)
             pulse = bell * delay if self.integral else bell - bell * b * b * 2
-            coefficients = [pulse[k] for k in range(count)]
-        finally:
-            ctx.cap = before
-        return coefficients
+            return [pulse[k] for k in range(count)]
 
     def tail(self, start: arb, length: float, count: int) -> arb:
         """Bound of the terms from `count` on times the cube of their number, by Cauchy's estimate on a disc."""

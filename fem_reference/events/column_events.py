@@ -9,27 +9,29 @@ is zero in all derivatives, as those of blocks in common flight, carry no force;
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
 
 import numpy as np
-from flint import arb, arb_mat, arb_poly
+from flint import arb, arb_mat
 from numpy.typing import ArrayLike
 
 from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
-from fem_reference.events.contacts import OPEN, RIGHT, STICKS, States
+from fem_reference.events.contacts import OPEN, STICKS, States, direction
 from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
-from fem_reference.events.energy_norm import EnergyNorm
 from fem_reference.events.march import March, Node
-from fem_reference.events.report import ROUNDING, Part, sampled
-from fem_reference.events.series import Start
+from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.series import Start, floats
 from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enough_digits
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
 DIGITS = 60
 """Decimal digits of the first computation."""
-MOST_DIGITS = 960
+MOST_DIGITS = 240
 """Decimal digits of the last one, where switches cost those of the ones before."""
 PROMISED = 1e-20
 """Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
@@ -107,71 +109,69 @@ class ColumnMotion(ProvenMotion):
             If an instant is not from 0 to `end`.
         """
         t = instants(times, self.end)
+        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
+            columns = [self._at(instant) for instant in instants_of(self.model, self.nodes, t)]
+        return ColumnHistory(time=t, **stacked(columns, len(t)))
+
+    @cached_property
+    def _ways(self) -> Array:
+        """Lengths of the ways that the references have gone until each node [m], shape (nodes, contacts)."""
+        slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
+        return np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
+
+    def _at(self, instant: Instant) -> dict[str, Any]:
+        """All columns but the time at an instant."""
         model = self.model
         problem = self.problem
-        report = sampled(model, self.nodes, t, min(self.digits, REPORT_DIGITS), _unknowns_and_drives)
-        base = report.series[:, model.size]
-        # slips of the contacts at each node, and the ways that they have gone until it
-        slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
-        ways = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
-        k = np.array([float(model.spring(c)) for c in range(len(model.contacts))]).reshape(-1, 1)
-        strength = np.array([float(contact.cohesion or 0) for contact in model.contacts]).reshape(-1, 1)
-        # one that slips takes its reference along, so that its spring keeps the strength
-        sign = np.sign(report.states) * (np.abs(report.states) == RIGHT)
-        held = np.where(sign == 0, report.held, sign * strength / k)
-        moved = report.held - held
-        force = np.where(report.states == OPEN, 0.0, -k * held)
-        if model.unilateral:
-            force = np.maximum(force, 0.0)
-        of_joints = np.zeros((4, len(problem.blocks), len(t)))  # forces, stretches, slips and states
-        of_contacts = force, report.rows[0], slips[report.node].T + moved, report.states
-        of_joints[:, [contact.number for contact in model.contacts]] = of_contacts
-        # the last row is where `BASE` points to
-        u, v, a = report.series[:, : model.size + 1]
-        feet, tops = ([face[side] for face in model.faces] for side in (0, 1))
-        foot = u[feet]
-        top = u[tops]
-        foot_velocity = v[feet]
-        top_velocity = v[tops]
-        mass = np.array([[block.density * block.height] for block in problem.blocks])
-        moduli = np.array([[block.modulus / block.height] for block in problem.blocks])
-        strain = np.where(np.isinf(moduli), 0.0, moduli) * (top - foot) ** 2 / 2
-        kinetic = mass / 6 * (foot_velocity**2 + foot_velocity * top_velocity + top_velocity**2)
-        potential = mass * problem.gravity * (foot + top) / 2
-        pressure = report.series[0, model.size + 1]
-        face_force = self._face_force(of_joints[0], (a[feet] + a[tops]) / 2, pressure, 2 * base[1] - v[0])
-        errors = np.array([float(node.error.upper()) for node in self.nodes])[report.node]
-        radius = errors * np.exp(model.soft * report.passed / 2) * (model.sizes.max() / model.soft)
-        return ColumnHistory(
-            time=t,
-            foot=foot,
-            top=top,
-            foot_velocity=foot_velocity,
-            top_velocity=top_velocity,
-            force=of_joints[0],
-            stretch=of_joints[1],
-            slip=of_joints[2],
-            states=of_joints[3].astype(int),
-            face_force=face_force,
-            kinetic=kinetic.sum(axis=0),
-            strain=strain.sum(axis=0),
-            springs=(force**2 / (2 * k)).sum(axis=0),
-            potential=potential.sum(axis=0),
-            friction=(strength * (np.abs(moved) + ways[report.node].T)).sum(axis=0),
-            displacement_radius=radius + ROUNDING * np.abs(u[:-1]).max(axis=0),
-        )
+        start = instant.start
+        states = instant.node.states
+        base, pressure = (piece.series(start.time, 1.0, 3) for piece in instant.node.pieces)
+        # the last entry is where `BASE` points to
+        u = np.append(floats(start.u), float(base[0]))
+        v = np.append(floats(start.v), float(base[1]))
+        a = np.append(floats(model.accelerations(states, start, instant.node.pieces))[:, 0], 2 * float(base[2]))
+        of_joints = np.zeros((4, len(problem.blocks)))  # forces, stretches, slips and states
+        springs = 0.0
+        friction = 0.0
+        for c, (contact, state, reference) in enumerate(zip(model.contacts, states, start.references, strict=True)):
+            slip = contact.reference(state, instant.rows) if direction(state) else reference
+            force = float(instant.forces[c])
+            if model.unilateral:
+                force = max(force, 0.0)
+            of_joints[:, contact.number] = force, float(instant.rows[c]), float(slip), state
+            springs += force**2 / (2 * float(model.spring(c)))
+            way = self._ways[instant.number, c] + abs(float(slip - reference))
+            friction += float(contact.cohesion or 0) * way
+        feet, tops = np.transpose(model.faces)
+        mass = np.array([block.density * block.height for block in problem.blocks])
+        moduli = [block.modulus / block.height if math.isfinite(block.modulus) else 0.0 for block in problem.blocks]
+        squares = v[feet] ** 2 + v[feet] * v[tops] + v[tops] ** 2
+        inertia = mass * ((a[feet] + a[tops]) / 2 + problem.gravity)
+        return {
+            "foot": u[feet],
+            "top": u[tops],
+            "foot_velocity": v[feet],
+            "top_velocity": v[tops],
+            "force": of_joints[0],
+            "stretch": of_joints[1],
+            "slip": of_joints[2],
+            "states": of_joints[3].astype(int),
+            "face_force": self._face_force(of_joints[0], inertia, pressure[0], 2 * v[-1] - v[0]),
+            "kinetic": mass @ squares / 6,
+            "strain": moduli @ (u[tops] - u[feet]) ** 2 / 2,
+            "springs": springs,
+            "potential": problem.gravity * mass @ (u[feet] + u[tops]) / 2,
+            "friction": friction,
+            "displacement_radius": instant.radius.max() + ROUNDING * np.abs(u[:-1]).max(),
+        }
 
-    def _face_force(self, force: Array, acceleration: Array, pressure: Array, outflow: Array) -> Array:
+    def _face_force(self, force: Array, inertia: Array, pressure: arb, outflow: float) -> Array:
         """Force on the foot of each block, by the law of its joint or else by the momentum of what is above it [Pa]."""
         problem = self.problem
-        faces = np.empty((len(problem.blocks) + 1, len(pressure)))
-        faces[-1] = pressure
-        for i in range(len(problem.blocks) - 1, -1, -1):
-            block = problem.blocks[i]
-            if problem.joints[i] is not None:
-                faces[i] = force[i]
-            else:
-                faces[i] = faces[i + 1] + block.density * block.height * (acceleration[i] + problem.gravity)
+        faces = np.append(force, float(pressure))
+        for i in range(len(force) - 1, -1, -1):
+            if problem.joints[i] is None:
+                faces[i] = faces[i + 1] + inertia[i]
         if problem.base == "free":
             faces[0] = 0.0
         elif problem.base == "transmitting":
@@ -179,16 +179,12 @@ class ColumnMotion(ProvenMotion):
         return faces
 
 
-def _unknowns_and_drives(part: Part) -> list[arb_poly]:
-    return [*part.segment.unknowns(), *(arb_poly(terms) for terms in part.segment.drives)]
-
-
 class ColumnMarch(March):
     """The motion of a column from switch to switch."""
 
     def __init__(self, problem: ColumnProblem, end: float, limit: int, work: Work) -> None:
         self.column = ColumnModel(problem)
-        super().__init__(self.column, EnergyNorm(self.column), end, limit, work)
+        super().__init__(self.column, end, limit, work)
         self.courses = problem.base_motion(), problem.pressure()
         self.breaks = [time for course in self.courses for time in course.breaks]
 
@@ -221,7 +217,7 @@ def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
     with precision(bits_of(DIGITS)):
         model = ColumnModel(problem)
         rate = model.rate((STICKS,) * len(model.contacts))
-        open_rate = max(model.rate((OPEN,) * len(model.contacts)), model.soft)
+        open_rate = model.rate((OPEN,) * len(model.contacts))
         terms = term_count(1.0) * model.size
     return end * open_rate / ANGLE * terms, end * rate / ANGLE * terms
 

@@ -16,21 +16,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 from flint import arb, arb_mat
 
 from fem_reference.events.column_drive import ANGLE, Drive, still
 from fem_reference.events.contacts import STICKS, Contact
-from fem_reference.events.series import System, column, diagonal
+from fem_reference.events.series import System, column
 from fem_reference.problem.checks import require, require_numbers
 
 LAWS = ("bonded", "unilateral", "frictional")
 BASES = ("rigid", "transmitting", "free")
 BASE = -1  # in place of an unknown: the face moves as the base does
-# Part of the highest rate that the metric of the error gives to an unknown without a spring: the error grows with it,
-# and the less by each contact that closes the higher it is, while contacts that slip make no error grow.
-SOFT_PART = {"unilateral": 1 / 8, "frictional": 1 / 256, "bonded": 1 / 256}
 
 
 @dataclass(frozen=True)
@@ -159,28 +155,28 @@ class ColumnModel(System):
     def _assemble(self, count: int) -> arb_mat:
         """Take masses, stiffnesses and loads of the blocks; return the forces of what drives them."""
         problem = self.problem
-        # Faces of the blocks over the unknowns; the last row and column of a matrix are those of the base.
-        foot, top = (arb_mat(len(self.faces), count + 1) for _ in range(2))
-        for i, faces in enumerate(self.faces):
-            for incidence, face in zip((foot, top), faces, strict=True):
-                incidence[i, face % (count + 1)] = 1
-        masses = [arb(block.density) * arb(block.height) for block in problem.blocks]
-        springs = [arb(b.modulus) / arb(b.height) if math.isfinite(b.modulus) else arb(0) for b in problem.blocks]
-        self.both = foot + top
-        weighted = self.both.transpose() * diagonal([m / 6 for m in masses])
-        mass = weighted * self.both + foot.transpose() * diagonal([m / 6 for m in masses]) * foot
-        mass = mass + top.transpose() * diagonal([m / 6 for m in masses]) * top
-        stiffness = (top - foot).transpose() * diagonal(springs) * (top - foot)
-        load = weighted * column([arb(-3) * arb(problem.gravity)] * len(masses))
+        base = count  # the last row and column of a matrix are those of the base
+        mass = arb_mat(count + 1, count + 1)
+        stiffness = arb_mat(count + 1, count + 1)
+        load = arb_mat(count + 1, 1)
+        for faces, block in zip(self.faces, problem.blocks, strict=True):
+            m = arb(block.density) * arb(block.height)
+            k = arb(block.modulus) / arb(block.height) if math.isfinite(block.modulus) else arb(0)
+            sides = [(face % (count + 1), sign) for face, sign in zip(faces, (-1, 1), strict=True)]
+            for i, sign in sides:
+                load[i, 0] = load[i, 0] - m * arb(problem.gravity) / 2
+                for j, other in sides:
+                    mass[i, j] = mass[i, j] + m * (3 + sign * other) / 12
+                    stiffness[i, j] = stiffness[i, j] + k * (sign * other)
         own = range(count)
         self.mass = arb_mat([mass.tolist()[i][:count] for i in own])
         self.stiffness = arb_mat([stiffness.tolist()[i][:count] for i in own])
         self.load = arb_mat([[load[i, 0]] for i in own])
         self.mobility = self.mass.inv()
-        self.base_coupling = mass[0, count] if problem.base == "rigid" else arb(0)  # of the base and the first unknown
+        self.base_coupling = mass[0, base] if problem.base == "rigid" else arb(0)  # of the base and the first unknown
         inputs = arb_mat(count, 4)
         for i in own:
-            inputs[i, 0] = -stiffness[i, count]
+            inputs[i, 0] = -stiffness[i, base]
         inputs[0, 2] = -self.base_coupling
         if self.top != BASE:
             inputs[self.top, 3] = -1
@@ -203,15 +199,6 @@ class ColumnModel(System):
         """Stiffness k of a contact [Pa/m]."""
         return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
 
-    @cached_property
-    def soft(self) -> float:
-        """Rate that the metric of the error gives to an unknown without a spring [rad/s]."""
-        return self.rate((STICKS,) * len(self.contacts)) * SOFT_PART[self.problem.law]
-
-    def least_rate(self) -> float:
-        """Return the rate of the metric of the error, which bounds the steps of a column in flight [rad/s]."""
-        return self.soft
-
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
         blocks = self.problem.blocks
@@ -221,11 +208,14 @@ class ColumnModel(System):
                 by_face.setdefault(face, []).append(arb(block.velocity))
         if all(speed == speeds[0] for speeds in by_face.values() for speed in speeds):
             return column([by_face[i][0] for i in range(self.size)])
-        halves = [arb(block.density) * arb(block.height) * arb(block.velocity) / 2 for block in blocks]
-        momentum = self.both.transpose() * column(halves)
-        own = column(momentum.entries()[: self.size])
-        own[0, 0] = own[0, 0] - self.base_coupling * base
-        return self.mobility * own
+        momentum = arb_mat(self.size, 1)
+        momentum[0, 0] = -self.base_coupling * base
+        for faces, block in zip(self.faces, blocks, strict=True):
+            for face in faces:
+                if face != BASE:
+                    half = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
+                    momentum[face, 0] = momentum[face, 0] + half
+        return self.mobility * momentum
 
     def displacements(self, base: arb) -> arb_mat:
         """Displacement of each unknown at t = 0, where the base is."""

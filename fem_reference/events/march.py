@@ -1,8 +1,7 @@
 """The motion from switch to switch, of a block or a column: steps, settling and recording.
 
-The centre of the motion is computed in so many digits without radii. How far it may be off is a set that a transport
-carries along: Lohner's axes for the few unknowns of a block (`axes`), one number in the energy norm for the many of a
-column (`energy_norm`).
+The centre of the motion is computed in so many digits without radii. How far it may be off is a set that is carried
+along (`ellipsoid`).
 
 **Switches.** Between two of them the motion is linear, and its Taylor series is summed in balls (`series`). The next
 switch is the first instant at which a gap or a normal force falls through zero, the shear force of a contact that
@@ -22,15 +21,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 from flint import arb, arb_mat
 
-from fem_reference.events.axes import Axes
 from fem_reference.events.column_drive import Piece
 from fem_reference.events.contacts import CARRIES_NOTHING, NORMAL, OPEN, RELEASED, STICKS, States, Watch
+from fem_reference.events.ellipsoid import Ellipsoid
 from fem_reference.events.enclosure import ZERO, radius_of
-from fem_reference.events.energy_norm import EnergyNorm
 from fem_reference.events.series import Segment, Start, System, expand, step_length
 from fem_reference.events.switches import (
     NoContactStateError,
@@ -39,6 +36,7 @@ from fem_reference.events.switches import (
     Work,
 )
 from fem_reference.events.watching import CELLS, CUTS, Change, Reach, Watched
+from fem_reference.problem.problem import Array
 
 FEW = 4
 """Terms that are looked at first where functions begin at zero: most show at once where they go."""
@@ -52,15 +50,15 @@ class Node:
     states: States
     drives: Sequence[Piece]  # what moves the base, or drives the motion, until the next break
     pieces: Sequence[Piece]  # those of them that the model knows
-    error: Any  # how far it may be off, see `axes` and `energy_norm`
+    error: Array  # how far unknowns, rates and references may be off
 
 
 class March:
     """The motion from t = 0 on, node by node."""
 
-    def __init__(self, model: System, transport: Axes | EnergyNorm, end: float, limit: int, work: Work) -> None:
+    def __init__(self, model: System, end: float, limit: int, work: Work) -> None:
         self.model = model
-        self.transport = transport
+        self.transport = Ellipsoid(model)
         self.end = end
         self.limit = limit
         self.work = work
@@ -89,9 +87,9 @@ class March:
     def check_work(self) -> None:
         """Stop before a step where the motion takes too many."""
 
-    def strike(self, touches: bool) -> bool:
-        """Let the rates jump by an impact, if there is one now; return whether they do."""
-        return False
+    def strike(self, touches: bool) -> arb_mat | None:
+        """Let the rates jump by an impact, if there is one now; return the matrix by which they do."""
+        return None
 
     def follow_impact(self) -> None:
         """Go on from an impact."""
@@ -117,7 +115,7 @@ class March:
         self.place(start.time, start.u, start.v)
         impact = self.strike(touches=False)
         self.settle({}, recording=False)
-        if impact:
+        if impact is not None:
             self.follow_impact()
         self.switches = [switch for switch in self.switches if switch.time > 0]
         borders = sorted({border for border in self.breaks if 0 < border < self.end})
@@ -132,7 +130,8 @@ class March:
 
     def place(self, time: arb, u: arb_mat, v: arb_mat) -> None:
         """Stand at a state; the radii of its balls go into what it may be off."""
-        self.transport.take(u, v)
+        radii = [x.rad() for part in (u, v) for x in part.entries()]
+        self.transport.take([*radii, *[ZERO] * len(self.model.contacts)])
         self.start = Start(time, u.mid(), v.mid(), self.start.references)
 
     def add_node(self) -> None:
@@ -149,7 +148,6 @@ class March:
         self.work.reach(self.now)
         self.work.add(segment.count * self.model.size)
         self.add_node()
-        self.transport.begin(segment)
         offset = self.offset
         states = self.states
 
@@ -213,11 +211,11 @@ class March:
         radii = self.follow()
         impact = self.strike(touches=watch is not None)
         self.settle({} if watch is None else {(watch.contact, watch.side): 1 + watch.order})
-        if watch is None and was == self.states and not impact:
+        if watch is None and was == self.states and impact is None:
             return
         change = Change(before, self.start, was, self.states, watch, value, slope, grazing, self.offset, radii, impact)
-        self.transport.switch(change)
-        if impact:
+        self.transport.switch(change, self.pieces)
+        if impact is not None:
             self.follow_impact()
 
     def follow(self) -> list[arb]:
@@ -229,18 +227,13 @@ class March:
         if not moving:
             return radii
         references = list(self.start.references)
-        rows = self.model.values(self.start.u, self.base_now())
+        rows = self.model.values(self.start, self.pieces)
         for c in moving:
             reference = self.model.contacts[c].reference(self.states[c], rows)
             radii[c] = reference.rad()
-            self.transport.take_reference(c, radii[c])
             references[c] = reference.mid()
         self.start = self.start._replace(references=references)
         return radii
-
-    def base_now(self) -> arb | None:
-        """Displacement of the base that drives the motion, None without one."""
-        return self.pieces[0].series(self.start.time, 1.0, 1)[0] if self.pieces else None
 
     # -- settling
 
@@ -262,7 +255,7 @@ class March:
         model = self.model
         was = self.states
         known = dict(zeros)
-        length = 1.0 / max(model.rate((STICKS,) * len(model.contacts)), model.least_rate())
+        length = 1.0 / model.rate((STICKS,) * len(model.contacts))
         most = 2 * model.size + 8
         count = 3 if self.offset else 2  # what the instant is off counts with the accelerations
         changes = 0

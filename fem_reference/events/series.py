@@ -14,6 +14,9 @@ follow from these alone. In the norm of the system (`System.norm`), with w^2 the
     |C_(k+2)| <= (w^2 |C_k| + d (k+1) |C_(k+1)|) length^2 / ((k+1) (k+2))
 
 Where x = rate * length with w^2 + d rate <= rate^2, terms below M x^k / k! stay so. M is that of the last two.
+
+What the drives leave out, their tails in s, accelerates the motion by P |E| at most. By Duhamel's formula this moves it
+by no more than P length^2 e^x over the step, and its derivatives in the share by (1 + x)^3 times that.
 """
 
 from __future__ import annotations
@@ -40,10 +43,6 @@ LEAST_RATE = 1.0
 """Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
 INFLATION = 1 + 1e-9
 """What covers the rounding of floats that bound radii and rates."""
-REPORT_ANGLE = 1.5
-"""Angle over which floats sum a series [rad]."""
-REPORT_TERMS = 32
-"""Terms that they sum: 1.5^32 / 32! is 2e-30."""
 
 
 class Start(NamedTuple):
@@ -63,11 +62,6 @@ class Motion(NamedTuple):
     R: arb_mat
     f: arb_mat
     E: arb_mat
-
-    def acceleration(self, u: arb_mat, v: arb_mat, references: Sequence[arb]) -> arb_mat:
-        """Second derivatives of the unknowns without drives."""
-        a = self.A * u + self.R * column(references) + self.f
-        return a if self.D is None else a + self.D * v
 
 
 class Rates(NamedTuple):
@@ -136,9 +130,20 @@ class System:
         """Bound of the rates of the motion while the contacts keep their states [rad/s]."""
         return self.bounds_of(states).motion
 
-    def least_rate(self) -> float:
-        """Rate that bounds the steps of a motion that has none [rad/s]."""
-        return 0.0
+    def growth(self, states: States, radii: Array, passed: float) -> Array:
+        """How far the unknowns may be off after a time [s] in which the contacts keep their states.
+
+        Parameters
+        ----------
+        radii
+            What unknowns, rates and references may be off before.
+        """
+        n = self.size
+        bounds = self.bounds_of(states)
+        upper = np.abs(self.root[0])
+        apart = bounds.frequency * np.linalg.norm(upper @ radii[:n]) + np.linalg.norm(upper @ radii[n : 2 * n])
+        pull = np.linalg.norm(upper @ np.abs(floats(self.motion(states).R)) @ radii[2 * n :]) / bounds.motion
+        return np.asarray(self.sizes / bounds.frequency * math.exp(bounds.motion * passed) * (apart + pull))
 
     def norm(self, x: Sequence[arb]) -> arb:
         """Norm of the unknowns, in which `rate` bounds the motion."""
@@ -168,10 +173,32 @@ class System:
             self.motions[states] = Motion(A, None if still else D, pushes * law.references, f, E)
         return self.motions[states]
 
-    def values(self, u: arb_mat, base: arb | None = None) -> list[arb]:
-        """The rows of some displacements."""
-        y = self.rows * u + self.offsets
-        return list((y if base is None else y - self.on_base * base).entries())
+    def values(self, start: Start, drives: Sequence[Piece] = ()) -> list[arb]:
+        """The rows at a state."""
+        y = self.rows * start.u + self.offsets
+        if drives:
+            y = y - self.on_base * drives[0].series(start.time, 1.0, 1)[0]
+        return list(y.entries())
+
+    def forces(self, states: States, start: Start, drives: Sequence[Piece]) -> tuple[list[arb], list[arb]]:
+        """The rows at a state, and the forces along them; of dashpots on a base that does not move."""
+        law = laws(self.contacts, states, self.rows.nrows())
+        rows = self.values(start, drives)
+        force = law.rows * column(rows) + law.rates * self.rows * start.v + law.references * column(start.references)
+        return rows, list((force + law.constant).entries())
+
+    def accelerations(self, states: States, start: Start, drives: Sequence[Piece]) -> arb_mat:
+        """Second derivatives of the unknowns, and what the drives add to the third ones, shape (unknowns, 2)."""
+        motion = self.motion(states)
+        a = motion.A * start.u + motion.R * column(start.references) + motion.f
+        if motion.D is not None:
+            a = a + motion.D * start.v
+        pushes = arb_mat(self.size, 2)
+        if drives:
+            b, rate, bend, third = drives[0].series(start.time, 1.0, 4)
+            q, q_rate = drives[1].series(start.time, 1.0, 2)
+            pushes = motion.E * arb_mat([[b, rate], [rate, 2 * bend], [2 * bend, 6 * third], [q, q_rate]])
+        return a * arb_mat([[1, 0]]) + pushes
 
 
 @dataclass(frozen=True)
@@ -206,19 +233,17 @@ class Segment:
         tail = self.tail * arb(float(self.system.row_sizes[row]))
         return tail + self.drive_tails[0] if self.system.on_base[row, 0] != 0 else tail
 
-    def unknowns(self) -> list[arb_poly]:
-        """Series of the unknowns."""
-        return [arb_poly(list(series)) for series in zip(*(term.entries() for term in self.terms), strict=True)]
+    @cached_property
+    def unknowns(self) -> list[tuple[arb_poly, arb_poly]]:
+        """Series of the unknowns and their derivatives."""
+        series = [arb_poly(list(one)) for one in zip(*(term.entries() for term in self.terms), strict=True)]
+        return [(one, one.derivative()) for one in series]
 
     def state(self, share: arb) -> tuple[arb_mat, arb_mat]:
         """Unknowns and their rates at a share of the step."""
-        u = self.terms[-1]
-        v = u * 0
-        for term in reversed(self.terms[:-1]):  # Horner's scheme and its derivative
-            v = v * share + u
-            u = u * share + term
         rest = column([ball((self.tail * arb(size)).upper()) for size in self.system.sizes.tolist()])
-        return u + rest, (v + rest) * (1 / arb(self.length))
+        u, v = (column([one(share) for one in series]) + rest for series in zip(*self.unknowns, strict=True))
+        return u, v * (1 / arb(self.length))
 
     def function(self, watch: Watch) -> list[arb]:
         """Series of a watched function."""
@@ -272,8 +297,7 @@ def diagonal(entries: Sequence[arb]) -> arb_mat:
 
 def step_length(system: System, states: States, drives: Sequence[Piece]) -> float:
     """Return the longest step; infinite where nothing bounds it [s]."""
-    rate = max(system.rate(states), system.least_rate())
-    return min([system.angle / rate, *(piece.longest_step() for piece in drives)])
+    return min([system.angle / system.rate(states), *(piece.longest_step() for piece in drives)])
 
 
 def expand(
@@ -320,25 +344,14 @@ def expand(
     ratio = arb(angle) / count
     before, last = (system.norm(term.entries()) for term in terms[-2:])
     largest = max((last * ratio).upper(), (before * ratio * ratio * 1.1).upper())
-    tail = (tail_sum(ratio) * arb(count) ** 3 * largest).upper()
+    tail = tail_sum(ratio) * arb(count) ** 3 * largest
+    if drives:
+        of_base, of_pressure = drive_tails
+        pushes = np.linalg.norm(system.root[0] @ floats(motion.E), axis=0) * INFLATION
+        left_out = zip(pushes.tolist(), (of_base * square, of_base * span, of_base, of_pressure * square), strict=True)
+        tail += sum((push * part for push, part in left_out), arb(0)) * arb(angle).exp() * (1 + arb(angle)) ** 3
+    tail = tail.upper()
     return Segment(system, length, terms, of_drives, tail, drive_tails)
-
-
-def summed(series: Sequence[arb_poly], shares: Array, length: float) -> tuple[Array, Array, Array]:
-    """Values, rates and second derivatives in time of series in the share of a step of at most `REPORT_ANGLE`.
-
-    Each has the shape (series, shares).
-    """
-    coefficients = np.zeros((len(series), REPORT_TERMS + 2))
-    for row, polynomial in zip(coefficients, series, strict=True):
-        terms = [float(c) for c in polynomial.coeffs()[:REPORT_TERMS]]
-        row[: len(terms)] = terms
-    powers = shares ** np.arange(REPORT_TERMS + 2)[:, None]
-    results = []
-    for order in range(3):
-        results.append(coefficients @ powers[: coefficients.shape[1]] / length**order)
-        coefficients = coefficients[:, 1:] * np.arange(1, coefficients.shape[1])
-    return results[0], results[1], results[2]
 
 
 def floats(matrix: arb_mat) -> Array:

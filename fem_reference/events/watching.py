@@ -12,7 +12,7 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from flint import arb, arb_poly, ctx
+from flint import arb, arb_mat, arb_poly, ctx
 
 from fem_reference.events.contacts import States, Watch
 from fem_reference.events.enclosure import Fall, ball, first_fall, polynomial, radius_of
@@ -66,7 +66,7 @@ class Change(NamedTuple):
     grazing: bool  # whether it falls so flatly that its root is not proven to be one
     offset: float  # what the instant may be off [s]
     radii: list[arb]  # of the references that were taken along
-    impact: bool = False  # whether rates jump
+    impact: arb_mat | None  # by which rates jump
 
 
 class Watched:

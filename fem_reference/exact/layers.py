@@ -23,7 +23,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitation, Ground, check_columns
+from fem_reference.column.problem import DISPLACEMENT, NEAR, PRESSURE, Excitation, Ground
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.result import Result, just_ended
 
@@ -158,8 +158,7 @@ def solve_layers(
     ValueError
         For an unknown column, a height outside, or gg = 0.
     """
-    check_columns(columns, heights)
-    ground.check_heights(heights)
+    ground.check_request(columns, heights)
     if reason := applicable(scheme):
         raise ValueError(f"gg: {reason}")
     began = perf_counter()

@@ -23,6 +23,7 @@ class Factor:
         pc.setFactorSolverType("petsc" if MPI.COMM_WORLD.size == 1 else "mumps")
         self.ksp.setUp()
         self.matrix = matrix
+        self.nonzeros = int(matrix.getInfo(PETSc.Mat.InfoType.GLOBAL_SUM)["nz_used"])
         Factor.factorisations += 1
 
     def __call__(self, right: Any) -> Any:

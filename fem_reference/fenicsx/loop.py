@@ -14,9 +14,10 @@ import dolfinx
 import numpy as np
 from mpi4py import MPI
 
+from .block import Block
 from .factor import Factor
-from .model import COMM, Block, Inapplicable, Request
-from .newmark import Newmark
+from .model import COMM, Inapplicable, Request
+from .newmark import effective, start, steps
 from .plane import PlaneBody
 
 IDLE = 1e-3  # s between two looks for work on the ranks that wait for the first
@@ -27,20 +28,21 @@ def run(request: Request) -> dict[str, Any]:
     Factor.factorisations = Factor.solves = 0
     began = time.perf_counter()
     block = PlaneBody(request) if "tractions" in request else Block(request)
-    scheme = Newmark(block, request)
+    solve = effective(block, request)
+    A = start(block, request, solve)
     ready = time.perf_counter()
     names = request.get("columns", [*block.observers])
     rows = [block.observers[name] for name in names]
-    history = np.array([[row.dot(D) for row in rows] for D in (scheme.advance() for _ in range(request["steps"]))])
+    history = np.array([[row.dot(D) for row in rows] for D in steps(block, request, solve, A)])
     stepped = time.perf_counter()
     peak = COMM.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024, MPI.SUM)
-    if isinstance(block, Block) and request["moved"] and "contact_pressure" in names:
-        history[:, names.index("contact_pressure")] += block.carried_pressure(request["moved"][1:])
+    if request["moved"] and "contact_pressure" in names:
+        history[:, names.index("contact_pressure")] += np.array(request["moved"][1:]) @ block.base_pressure
     return {
         "time": (request["step"] * np.arange(1, request["steps"] + 1)).tolist(),
         "columns": {name: history[:, i].tolist() for i, name in enumerate(names)},
         "unknowns": block.K.getSize()[0],
-        "nonzeros": scheme.nonzeros,
+        "nonzeros": solve.nonzeros,
         "factorisations": Factor.factorisations,
         "solves": Factor.solves,
         "setup_seconds": ready - began,

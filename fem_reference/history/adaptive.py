@@ -16,8 +16,9 @@ import math
 import numpy as np
 from scipy.sparse import csr_array
 
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Problem, Scheme
-from fem_reference.scheme.newmark import State
+from fem_reference.scheme.stage import Motion
 
 ADAPTIVE_COLUMNS = ("discount", "kinetic_damping_loss")
 """Further columns: gg that a step starts with [-], kinetic energy that it has taken up to the step's end [J]."""
@@ -33,23 +34,20 @@ class AdaptiveDiscount:
     """
 
     def __init__(self, problem: Problem, scheme: Scheme, M: csr_array, floor: float) -> None:
-        if not 0 <= floor <= 1:
-            raise ValueError(f"floor: must be from 0 to 1, got {floor!r}")
-        if scheme.table is not None:
-            raise ValueError(f"scheme: must be 'newmark' where the discount adapts, got {scheme.name!r}")
-        if scheme.gg != 1:
-            raise ValueError(f"gg: must be 1 where the discount adapts, got {scheme.gg!r}")
-        moves = problem.motion is not None
-        for name, is_there in (("viscous damping", scheme.damped), ("a moving base", moves), ("a ramp", problem.ramp)):
-            if is_there:
-                raise ValueError(f"adaptive discount: excludes viscous damping, a moving base and a ramp, got {name}")
+        require(0 <= floor <= 1, "floor", "must be from 0 to 1", floor)
+        require(scheme.table is None, "scheme", "must be 'newmark' where the discount adapts", scheme.name)
+        require(scheme.gg == 1, "gg", "must be 1 where the discount adapts", scheme.gg)
+        others = {"viscous damping": scheme.damped, "a moving base": problem.motion is not None, "a ramp": problem.ramp}
+        there = [name for name, is_there in others.items() if is_there]
+        rule = "excludes viscous damping, a moving base and a ramp"
+        require(not there, "adaptive discount", rule, " and ".join(there))
         self.M = M
         self.floor = floor
         self.before = 0.0  # kinetic energy at the end of the step before the last one [J]
         self.discounts: list[float] = []
         self.losses: list[float] = []
 
-    def __call__(self, state: State) -> float:
+    def __call__(self, state: Motion) -> float:
         """Return the discount of the step that begins with a state."""
         energy = float(state.V @ (self.M @ state.V)) / 2
         gg = max(self.floor, math.sqrt(energy / self.before)) if energy < self.before else 1.0

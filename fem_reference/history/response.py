@@ -9,14 +9,13 @@ next vector times W2 beta y_m is what remains; where it is not small, the sparse
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh_tridiagonal
 from scipy.sparse import coo_array, csc_array
 from scipy.sparse.linalg import splu
 
 from fem_reference.history.krylov import KrylovSpace
 from fem_reference.mesh.model import Model, build
-from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.problem import Array, Flags, Problem, Scheme
 from fem_reference.problem.result import check_request
 from fem_reference.scheme.harmonic import Complex, answering
 from fem_reference.scheme.newmark import Work
@@ -69,8 +68,7 @@ def response(
     model = build(problem) if model is None else model
     parts = answering(frequencies, scheme, exact)
     F = problem.load_size * model.F if along is None else model.base_force @ np.asarray(along, float)
-    rows = np.array([model.observers[name] for name in columns]).reshape(len(columns), len(F))
-    values = sum(observed(model, F, rows, W2) * factor for W2, factor in parts)
+    values = sum(observed(model, F, model.rows(columns), W2) * factor for W2, factor in parts)
     amplitudes = dict(zip(columns, np.asarray(values), strict=True))
     if along is not None and "contact_pressure" in amplitudes:
         amplitudes["contact_pressure"] = amplitudes["contact_pressure"] + model.base_pressure @ np.asarray(along, float)
@@ -99,7 +97,7 @@ def _eliminated(model: Model, F: Array, w2: complex) -> Complex:
         return np.full(len(F), np.inf, complex)
 
 
-def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex, NDArray[np.bool_]]:
+def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex, Flags]:
     """Observed amplitudes from the smallest sufficient space, and which of them it has settled."""
     solve = Work().factor(model.K)
     first = solve(F)
@@ -109,7 +107,7 @@ def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex
         space.grow(min(len(space) + ADDED, LARGEST))
         amplitudes, remains, rounding = _projected(space, rows, W2 / unit)
         if space.closed or len(space) >= LARGEST or np.all(remains <= SMALL):
-            return amplitudes, np.asarray((remains <= SMALL) & (rounding <= CANCELLED))
+            return amplitudes, (remains <= SMALL) & (rounding <= CANCELLED)
 
 
 def _projected(space: KrylovSpace, rows: Array, W2: Complex) -> tuple[Complex, Array, Array]:

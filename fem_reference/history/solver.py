@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 
 from fem_reference.history.adaptive import ADAPTIVE_COLUMNS, AdaptiveDiscount
-from fem_reference.history.reduced import Reduced, reduced
-from fem_reference.mesh.fields import FieldWriter
+from fem_reference.history.reduced import reduced
+from fem_reference.mesh.fields import frames_of, write_fields
 from fem_reference.mesh.model import Model, build
-from fem_reference.problem.digits import bounded, front
+from fem_reference.problem.digits import bounded, coarse
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import COLUMNS, Result, check_request, just_ended
 from fem_reference.scheme.newmark import Stepper, Work
@@ -53,27 +53,39 @@ def solve(
     """
     adaptive = () if floor is None else ADAPTIVE_COLUMNS
     observed = tuple(name for name in columns if name not in adaptive)
-    _check(problem, scheme, steps, observed)
+    check_request(steps, observed)
+    if scheme.damped and problem.motion is not None:
+        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
     began = time.perf_counter()
     model = build(problem, full) if model is None else model
     stepper = Stepper(model.M, model.K, model.F, scheme)
     discount = None if floor is None else AdaptiveDiscount(problem, scheme, model.M, floor)
-    writer = None if fields is None else FieldWriter(problem, model, Path(fields), scheme.step, steps)
+    frames = [] if fields is None else frames_of(Path(fields), steps)
+    kept = dict.fromkeys(frames, np.zeros(0))
     ready = time.perf_counter()
-    small: Reduced | str = "all savings off"
-    if floor is not None:
-        small = f"adaptive discount from {floor:g} to 1"
-    elif not full:
-        small = _in_small_space(problem, model, stepper, steps, observed, writer)
+    reasons = {
+        f"adaptive discount from {floor or 0:g} to 1": floor is not None,
+        "all savings off": full,
+        "the base moves": problem.motion is not None,
+        "the load rises in a ramp": problem.ramp > 0,
+        "fields are written": fields is not None,
+        "viscous damping": scheme.damped,
+    }
+    reason = next((reason for reason, holds in reasons.items() if holds), None)
+    small = reason or reduced(stepper, model.rows(observed), steps)
     if isinstance(small, str):
         instants = scheme.stage_times(steps)
         moved = None if problem.motion is None else problem.motion(instants)
         shares = problem.load_shares(instants) if problem.ramp else None
-        history = run(stepper, model, steps, observed, writer, moved, shares, discount)
+        history = run(stepper, model, steps, observed, moved, shares, discount, kept)
         estimate = None
+        how = f"stepped: {small}"
     else:
         history = small.history
         estimate = small.estimate
+        how = f"blocked in {small.vectors} Krylov vectors"
+    if fields is not None:
+        write_fields(problem, model, Path(fields), {scheme.step * number: D for number, D in kept.items()})
     every = dict(zip(observed, bounded(history, problem.load_size), strict=True))
     if discount is not None:
         every |= discount.columns(problem.load_size**2 * (2 if model.kind == "half" else 1))
@@ -82,39 +94,9 @@ def solve(
         columns={name: every[name] for name in columns},
         unknowns=len(model.F),
         **vars(stepper.work),
-        notes=(*model.notes, *front(problem, scheme.step), _note(small)),
+        notes=(*model.notes, *coarse(problem, scheme.step), how),
         estimate=estimate,
     )
-
-
-def _check(problem: Problem, scheme: Scheme, steps: int, columns: tuple[str, ...]) -> None:
-    check_request(steps, tuple(columns))
-    if scheme.damped and problem.motion is not None:
-        raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
-
-
-def _note(small: Reduced | str) -> str:
-    return f"stepped: {small}" if isinstance(small, str) else f"blocked in {small.vectors} Krylov vectors"
-
-
-def _in_small_space(
-    problem: Problem, model: Model, stepper: Stepper, steps: int, columns: tuple[str, ...], writer: FieldWriter | None
-) -> Reduced | str:
-    """The history in a Krylov space, or why it must be stepped."""
-    if problem.motion is not None:
-        return "the base moves"
-    if problem.ramp:
-        return "the load rises in a ramp"
-    if writer is not None:
-        return "fields are written"
-    if stepper.scheme.damped:
-        return "viscous damping"
-    return reduced(stepper, _rows(model, columns), steps)
-
-
-def _rows(model: Model, columns: tuple[str, ...]) -> Array:
-    """Rows that observe the columns, shape (columns, unknowns)."""
-    return np.array([model.observers[name] for name in columns]).reshape(len(columns), len(model.F))
 
 
 def run(
@@ -122,17 +104,18 @@ def run(
     model: Model,
     steps: int,
     columns: tuple[str, ...],
-    writer: FieldWriter | None,
     moved: Array | None = None,
     shares: Array | None = None,
     discount: AdaptiveDiscount | None = None,
+    out: dict[int, Array] | None = None,
 ) -> Array:
     """Observe every step for a load of unit size; shape (columns, steps).
 
     `moved` is the displacement of the base at the scheme's `stage_times`, shape (instants, 2) [m], None where it is
-    fixed, and `shares` is what acts of the load then, shape (instants,), None where it is constant.
+    fixed, and `shares` is what acts of the load then, shape (instants,), None where it is constant. Displacements at
+    the steps that are keys of `out` are put there.
     """
-    rows = _rows(model, columns)
+    rows = model.rows(columns)
     history = np.empty((len(columns), steps))
     forces = None if shares is None else shares[:, None] * model.F
     if moved is not None:
@@ -142,10 +125,8 @@ def run(
     with np.errstate(over="ignore", invalid="ignore"):
         for n, state in enumerate(stepper.states(steps, forces, discount)):
             history[:, n] = rows @ state.D
-            if writer is not None:
-                writer.record(n + 1, state.D)
-    if writer is not None:
-        writer.close()
+            if out and n + 1 in out:
+                out[n + 1] = state.D
     if moved is not None and "contact_pressure" in columns:
         history[columns.index("contact_pressure")] += moved[stages::stages] @ model.base_pressure
     return history

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.contact import compilation
-from fem_reference.contact.columns import COUNTS, ENERGY_COLUMNS, LOSS_COLUMNS, UNILATERAL_COLUMNS, columns_of
+from fem_reference.contact.columns import ENERGY_COLUMNS, LOSS_COLUMNS, UNILATERAL_COLUMNS, columns_of
 from fem_reference.contact.driver import OUTCOMES, Cut, histories
 from fem_reference.contact.law import AT_LOWER, INSIDE
 from fem_reference.contact.march import ContactState, Record
 from fem_reference.contact.points import ContactModel, Friction, build
 from fem_reference.contact.stepper import ContactStepper
 from fem_reference.problem.checks import require, require_numbers
-from fem_reference.problem.digits import front
+from fem_reference.problem.digits import coarse
 from fem_reference.problem.problem import Array, Problem, Scheme
-from fem_reference.problem.result import Result, just_ended
+from fem_reference.problem.result import Result, check_request, just_ended
 
 
 @dataclass(frozen=True)
@@ -86,26 +86,20 @@ def solve_unilateral(
     ValueError
         If the block cannot be meshed, its base is displaced at t = 0, `steps` is below one or a column is unknown.
     """
-    if steps < 1:
-        raise ValueError(f"steps: must be at least 1, got {steps!r}")
-    if problem.ramp:
-        raise ValueError(f"ramp: does not go with contact that opens, got {problem.ramp!r}")
-    for name in columns:
-        if name not in UNILATERAL_COLUMNS:
-            raise ValueError(f"columns: must be among {UNILATERAL_COLUMNS}, got {name!r}")
+    check_request(steps, columns, UNILATERAL_COLUMNS)
+    require(not problem.ramp, "ramp", "does not go with contact that opens", problem.ramp)
     contact = contact or Unilateral()
     began = time.perf_counter()
     model = build(problem, full)
     system, compiled, notes = compilation.prepared(model.system(contact.shear, contact.friction), steps, full)
-    names = _kept_columns(columns)
     stepper = ContactStepper(
         system,
         scheme,
         contact.limit,
         rule=contact.rule,
         # the ground's work, which the loads' energy takes off, comes with the losses
-        energies=any(name in ENERGY_COLUMNS for name in names),
-        losses=any(name in (*LOSS_COLUMNS, "load_energy") for name in names),
+        energies=any(name in ENERGY_COLUMNS for name in columns),
+        losses=any(name in (*LOSS_COLUMNS, "load_energy") for name in columns),
         compiled=compiled,
     )
     state = block_at_start(stepper, model, contact)
@@ -114,40 +108,20 @@ def solve_unilateral(
 
     def kept(record: Record) -> dict[str, Array]:
         of_piece = columns_of(record, model, system.rows)
-        return {name: of_piece[name] for name in (*names, "solves")}
+        return {name: of_piece[name] for name in (*columns, "solves")}
 
     columns_of_steps, marched = histories(stepper, state, steps, cut, kept)
     rows = len(columns_of_steps["solves"])
     saving = ("one column of elements",) if model.kind == "column" else ()
     return UnilateralResult(
         **just_ended(scheme.step, rows, began, ready),
-        columns={name: columns_of_steps[name] for name in names},
+        columns={name: columns_of_steps[name] for name in columns},
         outcome=OUTCOMES[marched.outcome],
         unknowns=len(model.F),
         points=len(model.share),
         **vars(stepper.work),
-        notes=(*saving, *front(problem, scheme.step), *_ramp(problem), *notes),
+        notes=(*saving, *coarse(problem, scheme.step, opens=True), *notes),
     )
-
-
-def _kept_columns(columns: tuple[str, ...]) -> tuple[str, ...]:
-    """The columns of a history: all losses, where one is asked for, and the counts at the end."""
-    motion = [name for name in dict.fromkeys(columns) if name not in (*LOSS_COLUMNS, *COUNTS)]
-    losses = LOSS_COLUMNS if any(name in LOSS_COLUMNS for name in columns) else ()
-    return (*motion, *losses, *(name for name in COUNTS if name in columns))
-
-
-def _ramp(problem: Problem) -> tuple[str, ...]:
-    """Say where the elements are longer than the way 1/kappa of a wave in which the base's pressure changes.
-
-    A wave of modulus lam + 2 G meets springs of 2 p / a for each length of the base: kappa = 2 p / (a (lam + 2 G)).
-    """
-    if problem.mesh is not None:
-        return ()
-    spring = 2 * problem.stiffness / problem.base_length
-    kappa = spring / (problem.lame + 2 * problem.shear_modulus)
-    passed = kappa * float(np.ptp(problem.outline[:, 1])) / problem.elements
-    return (f"too coarse for the base spring: h kappa is {passed:.3g}, at most 1 shows its ramp",) if passed > 1 else ()
 
 
 def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilateral) -> ContactState:
@@ -159,5 +133,4 @@ def block_at_start(stepper: ContactStepper, model: ContactModel, contact: Unilat
     states = np.full(count, INSIDE, dtype=np.int8)
     if contact.gap > 0:
         states[:points] = AT_LOWER
-    V = contact.velocity * model.upwards
-    return stepper.start(V if stepper.system.to_modes is None else stepper.system.to_modes @ V, place, states)
+    return stepper.start(stepper.system.unknowns(contact.velocity * model.upwards), place, states)

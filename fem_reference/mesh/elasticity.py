@@ -15,18 +15,25 @@ from __future__ import annotations
 
 import functools
 import operator
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array, diags_array
 from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
 from skfem.helpers import ddot, div, dot, sym_grad
 
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.material import Elastic
+from fem_reference.problem.problem import Array, Indices, Problem
 
 ELEMENTS = {(3, 1): ElementTriP1, (3, 2): ElementTriP2, (4, 1): ElementQuad1, (4, 2): ElementQuad2}
 """Scalar element by (corners of a cell, degree)."""
+LUMPED = {
+    1: (np.array([-1.0, 1.0]), np.ones(2)),
+    2: (np.array([-1.0, 1.0, 0.0]), np.array([1.0, 1.0, 4.0]) / 3),
+}
+"""Points at the nodes of an edge of an element with their weights, by degree."""
+WHOLE = (-np.inf, np.inf)
 SLIVER = 1e-12
 """Piece of a facet over its length that only rounding leaves between an interval's end and the facet's."""
 
@@ -53,7 +60,7 @@ class Rule(NamedTuple):
     """Points on facets with weights."""
 
     points: Array  # reference coordinates in the cell, shape (2, count)
-    cells: NDArray[np.int64]  # cell of each point, shape (count,)
+    cells: Indices  # cell of each point, shape (count,)
     weights: Array  # weights [m], shape (count,)
 
 
@@ -87,42 +94,45 @@ def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
     return assembled([(density, mass_form)], basis, congruent)
 
 
-def stiffness(basis: Basis, problem: Problem, congruent: bool = False) -> csr_array:
+def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
     """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
-    return assembled([(problem.shear_modulus, strain_form), (problem.lame, dilatation_form)], basis, congruent)
+    return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
 
 
-def values(basis: Basis, points: Array, cells: NDArray[np.int64]) -> tuple[csr_array, csr_array]:
-    """Matrices that give u and v at points of cells, each of shape (count, unknowns).
-
-    Parameters
-    ----------
-    basis
-        The displacement basis.
-    points
-        Reference coordinates, shape (2, count).
-    cells
-        Cell of each point, shape (count,).
-    """
-    phi = np.array(
-        [basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0][..., 0] for k in range(basis.Nbfun)]
-    )
-    rows = np.tile(np.arange(len(cells)), basis.Nbfun)
-    columns = basis.element_dofs[:, cells].ravel()
-    shape = (len(cells), basis.N)
+def values(basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
+    """Matrices that give u and v at the points of a rule, each of shape (count, unknowns)."""
+    x = rule.points[:, :, None]
+    phi = np.array([basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0][..., 0] for k in range(basis.Nbfun)])
+    rows = np.tile(np.arange(len(rule.cells)), basis.Nbfun)
+    columns = basis.element_dofs[:, rule.cells].ravel()
+    shape = (len(rule.cells), basis.N)
     u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
     return u, v
 
 
+def across_and_along(problem: Problem, basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
+    """Rows of the displacements normal to the base, into the block, and along it at the points of a rule."""
+    u, v = values(basis, rule)
+    across, along = (csr_array(x * u + y * v) for x, y in (problem.normal, problem.tangent))
+    return across, along
+
+
+def in_order(basis: Basis, rule: Rule, tangent: Array) -> tuple[Rule, Array]:
+    """A rule in the order of its points along a direction, and their places in it [m]."""
+    along = tangent @ basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
+    order = np.argsort(along, kind="stable")
+    return Rule(rule.points[:, order], rule.cells[order], rule.weights[order]), along[order]
+
+
 def edge_rule(
     mesh: Mesh,
-    facets: NDArray[np.int64],
+    facets: Indices,
     origin: Array,
     tangent: Array,
-    intervals: list[tuple[float, float]],
-    order: int,
+    intervals: Sequence[tuple[float, float]],
+    quadrature: tuple[Array, Array],
 ) -> Rule:
-    """Gauss rule over the part of a straight edge that lies in intervals of its arc length.
+    """Rule over the part of a straight edge that lies in intervals of its arc length.
 
     Parameters
     ----------
@@ -132,36 +142,35 @@ def edge_rule(
         Start and unit direction of the edge, shape (2,).
     intervals
         Disjoint intervals of arc length [m].
-    order
-        Number of Gauss points per piece, exact to degree 2 order - 1.
+    quadrature
+        Places from -1 to 1 and weights on each piece: `gauss`, or one of `LUMPED`.
     """
-    nodes, weights = np.polynomial.legendre.leggauss(order)
-    reference = []
-    cells = []
-    w = []
-    for facet in facets:
-        cell = mesh.f2t[0, facet]
-        ends = mesh.facets[:, facet]
-        s0, s1 = tangent @ (mesh.p[:, ends] - origin[:, None])
-        local = mesh.elem.refdom.p[:, [int(np.flatnonzero(mesh.t[:, cell] == e)[0]) for e in ends]]
-        for low, high in intervals:
-            a = max(low, min(s0, s1))
-            b = min(high, max(s0, s1))
-            if b - a > SLIVER * abs(s1 - s0):
-                fraction = ((a + b) / 2 + nodes * (b - a) / 2 - s0) / (s1 - s0)
-                reference.append(local[:, :1] + fraction * (local[:, 1:] - local[:, :1]))
-                cells.append(np.full(order, cell))
-                w.append(weights * (b - a) / 2)
-    return Rule(np.hstack(reference), np.concatenate(cells), np.concatenate(w))
-
-
-def node_rule(mesh: Mesh, facets: NDArray[np.int64]) -> Rule:
-    """Half a facet's length at each of its two ends."""
+    nodes, weights = quadrature
+    cells = mesh.f2t[0, facets]
     ends = mesh.facets[:, facets]
-    cells = np.tile(mesh.f2t[0, facets], 2)
-    local = np.argmax(mesh.t[:, cells] == ends.ravel(), axis=0)
-    length = np.hypot(*(mesh.p[:, ends[1]] - mesh.p[:, ends[0]]))
-    return Rule(mesh.elem.refdom.p[:, local].astype(float), cells, np.tile(length / 2, 2))
+    local = mesh.elem.refdom.p[:, [np.argmax(mesh.t[:, cells] == end, axis=0) for end in ends]]
+    s = np.tensordot(tangent, mesh.p[:, ends] - origin[:, None, None], 1)
+    pieces = []
+    for low, high in intervals:
+        pair = np.clip(s, low, high)
+        share = (pair - s[0]) / (s[1] - s[0])
+        kept = np.flatnonzero(np.ptp(share, axis=0) > SLIVER)
+        fraction = share[0, kept] + (1 + nodes[:, None]) / 2 * (share[1] - share[0])[kept]
+        points = local[:, :1, kept] + fraction * (local[:, 1:] - local[:, :1])[:, :, kept]
+        sizes = np.outer(weights, np.ptp(pair, axis=0)[kept] / 2)
+        pieces.append(Rule(points.reshape(2, -1), np.tile(cells[kept], len(nodes)), sizes.ravel()))
+    return together(pieces)
+
+
+def together(rules: Sequence[Rule]) -> Rule:
+    """The points of all rules."""
+    return Rule(*(np.concatenate(parts, axis=-1) for parts in zip(*rules, strict=True)))
+
+
+def gauss(degree: int) -> tuple[Array, Array]:
+    """Gauss points and weights that are exact for products of two elements of a degree."""
+    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
+    return nodes, weights
 
 
 def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
@@ -170,11 +179,7 @@ def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Arra
     The weights of `rule` sum to its length (or to the number of points); the whole foundation carries
     2 p normally and 2 p_s tangentially.
     """
-    u, v = values(basis, rule.points, rule.cells)
-    n = problem.normal
-    t = problem.tangent
-    normal = n[0] * u + n[1] * v
-    tangential = t[0] * u + t[1] * v
+    normal, tangential = across_and_along(problem, basis, rule)
     share = 2 * rule.weights / _carried(problem)
     k_n = problem.stiffness * share
     k_t = problem.shear_stiffness * share
@@ -189,55 +194,33 @@ def _carried(problem: Problem) -> float:
     return problem.base_length if problem.patch_width is None else 2 * problem.patch_width
 
 
-def foundation_rule(problem: Problem, basis: Basis, base: NDArray[np.int64], half: bool = False) -> Rule:
+def foundation_rule(problem: Problem, basis: Basis, base: Indices, half: bool = False) -> Rule:
     """Rule of the foundation on the base; of its first half only if `half`."""
-    mesh = basis.mesh
     a = problem.base_length
-    order = problem.degree + 1
-    if problem.foundation == "corner":
-        ends = [point_rule(basis, end) for end in problem.outline[: 1 if half else 2]]
-        return Rule(*(np.concatenate(parts, axis=-1) for parts in zip(*ends, strict=True)))
-    if problem.foundation == "nodes":
-        return node_rule(mesh, base)
     w = problem.patch_width
-    intervals = [(-np.inf, np.inf)] if w is None else [(-np.inf, w), (a - w, np.inf)]
-    if w is not None and 2 * w >= a:
-        intervals = [(-np.inf, np.inf)]
-    return edge_rule(mesh, base, np.zeros(2), problem.tangent, intervals, order)
+    if problem.foundation == "corner":
+        return together([point_rule(basis, end) for end in problem.outline[: 1 if half else 2]])
+    quadrature = LUMPED[1] if problem.foundation == "nodes" else gauss(problem.degree)
+    intervals = [WHOLE] if w is None or 2 * w >= a else [(-np.inf, w), (a - w, np.inf)]
+    return edge_rule(basis.mesh, base, np.zeros(2), problem.tangent, intervals, quadrature)
 
 
-def edge_load(
-    basis: Basis, problem: Problem, top: NDArray[np.int64], interval: tuple[float, float]
-) -> tuple[Array, Array]:
-    """Load vectors of a unit traction in x and in y on a part of the top edge [m2], each (unknowns,)."""
+def load(basis: Basis, problem: Problem, top: Indices, M: csr_array) -> Array:
+    """Load vector of pressure, traction and gravity [N], shape (unknowns,)."""
     start, end = problem.top_ends
     tangent = (end - start) / problem.top_length
-    rule = edge_rule(basis.mesh, top, start, tangent, [interval], problem.degree + 1)
-    u, v = values(basis, rule.points, rule.cells)
-    return u.T @ rule.weights, v.T @ rule.weights
-
-
-def load(basis: Basis, problem: Problem, top: NDArray[np.int64], M: csr_array) -> Array:
-    """Load vector of pressure, traction and gravity [N], shape (unknowns,)."""
-    F: Array = -problem.pressure * edge_load(basis, problem, top, problem.pressed)[1]
-    if problem.traction != 0:
-        F = F + problem.traction * edge_load(basis, problem, top, (-np.inf, np.inf))[0]
-    if problem.gravity != 0:
-        F = F + M @ (translation(basis) @ np.array(problem.pull))
-    return F
-
-
-def translation(basis: Basis) -> Array:
-    """Unknowns of the unit translations in x and y, shape (unknowns, 2)."""
-    component = components(basis)
-    return np.stack([1 - component, component], axis=1)
+    F = M @ (rigid_motions(basis)[:, :2] @ np.array(problem.pull))
+    for component, size, interval in ((1, -problem.pressure, problem.pressed), (0, problem.traction, WHOLE)):
+        rule = edge_rule(basis.mesh, top, start, tangent, [interval], gauss(problem.degree))
+        F = F + size * (values(basis, rule)[component].T @ rule.weights)
+    return np.asarray(F)
 
 
 def rigid_motions(basis: Basis) -> Array:
     """Unknowns of the unit translations and of the turn by one about the origin, shape (unknowns, 3)."""
     x, y = basis.doflocs
-    turn = np.where(components(basis) == 0, -y, x)
-    return np.column_stack([translation(basis), turn])
+    v = components(basis)
+    return np.column_stack([1 - v, v, np.where(v == 0, -y, x)])
 
 
 def components(basis: Basis) -> Array:
@@ -256,21 +239,9 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     ValueError
         If the point lies outside the mesh.
     """
-    rule = point_rule(basis, point)
-    u, v = values(basis, rule.points, rule.cells)
-    return u.toarray()[0], v.toarray()[0], _rotation(basis, *_cells_at(basis, point))
-
-
-def point_strains(basis: Basis, point: Array) -> Array:
-    """Rows that give e_xx, e_yy and g_xy at a point of the mesh, shape (3, unknowns).
-
-    Raises
-    ------
-    ValueError
-        If the point lies outside the mesh.
-    """
-    gradient = _gradient(basis, *_cells_at(basis, point))
-    return np.array([gradient[0, 0], gradient[1, 1], gradient[0, 1] + gradient[1, 0]])
+    rule = _cells_at(basis, point)
+    u, v = values(basis, _first(rule))
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
 
 
 def point_rule(basis: Basis, point: Array) -> Rule:
@@ -281,12 +252,15 @@ def point_rule(basis: Basis, point: Array) -> Rule:
     ValueError
         If the point lies outside the mesh.
     """
-    local, cells = _cells_at(basis, point)
-    return Rule(local[:, :1], cells[:1], np.ones(1))
+    return _first(_cells_at(basis, point))
 
 
-def _cells_at(basis: Basis, point: Array) -> tuple[Array, NDArray[np.int64]]:
-    """Reference coordinates of a point in each of the cells that meet there, shape (2, count), and these."""
+def _first(rule: Rule) -> Rule:
+    return Rule(rule.points[:, :1], rule.cells[:1], np.ones(1))
+
+
+def _cells_at(basis: Basis, point: Array) -> Rule:
+    """A point in each of the cells that meet there, with equal weights, whose sum is one."""
     corners = basis.mesh.p[:, basis.mesh.t]
     x = point[:, None]
     slack = 1e-9 * np.ptp(basis.mesh.p)
@@ -299,28 +273,23 @@ def _cells_at(basis: Basis, point: Array) -> tuple[Array, NDArray[np.int64]]:
     hits = np.flatnonzero(outside < 1e-9)
     if len(hits) == 0:
         raise ValueError(f"vertices: the centroid must lie inside the block, got {tuple(point)} from the base's start")
-    return local[:, hits], cells[hits]
+    return Rule(local[:, hits], cells[hits], np.full(len(hits), 1 / len(hits)))
 
 
-def _rotation(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
-    """Row of the mean of (dv/dx - du/dy) / 2 over points of cells, shape (unknowns,)."""
-    gradient = _gradient(basis, points, cells)
-    return np.asarray((gradient[1, 0] - gradient[0, 1]) / 2)
+def _rotation(basis: Basis, rule: Rule) -> Array:
+    """Row of the mean of (dv/dx - du/dy) / 2 over the cells that meet at a point, shape (unknowns,).
 
-
-def _gradient(basis: Basis, points: Array, cells: NDArray[np.int64]) -> Array:
-    """Rows of the mean over cells that meet at a point of the derivatives of u and v, shape (2, 2, unknowns).
-
-    They are discontinuous between cells.
+    It is discontinuous between them.
     """
-    rows = np.zeros((basis.N, 2, 2))
+    row = np.zeros(basis.N)
+    x = rule.points[:, :, None]
     for k in range(basis.Nbfun):
-        gradient = basis.elem.gbasis(basis.mapping, points[:, :, None], k, tind=cells)[0].grad[..., 0]
-        np.add.at(rows, basis.element_dofs[k, cells], np.moveaxis(gradient, -1, 0) / len(cells))
-    return np.moveaxis(rows, 0, -1)
+        gradient = basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0].grad[..., 0]
+        np.add.at(row, basis.element_dofs[k, rule.cells], rule.weights * (gradient[1, 0] - gradient[0, 1]) / 2)
+    return row
 
 
-def _reference(basis: Basis, point: Array, cells: NDArray[np.int64]) -> Array:
+def _reference(basis: Basis, point: Array, cells: Indices) -> Array:
     """Reference coordinates of a point in each of some cells, by Newton's method, shape (2, cells)."""
     x = np.repeat(point[:, None, None], len(cells), axis=1)
     local = np.full(x.shape, 0.5)

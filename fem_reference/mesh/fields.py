@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_array
@@ -13,6 +15,7 @@ from skfem.helpers import sym_grad
 from fem_reference.mesh import elasticity, files
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import Model
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Problem
 
 FRAMES = 200
@@ -44,62 +47,53 @@ def prolongation(problem: Problem, model: Model, basis: Basis) -> csr_array:
     return csr_array((data, (np.arange(basis.N), nearest)), shape=(basis.N, len(model.F)))
 
 
-class FieldWriter:
-    """Collects displacement (points) and stress (cells) of a run and writes them.
-
-    ``.xdmf`` holds a time series of at most `FRAMES` steps with its data inline, ``.vtu`` the last step.
+def frames_of(path: Path, steps: int) -> list[int]:
+    """Numbers of the steps that a file has: ``.xdmf`` a series of at most `FRAMES`, ``.vtu`` the last one.
 
     Raises
     ------
     ValueError
         If the file's ending is neither, or meshio is not installed.
     """
+    require(path.suffix in SUFFIXES, "fields", f"must end in one of {SUFFIXES}", str(path))
+    files.library()
+    stride = steps if path.suffix == ".vtu" else -(-steps // FRAMES)
+    return [*range(stride, steps, stride), steps]
 
-    def __init__(self, problem: Problem, model: Model, path: Path, step: float, steps: int) -> None:
-        if path.suffix not in SUFFIXES:
-            raise ValueError(f"fields: must end in one of {SUFFIXES}, got {str(path)!r}")
-        self._meshio = files.library()
-        self._problem = problem
-        self._path = path
-        self._step = step
-        mesh = block_mesh(problem).mesh
-        self._basis = elasticity.vector_basis(mesh, problem.degree)
-        centre = np.full((2, 1), 0.5 if mesh.t.shape[0] == 4 else 1 / 3)
-        self._centres = Basis(mesh, self._basis.elem, quadrature=(centre, np.ones(1)))
-        self._prolong = prolongation(problem, model, self._basis)
-        stride = 1 if path.suffix == ".xdmf" else steps
-        self._stride = max(stride, -(-steps // FRAMES))
-        self._steps = steps
-        self._frames: list[tuple[float, Array]] = []
 
-    def record(self, number: int, D: Array) -> None:
-        """Keep step `number` if it is one of the frames; the last step always is."""
-        if number % self._stride == 0 or number == self._steps:
-            self._frames.append((number * self._step, self._problem.load_size * (self._prolong @ D)))
+def write_fields(problem: Problem, model: Model, path: Path, frames: Mapping[float, Array]) -> None:
+    """Write displacement (points) and stress (cells), data inline.
 
-    def close(self) -> None:
-        """Write the file."""
-        mesh = self._basis.mesh
-        corner = np.asarray(self._problem.vertices[self._problem.base], float)
-        points = np.pad(mesh.p.T + corner, ((0, 0), (0, 1)))
-        cells = [("quad" if mesh.t.shape[0] == 4 else "triangle", mesh.t.T)]
-        if self._path.suffix == ".vtu":
-            point_data, cell_data = self._data(self._frames[-1][1])
-            self._meshio.write(self._path, self._meshio.Mesh(points, cells, point_data=point_data, cell_data=cell_data))
-            return
-        with self._meshio.xdmf.TimeSeriesWriter(str(self._path), data_format="XML") as writer:
-            writer.write_points_cells(points, cells)
-            for instant, D in self._frames:
-                point_data, cell_data = self._data(D)
-                writer.write_data(instant, point_data=point_data, cell_data=cell_data)
+    Parameters
+    ----------
+    frames
+        Displacement of the model's unknowns under its load of unit size at instants.
+    """
+    meshio = files.library()
+    mesh = block_mesh(problem).mesh
+    basis = elasticity.vector_basis(mesh, problem.degree)
+    kind, middle = ("quad", 0.5) if mesh.t.shape[0] == 4 else ("triangle", 1 / 3)
+    centres = Basis(mesh, basis.elem, quadrature=(np.full((2, 1), middle), np.ones(1)))
+    prolong = problem.load_size * prolongation(problem, model, basis)
 
-    def _data(self, D: Array) -> tuple[dict[str, Array], dict[str, list[Array]]]:
-        displacement = np.pad(D[self._basis.nodal_dofs].T, ((0, 0), (0, 1)))
-        return {"displacement": displacement}, {"stress": [self.stress(D)]}
+    def data(D: Array) -> dict[str, dict[str, Any]]:
+        whole = prolong @ D
+        displacement = np.pad(whole[basis.nodal_dofs].T, ((0, 0), (0, 1)))
+        strain = (sym_grad(centres.interpolate(whole)))[:, :, :, 0]
+        stress = 2 * problem.shear_modulus * strain
+        stress[[0, 1], [0, 1]] += problem.lame * (strain[0, 0] + strain[1, 1])
+        # of each cell sxx, syy, sxy [Pa]
+        of_cells = np.array([stress[0, 0], stress[1, 1], stress[0, 1]]).T
+        return {"point_data": {"displacement": displacement}, "cell_data": {"stress": [of_cells]}}
 
-    def stress(self, D: Array) -> Array:
-        """Stress (sxx, syy, sxy) at the cell centres [Pa], shape (cells, 3)."""
-        strain = np.asarray(sym_grad(self._centres.interpolate(D)))[:, :, :, 0]
-        pressure = self._problem.lame * (strain[0, 0] + strain[1, 1])
-        stress = 2 * self._problem.shear_modulus * strain
-        return np.array([stress[0, 0] + pressure, stress[1, 1] + pressure, stress[0, 1]]).T
+    corner = np.asarray(problem.vertices[problem.base], float)
+    points = np.pad(mesh.p.T + corner, ((0, 0), (0, 1)))
+    cells = [(kind, mesh.t.T)]
+    if path.suffix == ".vtu":
+        (D,) = frames.values()
+        meshio.write(path, meshio.Mesh(points, cells, **data(D)))
+        return
+    with meshio.xdmf.TimeSeriesWriter(str(path), data_format="XML") as writer:
+        writer.write_points_cells(points, cells)
+        for instant, D in frames.items():
+            writer.write_data(instant, **data(D))

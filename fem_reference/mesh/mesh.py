@@ -8,11 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from skfem import Mesh, MeshQuad, MeshTri
 
 from fem_reference.mesh.files import read_mesh
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.problem import Array, Indices, Problem
 
 
 @dataclass(frozen=True)
@@ -20,8 +20,8 @@ class TaggedMesh:
     """A mesh and the facets of its base and top."""
 
     mesh: Mesh  # the scikit-fem mesh, coordinates relative to the start of the base [m]
-    base: NDArray[np.int64]  # facets of the base
-    top: NDArray[np.int64]  # facets of the top
+    base: Indices  # facets of the base
+    top: Indices  # facets of the top
 
 
 def block_mesh(problem: Problem) -> TaggedMesh:
@@ -50,37 +50,6 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
     ValueError
         If the block is not a convex quadrilateral.
     """
-    _check_convex_quadrilateral(problem)
-    n = problem.elements
-    eta = np.arange(n + 1) / n
-    xi = eta[: n // 2 + 1] if half else eta
-    square = MeshQuad.init_tensor(xi, eta)
-    edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
-    axis, value = edges[(problem.top - problem.base) % 4]
-    if problem.cells == "triangles":
-        square = _cut(square)
-    base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
-    top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
-    return TaggedMesh(type(square)(_bilinear(problem.outline, square.p), square.t), base, top)
-
-
-def _cut(square: MeshQuad) -> MeshTri:
-    """Cut each cell of a tensor mesh into two triangles from its lower left to its upper right corner."""
-    x, y = square.p[:, square.t]
-    # corners of each cell counter-clockwise from the lower left one
-    turn = np.argsort(np.arctan2(y - y.mean(axis=0), x - x.mean(axis=0)), axis=0)
-    a, b, c, d = np.take_along_axis(square.t, turn, axis=0)
-    return MeshTri(square.p, np.hstack([[a, b, c], [a, c, d]]))
-
-
-def _bilinear(corners: Array, p: Array) -> Array:
-    xi, eta = p
-    shape = np.array([(1 - xi) * (1 - eta), xi * (1 - eta), xi * eta, (1 - xi) * eta])
-    mapped: Array = corners.T @ shape
-    return mapped
-
-
-def _check_convex_quadrilateral(problem: Problem) -> None:
     corners = problem.outline
     sides = np.roll(corners, -1, axis=0) - corners
     following = np.roll(sides, -1, axis=0)
@@ -90,6 +59,18 @@ def _check_convex_quadrilateral(problem: Problem) -> None:
             "vertices: only convex quadrilaterals are meshed without a file, "
             f"got {len(corners)} corners; give a mesh file: [fem] mesh = ..."
         )
+    n = problem.elements
+    eta = np.arange(n + 1) / n
+    xi = eta[: n // 2 + 1] if half else eta
+    # triangles are cut from the lower left to the upper right corner of each cell
+    square = (MeshTri if problem.cells == "triangles" else MeshQuad).init_tensor(xi, eta)
+    edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
+    axis, value = edges[(problem.top - problem.base) % 4]
+    base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
+    top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
+    x, y = square.p
+    points = corners.T @ np.array([(1 - x) * (1 - y), x * (1 - y), x * y, (1 - x) * y])
+    return TaggedMesh(type(square)(points, square.t), base, top)
 
 
 def from_file(problem: Problem) -> TaggedMesh:
@@ -100,7 +81,10 @@ def from_file(problem: Problem) -> TaggedMesh:
     ValueError
         If the file cannot be read, lacks the tags ``base`` and ``top``, or its outline is not the block's.
     """
-    mesh = _read(str(problem.mesh))
+    mesh = read_mesh(str(problem.mesh))
+    if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
+        kind = type(mesh).__name__
+        raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {kind} in {problem.mesh!r}")
     origin = np.asarray(problem.vertices[problem.base], float)
     mesh = type(mesh)(mesh.p - origin[:, None], mesh.t).with_boundaries(mesh.boundaries or {})
     tags = mesh.boundaries or {}
@@ -110,13 +94,6 @@ def from_file(problem: Problem) -> TaggedMesh:
     tagged = TaggedMesh(mesh, np.asarray(tags["base"]), np.asarray(tags["top"]))
     _check_outline(problem, tagged)
     return tagged
-
-
-def _read(path: str) -> Mesh:
-    mesh = read_mesh(path)
-    if mesh.dim() != 2 or mesh.t.shape[0] not in (3, 4) or mesh.p.shape[1] != mesh.nvertices:
-        raise ValueError(f"mesh: must hold straight triangles or quadrilaterals, got {type(mesh).__name__} in {path!r}")
-    return mesh
 
 
 def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
@@ -138,7 +115,7 @@ def _check_outline(problem: Problem, tagged: TaggedMesh) -> None:
         raise ValueError(f"mesh: outline must be the block's, {problem.mesh!r} has a boundary off the polygon")
 
 
-def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[NDArray[np.int64], Array]:
+def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[Indices, Array]:
     """Return the boundary facets that lie on a straight piece of the outline, wholly or in part.
 
     Returns
@@ -167,7 +144,7 @@ def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[ND
     return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
 
 
-def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> NDArray[np.int64]:
+def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> Indices:
     """Return the boundary facets that make up a straight piece of the outline.
 
     Raises

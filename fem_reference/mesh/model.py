@@ -18,7 +18,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import block_diag, csr_array
 from scipy.sparse.csgraph import connected_components
 from skfem import Basis, ElementLineP1, ElementLineP2, MeshLine
@@ -28,7 +27,7 @@ from skfem.models.poisson import mass as line_mass
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import TaggedMesh, block_mesh, structured
 from fem_reference.problem import digits
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.problem import Array, Flags, Problem
 
 CORNER_WARNING = (
     "corner point springs have no fine-mesh limit: the displacement drifts with the logarithm of the "
@@ -49,6 +48,10 @@ class Model:
     places: Array  # x, y relative to the start of the base [m] and component (0: u, 1: v), shape (3, unknowns)
     kind: str  # ``"whole"``, ``"half"`` or ``"column"``
     notes: tuple[str, ...]  # savings used and warnings, in words
+
+    def rows(self, columns: tuple[str, ...]) -> Array:
+        """Rows that observe columns, shape (columns, unknowns)."""
+        return np.array([self.observers[name] for name in columns]).reshape(len(columns), len(self.F))
 
 
 @dataclass(frozen=True)
@@ -182,28 +185,29 @@ def column(problem: Problem) -> Model:
     """
     line = line_of(problem)
     size = len(line.height)
+    spring = 2 * problem.stiffness
     at_base = csr_array(np.outer(line.base, line.base))
     # With mu = 0 the modulus of a bar, lam + 2 G, is E.
-    K_v = problem.young * line.stretch + 2 * problem.stiffness * at_base
+    K_v = problem.young * line.stretch + spring * at_base
     K_u = problem.shear_modulus * line.stretch + 2 * problem.shear_stiffness * at_base
     none = np.zeros(size)
-    places = np.array([np.zeros(2 * size), np.tile(line.height, 2), np.repeat([0.0, 1.0], size)])
-    observers = {
-        "displacement": np.concatenate([none, line.middle]),
-        "contact_pressure": np.concatenate([none, -2 * problem.stiffness / line.width * line.base]),
-        "horizontal_displacement": np.concatenate([line.middle, none]),
-        "rotation": np.zeros(2 * size),
-    }
-    M = csr_array(block_diag((line.mass, line.mass)))
-    K = csr_array(block_diag((K_u, K_v)))
-    F_v = line.load(problem.unit)
-    force = np.zeros((2 * size, 2))
-    pressure = np.zeros(2)
-    if problem.motion is not None:
-        force[size:, 1] = 2 * problem.stiffness * line.base
-        pressure[1] = 2 * problem.stiffness / line.width
-    F = np.concatenate([none, F_v])
-    return Model(M, K, F, force, pressure, observers, places, "column", ("one column of elements",))
+    moves = np.array([0.0, float(problem.motion is not None)])
+    return Model(
+        M=csr_array(block_diag((line.mass, line.mass))),
+        K=csr_array(block_diag((K_u, K_v))),
+        F=np.concatenate([none, line.load(problem.unit)]),
+        base_force=spring * np.outer(np.concatenate([none, line.base]), moves),
+        base_pressure=spring / line.width * moves,
+        observers={
+            "displacement": np.concatenate([none, line.middle]),
+            "contact_pressure": np.concatenate([none, -spring / line.width * line.base]),
+            "horizontal_displacement": np.concatenate([line.middle, none]),
+            "rotation": np.zeros(2 * size),
+        },
+        places=np.array([np.zeros(2 * size), np.tile(line.height, 2), np.repeat([0.0, 1.0], size)]),
+        kind="column",
+        notes=("one column of elements",),
+    )
 
 
 def half_applies(problem: Problem) -> bool:
@@ -231,20 +235,16 @@ def half_block(problem: Problem) -> Model:
 
 
 def _model(problem: Problem, assembled: Assembled, kind: str, notes: tuple[str, ...]) -> Model:
-    R = elasticity.translation(assembled.basis) * float(problem.motion is not None)
-    if problem.motion is not None and not problem.motion.sideways:
-        R[:, 0] = 0.0
+    motion = problem.motion
+    moves = np.array([motion is not None and motion.sideways, motion is not None], float)
+    R = elasticity.rigid_motions(assembled.basis)[:, :2] * moves
     pressure = -(assembled.observers["contact_pressure"] @ R)
-    K = _plus(assembled.K, assembled.springs)
+    K = csr_array(assembled.K + assembled.springs)
     places = np.vstack([assembled.basis.doflocs, elasticity.components(assembled.basis)])
     return Model(assembled.M, K, assembled.F, assembled.springs @ R, pressure, assembled.observers, places, kind, notes)
 
 
-def _plus(left: csr_array, right: csr_array) -> csr_array:
-    return csr_array(left + right)
-
-
-def restrict(model: Model, keep: NDArray[np.bool_]) -> Model:
+def restrict(model: Model, keep: Flags) -> Model:
     """The model with the unknowns of `keep` only, the others held at zero."""
     unknowns = np.flatnonzero(keep)
     return replace(

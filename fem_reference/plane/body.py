@@ -18,6 +18,7 @@ from skfem import Mesh, MeshQuad, MeshTri
 
 from fem_reference.mesh.files import read_mesh
 from fem_reference.problem.checks import require, require_numbers
+from fem_reference.problem.material import Elastic
 from fem_reference.problem.problem import Array
 
 Point = tuple[float, float]
@@ -28,7 +29,7 @@ SAME_PLACE = 1e-9  # of the body's extent
 
 
 @dataclass(frozen=True)
-class PlaneBody:
+class PlaneBody(Elastic):
     """An elastic body under constant loads that come on at t = 0.
 
     Raises
@@ -66,17 +67,6 @@ class PlaneBody:
         require(not (is_held and is_moving), "velocity", "must be zero of a body with clamps or rollers", self.velocity)
         one_outline = bool(self.polygons) != (self.mesh is not None)
         require(one_outline, "mesh", "must be given where there are no polygons, and only there", self.mesh)
-
-    @property
-    def shear_modulus(self) -> float:
-        """Shear modulus G [Pa]."""
-        return self.young / (2 * (1 + self.poisson))
-
-    @property
-    def lame(self) -> float:
-        """Lame's parameter of the plane problem [Pa]: E mu / ((1 + mu)(1 - mu)) in plane stress."""
-        last = 1 - 2 * self.poisson if self.hypothesis == "plane strain" else 1 - self.poisson
-        return self.young * self.poisson / ((1 + self.poisson) * last)
 
     @cached_property
     def extent(self) -> tuple[Array, Array]:

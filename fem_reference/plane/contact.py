@@ -13,9 +13,9 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csr_array, eye_array, vstack
 
 from fem_reference.contact.system import ContactRows, opening_rows, point_rows
@@ -24,7 +24,7 @@ from fem_reference.mesh.mesh import facets_along
 from fem_reference.plane.body import Point
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.checks import require, require_numbers
-from fem_reference.problem.problem import Array
+from fem_reference.problem.problem import Array, Flags
 
 UNIT = 1e-9
 """Difference of a normal's length from one that a file's digits may leave."""
@@ -66,8 +66,7 @@ class PatchContact:
         return point_rows(self.stiffness * share, self.shear_stiffness * share, self.friction, cohesion, self.bonded)
 
 
-@dataclass(frozen=True)
-class ContactPoints:
+class ContactPoints(NamedTuple):
     """The points of all contacts as rows, those of a contact one after the other."""
 
     B: csr_array  # displacements relative to the second body, out of it and clockwise of that, (rows, unknowns)
@@ -79,7 +78,7 @@ class ContactPoints:
     shear: Array  # one where it is one of shear
 
     @property
-    def all_closed(self) -> NDArray[np.bool_]:
+    def all_closed(self) -> Flags:
         """Each row closed and sticking, shape (rows,)."""
         return np.ones(len(self.gap), dtype=bool)
 
@@ -97,60 +96,53 @@ def points_of(contacts: Sequence[PatchContact], bodies: Sequence[BodyElements], 
     ValueError
         A patch does not lie on the outlines of its bodies, or there is no such body.
     """
-    B = [csr_array((0, first[-1]))]
-    rows = [opening_rows(np.zeros(0))]
-    gap = [np.zeros(0)]
-    ground = [np.zeros((0, 2))]
-    shares = [np.zeros(0)]
-    normal = np.zeros((0, len(contacts)))
-    shear = np.zeros((0, len(contacts)))
-    for number, contact in enumerate(contacts):
-        x_rows, y_rows, share = _relative(contact, bodies, first)
-        law = contact.rows(share)
-        law.partner[:] += len(normal)
-        n = np.array(contact.normal)
-        is_shear = np.arange(len(law.partner)) >= len(share)
-        for direction in (n, np.array([n[1], -n[0]]))[: 1 + is_shear.any()]:
-            B.append(csr_array(direction[0] * x_rows + direction[1] * y_rows))
-            ground.append(np.tile(direction * (contact.second is None), (len(share), 1)))
-            shares.append(share)
-        rows.append(law)
-        gap.append(np.where(is_shear, 0.0, contact.gap))
-        unit = np.eye(len(contacts))[number]
-        normal = np.vstack([normal, np.outer(~is_shear, unit)])
-        shear = np.vstack([shear, np.outer(is_shear, unit)])
-    return ContactPoints(
-        B=csr_array(vstack(B)),
-        rows=ContactRows(*(np.concatenate(parts) for parts in zip(*rows, strict=True))),
-        gap=np.concatenate(gap),
-        ground=np.concatenate(ground),
-        share=np.concatenate(shares),
-        normal=normal,
-        shear=shear,
-    )
+    size = first[-1]
+    none = np.zeros(0)
+    each = np.zeros((0, len(contacts)))
+    pieces = [ContactPoints(csr_array((0, size)), opening_rows(none), none, np.zeros((0, 2)), none, each, each)]
+    rows_before = 0
+    for contact, unit in zip(contacts, np.eye(len(contacts)), strict=True):
+        u, v, share = _relative(contact, bodies, first)
+        rows = contact.rows(share)
+        rows.partner[:] += rows_before
+        rows_before += len(rows.partner)
+        sides = len(rows.partner) // len(share)
+        is_shear = np.repeat([False, True][:sides], len(share))
+        n_x, n_y = contact.normal
+        directions = [(n_x, n_y), (n_y, -n_x)][:sides]
+        piece = ContactPoints(
+            B=csr_array(vstack([x * u + y * v for x, y in directions])),
+            rows=rows,
+            gap=np.where(is_shear, 0.0, contact.gap),
+            ground=np.repeat(directions, len(share), axis=0) * (contact.second is None),
+            share=np.tile(share, sides),
+            normal=np.outer(~is_shear, unit),
+            shear=np.outer(is_shear, unit),
+        )
+        pieces.append(piece)
+    B, laws, *arrays = zip(*pieces, strict=True)
+    rows = ContactRows(*(np.concatenate(parts) for parts in zip(*laws, strict=True)))
+    return ContactPoints(csr_array(vstack(B)), rows, *(np.concatenate(parts) for parts in arrays))
 
 
 def _relative(
     contact: PatchContact, bodies: Sequence[BodyElements], first: Sequence[int]
 ) -> tuple[csr_array, csr_array, Array]:
     """Rows of the displacements of a patch's points relative to the second body, and the points' shares."""
-    sides = [(contact.first, 1.0, np.zeros(2))]
+    sides = [(contact.first, np.zeros(2))]
     if contact.second is not None:
-        sides.append((contact.second, -1.0, -contact.gap * np.array(contact.normal)))
-    for number, _, _ in sides:
+        sides.append((contact.second, -contact.gap * np.array(contact.normal)))
+    for number, _ in sides:
         require(0 <= number < len(bodies), "contact", f"must be of bodies 0 to {len(bodies) - 1}", number)
-    meshes = [(bodies[number], shift) for number, _, shift in sides]
-    rules = _rules(contact, meshes)
-    x_rows = csr_array((len(rules[0].weights), first[-1]))
-    y_rows = x_rows
-    for (number, sign, _), rule in zip(sides, rules, strict=True):
-        body = bodies[number]
-        u, v = elasticity.values(body.basis, rule.points, rule.cells)
-        place = csr_array(eye_array(len(body.free), first[-1], k=first[number]))
-        x_rows = x_rows + sign * (u[:, body.free] @ place)
-        y_rows = y_rows + sign * (v[:, body.free] @ place)
+    rules = _rules(contact, [(bodies[number], shift) for number, shift in sides])
     weights = rules[0].weights
-    return x_rows, y_rows, weights / weights.sum()
+    rows = [csr_array((len(weights), first[-1]))] * 2
+    for (number, _), rule, sign in zip(sides, rules, (1.0, -1.0), strict=False):
+        body = bodies[number]
+        place = csr_array(eye_array(len(body.free), first[-1], k=first[number]))
+        of_body = elasticity.values(body.basis, rule)
+        rows = [row + sign * (part[:, body.free] @ place) for row, part in zip(rows, of_body, strict=True)]
+    return rows[0], rows[1], weights / weights.sum()
 
 
 def _rules(contact: PatchContact, meshes: Sequence[tuple[BodyElements, Array]]) -> list[elasticity.Rule]:
@@ -165,12 +157,10 @@ def _rules(contact: PatchContact, meshes: Sequence[tuple[BodyElements, Array]]) 
     places = np.sort(np.concatenate([[0.0, length], *(np.ravel(ends) for _, ends in edges)]))
     inner = places[(places > slack) & (places < length - slack)]
     breaks = np.array([0.0, *inner[np.diff(inner, prepend=0.0) > slack], length])
-    order = max(body.body.degree for body, _ in meshes) + 1
+    quadrature = elasticity.gauss(max(body.body.degree for body, _ in meshes))
     rules = []
     for (body, shift), (facets, _) in zip(meshes, edges, strict=True):
         tangent = (end - start) / length
-        rule = elasticity.edge_rule(body.mesh, facets, start + shift, tangent, [*pairwise(breaks)], order)
-        along = tangent @ body.basis.mapping.F(rule.points[:, :, None], rule.cells)[:, :, 0]
-        ordered = np.argsort(along, kind="stable")
-        rules.append(elasticity.Rule(rule.points[:, ordered], rule.cells[ordered], rule.weights[ordered]))
+        rule = elasticity.edge_rule(body.mesh, facets, start + shift, tangent, [*pairwise(breaks)], quadrature)
+        rules.append(elasticity.in_order(body.basis, rule, tangent)[0])
     return rules

@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import null_space
 from scipy.sparse import csr_array
 from skfem import FacetBasis, LinearForm
@@ -14,7 +13,7 @@ from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import facets_between
 from fem_reference.plane.body import PlaneBody, Point, Segment, Traction, mesh_of
 from fem_reference.problem.checks import require
-from fem_reference.problem.problem import Array
+from fem_reference.problem.problem import Array, Indices
 
 
 @LinearForm
@@ -51,19 +50,18 @@ class BodyElements:
         self.basis = elasticity.vector_basis(self.mesh, body.degree)
         self.free = np.setdiff1d(np.arange(self.basis.N), self._fixed())
         self._mass = elasticity.mass(self.basis, body.density)
-        stiffness = self.elastic()
         self.M = csr_array(self._mass[self.free][:, self.free])
-        self.K = csr_array(stiffness[self.free][:, self.free])
+        self.K = csr_array(self.elastic()[self.free][:, self.free])
         self.F = self._load()[self.free]
 
     def elastic(self) -> csr_array:
         """Return the stiffness of all unknowns [N/m]."""
-        return elasticity.stiffness(self.basis, self.body)  # type: ignore[arg-type]  # which reads its moduli alone
+        return elasticity.stiffness(self.basis, self.body)
 
-    def _facets(self, part: Segment) -> NDArray[np.int64]:
+    def _facets(self, part: Segment) -> Indices:
         return facets_between(self.mesh, *part, self.body.slack)
 
-    def _fixed(self) -> NDArray[np.int64]:
+    def _fixed(self) -> Indices:
         """Numbers of the unknowns that do not move."""
         fixed = [np.empty(0, np.int64)]
         for clamp in self.body.clamps:
@@ -77,19 +75,19 @@ class BodyElements:
 
     def _load(self) -> Array:
         body = self.body
-        F: Array = self._mass @ (elasticity.translation(self.basis) @ np.array(body.gravity))
+        F: Array = self._mass @ (elasticity.rigid_motions(self.basis)[:, :2] @ np.array(body.gravity))
         for part, traction in body.tractions:
             F = F + self._pushed(part, traction)
         for place, force in body.forces:
             rows = self._means[:2] if place is None else self._at(place)
             F = F + np.array(force) @ rows
         if any(body.stress):
-            clamped = [self._facets(clamp) for clamp in body.clamps]
-            loaded = np.setdiff1d(self.mesh.boundary_facets(), np.concatenate([*clamped, np.empty(0, np.int64)]))
+            clamped = np.hstack([[], *(self._facets(clamp) for clamp in body.clamps)])
+            loaded = np.setdiff1d(self.mesh.boundary_facets(), clamped)
             F = F + _traction.assemble(self._edge(loaded), stress=body.stress)
         return F
 
-    def _edge(self, facets: NDArray[np.int64]) -> FacetBasis:
+    def _edge(self, facets: Indices) -> FacetBasis:
         return FacetBasis(self.mesh, self.basis.elem, facets=facets, intorder=2 * self.body.degree)
 
     def _pushed(self, part: Segment, traction: Traction) -> Array:
@@ -119,7 +117,7 @@ class BodyElements:
     @property
     def means(self) -> Array:
         """Rows of the means over the body of u, v, rotation, e_xx, e_yy and g_xy, shape (6, unknowns)."""
-        return np.asarray(self._means[:, self.free])
+        return self._means[:, self.free]
 
     def observer(self, start: Point, end: Point) -> Array:
         """Return the rows of the mean displacement in x and y of a part of the outline, or of a point, (2, unknowns).
@@ -130,20 +128,10 @@ class BodyElements:
             Nothing lies there.
         """
         if start == end:
-            return np.asarray(self._at(start)[:, self.free])
+            return self._at(start)[:, self.free]
         length = float(np.hypot(*np.subtract(end, start)))
         rows = np.array([self._pushed((start, end), unit) for unit in ((1.0, 0.0), (0.0, 1.0))])
-        return np.asarray(rows[:, self.free] / length)
-
-    def strains(self, place: Point) -> Array:
-        """Return the rows of e_xx, e_yy and g_xy at a point, of cells that meet there the mean, (3, unknowns).
-
-        Raises
-        ------
-        ValueError
-            It lies outside.
-        """
-        return np.asarray(elasticity.point_strains(self.basis, np.array(place, float))[:, self.free])
+        return rows[:, self.free] / length
 
     def stresses(self, strains: Array) -> Array:
         """Return s_xx, s_yy and s_xy [Pa] of strains e_xx, e_yy, g_xy, each along the first axis."""

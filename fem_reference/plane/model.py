@@ -9,11 +9,10 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import block_diag as dense_block_diag
 from scipy.linalg import null_space
 from scipy.sparse import block_array, block_diag, csr_array
@@ -30,7 +29,8 @@ from fem_reference.plane.body import PlaneBody, Point
 from fem_reference.plane.contact import PatchContact, points_of
 from fem_reference.plane.elements import BodyElements
 from fem_reference.problem.motion import Motion as BaseMotion
-from fem_reference.problem.problem import Array, Scheme
+from fem_reference.problem.motion import moved_base
+from fem_reference.problem.problem import Array, Flags, Scheme
 from fem_reference.problem.result import Mode, Result, just_ended
 from fem_reference.scheme.eigen import as_modes, largest_frequency, lowest
 from fem_reference.scheme.newmark import Work
@@ -237,17 +237,11 @@ class PlaneModel:
             watch=Motion(np.asarray(rows, float), np.vstack([rigid.T @ self.M, rows]), np.zeros((0, len(self.F)))),
             pushes=np.zeros((len(self.F), 0)),
             ground=self.points.ground,
-            prescribed=self._base,
+            prescribed=partial(moved_base, self.base_motion),
             start_parts=np.zeros(2),
             motions=tuple(part.motions for part in self.parts),
             C=csr_array(damping) if scheme.damped else None,
         )
-
-    def _base(self, positions: Array, times: Array) -> Array:
-        """Displacement of the base in x and y, shape (steps, stages, 2) [m]."""
-        if self.base_motion is None:
-            return np.zeros((*times.shape, 2))
-        return np.asarray(self.base_motion(times.ravel())).reshape(*times.shape, 2)
 
     def _start(self, stepper: ContactStepper, settled: bool) -> ContactState:
         """The bodies at t = 0."""
@@ -264,11 +258,8 @@ class PlaneModel:
             force = self.settled.force
             states = np.where(rows.slips | (force > 0), INSIDE, AT_LOWER).astype(np.int8)
         V = np.concatenate([part.velocity() for part in self.parts])
-        to_modes = stepper.system.to_modes
-        if to_modes is not None:
-            V = to_modes @ V
-            D = to_modes @ D
-        return stepper.start(V, place, states, D, force)
+        unknowns = stepper.system.unknowns
+        return stepper.start(unknowns(V), place, states, unknowns(D), force)
 
     def _kept(self, record: Record) -> dict[str, Any]:
         """What a result has of some steps."""
@@ -288,19 +279,19 @@ class PlaneModel:
             **energies_of(record, points.rows),
         }
 
-    def _stiffness(self, closed: NDArray[np.bool_]) -> csr_array:
+    def _stiffness(self, closed: Flags) -> csr_array:
         """K with the springs of the closed rows [N/m]."""
         return with_springs(self.K, self.points.B[closed], self.points.rows.compliance[closed])
 
-    def _unheld(self, closed: NDArray[np.bool_]) -> Array:
+    def _unheld(self, closed: Flags) -> Array:
         """Rigid motions that neither clamps nor closed springs hold, orthonormal, shape (unknowns, 0 or more)."""
         motions, _ = np.linalg.qr(self.motions)
         if not motions.shape[1]:  # which LAPACK may refuse
-            return np.asarray(motions)
+            return motions
         springs = np.sqrt(1 / self.points.rows.compliance[closed])[:, None] * (self.points.B[closed] @ motions)
         return np.asarray(motions @ null_space(np.vstack([springs, np.zeros(motions.shape[1])]), rcond=UNHELD))
 
-    def _rest_of(self, closed: NDArray[np.bool_]) -> Array:
+    def _rest_of(self, closed: Flags) -> Array:
         """Displacements at rest with springs at the closed rows alone, orthogonal to what they do not hold.
 
         Raises

@@ -7,6 +7,8 @@ times larger than its own for a rigid motion, and so is shear in a nearly incomp
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from fem_reference.problem.problem import Array, Problem
@@ -32,18 +34,24 @@ def warnings(problem: Problem) -> tuple[str, ...]:
     return tuple(messages)
 
 
-def front(problem: Problem, step: float) -> tuple[str, ...]:
-    """Say how many elements the wave passes in a step where they are too coarse for its front, fewer than one."""
+def coarse(problem: Problem, step: float, opens: bool = False) -> tuple[str, ...]:
+    """Say where the elements are too coarse for the front of a wave, or for the ramp of a base that opens.
+
+    The front passes fewer than one of them in a step. They are longer than the way 1/kappa of a wave in which the
+    base's pressure changes: a wave of modulus lam + 2 G meets springs of 2 p / a for each length of the base, kappa =
+    2 p / (a (lam + 2 G)).
+    """
     if problem.mesh is not None:
         return ()
-    modulus = problem.lame + 2 * problem.shear_modulus
-    height = float(np.ptp(problem.outline[:, 1]))
-    passed = float(np.sqrt(modulus / problem.density)) * step * problem.elements / height
-    return (
-        (f"mesh too coarse for the wave: {passed:.3g} elements per c dt, its front needs about 40",)
-        if passed < 1
-        else ()
-    )
+    messages = []
+    size = float(np.ptp(problem.outline[:, 1])) / problem.elements
+    passed = math.sqrt(problem.wave_modulus / problem.density) * step / size
+    if passed < 1:
+        messages.append(f"mesh too coarse for the wave: {passed:.3g} elements per c dt, its front needs about 40")
+    ramp = 2 * problem.stiffness / problem.base_length / problem.wave_modulus * size
+    if opens and ramp > 1:
+        messages.append(f"too coarse for the base spring: h kappa is {ramp:.3g}, at most 1 shows its ramp")
+    return tuple(messages)
 
 
 def bounded(history: Array, pressure: float) -> Array:

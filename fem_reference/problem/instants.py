@@ -18,7 +18,7 @@ def instants(times: ArrayLike, end: float) -> Array:
     ValueError
         If an instant is not from 0 to `end`.
     """
-    t: Array = np.atleast_1d(np.asarray(times, dtype=float))
+    t: Array = np.array(times, float, ndmin=1)
     if t.ndim != 1 or not np.all((t >= 0) & (t <= end)):
         raise ValueError(f"times: must be a list of instants from 0 to the end {end!r}, got {times!r}")
     return t

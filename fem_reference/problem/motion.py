@@ -38,3 +38,16 @@ class Motion:
     def sideways(self) -> bool:
         """Whether the base ever moves in x."""
         return any(self.x)
+
+
+def moved_base(motion: Motion | None, positions: Array, times: Array) -> Array:
+    """Displacement of a base in x and y at the ends of the stages, shape (steps, stages, 2) [m]; zero without motion.
+
+    Parameters
+    ----------
+    positions, times
+        Of the steps [steps], and of the ends of their stages [s], shape (steps, stages).
+    """
+    if motion is None:
+        return np.zeros((*times.shape, 2))
+    return np.asarray(motion(times.ravel())).reshape(*times.shape, 2)

@@ -5,16 +5,19 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from fem_reference.problem.checks import require, require_numbers
+from fem_reference.problem.material import Elastic
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.stages import Stage, StageTable, newmark_stage
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 HYPOTHESES = ("plane stress", "plane strain")
 FOUNDATIONS = ("distributed", "patch", "corner", "nodes")
@@ -24,15 +27,8 @@ SAME_MATRIX = 1e-15
 """Relative difference of two stages' weights, by rounding, below which they share a matrix."""
 
 
-class Rectangle(NamedTuple):
-    """An upright rectangle that stands on its base."""
-
-    width: float  # length of the base [m]
-    height: float  # distance from the base to the top [m]
-
-
 @dataclass(frozen=True)
-class Problem:
+class Problem(Elastic):
     """One elastic block on a locked elastic foundation under loads that come on at t = 0, at once or in a ramp.
 
     The block occupies a simple polygon. Its base edge rests on springs normal and tangential to that
@@ -199,23 +195,7 @@ class Problem:
         return point
 
     @property
-    def shear_modulus(self) -> float:
-        """G = E / (2 (1 + mu)) [Pa]."""
-        return self.young / (2 * (1 + self.poisson))
-
-    @property
-    def lame(self) -> float:
-        """First Lame parameter of the plane problem [Pa].
-
-        E mu / (1 - mu^2) in plane stress, E mu / ((1 + mu) (1 - 2 mu)) in plane strain; both factors
-        of the denominator are exact in floating point near their zeros.
-        """
-        mu = self.poisson
-        last = 1 - mu if self.hypothesis == "plane stress" else 1 - 2 * mu
-        return self.young * mu / ((1 + mu) * last)
-
-    @property
-    def rectangle(self) -> Rectangle | None:
+    def rectangle(self) -> tuple[float, float] | None:
         """Width and height if the block is an upright rectangle loaded opposite its base, else None."""
         corners = self.outline
         opposite = len(corners) == 4 and (self.top - self.base) % 4 == 2
@@ -227,7 +207,7 @@ class Problem:
         # A corner that is off by rounding of its coordinates is still this rectangle's corner.
         slack = 4 * np.finfo(float).eps * max(width, height, float(np.abs(self.vertices).max()))
         upright = width > 0 and height > 0 and bool(np.all(np.abs(corners - expected) <= slack))
-        return Rectangle(width, height) if upright else None
+        return (width, height) if upright else None
 
 
 @dataclass(frozen=True)
@@ -295,7 +275,5 @@ class Scheme:
 
     def stage_times(self, steps: int) -> Array:
         """Instants at which the stages of so many steps end, the first one t = 0, shape (steps * stages + 1,) [s]."""
-        if len(self.stages) == 1:
-            return self.step * np.arange(steps + 1.0)
         ends = np.array([stage.end for stage in self.stages])
         return np.append(0.0, (self.step * (np.arange(float(steps))[:, None] + ends)).ravel())

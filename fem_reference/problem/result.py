@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
@@ -43,7 +44,7 @@ def just_ended(step: float, rows: int, began: float, ready: float) -> dict[str, 
         When its model was begun, and its first step [s].
     """
     return {
-        "time": np.asarray(step * np.arange(1, rows + 1), dtype=np.float64),
+        "time": step * np.arange(1, rows + 1),
         "setup_seconds": ready - began,
         "stepping_seconds": perf_counter() - ready,
     }
@@ -58,7 +59,7 @@ class Mode:
     eigenvalues: NDArray[np.complex128]  # of the mode's own step, the complex pair first, shape (3,)
 
 
-def check_request(steps: int, columns: tuple[str, ...]) -> None:
+def check_request(steps: int, columns: tuple[str, ...], known: tuple[str, ...] = COLUMNS) -> None:
     """Raise for a number of steps or a column that is not available.
 
     Raises
@@ -66,8 +67,6 @@ def check_request(steps: int, columns: tuple[str, ...]) -> None:
     ValueError
         If `steps` is below one or a column is unknown.
     """
-    if steps < 1:
-        raise ValueError(f"steps: must be at least 1, got {steps!r}")
+    require(steps >= 1, "steps", "must be at least 1", steps)
     for name in columns:
-        if name not in COLUMNS:
-            raise ValueError(f"columns: must be among {COLUMNS}, got {name!r}")
+        require(name in known, "columns", f"must be among {known}", name)

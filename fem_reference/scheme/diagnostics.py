@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from fem_reference.mesh.model import Model, build
-from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.problem import Problem, Scheme
 from fem_reference.scheme.eigen import DENSE, eigenvalues, highest_frequency, lowest
 from fem_reference.scheme.modal import roots
 from fem_reference.scheme.newmark import Stepper
@@ -27,13 +27,15 @@ class Diagnostics:
 def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Model | None = None) -> Diagnostics:
     """Return conditioning, residual and spectral radius of the step."""
     model = build(problem, full) if model is None else model
-    omegas = _frequencies(problem, model) * scheme.step
+    small = len(model.F) <= DENSE
+    # all frequencies of a small mesh, the lowest ones and the highest of a large one
+    squares = lowest(model.K, model.M, len(model.F) if small else 6)[0]
+    omegas = np.append(np.sqrt(np.abs(squares)), highest_frequency(problem, model=model)) * scheme.step
     stepper = Stepper(model.M, model.K, model.F, scheme)
     S = stepper.S
     b = scheme.step**2 * model.F
     x = stepper.solve(b)
     residual = np.abs(S @ x - b) / (abs(S) @ np.abs(x) + np.abs(b) + np.finfo(float).tiny)
-    small = len(model.F) <= DENSE
     return Diagnostics(
         condition_number=float(np.linalg.cond(S.toarray())) if small else float("nan"),
         scaled_residual=float(np.max(residual)),
@@ -41,11 +43,3 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Mod
         predicted_radius=max(float(np.max(np.abs(roots(float(w), scheme)))) for w in omegas),
         largest_omega=float(np.max(omegas)),
     )
-
-
-def _frequencies(problem: Problem, model: Model) -> Array:
-    """All frequencies of a small mesh, the lowest ones and the highest of a large one [rad/s]."""
-    size = len(model.F)
-    squares = lowest(model.K, model.M, size if size <= DENSE else 6)[0]
-    highest = highest_frequency(problem, model=model)
-    return np.asarray(np.sqrt(np.abs(np.append(squares, highest**2))))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.sparse import csc_array, csr_array
 from scipy.sparse.linalg import LinearOperator, eigsh
@@ -11,8 +10,10 @@ from scipy.sparse.linalg import LinearOperator, eigsh
 from fem_reference.mesh.model import Model, build
 from fem_reference.problem.problem import Array, Problem, Scheme
 from fem_reference.problem.result import Mode
+from fem_reference.scheme.harmonic import Complex
 from fem_reference.scheme.modal import principal_first
-from fem_reference.scheme.newmark import State, Stepper, Work
+from fem_reference.scheme.newmark import Stepper, Work
+from fem_reference.scheme.stage import Motion
 
 DENSE = 400
 """Unknowns up to which all modes are found by a dense solver."""
@@ -87,20 +88,16 @@ def _start_vector(size: int) -> Array:
     return np.random.default_rng(0).standard_normal(size)
 
 
-def eigenvalues(frequency: float, scheme: Scheme) -> NDArray[np.complex128]:
+def eigenvalues(frequency: float, scheme: Scheme) -> Complex:
     """Eigenvalues of the step's operator on (D, dt V, dt^2 A) of one free mode, the complex pair first.
 
     The operator is made by applying the scheme's own step to unit states.
     """
     dt = scheme.step
-    one = csr_array(np.eye(1))
-    square = csr_array([[frequency**2]])
-    stepper = Stepper(one, square, np.zeros(1), scheme)
-    columns = []
-    for D, V, A in np.eye(3):
-        new = stepper.advance(State(np.array([D]), np.array([V / dt]), np.array([A / dt**2])))
-        columns.append([new.D[0], dt * new.V[0], dt**2 * new.A[0]])
-    roots: NDArray[np.complex128] = np.linalg.eigvals(np.array(columns).T).astype(complex)
+    one = csr_array(np.eye(3))  # the mode three times, from each unit state
+    D, V, A = np.eye(3)
+    end = Stepper(one, frequency**2 * one, np.zeros(3), scheme).advance(Motion(D, V / dt, A / dt**2))
+    roots: Complex = np.linalg.eigvals(np.array([end.D, dt * end.V, dt**2 * end.A])).astype(complex)
     return principal_first(roots)
 
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from fem_reference.problem.problem import Array, Scheme
 from fem_reference.problem.stages import Stage
+from fem_reference.scheme.harmonic import Complex
 from fem_reference.scheme.stage import Body, Motion, step_change
 
 Extended = NDArray[np.longdouble]
@@ -49,30 +50,27 @@ def step_increment(scheme: Scheme, x: Array, u: Array, a: Array, loads: Sequence
 def step_matrices(omega: Array, scheme: Scheme) -> Array:
     """Step less one of free modes of w dt = `omega`, on (x, v / W, a / W^2), shape (modes, 3, 3)."""
     square = omega * omega
-    unit = np.ones_like(omega)
     loads = [0.0] * (len(scheme.stages) + 1)
-    columns = []
-    for x, v, a in np.eye(3):
-        end = step_increment(scheme, x * unit, scheme.gg * v * omega, a * square, loads, square)
-        columns.append(np.array([end.D, end.V / omega - v, end.A / square - a]))
-    return np.asarray(np.array(columns).transpose(2, 1, 0))
+    x, v, a = np.eye(3)[:, :, None] * np.ones_like(omega)  # of each unit state, shape (3, modes)
+    end = step_increment(scheme, x, scheme.gg * v * omega, a * square, loads, square)
+    return np.array([end.D, end.V / omega - v, end.A / square - a]).transpose(2, 0, 1)
 
 
-def roots(omega: float, scheme: Scheme) -> NDArray[np.complex128]:
+def roots(omega: float, scheme: Scheme) -> Complex:
     """The three roots of one mode of w dt = `omega`, in the order of `principal_first`; one of Newmark's is zero."""
     # The distances from one keep the digits of slow modes.
     distances = np.linalg.eigvals(step_matrices(np.array([omega]), scheme)[0])
     return principal_first(1 + distances.astype(complex))
 
 
-def principal_first(eigenvalues: NDArray[np.complex128]) -> NDArray[np.complex128]:
+def principal_first(eigenvalues: Complex) -> Complex:
     """Eigenvalues of a mode's step, the complex pair first and the real ones after it, each by falling modulus."""
     return eigenvalues[np.lexsort((-np.abs(eigenvalues), eigenvalues.imag == 0))]
 
 
 def radii(omega: Array, scheme: Scheme) -> Array:
     """Greatest modulus of the roots of each mode."""
-    step = np.eye(3) + step_matrices(np.asarray(omega, float), scheme)
+    step = np.eye(3) + step_matrices(omega, scheme)
     return np.asarray(np.abs(np.linalg.eigvals(step)).max(axis=1))
 
 
@@ -110,16 +108,14 @@ def _newmark_bounded(scheme: Scheme) -> bool:
     alpha = scheme.alpha
     delta = scheme.delta
     gg = scheme.gg
-    for one, s, e in (
-        (1.0, 0.0, scheme.mass_damping * scheme.step),
-        (0.0, 1.0, scheme.stiffness_damping / scheme.step),
-    ):
-        p = one + alpha * s + delta * e
-        q = s * (0.5 - alpha + gg * (delta - alpha)) + e * (1 - 2 * delta) - one * (1 + gg)
-        r = one * gg + gg * s * (0.5 - delta + alpha) - e * (1 - delta)
-        if abs(r) > p + NEWMARK_SLACK * p or abs(q) > p + r + NEWMARK_SLACK * p:
-            return False
-    return True
+    one = np.array([1.0, 0.0])
+    s = np.array([0.0, 1.0])
+    e = np.array([scheme.mass_damping * scheme.step, scheme.stiffness_damping / scheme.step])
+    p = one + alpha * s + delta * e
+    q = s * (0.5 - alpha + gg * (delta - alpha)) + e * (1 - 2 * delta) - one * (1 + gg)
+    r = one * gg + gg * s * (0.5 - delta + alpha) - e * (1 - delta)
+    slack = NEWMARK_SLACK * p
+    return bool(np.all((abs(r) <= p + slack) & (abs(q) <= p + r + slack)))
 
 
 def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) -> Array:
@@ -161,13 +157,10 @@ def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Ex
     tuple
         Map of (x, v, a, 1), shape (modes, 4, 4), and that state at t = 0, shape (modes, 4).
     """
-    one: Any = np.ones_like(load)
-    step: Extended = np.zeros((len(load), 4, 4), np.longdouble)
-    step[:, 3, 3] = 1
-    for column, (x, v, a, acting) in enumerate(np.eye(4)):
-        loads = [acting * load] * (len(scheme.stages) + 1)
-        end = step_change(scheme, scheme.gg, 1.0, bodies, Motion(x * one, v * one, a * one), loads)
-        step[:, :3, column] = np.array([x + end.D, end.V, end.A]).T
+    units: Any = np.eye(4)[:, :, None] * np.ones_like(load)
+    x, v, a, acting = units  # of each unit state, shape (4, modes)
+    end = step_change(scheme, scheme.gg, 1.0, bodies, Motion(x, v, a), [acting * load] * (len(scheme.stages) + 1))
+    step: Extended = np.array([x + end.D, end.V, end.A, acting]).transpose(2, 0, 1)
     start = np.zeros((len(load), 4))
     if scheme.start == "consistent":
         start[:, 2] = load / bodies[0].M

@@ -64,16 +64,6 @@ def operator(matrix: Any) -> Operator:
     return Operator(lambda vector: matrix @ vector)
 
 
-@dataclass(frozen=True)
-class State:
-    """Displacement, velocity and acceleration at the end of a step, each of shape (unknowns,)."""
-
-    D: Array  # displacement [m]
-    V: Array  # velocity [m/s], of a staggered scheme half a step before
-    A: Array  # acceleration [m/s2]
-    undiscounted: bool = False  # whether gg does not act on V: the first half step of a staggered scheme
-
-
 def effective_matrix(
     M: csr_array, K: csr_array, scheme: Scheme, stage: int = 0, C: csr_array | None = None
 ) -> csr_array:
@@ -82,6 +72,16 @@ def effective_matrix(
     inertia = M if C is None else M + (numbers.damping_weight * scheme.step) * C
     weight = numbers.stiffness_weight
     return inertia + (weight * scheme.step**2) * K if weight > 0 else inertia
+
+
+def inverses(
+    M: csr_array, K: csr_array, scheme: Scheme, C: csr_array | None, factor: Callable[[Any], Any]
+) -> list[Any]:
+    """Inverse of the matrix of each stage, each matrix factorised once."""
+    made: list[Any] = []
+    for stage, first in enumerate(scheme.stage_matrices):
+        made.append(made[first] if first < stage else factor(effective_matrix(M, K, scheme, stage, C)))
+    return made
 
 
 def start_velocity(V: Array, A: Array, scheme: Scheme) -> Array:
@@ -105,19 +105,14 @@ class Stepper:
         if self.C is None and scheme.damped:
             self.C = scheme.mass_damping * self.M + scheme.stiffness_damping * self.K
         self.S = effective_matrix(self.M, self.K, scheme, 0, self.C)
-        self.solve = self.work.factor(self.S)
-        solves = [self.solve]
-        for stage, first in list(enumerate(scheme.stage_matrices))[1:]:
-            same = first < stage
-            S = self.S if same else effective_matrix(self.M, self.K, scheme, stage, self.C)
-            solves.append(solves[first] if same else self.work.factor(S))
-        self.solves = tuple(solves)
+        self.solves = inverses(self.M, self.K, scheme, self.C, self.work.factor)
+        self.solve = self.solves[0]
         M = operator(self.M)
         C = None if self.C is None else operator(self.C)
         K = operator(self.K)
-        self.bodies = [Body(M, C, K, Operator(solve)) for solve in solves]
+        self.bodies = [Body(M, C, K, Operator(solve)) for solve in self.solves]
 
-    def start(self, F: Array | None = None) -> State:
+    def start(self, F: Array | None = None) -> Motion:
         """State at t = 0: at rest, unstrained, with the initial acceleration that the scheme asks for.
 
         The load is the constant one where `F` is not given.
@@ -127,9 +122,9 @@ class Stepper:
         if self.scheme.start == "consistent":
             is_mass = self.C is None and self.scheme.stages[0].stiffness_weight == 0
             A = (self.solve if is_mass else self.work.factor(self.M))(self.F if F is None else F)
-        return State(zero, start_velocity(zero, A, self.scheme), A, undiscounted=self.scheme.staggered)
+        return Motion(zero, start_velocity(zero, A, self.scheme), A)
 
-    def advance(self, state: State, loads: Sequence[Array] | None = None, gg: float | None = None) -> State:
+    def advance(self, state: Motion, loads: Sequence[Array] | None = None, gg: float | None = None) -> Motion:
         """One step.
 
         Parameters
@@ -141,24 +136,24 @@ class Stepper:
         gg
             Discount of this step, where it is not the scheme's.
         """
-        if loads is None:
-            loads = [self.F] * (len(self.solves) + 1)
-        if gg is None:
-            gg = 1.0 if state.undiscounted else self.scheme.gg
-        start = Motion(state.D, state.V, state.A)
-        end = step_change(self.scheme, gg, self.scheme.step, self.bodies, start, loads)
-        return State(state.D + end.D, end.V, end.A)
+        loads = [self.F] * (len(self.solves) + 1) if loads is None else loads
+        gg = self.scheme.gg if gg is None else gg
+        end = step_change(self.scheme, gg, self.scheme.step, self.bodies, state, loads)
+        return end._replace(D=state.D + end.D)
 
     def states(
-        self, steps: int, loads: Array | None = None, discount: Callable[[State], float] | None = None
-    ) -> Iterator[State]:
+        self, steps: int, loads: Array | None = None, discount: Callable[[Motion], float] | None = None
+    ) -> Iterator[Motion]:
         """Yield the state after each step from rest, under loads at the `stage_times`, shape (instants, unknowns).
 
-        The scheme's own gg is that of all steps, unless `discount` has it of the state that one begins with.
+        The scheme's own gg is that of all steps but the first half step of a staggered scheme, unless `discount` has
+        it of the state that one begins with.
         """
         stages = len(self.solves)
         state = self.start(None if loads is None else loads[0])
+        gg = 1.0 if self.scheme.staggered else None
         for n in range(steps):
             of_step = None if loads is None else list(loads[n * stages : (n + 1) * stages + 1])
-            state = self.advance(state, of_step, None if discount is None else discount(state))
+            state = self.advance(state, of_step, gg if discount is None else discount(state))
+            gg = None
             yield state

@@ -56,30 +56,6 @@ def test_what_is_advised_is_what_runs(scene, target, solve_for):
         assert target > advice.greatest or target < advice.least
 
 
-def test_both_sides_of_the_maximum_are_listed():
-    below, above = advise(BASE, damping=0.35, solve_for="dt").solutions
-    assert below.value * 344.561 < 3.27 < above.value * 344.561 < 4
-    assert above.contact.flips and not below.contact.flips
-    assert "or dt =" in advise(BASE, damping=0.35).sentence
-
-
-def test_the_maximum_is_named_where_it_is_out_of_reach():
-    advice = advise(BASE, damping=0.45)
-    assert not advice.reachable and advice.solutions == ()
-    assert advice.greatest == pytest.approx(0.373, abs=5e-4)
-    assert advice.greatest_at * 344.561196 == pytest.approx(3.27, abs=5e-3)
-    assert "37.3 %" in advice.sentence
-    assert advise(BASE, damping=advice.greatest * (1 - 1e-9)).reachable
-
-
-def test_two_steps_solve_it_where_gg_is_below_one():
-    scene = LIGHT.with_values({"time.alpha": 0.3025, "time.delta": 0.6})
-    kinetic, algorithmic = advise(scene, damping=0.05).solutions
-    low, high = (damping(scene.with_values(s.settings)).modes[0] for s in (kinetic, algorithmic))
-    assert low.kinetic > low.algorithmic and high.algorithmic > high.kinetic
-    assert "does not converge" in advise(scene, damping=0.05).sentence
-
-
 LOADS = {
     "pressure": {"load.pressure": 2e6},
     "weight": {"load.gravity": 9.81},

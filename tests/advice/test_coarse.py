@@ -1,17 +1,12 @@
 """A step that is too long is told from the scheme alone, for every scene that has modes, and no other one."""
 
-import json
 import math
+import tomllib
+from pathlib import Path
 
-import numpy as np
 import pytest
-from typer.testing import CliRunner
 
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
-from validation.cli.app import app
-from validation.report.chapters.alarms import alarm_lines
-from validation.report.chapters.data import groups_of_studies
-from validation.runs.results import Results
 from validation.scenes.scene import Scene
 from validation.theory import columns
 
@@ -43,39 +38,14 @@ def kinds(case):
     return {alarm.kind for alarm in coarse_alarms(case)}
 
 
-BOTH = {AGREEMENT, SAMPLED}
-FINE = 1.2e-5  # s, w dt = 0.073
-UNLOCKED = {"law": "unilateral", "stiffness": 5e11}
-CH = {"scheme": "chung-hulbert", "rho_inf": 0.0, "steps": 200}
+KINDS = {"AGREEMENT": AGREEMENT, "SAMPLED": SAMPLED}
+ROWS = tomllib.loads(Path(__file__).with_name("coarse.toml").read_text(encoding="utf-8"))["row"]
 
 
-@pytest.mark.parametrize(
-    ("case", "raised"),
-    [
-        (scene(), BOTH),
-        (scene(time__step=3e-4), {AGREEMENT}),
-        (scene(time__step=FINE), set()),
-        (scene(time__step=3e-4, block__poisson=0.0, load={"pressure": 1e6}), {AGREEMENT}),
-        (scene(time__step=3e-4, block__subdivide=[2, 2]), {AGREEMENT}),
-        (scene(time__step=3e-4, contact=UNLOCKED), {AGREEMENT}),
-        (scene(time__step=FINE, contact=UNLOCKED), set()),
-        (scene(contact=UNLOCKED | {"stiffness": math.inf, "shear_stiffness": 0.0}), BOTH),
-        (scene(contact=UNLOCKED | {"rule": "energy-conserving"}, time__alpha=0.25, time__delta=0.5), {SAMPLED}),
-        (scene(time=CH | {"step": 3e-4}), {AGREEMENT}),
-        (scene(time=CH | {"step": 3e-5}), set()),
-        (scene(time__alpha=0.25, time__delta=0.5), {SAMPLED}),
-        (scene(time__alpha=0.25, time__delta=0.5, time__step=3e-4), set()),
-        (scene(time__gg=0.0), set()),  # to come to rest is what is meant
-        (scene(load__ramp=0.1), set()),  # 97 periods of the first mode
-        (scene(contact=UNLOCKED | {"friction": 30.0}, load={"gravity": 9.81, "slope": 20.0}), set()),  # slides
-        (scene(COLUMN), set()),
-        (scene(COLUMN, time__step=5e-3), {AGREEMENT}),  # w1 dt = 0.56
-        (scene(COLUMN, time__step=5e-2), BOTH),
-        (scene(COLUMN, time__step=1e-3, input__frequency=100.0), {AGREEMENT}),  # of the wave, not of the first mode
-    ],
-)
-def test_a_step_that_is_too_long_is_told_without_a_run(case, raised):
-    assert kinds(case) == raised
+@pytest.mark.parametrize("row", ROWS, ids=str)
+def test_a_step_that_is_too_long_is_told_without_a_run(row):
+    case = scene(COLUMN if row.get("column") else GRANITE, **row.get("set", {}))
+    assert kinds(case) == {KINDS[name] for name in row["raised"]}
 
 
 @pytest.mark.parametrize(
@@ -94,32 +64,3 @@ def test_the_first_frequency_of_a_column(column, frequency):
     section = scene(COLUMN, column=column | {"motion": "shear", "layer": layers}).column
     assert section is not None
     assert columns.first_frequency(section) == pytest.approx(frequency, rel=1e-4)
-
-
-@pytest.mark.parametrize("blocks", [1, 3, 8])
-def test_the_first_frequency_of_a_stack_of_rigid_blocks(blocks):
-    layer = {"thickness": 1.0 * blocks, "density": 2000.0, "young": math.inf, "blocks": blocks}
-    tables = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": [layer]}
-    section = Scene.model_validate({"name": "s", "column": tables, "time": COLUMN["time"]}).column
-    assert section is not None
-    expected = columns.lowest_frequency(1e9, 2000.0, blocks)
-    assert columns.first_frequency(section) == pytest.approx(expected, rel=1e-7)
-
-
-def test_run_show_and_the_report_warn(tmp_path):
-    """No gate is proposed that would pass by the step."""
-    source = tmp_path / "granite.toml"
-    lines = []
-    for name, table in GRANITE.items():
-        lines += [f"[{name}]", *(f"{key} = {value}" for key, value in table.items())]
-    source.write_text("\n".join(lines))
-    results = tmp_path / "results"
-    printed = CliRunner().invoke(app, ["run", str(source), "--results", str(results)])
-    assert printed.exit_code == 0 and all(kind in printed.output for kind in BOTH)
-    assert "[[gate]]" not in printed.output
-    first_page = alarm_lines(groups_of_studies(Results(results), [Results(results).manifest("granite")]))
-    assert all(any(kind in line.text for line in first_page) for kind in BOTH)
-    refined = CliRunner().invoke(app, ["run", str(source), "--results", str(results), "--set", "time.step=1e-5"])
-    assert "[[gate]]" in refined.output and not any(kind in refined.output for kind in BOTH)
-    shown = json.loads(CliRunner().invoke(app, ["show", str(source), "--json"]).output)
-    assert len(shown["remarks"]) == 3 and np.isclose(shown["numbers"]["w1 dt"]["low"], 6.0754, rtol=1e-4)

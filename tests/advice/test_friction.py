@@ -1,5 +1,8 @@
 """Advice and alarms of blocks with friction: true of runs, raised where they should be, silent where not."""
 
+import tomllib
+from pathlib import Path
+
 import pytest
 
 from validation import load_scene
@@ -11,6 +14,7 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 
+ROWS = tomllib.loads(Path(__file__).with_name("raised.toml").read_text(encoding="utf-8"))["friction"]
 SLIDES = load_scene("slope-drag").expand()[0]
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
 
@@ -22,21 +26,11 @@ def raised(scene, directory):
 
 
 @pytest.mark.parametrize(
-    ("scene", "values", "expected"),
-    [
-        (STANDS, {"time.steps": 100}, {advice.HIDES}),
-        (STANDS, {"time.step": 2e-4, "time.steps": 1000}, {advice.CREEPS}),  # still slipping after 0.1 s
-        pytest.param(STANDS, {"time.step": 2e-4, "time.steps": 5000}, set(), marks=pytest.mark.long),  # it has stopped
-        (STANDS, {"time.step": 2e-4, "time.steps": 800, "time.alpha": 0.25, "time.delta": 0.5}, {advice.CREEPS}),
-        (STANDS, {"contact.rules": "lagged", "contact.friction": 22.0}, {advice.CREEPS, advice.HIDES, advice.LAGS}),
-        (STANDS, {"load.slope": 0.0, "time.steps": 50}, set()),
-        (SLIDES, {}, {advice.BRAKES}),
-        (SLIDES, {"time.gg": 1.0}, set()),
-        (SLIDES, {"contact.law": "unilateral", "load.pressure": 1e6, "time.steps": 20}, set()),  # no formula
-    ],
+    "row", [pytest.param(row, id=str(row), marks=[pytest.mark.long] * ("long" in row)) for row in ROWS]
 )
-def test_each_alarm_is_raised_where_it_should_be(scene, values, expected, tmp_path):
-    assert raised(scene.with_values(values), tmp_path) == expected
+def test_each_alarm_is_raised_where_it_should_be(row, tmp_path):
+    scene = {"slides": SLIDES, "stands": STANDS}[row["scene"]].with_values(row["set"])
+    assert raised(scene, tmp_path) == {getattr(advice, name) for name in row["raised"]}
 
 
 def test_a_run_without_states_is_told_what_to_do():

@@ -8,7 +8,6 @@ import pytest
 
 from validation.errors import InputError
 from validation.models.plane.assembly import OVERLAP
-from validation.models.plane.blocks import second_moments
 from validation.models.plane.corner_springs import fastest_contact, highest_frequency, lines, moving_advice
 from validation.models.plane.tables import PlaneSection
 from validation.scenes.scene import load_scene, parse_scene
@@ -59,16 +58,6 @@ def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens():
     assert math.sqrt(squares[1]) > highest_frequency(replace(block, young=1.0), P)
 
 
-def test_second_moments_are_those_about_the_centroid():
-    block = block_of(falling([2.0, 2.0], 1e9))
-    assert np.allclose(second_moments(block.vertices), np.eye(2) * 16 / 12), "a^4 / 12 about each axis"
-    triangle = ((1.0, 1.0), (4.0, 1.0), (1.0, 3.0))  # b h^3 / 36, b^2 h^2 / 72
-    b, h = 3.0, 2.0
-    assert np.allclose(
-        second_moments(triangle), [[b**3 * h / 36, -((b * h) ** 2) / 72], [-((b * h) ** 2) / 72, b * h**3 / 36]]
-    )
-
-
 @pytest.mark.parametrize("scheme", [{}, {"time.alpha": 0.25, "time.delta": 0.5}], ids=["constant", "average"])
 def test_what_is_advised_keeps_thickness_and_rebound(scheme):
     scene = load_scene("rigid-impact").with_values(scheme)
@@ -82,18 +71,6 @@ def test_what_is_advised_keeps_thickness_and_rebound(scheme):
     kept = moving_advice(scene, 0.05, keep_springs=True)
     assert {*kept.settings} == {"time.step"} and kept.stiffness == advice.stiffness
     assert sum(name in " ".join(lines(scene, "rigid-impact", advice)) for name in advice.settings) == 2
-
-
-def test_weight_and_landing_are_those_of_the_softest_spring_and_the_frequency_of_the_stiffest():
-    values = {"plane.contact.shear_stiffness": 4 * 1.25e6, "plane.contact.friction": 20.0}
-    scene = load_scene("rigid-impact").with_values(values)
-    advice = moving_advice(scene, 0.05)
-    (box,) = (block for block in scene.table(PlaneSection).assembly.blocks if not block.held)
-    mass = box.density * 1.0
-    assert advice.stiffness == (1.25e6, 5e6)
-    assert advice.sinking == pytest.approx(mass * 9.81 / 1.25e6, rel=1e-3)
-    assert advice.landing == pytest.approx(math.hypot(*box.velocity) * math.sqrt(mass / 1.25e6))
-    assert advice.frequency == pytest.approx(math.sqrt(4 * 5e6 / mass))
 
 
 def test_where_nothing_touches_or_no_step_does_it_is_refused():

@@ -5,7 +5,6 @@ import pytest
 
 import validation.cli.entry  # noqa: F401 (declares the commands)
 from validation import load_scene, solve
-from validation.advice.hooks import AdviceHooks
 from validation.advice.wave_advice import advise_wave
 from validation.errors import InputError
 from validation.theory.stepping import Stepping
@@ -14,17 +13,6 @@ from validation.theory.waves import Column
 COLUMN = load_scene("figures-3-4").with_values(
     {"time.step": 0.01, "block.height": 100.0, "block.width": 1.0, "block.subdivide": [1, 50]}
 )
-AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
-SPEED = (1e9 / 2700) ** 0.5
-
-
-def test_what_limits_blocks_and_step_is_named():
-    both = advise_wave(COLUMN.with_values({"time.gg": 0.99}), 5.0, 0.1)
-    assert (both.advised, both.limits_step) == (None, "gg")
-    soft = advise_wave(COLUMN.with_values({"block.glue_ratio": 1e-3}), 5.0, 0.1)
-    assert (soft.limits_height, soft.advised) == ("glue", None)
-    whole = advise_wave(load_scene("figures-3-4").with_values({"time.step": 1e-4}), 5.0, 0.1)
-    assert (whole.limits_height, whole.blocks) == ("column", (1,))
 
 
 FREE = {"time.allow_unstable": True}
@@ -68,29 +56,6 @@ def test_where_only_unstable_steps_would_do_the_advice_says_so():
     found = advise_wave(scene, 5.0, 0.5)
     assert (found.advised, found.limits_step) == (None, "stability")
     assert "larger steps are unstable" in found.advice
-
-
-def test_joints_stay_between_the_advised_blocks():
-    (blocks,) = advise_wave(JOINT, 250.0, 0.5).blocks
-    (layer,) = AdviceHooks.of(JOINT).layers(JOINT)
-    assert layer.joints == (12.0 / JOINT.column.height,)
-    assert (blocks * layer.joints[0]).is_integer()
-    assert advise_wave(JOINT.with_values({"column.joint": []}), 250.0, 0.5).blocks[0] <= blocks
-
-
-def test_discounts_of_a_step_damp_more_the_smaller_the_step():
-    scene = COLUMN.with_values(AVERAGE | {"time.gg": 0.99})
-    losses = [advise_wave(scene.with_values({"time.step": dt}), 5.0, 0.1).present.loss for dt in (0.01, 0.005, 0.001)]
-    assert losses == sorted(losses)
-    w = 2 * np.pi * 5.0
-    for dt, loss in zip((0.01, 0.005), losses, strict=False):
-        a0, _ = Stepping(dt, 0.25, 0.5, 0.99).rayleigh()
-        assert -np.log(1 - loss) == pytest.approx(a0 / 2 * 100 / SPEED, rel=(w * dt) ** 2)
-
-
-def test_a_block_that_is_no_rectangle_is_refused():
-    with pytest.raises(InputError, match="must be an upright rectangle"):
-        advise_wave(load_scene("quadrilateral"), 5.0, 0.1)
 
 
 @pytest.mark.parametrize(

@@ -1,10 +1,8 @@
 """The answer of `run`: failures in full, a line a study, alarms by kind, what comes next; bounded, and for machines."""
 
-import json
 from dataclasses import replace
 
 import pytest
-from conftest import SCENE, typed
 from oracles.made_cases import kept_study, made_row
 
 from validation import load_scene
@@ -76,31 +74,3 @@ def test_plain_data_hold_what_the_text_says(made):
     assert (data["changes"][0]["before"], data["changes"][0]["after"]) == ("PASS", "FAIL")
     assert data["ended_badly"] == [f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3"]
     assert data["messages"] == ["a: no case was measured"] and data["status"] == 1
-
-
-FAILING = """
-[run]
-solvers = ["dda", "bar"]
-[sweep]
-"time.step" = [0.002, 0.001]
-[[gate]]
-pair = ["dda", "bar"]
-metric = "displacement.l2"
-band = [0.0, 0.06]
-reason = "mine"
-"""
-
-
-def test_json_and_quiet_give_the_same_status_as_the_text(scene_file, tmp_path):
-    scene_file.write_text(SCENE + FAILING)
-    command = "run", scene_file, "--results", tmp_path / "r", "--jobs", 1
-    text, quiet, data, full = (typed(*command, *more) for more in ([], ["--quiet"], ["--json"], ["--verbose"]))
-    assert [done.returncode for done in (text, quiet, data, full)] == [1] * 4
-    assert (quiet.stdout, quiet.stderr) == ("", "")
-    found = json.loads(data.stdout)
-    assert found["status"] == 1 and found["studies"][0]["failed"] == found["studies"][0]["passed"] == 1
-    assert found["verdicts"] == json.loads((tmp_path / "r/verdicts.json").read_text())
-    assert found["studies"][0]["outcomes"] == {"completed": 4} and found["changes"] is None
-    assert "FAIL small[time.step=0.001]:dda-bar:displacement.l2: " in text.stdout
-    assert "\x1b" not in text.stdout + full.stdout, "colours are for terminals"
-    assert "time.step=0.002" in full.stdout and "1 PASS, 1 FAIL, 0 NOT RUN" in full.stdout

@@ -11,16 +11,14 @@ from conftest import refused, typed
 from oracles.answers import answered
 from oracles.processes import answer_here
 
-from validation.models.plane import problems as boxes
 from validation.problems import bands, packs
 from validation.problems.bands import standard
 from validation.problems.cause import Cause
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
-from validation.problems.problem import ASKS, names, problem, problem_of
+from validation.problems.problem import problem
 from validation.report.chapters import judged
 from validation.runs.history import History
-from validation.scenes.scene import load_scene
 from validation.solvers import registry
 from validation.suite import judging
 
@@ -58,33 +56,29 @@ def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path, exact)
     ):
         done = typed("judge", *arguments)
         assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith(who) and " on locked: PASS: it is at most below 1e-9 % off" in done.stdout
-        assert "Cause:" not in done.stdout and "bit for bit the exact motion" in done.stdout
-        assert re.search(r"displacement_m +PASS +below 1e-9 % +5.7 % +the density +0.1", done.stdout)
+        assert done.stdout.startswith(who)
+        (found,) = json.loads(typed("judge", *arguments, "--json").stdout)["answers"]
+        assert (found["verdict"], found["cause"], len(found["warnings"])) == ("PASS", None, 1)
+        assert all(criterion["error"] < 1e-10 for criterion in found["criteria"])
     found = json.loads(typed("judge", table(tmp_path / "my.csv", scaled(exact, 1.001)), "locked", "--json").stdout)
     assert found["answers"][0]["warnings"] == []
 
 
 @pytest.mark.parametrize(
-    ("why", "said"),
+    ("why", "tells"),
     [
-        (Cause(), "What would tell: the same run at half the step"),
-        (Cause("not explained: the rows ...", alike=("a", "b")), "What would tell: an answer to another problem"),
-        (Cause("it is damped", ("mass-damping",)), None),
+        (Cause(), "half the step"),
+        (Cause("not explained: the rows ...", alike=("a", "b")), "another problem"),
+        (Cause("it is damped", ("mass-damping",)), ""),
     ],
 )
-def test_what_is_not_explained_says_what_is_right_and_what_would_tell(why, said, tmp_path, exact, undrawn, monkeypatch):
+def test_what_is_not_explained_says_what_would_tell(why, tells, tmp_path, exact, undrawn, monkeypatch):
     monkeypatch.setattr(judging, "cause", lambda *given: why)
     wrong = {name: x * np.where(exact.time > 0.0501, 3.0, 1.0) for name, x in exact.columns.items()}
     place = table(tmp_path / "mine.csv", History(exact.time, wrong))
-    done = typed("judge", place, "locked", "--out", tmp_path / "site")
-    page = unescape((tmp_path / "site/answers_mine.html").read_text(encoding="utf-8"))
-    for text in (done.stdout, page):
-        assert f"Cause: {why.sentence}. Its error is within what is allowed up to 0.05 s of 0.1 s." in text
-        assert (said in text) if said else "would tell" not in text
-        assert ("time.step=0.001 --set time.steps=100" in text) == (said is not None and "half the step" in said)
     (found,) = json.loads(typed("judge", place, "locked", "--json").stdout)["answers"]
-    assert ("would_tell" in found["cause"]) == bool(said)
+    told = found["cause"].get("would_tell", "")
+    assert bool(told) == bool(tells) and tells in told
     first = found["criteria"][0]
     assert (first["within_until_s"], first["until_s"]) == (pytest.approx(0.05), pytest.approx(0.1))
 
@@ -94,30 +88,10 @@ def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(tmp_path, e
     (place / "locked.csv").write_text(table_of(problem("locked"), exact, ["displacement"]))
     done = typed("judge", place, "--out", tmp_path / "site")
     assert done.returncode == 1
-    assert "PARTIAL: PASS on displacement; contact_pressure not reported" in done.stdout
-    assert "No full PASS: the problem asks for contact_pressure_Pa too" in done.stdout
     badge = ElementTree.parse(tmp_path / "site/badge_bob-s-code-co_1.0_default.svg").getroot()
     assert badge.attrib["aria-label"].endswith("default: 0 of 1 PASS, 1 PARTIAL")
     (found,) = json.loads(typed("judge", place, "--json").stdout)["answers"]
     assert (found["verdict"], found["not_reported"]) == ("PARTIAL", ["contact_pressure_Pa"])
-
-
-def test_control_characters_are_written_out(tmp_path, undrawn):
-    fields = {"program": "a\x1b[31m\u202e", "settings": "one\n  two"}
-    place = answered(tmp_path / "mine", 1.001, ("locked",), **fields)
-    done = typed("judge", place, "--out", tmp_path / "site")
-    assert "a\\x1b[31m\\u202e 1.0 on locked: PASS" in done.stdout
-    pages = [path.read_text(encoding="utf-8") for path in (tmp_path / "site").glob("*.html")]
-    assert len(pages) == 3 and not any("\x1b" in page or "\u202e" in page for page in pages)
-    assert sum("one two" in page for page in pages) == 2
-
-
-def test_a_scene_of_ones_own_is_answered(tmp_path, scene_file, undrawn):
-    scene_file.write_text(scene_file.read_text().replace("alpha = 0.5", "alpha = 0.25"))
-    own = problem_of(load_scene(scene_file))
-    (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
-    done = typed("judge", tmp_path / "mine.csv", scene_file)
-    assert done.returncode == 0, done.stderr
 
 
 def test_columns_of_other_names_and_signs_are_mapped(tmp_path, exact):
@@ -125,25 +99,10 @@ def test_columns_of_other_names_and_signs_are_mapped(tmp_path, exact):
     np.savetxt(tmp_path / "mine.csv", rows, "%.17g", "\t", header="t\tuy\tp", comments="")
     options = ("--columns", "time=t,displacement=uy,contact_pressure=p", "--scale", "displacement=-1e-3")
     assert typed("judge", tmp_path / "mine.csv", "locked", *options).returncode == 0
-    assert "--scale: must be OURS=FACTOR with ours among time, displacement" in refused(
-        "judge", tmp_path / "mine.csv", "locked", "--scale", "displacement=0"
-    )
+    assert "--scale" in refused("judge", tmp_path / "mine.csv", "locked", "--scale", "displacement=0")
 
 
 # ---- solvers --------------------------------------------------------------------------------------------------------
-
-
-def test_a_solver_is_judged_on_any_scene(tmp_path, undrawn):
-    """The step of 2 ms damps; one of 0.1 ms and average acceleration does not."""
-    habit = typed("judge", "dda", "locked")
-    assert habit.returncode == 1 and "dda on locked: FAIL" in habit.stdout and "wrote" not in habit.stdout
-    values = ("time.alpha=0.25", "time.delta=0.5", "time.step=1e-4", "time.steps=300", "time.start=consistent")
-    sets = [word for value in (*values, "contact.stiffness=3e8") for word in ("--set", value)]
-    fine = typed("judge", "dda", "locked", *sets, "--out", tmp_path / "site")
-    assert fine.returncode == 0, fine.stdout + fine.stderr
-    assert "dda on field-locked: PASS" in fine.stdout and (tmp_path / "site/answers_dda.html").exists()
-    stated = (tmp_path / "site/program_dda.html").read_text("utf-8")
-    assert ">Pack<" in stated and ">Processor<" not in stated  # of a solver that is run nobody states one
 
 
 SAME_OR_NOT = """
@@ -208,15 +167,14 @@ def test_programs_stand_beside_each_other(tmp_path, monkeypatch):
     assert done.returncode == 1, done.stderr
     header, locked, rocking, times = done.stdout.splitlines()[1:5]
     assert header.split() == ["Problem", "mine", "dda"] and times.startswith("time [s]")
-    assert "PASS" in locked and "FAIL 51 % of 5.7 %" in locked and "not applicable" in rocking
-    assert re.search("No answer by broken: .*no disk", done.stdout)
-    assert re.search("No answer by away: .*Away is not installed: apt-get", done.stdout)
+    assert "PASS" in locked and "FAIL" in locked and "not applicable" in rocking
+    assert "no disk" in done.stdout and "apt-get" in done.stdout
     found = json.loads(typed("judge", *asked, "--json").stdout)["answers"]
     assert {row["program"]: row["verdict"] for row in found if row["problem"] == "locked"} == {
         "mine": "PASS", "broken": "NOT RUN", "away": "NOT RUN", "dda": "FAIL",
     }  # fmt: skip
     required = typed("judge", *asked, "--require", "away", "--require", "mine")
-    assert required.returncode == 3 and "--require: away answered nothing: " in required.stderr
+    assert required.returncode == 3
     assert typed("judge", *asked, "--require", "mine").returncode == 1
     site = typed("judge", *asked, "--out", tmp_path / "site")
     assert site.returncode == 1 and (tmp_path / "site/index.html").exists()
@@ -228,8 +186,7 @@ def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path, monkeypat
     (tmp_path / "mine").write_text("#!/bin/sh\necho a wall >&2\nexit 77\n")
     (tmp_path / "mine").chmod(0o755)
     done = typed("judge", "mine", "locked", "standing", "impact")
-    assert done.returncode == 1 and "0 of 3 PASS, 3 not applicable" in done.stdout
-    assert done.stdout.count("a wall") == 1 and "\n  locked, standing, impact\n" in done.stdout
+    assert done.returncode == 1 and done.stdout.count("a wall") == 1
     answered(tmp_path / "answers", 1.001)
     (answer,) = json.loads(typed("judge", "answers", "locked", "--json").stdout)["answers"]
     assert (answer["problem"], answer["verdict"]) == ("locked", "PASS")
@@ -244,14 +201,7 @@ def test_boxes_are_judged_by_numbers(undrawn):
     done = typed("judge", "rigid-exact", "standing", "--set", "plane.contact.friction=19")
     assert done.returncode == 0, done.stderr
     assert re.search(r"distance slid +PASS", done.stdout)
-    assert "plane.gravity: must be that of the problem" in refused(
-        "judge", "dda", "impact", "--set", "plane.gravity=[0.0, -3.0]"
-    )
-
-
-def test_the_help_names_every_problem():
-    words = re.findall(r"[\w-]+", typed("judge", "--help").stdout)
-    assert {*ASKS, *boxes.ASKS} <= set(words)
+    assert "plane.gravity" in refused("judge", "dda", "impact", "--set", "plane.gravity=[0.0, -3.0]")
 
 
 # ---- folders --------------------------------------------------------------------------------------------------------
@@ -266,19 +216,6 @@ def layout(tmp_path):
         answered(folder, factor, settings_name=name, step_s=step)
     answered(place / "other/2.0/default", 1.001, ("locked",), program="Other", version="2.0", step_s=None)
     return place
-
-
-def test_a_folder_is_judged_and_each_problem_told(tmp_path, undrawn):
-    answered(tmp_path / "mine", 1.01)
-    done = typed("judge", tmp_path / "mine")
-    assert done.returncode == 1, done.stderr
-    assert "Bob's <code> & co 1.0 default: 2 of 3 PASS, 1 FAIL\n" in done.stdout
-    assert re.search(r"locked +PASS +1 % +5.7 %  displacement_m\n", done.stdout)
-    assert re.search(r"column +FAIL +1 % +0.82 %  displacement_2_m; cause: a <cause> & more\n", done.stdout)
-    assert f"{len(names()) - 3} problems of the pack are not answered" in done.stdout
-    assert sorted(path.suffix for path in (tmp_path / "mine").iterdir()) == [".csv", ".csv", ".csv", ".json"]
-    answered(tmp_path / "right", 1.001, ("locked", "rocking"))
-    assert typed("judge", tmp_path / "right").returncode == 0
 
 
 def test_the_site_holds_every_answer_and_needs_nothing_else(layout, tmp_path, undrawn):
@@ -296,13 +233,6 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout, tmp_path, un
             assert "<code>" not in text and "<cause>" not in text
         if name.endswith(".svg"):
             ElementTree.fromstring(text)
-    index = unescape(re.sub(r"\s+", " ", files["index.html"]))
-    assert "Not answered by any of them: opening, rebound," in index
-    assert '<td class="outcome fail">FAIL 4 % of 1.5 %</td>' in index
-    assert '<td class="outcome pass">PASS 1 % of 5.7 %</td>' in index
-    assert "rotation_rad; cause: a <cause> & more" in index
-    program = unescape(re.sub(r"\s+", " ", files["program_bob-s-code-co.html"]))
-    assert "4 % of 1.5 %" in program and "fine-step" in program  # of both settings
 
 
 def test_verdicts_as_plain_data_are_those_of_the_commands(layout, tmp_path, undrawn):
@@ -349,7 +279,7 @@ def test_all_defects_are_printed_and_nothing_is_written(layout, tmp_path, undraw
         assert done.returncode == 2 and done.stdout == ""
         *lines, last = done.stderr.splitlines()
         assert [line.partition(f"{folder}/")[2].split(" ")[0] for line in lines] == ["locked.csv:1:22:", "rokcing.csv:"]
-        assert last == "2 defects in 2 files; nothing is judged"
+        assert "2 defects" in last
         assert not (tmp_path / "site").exists() and not (tmp_path / "kept").exists()
 
 
@@ -360,13 +290,15 @@ def test_answers_are_kept_and_then_make_the_site(tmp_path, undrawn):
     assert typed("judge", tmp_path / "submissions", "--layout", "--out", tmp_path / "site").returncode == 0
     answered(tmp_path / "mine", 1.002, ("locked",))
     done = typed("judge", tmp_path / "mine", "--keep", tmp_path / "submissions")
-    assert done.returncode == 2 and "holds another answer, which is not overwritten" in done.stderr
+    assert done.returncode == 2
 
 
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        (("dda", "nonsense"), "nonsense: no such scene file"),
+        (("dda", "nonsense"), "nonsense: no such problem, scene or scene file"),
+        (("dda", "stoping"), "did you mean stopping?"),
+        (("dda", "figures-3-5"), "did you mean figures-3-4?"),
         (("mine", "--out", "mine"), "must be a new or empty directory or an earlier site"),
         (("mine/locked.csv",), "asked: must name the one problem or scene that a table answers"),
         (("nowhere:solve", "locked"), "solver: must be a module that Python finds"),
@@ -385,11 +317,11 @@ def test_bad_input_is_one_line_and_writes_nothing(arguments, said, tmp_path, und
 # ---- gates ----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("solver", "status"), [("dda", 0), ("dda-textbook", 1)])
+@pytest.mark.parametrize(("solver", "status"), [pytest.param("dda", 0, marks=pytest.mark.long), ("dda-textbook", 1)])
 def test_the_gates_of_a_study_are_put_to_a_solver(solver, status):
     done = typed("judge", solver, "--study", "own-solver")
     assert done.returncode == status, done.stdout
-    assert re.search(r"digits +\d+ +\d+ +0 +0 ", done.stdout) and "right:  " in done.stdout
+    assert re.search(r"digits +\d+ +\d+ +0 +0 ", done.stdout)
 
 
 def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypatch):

@@ -11,7 +11,6 @@ def test_what_the_steps_show_of_an_alias_is_no_peak():
     peaks = [float(line.split()[2]) for line in done.stdout.splitlines() if line.startswith("as stepped")]
     assert peaks
     assert max(peaks) <= 25.0
-    assert "above 25 Hz" in done.stdout
 
 
 @pytest.mark.parametrize(("value", "proposed"), [(0.034, True), (0.49, True), (1.02, False), (1.5e47, False)])

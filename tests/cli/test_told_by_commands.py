@@ -9,12 +9,9 @@ import typer
 from validation import load_scene, response
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
-from validation.cli.printing import tables
-from validation.gates.changes import changes
 from validation.gates.gate import Status
 from validation.problems.answers import Answer, AnswerSet, stated_by
 from validation.report.figures import response as figures
-from validation.report.render.terminal import STYLES, lines
 from validation.runs.run import Outcome, Run
 from validation.suite import judging
 
@@ -32,20 +29,6 @@ def test_a_solver_that_gives_no_answer_is_a_numerical_failure(outcome, capsys):
     said = capsys.readouterr().out
     assert said.startswith(f"locked mine: {status}: ") and "so it was" in said
     assert status is (Status.FAIL if outcome is Outcome.OVERFLOW else Status.NOT_RUN)
-
-
-# ---- counts and colours -------------------------------------------------------------------------------------------
-
-
-def test_what_got_worse_is_red_and_what_got_better_green():
-    records = [[{"study": "s", "id": name, "verdict": word, "value": 1.0, "band": [0.0, 1.0]}
-                for name, word in (("a", a), ("b", b))] for a, b in (("PASS", "FAIL"), ("FAIL", "PASS"))]  # fmt: skip
-    blocks = tables.change_blocks(changes(*records))
-    styles = {text.split()[0]: STYLES[word] for text, word in lines(blocks, 150) if word}
-    assert styles == {"worse": "bold red", "better": "green"}
-
-
-# ---- show ---------------------------------------------------------------------------------------------------------
 
 
 # ---- figures of frequencies ---------------------------------------------------------------------------------------

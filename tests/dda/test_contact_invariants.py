@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.contact_bodies import CASES, OneBlock, SubBlocks, TurningBlock, put_stage, with_law
+from oracles.contact_bodies import CASES, NEWMARK, OneBlock, SubBlocks, TurningBlock, put_stage, with_law
 from oracles.unilateral_checks import apart, size
 
-from dda import Load
+from dda import Block, Load, Material, Unilateral, UnilateralModel
 from dda.contact.rows import FOUND, INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
 from dda.march.step import push_modes
@@ -307,6 +307,23 @@ def test_a_step_that_fails_is_made_in_parts_from_where_it_began(name, seed, monk
     of_step = [part for part in dict.fromkeys(parts) if 3 <= part[0] < 4]
     assert np.array(of_step[:3]) == pytest.approx(np.array([(3, 1), (3, 0.3), (3.3, 0.7)])) or result.step_cuts[3] > 1
     keeps_energy(case, result)
+
+
+@pytest.mark.parametrize("scheme", NEWMARK)
+def test_one_contact_for_both_corners_is_the_full_model(scheme):
+    square = Block.rectangle(1.7, 1.3, Material(2350.0, 4.3e9, 0.31))
+    model = UnilateralModel(square, Unilateral(7e9, 3e9), 3.7e6, gravity=4.0)
+    one, full = (OneBlock.solve(model, scheme, 200, {"full": kept}) for kept in (False, True))
+    assert one.unknowns == 3 and full.unknowns == 6 and np.count_nonzero(np.diff(one.closed[0])) > 0
+    for name in ("normal", "shear", "gap", "velocity"):
+        assert apart(getattr(full, name), getattr(one, name)) <= 1e-9, name
+    without_strain = replace(model, block=replace(square, material=Material(2350.0, 4.3e9, 0.0)))
+    assert OneBlock.solve(with_law(without_strain, shear=0.0), scheme, 2, {}).unknowns == 2
+
+
+def test_glued_states_that_disagree_are_cut_and_the_run_goes_on():
+    """Long steps and stiff glued corners: some have no single state."""
+    assert sum(np.sum(CASES["long steps"](seed).run().step_cuts) for seed in range(12)) > 0
 
 
 @pytest.mark.parametrize("name", ["rough", "turning"])

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.impulses import impact_steps
-from oracles.unilateral_checks import DT, apart, random_model
 
 from dda import (
     Block,
@@ -95,17 +94,6 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     limited = solve_unilateral(model, scheme, 1, options=replace(options, pass_limit=2))
     assert limited.outcome == "pass limit exceeded" and len(limited.time) == 0
     assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
-
-
-@pytest.mark.parametrize(("seed", "name"), thinned([(s, n) for s in (1, 2) for n in SCHEMES], 3))
-def test_passes_of_every_scheme_lead_to_its_rigid_stop(name, seed):
-    model = random_model(seed, glued=False)
-    scheme = replace(SCHEMES[name][0], step=DT)
-    options = UnilateralOptions("augmented", penetration=1e-13)
-    passes = solve_unilateral(model, scheme, 12, options=options)
-    rigid = solve_unilateral(replace(model, contact=replace(model.contact, stiffness=math.inf)), scheme, 12)
-    assert apart(passes.gap, rigid.gap) < 1e-5
-    assert apart(passes.normal, rigid.normal) < 1e-5
 
 
 # ---- forces that keep the energy, or act as at the end of a step -----------------------------------------------------

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_contact
+from validation.theory.first_touch import MovingPolygon, first_touches
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
@@ -142,36 +142,15 @@ def star(random, corners):
     return random.uniform(0.4, 1.0, corners)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
 
 
-def sampled_first_crossing(A, motion_A, B, motion_B, times):
-    """Return when a corner first crosses an edge between two samples, and corner and edge."""
-
-    def places(polygon, motion, t):
-        a = motion[2] + motion[5] * t
-        x = motion[0] + motion[3] * t + np.cos(a) * polygon[:, :1] - np.sin(a) * polygon[:, 1:]
-        y = motion[1] + motion[4] * t + np.sin(a) * polygon[:, :1] + np.cos(a) * polygon[:, 1:]
-        return x + 1j * y
-
-    crossings = []
-    for block, (P, p, Q, q) in enumerate([(A, motion_A, B, motion_B), (B, motion_B, A, motion_A)]):
-
-        def in_axes_of_edge(t, P=P, p=p, Q=Q, q=q):
-            corners = places(P, p, t)
-            starts = places(Q, q, t)
-            sides = np.roll(starts, -1, axis=0) - starts
-            return (corners[:, None] - starts[None]) / sides[None]  # along 0 to 1, and the gap's negative
-
-        w = in_axes_of_edge(times)
-        for corner, edge, k in np.argwhere(w.imag[..., :-1] * w.imag[..., 1:] <= 0):
-            t = brentq(
-                lambda t, c=corner, e=edge: in_axes_of_edge(np.array([t]))[c, e, 0].imag, *times[k : k + 2], xtol=1e-15
-            )
-            if 0 <= in_axes_of_edge(np.array([t]))[corner, edge, 0].real <= 1:
-                crossings.append((t, block, corner, edge))
-    return min(crossings, default=None)
+def as_moving(polygon, motion):
+    """Return a polygon at its first angle, for the search by roots."""
+    x, y, angle, vx, vy, spin = motion
+    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
+    return MovingPolygon(polygon @ turn, (x, y), (vx, vy), spin)
 
 
 @pytest.mark.parametrize("seed", range(24))
-def test_first_crossing_of_samples_with_brent_agrees(seed):
+def test_the_first_crossing_by_roots_agrees(seed):
     random = np.random.default_rng(seed)
     A = star(random, 3 + seed % 5)
     B = star(random, 3 + seed % 4)
@@ -179,10 +158,10 @@ def test_first_crossing_of_samples_with_brent_agrees(seed):
     aim = random.normal(0, 0.6, 2) - 2.2 * np.array([np.cos(side), np.sin(side)])
     motion_A = (2.2 * np.cos(side), 2.2 * np.sin(side), random.uniform(0, 6), *aim, random.normal(0, 2))
     motion_B = (0, 0, random.uniform(0, 6), *random.normal(0, 0.2, 2), random.normal(0, 2))
-    crossing = sampled_first_crossing(A, motion_A, B, motion_B, np.linspace(0, 2, 4001))
+    crossings = first_touches(as_moving(A, motion_A), as_moving(B, motion_B), 2.0, 0.0)
     contact = first_contact(A, B, motion_A, motion_B, 2.0)
-    if crossing is None:
-        assert contact is None
-        return
-    assert contact.time == pytest.approx(crossing[0], abs=1e-12)
-    assert crossing[1:] in [point[:3] for touch in contact.touches for point in touch.points]
+    assert (contact is None) == (not crossings)
+    for crossing in crossings:
+        assert contact.time == pytest.approx(crossing.time, abs=1e-12)
+        point = (crossing.block, crossing.corner, crossing.edge)
+        assert point in [point[:3] for touch in contact.touches for point in touch.points]

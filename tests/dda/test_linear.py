@@ -86,11 +86,3 @@ def test_a_column_on_a_shaken_base_is_stepped_to_its_response():
         for name, (amplitude,) in amplitudes.items():
             expected = (amplitude * np.exp(1j * w * stepped.time)).imag[-100:]
             assert np.max(np.abs(stepped.columns[name][-100:] - expected)) < 1e-9 * abs(amplitude), (name, spring)
-
-
-def test_a_ramp_adds_a_load_at_each_step():
-    # by superposition: a quarter of the load begins to act at the end of each step
-    ramped = dda.solve(block(replace(LOAD, ramp=4e-3)), SCHEME, 3)
-    at_once = dda.solve(block(), SCHEME, 3)
-    expected = np.cumsum(0.25 * at_once.columns["displacement"])
-    assert ramped.columns["displacement"] == pytest.approx(expected, rel=1e-12)

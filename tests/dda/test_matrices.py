@@ -27,21 +27,6 @@ def test_matrices_agree_with_high_precision(material):
         np.testing.assert_allclose(got, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
 
 
-@pytest.mark.parametrize("material", MATERIALS)
-@pytest.mark.parametrize("vertices", [PENTAGON, rotated(3.0, 0.5, 0.7, [10.0, -4.0])])
-def test_gap_coordinates_are_the_same_model(material, vertices):
-    model = TwoBlockModel(Block(vertices, material), Contact(2e9, 0.7e9), 5e6, base=0, top=2)
-    form = model.gap_form
-    K = form.Q.T @ model.stiffness @ form.Q
-    scale = np.sqrt(np.outer(form.K, form.K))
-    # The transformed textbook matrix is the side that rounds: it subtracts spring terms.
-    np.testing.assert_allclose(K / scale, np.eye(6), rtol=0, atol=2e-14)
-    M, m = form.Q.T @ model.mass @ form.Q, np.sqrt(np.diag(form.M))
-    np.testing.assert_allclose(M / np.outer(m, m), form.M / np.outer(m, m), rtol=0, atol=2e-14)
-    F = form.Q.T @ model.force
-    np.testing.assert_allclose(F, model.load.pressure * form.F, rtol=0, atol=2e-14 * np.abs(F).max())
-
-
 @pytest.mark.parametrize(
     ("material", "vertices", "kept"),
     [

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from oracles.plane_scenes import moved
 
 from dda import ContactSprings, PlaneBlock, PlaneModel, Scheme, solve_plane
 
@@ -24,16 +25,12 @@ def moving(vertices, velocity=(0.0, 0.0), spin=0.0):
     return PlaneBlock(vertices, DENSITY, velocity=velocity, spin=spin)
 
 
-def mirrored(block):
-    """Return a block behind a mirror in x = 0."""
-    vertices = (np.array(block.vertices) * MIRROR)[::-1]
-    velocity = (-block.velocity[0], block.velocity[1])
-    return PlaneBlock(vertices, DENSITY, fixed=block.fixed, velocity=velocity, spin=-block.spin)
+def model_of(blocks, springs, weight=True):
+    return PlaneModel(blocks, found=springs, gravity=(0.0, -9.81 if weight else 0.0))
 
 
-def history(blocks, springs, steps, weight=True, gg=1.0, every=1, compiled=False):
+def history(model, steps, gg=1.0, every=1, compiled=False):
     """Return a history by the scheme that loses energy in contact, delta = 1."""
-    model = PlaneModel(blocks, found=springs, gravity=(0.0, -9.81 if weight else 0.0))
     scheme = Scheme(step=1e-3, gg=gg, alpha=0.5, delta=1.0)
     result = solve_plane(model, scheme, steps, every=every, compiled=compiled)
     assert (result.outcome, result.reached) == ("completed", steps)
@@ -56,13 +53,13 @@ THROWN = {
 @pytest.mark.parametrize("name", THROWN)
 def test_nothing_is_gained_beside_a_corner(name):
     others, outline, velocity, steps = THROWN[name]
-    blocks = [*map(fixed, others), moving(outline, velocity)]
-    result = history(blocks, ContactSprings(1e8), steps, weight=False)
+    model = model_of([*map(fixed, others), moving(outline, velocity)], ContactSprings(1e8), weight=False)
+    result = history(model, steps)
     energy = own_energy(result)
     assert np.max(result.normal) > 0
     assert np.max(energy) <= energy[0] * (1 + 1e-12)
     assert np.max(np.abs(result.energy["balance"])) < 1e-12 * energy[0]
-    turned = history([mirrored(block) for block in blocks], ContactSprings(1e8), steps, weight=False)
+    turned = history(moved(model, np.diag(MIRROR), 0), steps)
     expected = result.velocity[-1, -1, :3] * (-1, 1, -1)
     assert turned.velocity[-1, -1, :3] == pytest.approx(expected, abs=1e-9)
 
@@ -71,7 +68,7 @@ def test_nothing_is_gained_beside_a_corner(name):
 @pytest.mark.parametrize("stiffness", [1e8, 1e7])
 def test_a_block_slides_over_a_flush_seam(stiffness):
     floors = [fixed(box(-2, -1, 2, 1)), fixed(box(0, -1, 2, 1))]
-    result = history([*floors, moving(box(-1.05, 0), (2.0, 0.0))], ContactSprings(stiffness), 100)
+    result = history(model_of([*floors, moving(box(-1.05, 0), (2.0, 0.0))], ContactSprings(stiffness)), 100)
     assert {contact.on for contact in result.contacts} >= {0, 1}
     deepest = 2 * DENSITY * 9.81 / stiffness
     assert np.max(np.abs(result.velocity[:, 2, 0] - 2.0)) < 2 * stiffness * deepest**2 / DENSITY / 2.0
@@ -111,7 +108,7 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
     blocks = pile(count, 3)
     compiled = count > 100
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
-    result = history(blocks, springs, steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
+    result = history(model_of(blocks, springs), steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
     energy = own_energy(result)
     given = result.energy["kinetic"][0] - np.min(result.energy["load"])
     assert np.max(np.diff(energy)) <= 1e-12 * given
@@ -134,17 +131,11 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
 )
 def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
     """Rounding, 1e-15 of places, grows with every impact: a thousand times in the first that each block has."""
-    springs = ContactSprings(1e8, 4e7, friction=0.5)
-    blocks = pile(count, 5)
+    model = model_of(pile(count, 5), ContactSprings(1e8, 4e7, friction=0.5))
     kept = {"every": 10, "compiled": count > 100}
-    result = history(blocks, springs, steps, **kept)
-    behind = history([mirrored(block) for block in blocks], springs, steps, **kept)
-    shift = np.array([8.0, -4.0])
-    away = [
-        PlaneBlock(block.vertices + shift, DENSITY, fixed=block.fixed, velocity=block.velocity, spin=block.spin)
-        for block in blocks
-    ]
-    shifted = history(away, springs, steps, **kept)
+    result = history(model, steps, **kept)
+    behind = history(moved(model, np.diag(MIRROR), 0), steps, **kept)
+    shifted = history(moved(model, np.eye(2), np.array([8.0, -4.0])), steps, **kept)
     assert len(result.contacts) > count / 3
     assert behind.displacement * MIRROR == pytest.approx(result.displacement, abs=1e-9)
     assert shifted.displacement == pytest.approx(result.displacement, abs=1e-9)

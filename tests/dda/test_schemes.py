@@ -21,9 +21,7 @@ from dda import (
     named_scheme,
     response,
     solve,
-    solve_textbook,
     static,
-    textbook_applicable,
 )
 from dda.bodies.diagnostics import step_of_mode
 from dda.scheme import roots
@@ -40,41 +38,6 @@ def square(ratio=1.0, mu=0.0, **load):
 def test_the_names_are_those_of_scenes():
     assert SCHEMES == ("newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite")
     assert all(named_scheme(name, step=1e-3, **values).name == name for name, values in CASES)
-
-
-@pytest.mark.parametrize(
-    ("name", "values", "field"),
-    [
-        ("houbolt", {}, "name"),
-        ("newmark", {}, "name"),
-        ("hht", {}, "rho_inf"),
-        ("hht", {"rho_inf": 0.4}, "rho_inf"),
-        ("wbz", {"rho_inf": 1.1}, "rho_inf"),
-        ("chung-hulbert", {"rho_inf": -0.1}, "rho_inf"),
-        ("chung-hulbert", {"rho_inf": math.nan}, "rho_inf"),
-        ("chung-hulbert", {"rho_inf": 0.5, "split": 0.5}, "split"),
-        ("leapfrog", {"rho_inf": 0.5}, "rho_inf"),
-        ("leapfrog", {"start": "zero"}, "start"),
-        ("leapfrog", {"gg": 0.0}, "gg"),
-        ("composite", {"split": 1.0}, "split"),
-        ("composite", {"rho_inf": 2.0}, "rho_inf"),
-        ("composite", {"step": 0.0}, "step"),
-    ],
-)
-def test_a_bad_value_is_named(name, values, field):
-    with pytest.raises(ValueError, match=f"^{field}: "):
-        named_scheme(name, **{"step": 1e-3, **values})
-
-
-def test_damping_of_newmark_alone_is_refused_beside_another_scheme():
-    scheme = named_scheme("hht", step=1e-3, rho_inf=0.8)
-    with pytest.raises(ValueError, match="mass_damping, stiffness_damping: go with newmark only"):
-        replace(scheme, mass_damping=1.0)
-    with pytest.raises(ValueError, match="self-adaptive damping goes with newmark only"):
-        solve(square(), scheme, 5, floor=0.0)
-    assert "hht" in str(textbook_applicable(square(), scheme))
-    with pytest.raises(ValueError, match="printed recursion"):
-        solve_textbook(square(), scheme, 5)
 
 
 # ---- roots -----------------------------------------------------------------------------------------------------------

@@ -107,9 +107,6 @@ def test_one_sub_block_on_a_base_that_shakes_is_the_block(name, values):
     for mine, its in zip(sub.base_contacts, one.base_contacts, strict=True):
         assert apart(sub.normal[mine], one.normal[its]) < 1e-10
     assert sub.solves == one.solves and sub.slip[-1] == pytest.approx(one.slip[-1], rel=1e-11) and one.slip[-1] > 0
-    stays = one.closed[:, 1:] & one.closed[:, :-1]  # where the slips of all stages are what the reference moves by
-    moved = np.diff(one.slide + one.shear / law.shear)
-    assert np.max(np.abs(moved - one.slipped[:, 1:])[stays]) < 1e-11 * np.max(np.abs(one.slide))
     assert sub.velocity == pytest.approx(one.velocity, rel=1e-9, abs=1e-12)
     for part, energy in one.energies.items():
         assert np.max(np.abs(energy - sub.energies[part])) < 1e-10 * np.max(one.energies["kinetic"]), part

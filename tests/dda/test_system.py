@@ -2,13 +2,9 @@
 
 import numpy as np
 import pytest
-from oracles.plain_newmark import glued, stepped
 
 import dda
 import fem_reference
-from dda.bodies.block_system import BlockSystem
-from validation import load_scene, solve
-from validation.errors import InputError
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
@@ -75,73 +71,12 @@ def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, sch
     assert largest_error(result, expected) < 1e-9  # 1e-8 is asked
 
 
-@pytest.mark.parametrize("ratio", [0.3, 50.0])
-def test_finite_glue_is_the_assembled_system_in_other_coordinates(ratio):
-    """Joints written down by hand, in the unknowns of the blocks, by plain Newmark."""
-    width, height, nx, ny, p = 1.8, 1.2, 3, 2, 2e9
-    vertices = ((0, 0), (width, 0), (width, height), (0, height))
-    model = dda.TwoBlockModel(dda.Block(vertices, dda.Material(2700.0, 1e9, 0.2)), dda.Contact(p), 5e6, gravity=9.81)
-    system = dda.subdivided(model, nx, ny, ratio * 1e9)
-    w, h, blocks, glue = width / nx, height / ny, system.blocks, (ratio * 1e9,) * 2
-    springs = []
-    for k in range(nx * ny):
-        x, y = (k % nx) * w, (k // nx) * h
-        if k % nx < nx - 1:
-            springs += [(k, k + 1, (x + w, y + end), *glue) for end in (0.0, h)]
-        if k < nx:
-            springs += [(k, k + nx, (x + end, y + h), *glue) for end in (0.0, w)]
-            springs += [(k, None, (x + end, 0.0), p / nx, p / nx) for end in (0.0, w)]
-    M, K = glued(blocks, springs)
-    F, pressure = np.zeros((2, 6 * nx * ny))
-    for k, block in enumerate(blocks):
-        rows = slice(6 * k, 6 * k + 6)
-        F[rows] = -9.81 * 2700.0 * w * h * np.eye(6)[1]
-        if k >= nx:
-            F[rows] -= 5e6 * w * block.T((k % nx + 0.5) * w, height)[1]
-        else:
-            pressure[rows] = -2 * p / nx / width * block.T((k + 0.5) * w, 0.0)[1]
-    D = stepped(M, K, np.tile(F, (61, 1)), SCHEME)
-    T = [blocks[k].T(width / 2, height / 2)[1] for k in (1, 4)]
-    expected = {"displacement": (D[:, 6:12] @ T[0] + D[:, 24:30] @ T[1]) / 2, "contact_pressure": D @ pressure}
-    result = dda.solve_system(system, SCHEME, 60)
-    for name, values in expected.items():
-        np.testing.assert_allclose(result.columns[name], values, rtol=0, atol=1e-11 * np.abs(values).max())
-
-
 def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():
     column = dda.subdivided(two_block(), 1, 6, 1e13)
     saved, full = (dda.solve_system(column, SCHEME, 60, full=full) for full in (False, True))
     assert (saved.unknowns, full.unknowns) == (12, 36)
     assert saved.notes == ("12 of 36 unknowns kept",)
     assert largest_error(saved, full, COLUMNS[:2]) < 1e-12
-
-
-@pytest.mark.parametrize(
-    ("changes", "words"),
-    [
-        ({"columns": 0}, "columns: must be at least 1"),
-        ({"rows": -1}, "rows: must be at least 1"),
-        ({"glue": 0.0}, "glue: must be finite and positive"),
-        ({"pattern": "hexagons"}, "pattern: must be 'squares' or 'triangles'"),
-        ({"model": two_block(PENTAGON)}, "only convex quadrilaterals"),
-    ],
-)
-def test_what_cannot_be_cut_is_refused(changes, words):
-    data = {"model": two_block(), "columns": 2, "rows": 2, "glue": 1e9, "pattern": "squares"} | changes
-    with pytest.raises(ValueError, match=words):
-        dda.subdivided(**data)
-
-
-def test_joints_and_systems_are_checked():
-    block = two_block().block
-    with pytest.raises(ValueError, match="normal: must be finite and positive"):
-        dda.Joint(0, 1, (0, 0), (1, 0), 0.0, 1.0)
-    with pytest.raises(ValueError, match="end: must differ from start"):
-        dda.Joint(0, 1, (0, 0), (0, 0), 1.0, 1.0)
-    with pytest.raises(ValueError, match="must name blocks from 0 to 0"):
-        BlockSystem([block], [dda.Joint(0, 1, (0, 0), (1, 0), 1.0, 1.0)], (1.0, 1.0), 2.0)
-    with pytest.raises(ValueError, match="observed: must lie in a block"):
-        BlockSystem([block], [], (3.0, 1.0), 2.0)
 
 
 def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():
@@ -152,16 +87,3 @@ def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():
     for values in result.columns.values():
         assert np.all(np.isfinite(values[:first]))
         assert np.all(values[first + 1 :] == np.inf)
-
-
-def test_a_scene_is_cut(scene_file):
-    text = scene_file.read_text().replace("young = 1.0e9", "young = 1.0e9\nsubdivide = [1, 4]\nglue_ratio = 1e12")
-    scene_file.write_text(
-        text.replace("elements = 4", "elements = 4\ndegree = 1") + '[run]\nsolvers = ["dda", "fem"]\n'
-    )
-    scene = load_scene(scene_file)
-    dda_run, fem_run = (solve(scene, name) for name in ("dda", "fem"))
-    scale = np.abs(fem_run.displacement).max()
-    np.testing.assert_allclose(dda_run.displacement, fem_run.displacement, rtol=0, atol=1e-9 * scale)
-    with pytest.raises(InputError, match="does not handle sub-blocks"):
-        solve(scene, "dda-textbook")

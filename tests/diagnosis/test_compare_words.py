@@ -12,8 +12,8 @@ import pytest
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from oracles.made_cases import line_in
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation import load_scene, solve
 from validation.cli import compare as cli_compare

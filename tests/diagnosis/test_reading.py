@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from faults import seams
-from oracles.plain_block import Plain, history, write_measured_point
+from oracles.sliding_block import Plain, history, write_measured_point
 
 from validation.diagnosis.reading import MOST_STEPS, Foreign, parse_columns, parse_scale, read, steppings
 from validation.errors import InputError

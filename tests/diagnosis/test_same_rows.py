@@ -11,12 +11,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.column_histories import history
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation.diagnosis.answer import Answer
+from validation.diagnosis.fits.fit import fit_one
+from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
+from validation.diagnosis.moves import Move
 from validation.diagnosis.reading import Foreign
+from validation.diagnosis.search import Explanation, is_determined
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant
 from validation.scenes.scene import parse_scene
 
 PLAIN = Plain(steps=60)
@@ -48,6 +54,33 @@ def test_stiffness_damping_and_a_scheme_are_told_as_two(discount: float) -> None
 
 def test_another_height_is_named() -> None:
     assert judged(PLAIN, run(replace(PLAIN, height=2.54))).causes == ["height-factor"]
+
+
+@pytest.mark.parametrize(("factor", "determined"), [(1e5, False), (1.3, True)])
+def test_a_factor_that_may_as_well_be_ten_times_as_large_is_no_number(factor: float, determined: bool) -> None:
+    """Five digits of a block that is a hundred thousand times as stiff do not tell it from a rigid one."""
+    rectangle = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
+    own = Variant(0.5, 1.0, 1.0)
+    steps = np.full(60, 2e-3)
+    made = histories(rectangle, [replace(own, young=factor, softness=0.3)], steps).displacement[:, 0]
+    rounded = np.array([float(f"{value:.4e}") for value in made])
+    target = Target(rectangle, steps, np.arange(60), rounded[None])
+    free = ("young", "softness")
+    causes = (Move("young-factor", {}, free[:1]), Move("springs-factor", {}, free[1:]))
+    explanation = Explanation(causes, fit_one(target, replace(own, young=factor, softness=0.3), free))
+    assert is_determined(target, fit_one(target, own), explanation) is determined
+
+
+@pytest.mark.long
+def test_springs_beside_a_missing_coupling_are_no_block_ten_million_times_as_stiff() -> None:
+    """Springs 1.8e-5 stiffer make up for a block that is 1e6 times as stiff; every other row, six digits."""
+    base = Plain(dt=0.026, steps=90, side=3.8, rho=6520.0, E=1.34e8, p=1.84e9, q=93300.0, consistent=True)
+    displacement, _ = run(replace(base, p=1.39 * base.p, coupling=0.0))
+    rows = np.array([float(f"{value:.5e}") for value in displacement[1::2]])
+    scene = scene_of(base).with_values({"block.side": base.side})
+    answer = compare(scene, Foreign(base.dt * np.arange(2, 91, 2), rows))
+    assert answer.causes == ["springs-factor", "coupling"]
+    assert answer.values["springs-factor"] == pytest.approx(1.39, rel=1e-5)
 
 
 def test_a_contact_that_is_never_reached_has_no_number() -> None:

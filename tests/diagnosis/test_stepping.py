@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.plain_block import Plain, run
+from oracles.sliding_block import Plain, run
 
 import dda
 from validation.diagnosis.fits.target import Target

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from conftest import typed
 from faults import seams
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare

@@ -66,14 +66,3 @@ def test_another_project_or_another_checkout_of_this_one_has_no_commit(place, na
     inside = sources(tmp_path / "other" / place)
     project(tmp_path / "other", name)
     assert said(inside) == "unknown (not a git checkout)"
-
-
-def test_what_git_s_own_variables_name_is_not_taken(tmp_path, monkeypatch):
-    """A hook of another repository that runs the suite sets them."""
-    project(tmp_path / "hooked", "hooked")
-    inside = sources(tmp_path / "suite")
-    for has_commit in (False, True):
-        expected = project(inside, "dda-validation") if has_commit else "unknown (not a git checkout)"
-        with monkeypatch.context() as patch:
-            patch.setenv("GIT_DIR", str(tmp_path / "hooked" / ".git"))
-            assert said(inside) == expected

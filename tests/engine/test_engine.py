@@ -26,16 +26,6 @@ from validation.solvers.contract import Solver
 from validation.solvers.registry import BUILT_IN
 
 
-def test_a_study_runs_once_and_resumes(scene, tmp_path):
-    results, seen = Results(tmp_path / "r"), []
-    for _ in range(2):
-        verdicts = run_study(study(scene), results, progress=lambda done, total, label: seen.append(label))
-    assert [v.status for v in verdicts] == [Status.PASS]
-    assert seen == ["small dda", "small bar"]
-    assert len((tmp_path / "r" / "rows.jsonl").read_text().split()) > 0
-    assert len(results.rows()) == 2
-
-
 def test_a_column_that_a_solver_lacks_is_not_reported_and_the_others_are(scene, tmp_path):
     columns = ["displacement", "contact_pressure", "rotation"]
     results = Results(tmp_path)

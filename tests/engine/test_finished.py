@@ -10,21 +10,6 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 
 
-def test_a_derived_row_is_computed_once_for_all_gates(tmp_path):
-    asked = []
-
-    def compute(finished):
-        asked.append(finished)
-        return {"first": 1.0, "second": 2.0}
-
-    row = Derived("scene", "name", (), compute)
-    finished = Finished({}, Results(tmp_path), {("scene", "name"): row})
-    for metric, value in (("first", 1.0), ("second", 2.0)):
-        gate = Gate("scene", ("name",), metric, value, value, "a reason")
-        assert evaluate(gate, finished).status is Status.PASS
-    assert asked == [finished]
-
-
 @pytest.mark.parametrize(
     ("ended", "status"),
     [(Outcome.TIMEOUT, Status.FAIL), (Outcome.NOT_APPLICABLE, Status.NOT_RUN), (None, Status.NOT_RUN)],

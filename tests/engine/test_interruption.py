@@ -3,10 +3,7 @@
 import json
 import os
 import resource
-import signal
-import subprocess
 import sys
-import time
 from multiprocessing import Barrier, Process
 
 import numpy as np
@@ -21,55 +18,10 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 
 # A solver that has not answered before it may.
-WAITING = """
-import pathlib, time
-def solve(scene):
-    while not pathlib.Path(__file__).with_name("go").exists():
-        time.sleep(0.02)
-    return {"displacement": [-1e-3] * scene.time.steps}
-"""
-
-
-def start(scene, results, jobs=2):
-    command = [sys.executable, "-m", "validation", "run", str(scene), "--results", str(results), "--jobs", str(jobs)]
-    return subprocess.Popen(
-        command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, start_new_session=True
-    )
 
 
 def rows_of(results):
     return Results(results).rows()
-
-
-@pytest.mark.long
-@pytest.mark.usefixtures("interruptible")
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_a_run_that_is_killed_goes_on_where_it_stopped(number, scene_file, tmp_path, monkeypatch):
-    (tmp_path / "waiting_solver.py").write_text(WAITING)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path), prepend=os.pathsep)
-    monkeypatch.syspath_prepend(tmp_path)  # for the second run, which is this process's
-    scene_file.write_text(SCENE + '[run]\nsolvers = ["dda", "waiting_solver:solve", "bar"]\n')
-    results = tmp_path / "r"
-    with start(scene_file, results) as process:
-        deadline = time.monotonic() + 60
-        while process.poll() is None and time.monotonic() < deadline and len(rows_of(results)) < 2:
-            time.sleep(0.02)
-        os.killpg(process.pid, number)
-        _, said = process.communicate(timeout=60)
-    kept = rows_of(results)
-    assert "Traceback" not in said
-    assert {row.solver for row in kept.values()} == {"dda", "bar"}
-    assert all(Results(results).history(row.key) is not None for row in kept.values())
-    assert not list(results.glob("histories/.*")) or number == signal.SIGKILL
-    before = (results / "rows.jsonl").read_bytes()
-    (tmp_path / "go").touch()
-    done = typed("run", scene_file, "--results", results)
-    assert done.returncode == 0, done.stderr
-    after = (results / "rows.jsonl").read_bytes()
-    assert after.startswith(before), "finished rows are kept as they were"
-    assert len(rows_of(results)) == 3
-    fresh = [line for line in after[len(before) :].splitlines() if line.strip()]
-    assert len(fresh) == 1, "only what was missing runs"
 
 
 def write_again_and_again(directory, study, start):

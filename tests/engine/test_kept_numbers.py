@@ -1,25 +1,20 @@
 """Rows, windows and comparisons: each number is of its own case, steps and static value."""
 
-import sys
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 import pytest
-from faults import seams
 from oracles.made_cases import made_history, made_row
 
-from validation.engine import measure, origin
+from validation.engine import measure
 from validation.engine.case import Case
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
-from validation.runs import provenance
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.solvers.registry import get_solver
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
 
@@ -39,42 +34,7 @@ def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name():
     }
 
 
-# ---- provenance ---------------------------------------------------------------------------------------------------
-
-
-def test_provenance_names_this_interpreter_these_packages_and_this_commit(monkeypatch):
-    import platform
-
-    import scipy
-
-    seams.COMMIT.put(monkeypatch, lambda: "the commit")
-    seams.PROCESSOR.put(monkeypatch, lambda: "the processor")
-    found = provenance.provenance()
-    assert found["python"] == platform.python_version()
-    assert (found["packages"]["numpy"], found["packages"]["scipy"]) == (np.__version__, scipy.__version__)
-    assert (found["commit"], found["processor"]) == ("the commit", "the processor")
-
-
 # ---- rows ---------------------------------------------------------------------------------------------------------
-
-
-def test_what_differs_between_rows_is_told_with_the_number_of_each():
-    rows = [made_row("dda", provenance={"commit": commit}) for commit in ("then", "now", "then")]
-    assert origin.of_rows(rows)["commit"] == "then (2 rows); now (1 row)"
-    assert origin.of_rows(rows[1:2])["commit"] == "now"
-
-
-def test_lines_of_python_are_counted_and_a_tracer_goes_on(monkeypatch):
-    def loop(count):
-        for _ in range(count):
-            pass
-
-    before = sys.gettrace()
-    few, many = (measure.lines_of(partial(loop, count)) for count in (10, 110))
-    assert many - few == 200 and sys.gettrace() is before
-    run = partial(get_solver("dda").solve, load_scene("figure-8").expand()[0])
-    run()
-    assert measure.lines_of(run) == measure.lines_of(run)
 
 
 def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene, tmp_path):

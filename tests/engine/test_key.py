@@ -50,19 +50,6 @@ def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_pa
     assert changed["fem_reference/mesh"] == ["0", "1", "1", "0"]
 
 
-def test_two_files_that_swap_names_give_another_digest(tmp_path, monkeypatch):
-    package = tmp_path / "two_files"
-    package.mkdir()
-    (package / "__init__.py").touch()
-    monkeypatch.syspath_prepend(str(tmp_path))
-    digests = set()
-    for first, second in (("1", "2"), ("2", "1"), ("12", "")):
-        (package / "a.py").write_text(first)
-        (package / "b.py").write_text(second)
-        digests.add(case_module.source_digest.__wrapped__("two_files"))
-    assert len(digests) == 3
-
-
 def keys_of(scene, solver, file, texts):
     """Return the keys of a scene as a file that it names has one content and another."""
     keys = set()

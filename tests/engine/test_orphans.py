@@ -125,16 +125,6 @@ def test_what_a_solver_leaves_behind_ends_with_the_run(solver, tmp_path, mark):
 
 
 @pytest.mark.long
-def test_a_second_signal_does_not_wait(tmp_path, mark):
-    with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
-        wait_for(mark, "user_worker", process)
-        for _ in range(3):
-            process.send_signal(signal.SIGINT)
-        _, said = process.communicate(timeout=30)
-    assert left(mark) == [] and "Traceback" not in said and process.returncode == 130
-
-
-@pytest.mark.long
 def test_a_hangup_that_is_ignored_stays_ignored(tmp_path, mark):
     """As under nohup."""
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)

@@ -4,6 +4,7 @@ import json
 import multiprocessing
 import os
 import signal
+import sys
 from collections import Counter
 from concurrent.futures import Executor, Future
 
@@ -12,6 +13,7 @@ import pytest
 from validation.engine import cluster, executor
 from validation.engine.run import run_cases, study_cases
 from validation.engine.study import Study
+from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.solvers import memory
@@ -109,6 +111,13 @@ def test_a_case_beyond_a_worker_s_share_of_the_memory_runs_after_the_others(scen
 
 
 # ---- a cluster ------------------------------------------------------------------------------------------------------
+
+
+def test_an_absent_package_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "distributed", None)
+    with pytest.raises(InputError) as error, cluster.executor("tcp://127.0.0.1:1"):
+        pass
+    assert error.value.field == "--scheduler"
 
 
 def test_a_user_s_sources_are_those_that_no_installation_holds(tmp_path, monkeypatch):

@@ -1,11 +1,8 @@
 """Seeded faults: what stands in a seam of solver code is replaced for a run; production code has no switch."""
 
-from __future__ import annotations
-
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from decimal import Decimal
-from typing import Any
 
 import numpy as np
 from faults.seams import Seam
@@ -24,11 +21,11 @@ class Fault:
     replacement: Callable[[Callable[..., object]], object]
 
 
-def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[..., Callable[..., object]]:
+def with_scheme(position, **changes):
     """Hand a function a changed scheme, or a stage, whose weights of accelerations still add up to what they did."""
 
-    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
-        def faulty(*arguments: object, **named: object) -> object:
+    def wrap(sound):
+        def faulty(*arguments, **named):
             scheme = arguments[position]
             values = {name: of_one_kind(change, getattr(scheme, name)) for name, change in changes.items()}
             for weight in {"delta", "gamma"} & set(values):
@@ -43,25 +40,25 @@ def with_scheme(position: int, **changes: Callable[[float], float]) -> Callable[
     return wrap
 
 
-def of_one_kind(change: Callable[[float], float], number: float) -> object:
+def of_one_kind(change, number):
     """Return what a change makes of a number; of a decimal one again a decimal one, which goes with no doubles."""
     return Decimal(change(float(number))) if isinstance(number, Decimal) else change(number)
 
 
-def times(factor: float) -> Callable[..., Callable[..., object]]:
+def times(factor):
     """Multiply what a function returns."""
     return lambda sound: lambda *a, **k: factor * sound(*a, **k)
 
 
-def first_times(factor: float) -> Callable[..., Callable[..., object]]:
+def first_times(factor):
     """Multiply the first argument of a function."""
     return lambda sound: lambda first, *a, **k: sound(first * factor, *a, **k)
 
 
-def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
+def late(sound):
     """Report every step one step late, along the axis of steps."""
 
-    def faulty(*a: object, **k: object) -> np.ndarray:
+    def faulty(*a, **k):
         found = sound(*a, **k)
         axis = int(np.argmax(found.shape))
         shifted = np.roll(found, 1, axis=axis)
@@ -71,11 +68,11 @@ def late(sound: Callable[..., np.ndarray]) -> Callable[..., np.ndarray]:
     return faulty
 
 
-def told(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:
+def told(change):
     """Change fields of what a function returns, a dataclass, or what that makes when it is asked for."""
 
-    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
-        def faulty(*a: object, **k: object) -> object:
+    def wrap(sound):
+        def faulty(*a, **k):
             found = sound(*a, **k)
             return changed(found, change(found))
 
@@ -84,7 +81,7 @@ def told(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[...
     return wrap
 
 
-def changed(found: Any, values: Mapping[str, object]) -> Any:
+def changed(found, values):
     """Return a dataclass with other values of its fields and properties."""
     stored = {one.name for one in fields(found)} & values.keys()
     other = replace(found, **{name: values[name] for name in stored})
@@ -94,26 +91,26 @@ def changed(found: Any, values: Mapping[str, object]) -> Any:
     return other
 
 
-def of_first(change: Callable[..., dict[str, object]]) -> Callable[..., Callable[..., object]]:
+def of_first(change):
     """Change fields of the first argument of a function, such as a model or a problem, a dataclass."""
     return lambda sound: lambda first, *a, **k: sound(replace(first, **change(first)), *a, **k)
 
 
-def scaled(**factors: float) -> Callable[..., Callable[..., object]]:
+def scaled(**factors):
     """Multiply fields of the first argument of a function."""
     return of_first(lambda first: {name: getattr(first, name) * factor for name, factor in factors.items()})
 
 
-def energy_changed(name: str, change: Callable[[np.ndarray], np.ndarray]) -> Callable[..., Callable[..., object]]:
+def energy_changed(name, change):
     """Change one of the energies that a function returns, where they are kept."""
     return told(lambda found: {"energies": found.energies and found.energies | {name: change(found.energies[name])}})
 
 
-def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
+def soft_springs(factor):
     """Change the stiffness of the contact springs of the DDA model."""
 
-    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
-        def faulty(material: object, contact: object, area: float, a: float) -> object:
+    def wrap(sound):
+        def faulty(material, contact, area, a):
             changed = replace(contact, stiffness=contact.stiffness * factor)
             return sound(material, changed, area, a)
 
@@ -122,15 +119,15 @@ def soft_springs(factor: float) -> Callable[..., Callable[..., object]]:
     return wrap
 
 
-def no_discount(position: int) -> Callable[..., Callable[..., object]]:
+def no_discount(position):
     return with_scheme(position, gg=lambda gg: 1.0)
 
 
-def undiscounted(position: int) -> Callable[..., Callable[..., object]]:
+def undiscounted(position):
     """Hand a function the discount one."""
 
-    def wrap(sound: Callable[..., object]) -> Callable[..., object]:
-        def faulty(*arguments: object) -> object:
+    def wrap(sound):
+        def faulty(*arguments):
             return sound(*arguments[:position], 1.0, *arguments[position + 1 :])
 
         return faulty
@@ -138,13 +135,13 @@ def undiscounted(position: int) -> Callable[..., Callable[..., object]]:
     return wrap
 
 
-def thousandth(delta: float) -> float:
+def thousandth(delta):
     return 1.001 * delta
 
 
-def no_damping(delta: float) -> float:
+def no_damping(delta):
     return 0.501 if delta == 0.5 else 0.5
 
 
-def swapped(start: str) -> str:
+def swapped(start):
     return "zero" if start == "consistent" else "consistent"

@@ -3,61 +3,60 @@
 Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
 """
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Sequence
-from pathlib import Path
-
 import numpy as np
 import pytest
-from faults.fault import Fault
 
-from validation.engine.case import Case
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
-from validation.engine.study import Study
 from validation.gates.gate import Gate, Status
-from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.suite.folders import get_study
 
 
 class Overlay(Results):
     """Histories of a faulty run over those of the sound one."""
 
-    def __init__(self, directory: Path, sound: Results) -> None:
+    def __init__(self, directory, sound):
         super().__init__(directory)
         self.unharmed = sound
 
-    def history(self, key: str) -> History | None:
+    def history(self, key):
         return super().history(key) or self.unharmed.history(key)
 
 
-def failed(finished: Finished, gates: Sequence[Gate]) -> set[str]:
+def failed(finished, gates):
     return {gate.id for gate in gates if evaluate(gate, finished).status is Status.FAIL}
 
 
-def whole(fault: str, faulty: Finished) -> None:
+def whole(fault, faulty):
     """Refuse a fault that breaks a solver instead of changing its numbers: without a row every gate fails."""
     broken = {row.notes[-1] for row in faulty.rows.values() if row.outcome is Outcome.RAISED}
     assert not broken, f"{fault}: breaks the solver, which bites every gate: {sorted(broken)}"
 
 
-def cases_of(study: Study, gates: Sequence[Gate]) -> list[Case]:
+def cases_of(study, gates):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
     return [case for case in study.cases() if (case.scene.name, case.solver) in needed]
 
 
+def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True):
+    """Check the kill matrix of a study, or of some of its gates."""
+    study = get_study(name)
+    gates = [gate for gate in study.gates() if is_checked(gate)]
+    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases)
+
+
 def check_kill_matrix(
-    study: Study,
-    cases: Sequence[Case],
-    gates: Sequence[Gate],
-    faults: Sequence[Fault],
-    directory: Path,
-    finished_cases: Path,
-) -> None:
+    study,
+    cases,
+    gates,
+    faults,
+    directory,
+    finished_cases,
+):
     """Run the cases sound and with every fault; no fault may pass unseen, no gate may stay unbitten.
 
     A gate that one fault has bitten is tried again only with faults that no other gate has seen.
@@ -78,7 +77,7 @@ def check_kill_matrix(
     assert not unbitten, f"gates that no fault bites: {unbitten}"
 
 
-def groups(gates: Sequence[Gate], bitten: set[str]) -> list[list[Gate]]:
+def groups(gates, bitten):
     """Group gates in the order of trial: all that are not bitten yet, then the others scene by scene."""
     others: dict[str, list[Gate]] = {}
     for gate in gates:
@@ -88,13 +87,13 @@ def groups(gates: Sequence[Gate], bitten: set[str]) -> list[list[Gate]]:
 
 
 def killed(
-    study: Study,
-    cases: Sequence[Case],
-    tried: Sequence[Sequence[Gate]],
-    fault: Fault,
-    sound: Finished,
-    results: Overlay,
-) -> Iterator[set[str]]:
+    study,
+    cases,
+    tried,
+    fault,
+    sound,
+    results,
+):
     """Yield of each group the gates that fail with a fault; only the solvers that it reaches run again."""
     for some in tried:
         needed = {need for gate in some for need in study.needs(gate)}
@@ -106,7 +105,7 @@ def killed(
         yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
 
 
-def print_matrix(kills: dict[str, set[str]], gates: Sequence[Gate]) -> None:
+def print_matrix(kills, gates):
     """Print one row a gate, one column a fault."""
     names = list(kills)
     for number, name in enumerate(names):

@@ -4,13 +4,8 @@ A seam names the module or class *through which* a function is called, since tha
 `newmark.predictor` is the function: where it is renamed, moved or no longer imported, this module does not import.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
-
-import pytest
 
 import dda
 import fem_reference.exact.bar as exact_bar
@@ -18,7 +13,7 @@ import fem_reference.exact.layers as layers
 import fem_reference.mesh.elasticity as elasticity
 from dda.bodies import block_system as system
 from dda.bodies import column_history as column_contacts
-from dda.bodies import column_march, gap_form, joints, subdivision
+from dda.bodies import column_march, column_step, gap_form, joints, subdivision
 from dda.bodies import glued_blocks as glued
 from dda.bodies import glued_step as system_step
 from dda.bodies import locked_block as solution
@@ -49,7 +44,6 @@ from fem_reference.scheme import stage as fem_stage
 from validation.diagnosis import other_solvers, reading, readings, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
-from validation.runs import provenance
 from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
 from validation.solvers.columns import blocks as dda_columns
@@ -73,17 +67,17 @@ class Seam:
     sound: Any
     name: str = field(init=False)
 
-    def __post_init__(self) -> None:
+    def __post_init__(self):
         names = [name for name, value in vars(self.owner).items() if value is self.sound]
         if len(names) != 1:
             raise ValueError(f"{self.owner!r} holds {self.sound!r} under the names {names}: a seam has exactly one")
         object.__setattr__(self, "name", names[0])
 
-    def put(self, patch: pytest.MonkeyPatch, other: Any) -> None:
+    def put(self, patch, other):
         """Put something in the place of what is there, as long as the patch lasts."""
         patch.setattr(self.owner, self.name, other)
 
-    def wrap(self, patch: pytest.MonkeyPatch, replacement: Callable[[Any], Any]) -> None:
+    def wrap(self, patch, replacement):
         """Put in its place what is made of it."""
         self.put(patch, replacement(getattr(self.owner, self.name)))
 
@@ -180,7 +174,7 @@ COLUMN_INERTIA = Seam(column_march, column_march.inertia)
 COLUMN_STIFFNESS = Seam(column_march, column_march.stiffness)
 COLUMN_BASE = Seam(column_march, column_march.impedance)
 COLUMN_SPRINGS = Seam(column_march, column_march.springs_of)
-COLUMN_VELOCITY = Seam(march_step, march_step.velocity_corrector)
+COLUMN_VELOCITY = Seam(column_step, column_step.velocity_corrector)
 CONTACT_BODY = Seam(column_contacts, column_contacts.body_of)
 CONTACT_COLUMN = Seam(dda_columns, dda_columns.solve_column)
 EVENTS_COLUMN = Seam(column_events, column_events.solve)
@@ -199,6 +193,4 @@ BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)
 ORIGIN = Seam(origin, origin._here)
-COMMIT = Seam(provenance, provenance._commit)
-PROCESSOR = Seam(provenance, provenance._processor)
 IMPORTED_SOLVER = Seam(registry, registry._imported)

@@ -6,7 +6,7 @@ import mpmath
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import Integrated, random_problem
+from oracles.integrated import integrated_block, random_problem
 
 from fem_reference.events.block_events import BlockMotion, solve
 from fem_reference.events.block_model import BlockProblem
@@ -79,7 +79,7 @@ def test_an_independent_integration_with_events_agrees(seed: int) -> None:
     end = 10 * travel(problem)
     motion = solve(problem, end)
     # DOP853 at rtol 1e-13 is good to about 1e-11 here; every switch amplifies that, by up to ten in these problems
-    switches, y = Integrated(problem).run(list(map(int, motion.closed_at_start)), end)
+    switches, y = integrated_block(problem, list(map(int, motion.closed_at_start)), end)
     times = [time for time, _, _ in switches]
     assert len(times) > 1
     assert [s.time for s in motion.switches] == pytest.approx(times, rel=1e-8)

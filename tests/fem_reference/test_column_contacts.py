@@ -1,7 +1,5 @@
 """Line elements on contacts that open or slip: balances in every step, natural modes, bonded springs."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import replace
 
@@ -10,35 +8,33 @@ import pytest
 from conftest import thinned
 
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
-from fem_reference.column.contact_system import column_at_start, mesh_of, stepper_of, system_of
+from fem_reference.column.contact_system import column_at_start, model_of, stepper_of, system_of
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import Observation, observed_by, solve_line
+from fem_reference.column.stepping import observed_by, solve_line
 from fem_reference.contact import compilation
 from fem_reference.contact.iteration import CONVERGED
 from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE
-from fem_reference.contact.march import ContactState
-from fem_reference.contact.stepper import ContactStepper
 from fem_reference.problem.problem import Scheme
 
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
 
 
-def scheme(numbers: tuple[float, float], dt: float, gg: float = 1.0, start: str = "consistent") -> Scheme:
+def scheme(numbers, dt, gg=1.0, start="consistent"):
     return Scheme(numbers[0], numbers[1], gg, dt, start)
 
 
-def ground(*strata: tuple[float, float, float], motion: str = "pressure", impedance: float | None = None) -> Ground:
+def ground(*strata, motion="pressure", impedance=None):
     """Strata by thickness, density and modulus of pressure, or twice that of shear."""
-    return Ground(tuple(Stratum(*numbers, 0.0) for numbers in strata), motion, impedance=impedance)  # type: ignore[arg-type]
+    return Ground(tuple(Stratum(*numbers, 0.0) for numbers in strata), motion, impedance=impedance)
 
 
-def still(steps: int, **parts: np.ndarray) -> Excitation:
+def still(steps, **parts):
     rest = dict.fromkeys(("displacement", "velocity", "acceleration", "pressure"), np.zeros(steps + 1))
     return Excitation(**(rest | parts))
 
 
-def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
+def random_column(seed):
     """A column of four strata with contacts between them, its drive, and a step."""
     random = np.random.default_rng(seed)
     strata = [(*random.uniform((0.5, 1500.0), (2.0, 3000.0)), 10 ** random.uniform(8, 9.5)) for _ in range(4)]
@@ -53,7 +49,7 @@ def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
     velocities = tuple(random.normal(size=4))
     kind = "frictional" if sheared else "unilateral"
     weight = 0.0 if sheared else 9.81
-    column = ContactColumn(ground(*strata, motion=motion, impedance=impedance), kind, tuple(law), velocities, weight)  # type: ignore[arg-type]
+    column = ContactColumn(ground(*strata, motion=motion, impedance=impedance), kind, tuple(law), velocities, weight)
     dt = 10 ** random.uniform(-4.5, -3)
     t = dt * np.arange(101)
     w = 0.2 / dt
@@ -65,18 +61,15 @@ def random_column(seed: int) -> tuple[ContactColumn, Excitation, float]:
 RANDOM = range(24)
 
 
-def stepper_and_start(
-    column: ContactColumn, elements: int, degree: int, how: Scheme, drive: Excitation
-) -> tuple[ContactStepper, ContactState]:
-    mesh, model = mesh_of(column, [elements] * len(column.ground.strata), degree)
-    none = np.zeros(mesh.size)
-    nothing = observed_by(model, [Observation(none, none, none, np.zeros(4))])
-    stepper = stepper_of(column, system_of(column, mesh, model, how, drive, nothing), how)
-    return stepper, column_at_start(stepper, column, mesh, model)
+def stepper_and_start(column, elements, degree, how, drive):
+    model = model_of(column, [elements] * len(column.ground.strata), degree)
+    system = system_of(column, model, how, drive, observed_by(model, (), ()))
+    stepper = stepper_of(column, system, how)
+    return stepper, column_at_start(stepper, column, model)
 
 
 @pytest.mark.parametrize("seed", thinned(RANDOM, 5))
-def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
+def test_forces_bounds_and_momentum_balance_in_every_step(seed):
     column, drive, dt = random_column(seed)
     how = scheme(AVERAGE if seed % 4 < 2 else CONSTANT, dt, 0.99)
     stepper, before = stepper_and_start(column, 2, 1 + seed % 2, how, drive)
@@ -110,7 +103,7 @@ def test_forces_bounds_and_momentum_balance_in_every_step(seed: int) -> None:
 
 
 @pytest.mark.parametrize(("seed", "welded"), [(0, False), (1, False), (4, True)])  # opens, slips, opens
-def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_natural_modes_are_the_same_column(seed, welded, monkeypatch):
     column, drive, dt = random_column(seed)
     column = replace(column, contacts=column.contacts[1:]) if welded else column
     names = ["displacement", "contact_pressure", "stress_1", "velocity_1", "force_2"]
@@ -136,19 +129,17 @@ def test_natural_modes_are_the_same_column(seed: int, welded: bool, monkeypatch:
         ("unilateral", 0.3, 0.0),
     ],
 )
-def test_a_rigid_contact_that_moves_at_the_start_bears_what_its_slip_or_gap_says(
-    law: str, speed: float, force: float
-) -> None:
+def test_a_rigid_contact_that_moves_at_the_start_bears_what_its_slip_or_gap_says(law, speed, force):
     """Its strength against the slip, nothing where its faces part: not what would keep accelerations together."""
     joint = ColumnContact(1.0, math.inf, *((0.0, 2e4) if law == "frictional" else ()))
     strata = ground((1.0, 2000.0, 1e8), (1.0, 2000.0, 1e8), motion="shear" if law == "frictional" else "pressure")
-    column = ContactColumn(strata, law, (joint,), (0.0, speed), unsupported=True)  # type: ignore[arg-type]
+    column = ContactColumn(strata, law, (joint,), (0.0, speed), unsupported=True)
     pressed = still(1, pressure=np.full(2, 1e4)) if law == "unilateral" else still(1)
     _, state = stepper_and_start(column, 4, 2, scheme(AVERAGE, 1e-4), pressed)
     assert state.force[0] == pytest.approx(force, abs=1e-9)
 
 
-def test_contacts_that_never_slip_are_bonded_springs() -> None:
+def test_contacts_that_never_slip_are_bonded_springs():
     strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
     springs = [(0.0, 3e9), (1.0, 1e9)]
     bonded = ContactColumn(strata, "frictional", tuple(ColumnContact(*one) for one in springs), (0.0, 0.0))

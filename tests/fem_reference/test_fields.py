@@ -1,9 +1,6 @@
 """What ParaView shows: files read back, against strains times moduli, the mean stress of the loads, the history."""
 
-from __future__ import annotations
-
 from itertools import product
-from pathlib import Path
 from typing import NamedTuple
 
 import meshio
@@ -13,7 +10,7 @@ from conftest import thinned
 from oracles.elements import make
 
 import fem_reference
-from fem_reference.problem.problem import Array, Problem
+from fem_reference.problem.problem import Array
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement")
 AWAY = ((3.0, -1.0), (5.0, -1.0), (5.0, 1.5), (3.0, 1.5))  # 2 m x 2.5 m, its base off the origin
@@ -30,7 +27,7 @@ class Frame(NamedTuple):
     stress: Array  # (cells, 3) Pa: sxx, syy, sxy
 
 
-def read(path: Path) -> list[Frame]:
+def read(path):
     """Return the instants of a file; a .vtu has one without a time."""
     if path.suffix == ".vtu":
         mesh = meshio.read(path)
@@ -40,13 +37,13 @@ def read(path: Path) -> list[Frame]:
         return [_frame(time, points, cells, *data) for time, *data in map(reader.read_data, range(reader.num_steps))]
 
 
-def _frame(time: float, points, cells, point_data, cell_data) -> Frame:  # type: ignore[no-untyped-def]
+def _frame(time, points, cells, point_data, cell_data):
     assert len(cells) == 1 and not points[:, 2].any() and not point_data["displacement"][:, 2].any()
     assert set(point_data) == {"displacement"} and set(cell_data) == {"stress"}
     return Frame(time, points[:, :2], cells[0].data, point_data["displacement"][:, :2], cell_data["stress"][0])
 
 
-def hooke(problem: Problem, exx: Array, eyy: Array, gxy: Array) -> Array:
+def hooke(problem, exx, eyy, gxy):
     """Return (sxx, syy, sxy) of strains by the printed elasticity matrix, gxy = du/dy + dv/dx."""
     E, mu = problem.young, problem.poisson
     if problem.hypothesis == "plane strain":
@@ -55,7 +52,7 @@ def hooke(problem: Problem, exx: Array, eyy: Array, gxy: Array) -> Array:
     return np.column_stack([plate * (exx + mu * eyy), plate * (eyy + mu * exx), plate * (1 - mu) / 2 * gxy])
 
 
-def strains(frame: Frame) -> tuple[Array, Array, Array]:
+def strains(frame):
     """Return strains at the middle of each linear cell: of a bilinear one the least squares' plane through its corners.
 
     On a parallelogram the bilinear map's gradient at the middle is that of this plane.
@@ -69,8 +66,8 @@ def strains(frame: Frame) -> tuple[Array, Array, Array]:
     return exx, eyy, gxy
 
 
-LOADS: dict[str, dict[str, float]] = {"pressure": {}, "sideways": {"traction": TAU}, "weight": {"gravity": G}}
-SHAPES: dict[str, dict[str, object]] = {
+LOADS = {"pressure": {}, "sideways": {"traction": TAU}, "weight": {"gravity": G}}
+SHAPES = {
     "column": {},
     "half": {"poisson": 0.3, "elements": 4},
     "whole, plane strain": {"poisson": 0.25, "hypothesis": "plane strain", "elements": 3, "vertices": AWAY},
@@ -79,9 +76,9 @@ SHAPES: dict[str, dict[str, object]] = {
 
 
 @pytest.mark.parametrize(("shape", "load", "suffix"), thinned(product(SHAPES, LOADS, [".vtu", ".xdmf"]), 5))
-def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, load: str, suffix: str) -> None:
+def test_stress_is_the_deformation_times_the_moduli(tmp_path, shape, load, suffix):
     """In every cell of every frame of linear elements, read from the file alone."""
-    problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))  # type: ignore[arg-type]
+    problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))
     path = tmp_path / f"block{suffix}"
     fem_reference.solve(problem, fem_reference.Scheme(0.25, 0.5, 1.0, 1e-3), 8, COLUMNS, fields=path)
     frames = read(path)
@@ -95,13 +92,13 @@ def test_stress_is_the_deformation_times_the_moduli(tmp_path: Path, shape: str, 
             assert np.abs(frame.stress[:, 2]).max() > 1e-4 * scale  # there is shear to be seen
 
 
-LATERAL: list[tuple[float, dict[str, float]]] = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
+LATERAL = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
 
 
 @pytest.mark.parametrize(
     ("poisson", "load", "degree"), thinned([(*case, degree) for case in LATERAL for degree in (1, 2)], 2)
 )
-def test_the_frames_are_the_history(tmp_path: Path, poisson: float, load: dict[str, float], degree: int) -> None:
+def test_the_frames_are_the_history(tmp_path, poisson, load, degree):
     """The middle node of every frame gives the columns of its step; the last is the .vtu's."""
     problem = make(elements=4, degree=degree, poisson=poisson, shear=1e9, **load)
     scheme, paths = fem_reference.Scheme(0.5, 1.0, 1.0, 2e-3), [tmp_path / "block.xdmf", tmp_path / "block.vtu"]
@@ -121,7 +118,7 @@ def test_the_frames_are_the_history(tmp_path: Path, poisson: float, load: dict[s
 
 
 @pytest.mark.parametrize(("steps", "stride"), thinned([(1, 1), (399, 2), (201, 2), (400, 2), (403, 3), (200, 1)], 2))
-def test_a_series_has_every_stride_and_the_last_step(tmp_path: Path, steps: int, stride: int) -> None:
+def test_a_series_has_every_stride_and_the_last_step(tmp_path, steps, stride):
     path = tmp_path / "block.xdmf"
     fem_reference.solve(make(elements=1, degree=1), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), steps, fields=path)
     with meshio.xdmf.TimeSeriesReader(str(path)) as reader:

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.block_by_integration import Integrated, slipping_problem
+from oracles.integrated import integrated_block, slipping_problem
 
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import BlockProblem
@@ -70,7 +70,7 @@ def test_an_independent_integration_agrees(seed: int, moved: bool) -> None:
     problem = slipping_problem(seed, moved)
     end = duration(problem, 5)
     motion = solve(problem, end)
-    switches, y = Integrated(problem).run([int(x) for x in motion.nodes[0].states], end)
+    switches, y = integrated_block(problem, [int(x) for x in motion.nodes[0].states], end)
     # DOP853 at rtol 1e-13 is good to about 1e-12 here; every switch amplifies that
     assert [s.time for s in motion.switches] == pytest.approx([time for time, _, _ in switches], abs=1e-8 * end)
     assert [s.corner for s in motion.switches] == [corner for _, corner, _ in switches]

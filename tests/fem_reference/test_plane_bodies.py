@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from skfem import MeshQuad, MeshTri
+from skfem import MeshQuad
 
 from fem_reference import Friction, Motion, PatchContact, PlaneBody, PlaneModel, Problem, Scheme, Unilateral
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
@@ -33,7 +33,7 @@ def patches(first, second, left, right, y, width, **law):
 def in_modes(monkeypatch):
     """Step what follows in natural modes, not compiled."""
     monkeypatch.setattr(compilation, "LONG", 1)
-    monkeypatch.setattr(compilation, "march", lambda modal, steps: (None, ""))
+    monkeypatch.setattr(compilation, "compiled", lambda: (None, ""))
 
 
 def apart(found, truth, size=0.0):
@@ -179,50 +179,14 @@ def ring(cells):
 
 
 def test_a_plate_with_a_hole_opens_as_kirsch_says():
-    """u(a, 0) = 3 s a / E and v(0, a) = -s a / E; straight sides round the hole leave order 2, the stress there 3 s."""
+    """u(a, 0) = 3 s a / E and v(0, a) = -s a / E; straight sides round the hole leave order 2."""
     errors = []
     for cells in (4, 8, 16):
         model = PlaneModel([ring(cells)])
         u, v = (model.observer(place, place)[i] @ model.rest for i, place in enumerate(((1.0, 0.0), (0.0, 1.0))))
         errors.append((u / 3e-3 - 1, v / -1e-3 - 1))
-    part = model.parts[0]
-    peak = part.stresses(part.strains((0.0, 1.0)) @ model.rest)
-    assert peak == pytest.approx([3e6, 0.0, 0.0], abs=5e4)
     orders = np.log2(np.abs(np.array(errors[:-1]) / errors[1:]))
     assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[-1]).max() < 2e-3
-
-
-def disc(parts):
-    """A disc of 16 sectors times their parts, pressed over 22.5 degrees to both sides of its upper and lower ends."""
-    rings, sides = 8 * parts, 16 * parts
-    turns = 2 * np.pi * np.arange(sides) / sides
-    circle = np.array([np.cos(turns), np.sin(turns)])
-    points = np.hstack([np.zeros((2, 1)), *(circle * (i + 1) / rings for i in range(rings))])
-    inner = 1 + np.arange(sides)
-    following = np.roll(inner, -1)
-    triangles = [np.array([np.zeros(sides, int), inner, following])]
-    for i in range(rings - 1):
-        a, b = inner + i * sides, following + i * sides
-        triangles += [np.array([a, a + sides, b + sides]), np.array([a, b + sides, b])]
-    pressure = 1e6 / (np.pi / 4)
-    tractions = []
-    for start, end in zip(points[:, -sides:].T, np.roll(points[:, -sides:], -1, axis=1).T, strict=True):
-        n = (start + end) / np.hypot(*(start + end))
-        if abs(n[1]) > np.cos(np.pi / 8):
-            tractions.append(((tuple(start), tuple(end)), tuple(-pressure * n)))
-    mesh = MeshTri(np.ascontiguousarray(points), np.ascontiguousarray(np.hstack(triangles)))
-    return PlaneBody((), DENSITY, YOUNG, 0.25, mesh=mesh, tractions=tuple(tractions))
-
-
-def test_a_disc_that_is_pressed_splits_as_hondros_says():
-    errors = []
-    for parts in (1, 2):
-        model = PlaneModel([disc(parts)])
-        part = model.parts[0]
-        s_xx, s_yy, _ = part.stresses(part.strains((0.0, 0.0)) @ model.rest)
-        errors.append([s_xx / 254849.282066966 - 1, s_yy / -891469.054434547 - 1])
-    orders = np.log2(np.array(errors[0]) / errors[1])
-    assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[1]).max() < 3e-3
 
 
 def test_bodies_that_begin_at_rest_stay_there():

@@ -3,9 +3,6 @@
 Errors are over the history's own maximum, which on a soft spring is far below the static value.
 """
 
-from __future__ import annotations
-
-from collections.abc import Sequence
 from itertools import product
 
 import numpy as np
@@ -24,7 +21,7 @@ COLUMNS = ["contact_pressure", "displacement"]
 CUT_OFF = 2e-12  # of the sums over modes, as in `test_damped_fronts`
 
 
-def over_maximum(found: Sequence[float], expected: Sequence[mpf]) -> float:
+def over_maximum(found, expected):
     scale = max(map(abs, expected))
     return float(max(abs(mpf(float(x)) - y) for x, y in zip(found, expected, strict=True)) / scale)
 
@@ -33,7 +30,7 @@ CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [1e-6, 0.0, 1.0, 300.0])
 
 
 @pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 23))
-def test_the_continuum(column: str, kappa: float, rate: float, step: float) -> None:
+def test_the_continuum(column, kappa, rate, step):
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19, 59]
     found = continuum.histories(times, kappa, rate, (column,))[0]
@@ -53,7 +50,7 @@ SCHEMES = [
 
 
 @pytest.mark.parametrize(("stiffness", "scheme"), thinned(product(STIFFNESSES, SCHEMES), 7))
-def test_the_bar_in_steps(stiffness: float, scheme: Scheme) -> None:
+def test_the_bar_in_steps(stiffness, scheme):
     steps = [1, 3, 20, 60]
     bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e9 * stiffness, 5e6)
     expected = bar_by_series.at_steps(bar, scheme, COLUMNS, steps)
@@ -61,7 +58,7 @@ def test_the_bar_in_steps(stiffness: float, scheme: Scheme) -> None:
         assert over_maximum(values[np.array(steps) - 1], expected[name]) <= bar_module.TARGET
 
 
-def test_a_critically_damped_slow_mode_in_steps() -> None:
+def test_a_critically_damped_slow_mode_in_steps():
     """The lowest mode's roots are equal and next to one: no pair of powers, and no difference from one either."""
     bar = Bar(2.0, 2.0, 2700.0, 1e9, 2e1, 5e6)
     omega = float(bar.frequencies(1)[0]) * 2e-4

@@ -76,27 +76,6 @@ def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before()
     assert triggers == {"push": {"tags": ["v*"]}}
 
 
-def test_hooks_are_local_and_run_the_tools_of_the_environment():
-    (repository,) = yaml.safe_load((ROOT / ".pre-commit-config.yaml").read_text(encoding="utf-8"))["repos"]
-    assert repository["repo"] == "local"
-    tools = ("ruff check", "ruff format", "lint-imports", "mypy")
-    assert [hook["entry"] for hook in repository["hooks"]] == [f".venv/bin/{tool}" for tool in tools]
-    assert {hook["language"] for hook in repository["hooks"]} == {"system"}
-
-
-def options_of(command):
-    """Return the options of a command of `dda-validate`."""
-    return {option for parameter in commands()[command].params for option in parameter.opts}
-
-
-def test_hooks_of_other_repositories_call_commands_that_exist():
-    hooks = yaml.safe_load((ROOT / ".pre-commit-hooks.yaml").read_text(encoding="utf-8"))
-    for hook in hooks:
-        command, *words = re.findall(r"[\w-]+", hook["entry"].partition("dda-validate ")[2])
-        assert {word for word in words if word.startswith("--") and word != "--"} <= options_of(command)
-        assert hook["language"] == "python"
-
-
 @pytest.mark.parametrize(("solver", "status"), SOLVERS)
 def test_the_action_s_last_step_judges_a_solver(tmp_path, solver, status):
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))

@@ -13,14 +13,13 @@ from validation.engine.measure import execute
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
-from validation.runs.contact import LOST, ContactRecord, rebounds_of_steps
+from validation.runs.contact import ContactRecord, rebounds_of_steps
 from validation.runs.history import History
 from validation.runs.modes import Switch
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.solvers import opened
-from validation.solvers.registry import get_solver
 
 STEP = 0.5
 ONES = np.ones(4)
@@ -160,49 +159,6 @@ def test_the_restitution_where_contact_lasts_two_steps(scheme, e, gap):
     assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
 
 
-def record_of(scene, solver="dda"):
-    prepared = get_solver(solver).prepare(scene)
-    prepared.run()
-    return prepared.contact_record()
-
-
-CASES = {
-    "constant, damped": {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.98},
-    "average": {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 1.0, "load.eccentricity": 0.2, "load.gravity": 9.81},
-    "other": {"time.alpha": 0.4, "time.delta": 0.7, "contact.stiffness": 7e9, "block.velocity": -0.5},
-}
-
-
-@pytest.mark.parametrize("name", CASES)
-def test_impulse_and_energy_close_the_balances_of_dda(name):
-    values = {"time.step": 4e-4, "time.steps": 100, "load.pressure": 3e6} | CASES[name]
-    scene = load_scene("unlocked-constant").expand()[0].with_values(values)
-    record, m, gg = record_of(scene), scene.block.mass, scene.time.discount
-    assert record.velocity is not None and record.gap.max() > 0 and not record.cuts.any()
-    before = np.concatenate(([scene.block.velocity], record.velocity[:-1]))
-    late = np.concatenate(([1 - scene.time.delta if scene.time.start == "zero" else 0.0], np.zeros(99)))
-    loads = opened.resultant_load(scene) * scene.time.step * (1 - late)  # A0 = 0 leaves the load at t = 0 out
-    gained = m * np.sum(record.velocity - gg * before) + np.sum(loads)
-    assert record.impulse[-1] == pytest.approx(gained, rel=1e-9)
-    assert measured(record)["energy.imbalance"] < 1e-11
-    assert (
-        measured(replace(record, energies=record.energies | {LOST[2]: record.energies[LOST[1]]}))["energy.imbalance"]
-        > 1e-4
-    )
-
-
-def test_the_exact_motions_have_the_impulse_of_their_force():
-    scene = load_scene("unlocked").expand()[1].with_values({"time.step": 1e-4, "time.steps": 500})
-    for solver in ("block-events", "bar-events"):
-        record = record_of(scene, solver)
-        force, time = (np.concatenate(([0.0], values)) for values in (record.force, record.time))
-        assert record.impulse[-1] == pytest.approx(np.sum(np.diff(time) * (force[1:] + force[:-1])) / 2, rel=2e-3)
-        assert record.rebounds and all(
-            one.closing > 0 and (one.opening is None or one.opening > 0) for one in record.rebounds
-        )
-        assert record.rebounds[0].restitution
-
-
 def test_the_horizon_ends_where_switches_have_amplified_rounding():
     """Average acceleration on a stiff contact is chaotic, constant acceleration is not."""
     stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400}
@@ -211,7 +167,8 @@ def test_the_horizon_ends_where_switches_have_amplified_rounding():
     calm, wild = (execute(Case(s, "dda"), "", "")[0].metrics for s in (scene, rough))
     assert calm["horizon.time"] == pytest.approx(0.04)
     assert 0.003 < wild["horizon.time"] < 0.035
-    assert "horizon.time" not in execute(Case(scene, "block-events"), "", "")[0].metrics
+    short = scene.with_values({"time.steps": 30})
+    assert "horizon.time" not in execute(Case(short, "block-events"), "", "")[0].metrics
 
 
 def test_histories_are_gated_up_to_the_horizon(tmp_path):
@@ -223,12 +180,3 @@ def test_histories_are_gated_up_to_the_horizon(tmp_path):
     assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
     assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
     assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None
-
-
-@pytest.mark.parametrize("rule", ["newmark", "implicit", "energy-conserving"])
-def test_the_impulse_of_a_landing_is_the_momentum_that_it_turns(rule):
-    scene = impact(**{"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": rule, "contact.gap": 0.0117})
-    metrics = execute(Case(scene, "dda"), "", "")[0].metrics
-    e = {"newmark": 1.0, "implicit": 1 / 3, "energy-conserving": 1.0}[rule]
-    assert metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)
-    assert metrics["contact.impulse"] == pytest.approx(10800 * (1 + e), rel=1e-6)

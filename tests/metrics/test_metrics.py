@@ -14,6 +14,7 @@ from validation.metrics.pairs import relative_l2, relative_max
 from validation.metrics.values import NOT_REPORTED, ratio
 from validation.runs.history import History
 from validation.runs.modes import Mode
+from validation.runs.run import Outcome
 
 
 def test_norms_neither_overflow_nor_vanish():
@@ -84,6 +85,23 @@ def test_absent_and_undefined_are_different_things():
     assert pair("pressure.l2", flat.history, flat.history) == "not reported"
     assert pair("displacement.l2", flat.history, flat.history) == "undefined"
     assert ratio("undefined", 1.0) == "undefined"
+
+
+@pytest.mark.parametrize(
+    ("radius", "outcome", "word"),
+    [
+        (1 - 1e-6, Outcome.COMPLETED, "stable"),
+        (1.0, Outcome.COMPLETED, "marginal"),
+        (1 + 1e-6, Outcome.COMPLETED, "unstable as predicted"),
+        (1.1, Outcome.OVERFLOW, "overflow"),
+        (math.inf, Outcome.COMPLETED, NOT_REPORTED),
+        (None, Outcome.COMPLETED, NOT_REPORTED),
+    ],
+)
+def test_a_run_is_called_by_the_radius_of_its_step(radius, outcome, word):
+    diagnostics = {} if radius is None else {"predicted_radius": radius}
+    m = Measurable(History(np.zeros(0), {}), 1.0, diagnostics=diagnostics, outcome=outcome)
+    assert solo(m, ("stability",))["stability.kind"] == word
 
 
 def test_no_metric_is_ever_nan():

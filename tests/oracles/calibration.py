@@ -1,9 +1,9 @@
 """A thousand histories of known origin by three generators, what `compare` makes of them, and the counts of the docs.
 
-The generators share nothing with what judges: a plain DDA code (`plain_block`), the finite elements of `fem_reference`
-with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the recursion of the
-scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in no catalogue;
-digits, noise, steps, schemes and scenes are drawn at random.
+The generators share nothing with what judges: a plain DDA code (`sliding_block`), the finite elements of
+`fem_reference` with a slip in the parameters, and modes: the block's two modes found by hand, each stepped by the
+recursion of the scheme or summed in closed form. Causes are single ones of the catalogue, pairs, and ones that are in
+no catalogue; digits, noise, steps, schemes and scenes are drawn at random.
 
 ``PYTHONPATH=.:tests python tests/oracles/calibration.py [COUNT [PROCESSES]]`` judges so many, a thousand by default,
 and writes the counts to docs/compare.md.
@@ -20,8 +20,10 @@ from pathlib import Path
 
 import numpy as np
 from oracles.pages import page_with, summary
-from oracles.plain_block import Plain, run
 from oracles.program_scenes import scene_of
+from oracles.sliding_block import Plain, run
+from oracles.stepped_vibration import Rule, operators
+from scipy.linalg import eigh
 
 from validation import solve
 from validation.diagnosis.judgement import compare
@@ -225,31 +227,22 @@ def modes(p):
         ]
     )
     F = -p.q * a * np.array([1.0, h / 2, 0.0])
-    half = np.sqrt(np.diag(M))
-    squares, vectors = np.linalg.eigh(K / np.outer(half, half))
-    shapes = vectors / half[:, None]
+    squares, shapes = eigh(K, M)
     forces = shapes.T @ F
-    rows = np.array([_mode(p, w2, f) for w2, f in zip(squares, forces, strict=True)])  # modes x steps
-    v, ey, _ = shapes @ rows
-    return v, -k * (v - h / 2 * ey) / a
-
-
-def _mode(p, w2, force):
-    """Return one oscillator x'' + w2 x = force from rest."""
-    n = np.arange(1, p.steps + 1)
     if p.hht:
-        return force / w2 * (1 - np.cos(np.sqrt(w2) * p.dt * n))
-    x = v = 0.0
-    acceleration = force if p.consistent else 0.0
-    found = []
-    for _ in n:
-        star = x + p.gg * p.dt * v + p.dt**2 * (0.5 - p.alpha) * acceleration
-        new = (force - w2 * star) / (1 + p.alpha * p.dt**2 * w2)
-        x = star + p.alpha * p.dt**2 * new
-        v = p.gg * v + p.dt * ((1 - p.delta) * acceleration + p.delta * new)
-        acceleration = new
-        found.append(x)
-    return np.array(found)
+        angles = np.outer(np.arange(1, p.steps + 1) * p.dt, np.sqrt(squares))
+        rows = forces / squares * (1 - np.cos(angles))
+    else:
+        T, push = operators(Rule(p.alpha, p.delta, p.gg, p.dt), squares)
+        pushed = p.dt**2 * forces
+        state = np.zeros((3, 3))
+        state[:, 2] = p.consistent * pushed
+        rows = np.empty((p.steps, 3))
+        for n in range(p.steps):
+            state = np.einsum("nij,nj->ni", T, state) + push * pushed[:, None]
+            rows[n] = state[:, 0]
+    v, ey, _ = shapes @ rows.T
+    return v, -k * (v - h / 2 * ey) / a
 
 
 # ---- what is said of them -------------------------------------------------------------------------------------------

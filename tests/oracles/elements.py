@@ -23,7 +23,7 @@ COLUMNS = ("displacement", "contact_pressure")
 def stepped(problem, scheme, steps):
     """Return the columns by plain steps on the same unknowns."""
     model = build(problem)
-    return problem.load_size * run(Stepper(model.M, model.K, model.F, scheme), model, steps, COLUMNS, None)
+    return problem.load_size * run(Stepper(model.M, model.K, model.F, scheme), model, steps, COLUMNS)
 
 
 def error(found, columns):

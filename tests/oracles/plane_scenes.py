@@ -69,4 +69,4 @@ def moved(model, frame, shift):
             corner = len(model.blocks[contact.block].vertices) - 1 - corner
             edge = (len(model.blocks[contact.on].vertices) - 2 - edge) % len(model.blocks[contact.on].vertices)
         contacts.append(CornerOnEdge(contact.block, corner, contact.on, edge, contact.springs))
-    return PlaneModel(blocks, contacts, gravity=tuple(frame @ model.gravity))
+    return PlaneModel(blocks, contacts, gravity=tuple(frame @ model.gravity), found=model.found)

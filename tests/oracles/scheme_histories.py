@@ -103,17 +103,26 @@ def hht(run, e, zero=False, form="force"):
     return by_weights(run, 0.0, e, zero, form)
 
 
-def symplectic_euler(run):
-    b, dt = run.body, run.dt
+def stepped(run, advance, a=0.0):
+    """Return the rows of a recursion from rest: x, v, a and N at the end of a step from x, gg v and a at its start."""
     x = np.zeros(2)
     v = np.zeros(2)
     rows = []
     for _ in range(run.steps):
-        N = spring_force(run, b.B @ x)
-        v = run.gg * v + dt * np.linalg.solve(b.M, b.F - b.K @ x + b.B * N)
-        x = x + dt * v
-        rows.append((x, spring_force(run, b.B @ x)))
+        x, v, a, N = advance(x, run.gg * v, a)
+        rows.append((x, N))
     return rows
+
+
+def symplectic_euler(run):
+    b, dt = run.body, run.dt
+
+    def advance(x, u, a):
+        v = u + dt * np.linalg.solve(b.M, b.F - b.K @ x + b.B * spring_force(run, b.B @ x))
+        x = x + dt * v
+        return x, v, a, spring_force(run, b.B @ x)
+
+    return stepped(run, advance)
 
 
 def houbolt(run):
@@ -131,40 +140,36 @@ def houbolt(run):
 def wilson(run, share=1.4):
     b, dt = run.body, run.dt
     K = b.K + b.k * np.outer(b.B, b.B)
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.linalg.solve(b.M, b.F)
     h = share * dt
-    rows = []
-    for _ in range(run.steps):
-        ahead = x + h * run.gg * v + h * h / 3 * a
+
+    def advance(x, u, a):
+        ahead = x + h * u + h * h / 3 * a
         at = np.linalg.solve(b.M + h * h / 6 * K, b.F - K @ ahead)
         a1 = a + (at - a) / share
-        x = x + dt * run.gg * v + dt * dt / 6 * (2 * a + a1)
-        v = run.gg * v + dt / 2 * (a + a1)
-        a = a1
-        rows.append((x, -b.k * b.B @ x))
-    return rows
+        x = x + dt * u + dt * dt / 6 * (2 * a + a1)
+        return x, u + dt / 2 * (a + a1), a1, -b.k * b.B @ x
+
+    return stepped(run, advance, np.linalg.solve(b.M, b.F))
 
 
 def runge_kutta(run):
-    """The classical one of order four."""
+    """The classical one of order four, without a discount."""
     b, dt = run.body, run.dt
 
     def rate(y):
         N = spring_force(run, b.B @ y[:2])
         return np.concatenate([y[2:], np.linalg.solve(b.M, b.F - b.K @ y[:2] + b.B * N)])
 
-    y = np.zeros(4)
-    rows = []
-    for _ in range(run.steps):
+    def advance(x, u, a):
+        y = np.concatenate([x, u])
         k1 = rate(y)
         k2 = rate(y + dt / 2 * k1)
         k3 = rate(y + dt / 2 * k2)
         k4 = rate(y + dt * k3)
         y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        rows.append((y[:2], spring_force(run, b.B @ y[:2])))
-    return rows
+        return y[:2], y[2:], a, spring_force(run, b.B @ y[:2])
+
+    return stepped(replace(run, gg=1.0), advance)
 
 
 # ---- contact methods ------------------------------------------------------------------------------------------------
@@ -173,28 +178,24 @@ def runge_kutta(run):
 def contact_split(run, law, number=0.0):
     """A contact force beside average acceleration of the block: Kane et al. 1999, or Armero and Petocz 1998."""
     b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
     S = b.M + dt * dt / 4 * b.K
     C = dt * dt / 2 * b.B @ np.linalg.solve(S, b.B)
-    rows = []
-    for _ in range(run.steps):
+
+    def advance(x, u, a):
         a = np.linalg.solve(b.M, b.F - b.K @ x)
-        u = run.gg * v
         free = np.linalg.solve(S, b.M @ (x + dt * u + dt * dt / 4 * a) + dt * dt / 4 * b.F)
-        w0 = b.B @ x
         wf = b.B @ free
         if law == "kane":
             N = -b.k * wf / (1 + b.k * C) if wf < 0 or not run.opens else 0.0
         else:
-            N = _energy_conserving(b.k, C, w0, wf, run.opens)
+            N = _energy_conserving(b.k, C, b.B @ x, wf, run.opens)
         # x1 = x + dt u + dt^2/4 (a + a1) + dt^2/2 M^-1 B' N,  v1 = u + dt/2 (a + a1) + dt M^-1 B' N
         x1 = free + np.linalg.solve(S, dt * dt / 2 * b.B * N)
         a1 = np.linalg.solve(b.M, b.F - b.K @ x1)
         v = u + dt / 2 * (a + a1) + dt * np.linalg.solve(b.M, b.B * N)
-        x = x1
-        rows.append((x, N if law == "kane" else spring_force(run, b.B @ x)))
-    return rows
+        return x1, v, a1, N if law == "kane" else spring_force(run, b.B @ x1)
+
+    return stepped(run, advance)
 
 
 def _energy_conserving(k, C, w0, wf, opens):
@@ -221,24 +222,18 @@ def _energy_conserving(k, C, w0, wf, opens):
 def by_free_gap(run, alpha, delta, zero, force):
     """Newmark's step with a contact force at its end of the free gap, its rate and the compliance B M_eff^(-1) B."""
     b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
-    a = np.zeros(2) if zero else np.linalg.solve(b.M, b.F)
     S = b.M + alpha * dt * dt * b.K
     C = b.B @ np.linalg.solve(S, b.B)
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
+
+    def advance(x, u, a):
         ahead = x + dt * u + dt * dt * (0.5 - alpha) * a
         af = np.linalg.solve(S, b.F - b.K @ ahead)
         wf = b.B @ (ahead + alpha * dt * dt * af)
         N = force(wf, b.B @ (u + dt * ((1 - delta) * a + delta * af)), C)
         a1 = af + np.linalg.solve(S, b.B * N)
-        x = ahead + alpha * dt * dt * a1
-        v = u + dt * ((1 - delta) * a + delta * a1)
-        a = a1
-        rows.append((x, N))
-    return rows
+        return ahead + alpha * dt * dt * a1, u + dt * ((1 - delta) * a + delta * a1), a1, N
+
+    return stepped(run, advance, np.zeros(2) if zero else np.linalg.solve(b.M, b.F))
 
 
 def dashpot(run, c, alpha=0.25, delta=0.5, clipped=True, zero=False):
@@ -257,20 +252,17 @@ def dashpot(run, c, alpha=0.25, delta=0.5, clipped=True, zero=False):
 def moreau(run, e, theta=0.5):
     """Moreau-Jean: velocity-level contact with Newton's restitution where the forecast gap is not positive."""
     b, dt = run.body, run.dt
-    x = np.zeros(2)
-    v = np.zeros(2)
     S = b.M + theta**2 * dt * dt * b.K
-    rows = []
-    for _ in range(run.steps):
-        u = run.gg * v
+
+    def advance(x, u, a):
         vf = np.linalg.solve(S, b.M @ u + dt * (b.F - b.K @ x - theta * (1 - theta) * dt * b.K @ u))
         P = 0.0
         if b.B @ x + dt / 2 * (b.B @ u) <= 0:
             P = max(0.0, -(b.B @ vf + e * (b.B @ u)) / (b.B @ np.linalg.solve(S, b.B)))
         v = vf + np.linalg.solve(S, b.B * P)
-        x = x + dt * (theta * v + (1 - theta) * u)
-        rows.append((x, P / dt))
-    return rows
+        return x + dt * (theta * v + (1 - theta) * u), v, a, P / dt
+
+    return stepped(run, advance)
 
 
 def lagrange(run, alpha, delta, zero=False, tolerance=0.0, r=0.0):

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from validation.gates.gate import Status
-from validation.models.plane.canon import canon_problems, moved, moving_blocks
+from validation.models.plane.canon import moved, moving_blocks
+from validation.models.plane.problems import canon_problems
 from validation.problems.judge import judge
 from validation.problems.problem import names, problem
 from validation.runs.history import History
@@ -39,7 +40,7 @@ EXACT = {  # by programs that share nothing with this one
 # The springs of DDA lose a rebound at these steps, and the clipped corner is nearer to the end than it moves in one.
 FAILS = ("corner", "touch-clip")
 LONG = ("wedges", "safety", "safety-less-friction", "columns", "columns-steeper", "leaning", "leaning-less-friction")
-ALL = [name for name in names() if name.split("-")[0] in {one.name.split("-")[0] for one in canon_problems()}]
+ALL = [name for name in names() if name.split("-")[0] in {one.name.split("-")[0] for one in canon_problems().values()}]
 
 
 @pytest.mark.parametrize("name", EXACT)

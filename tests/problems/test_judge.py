@@ -197,7 +197,7 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", boxes.ASKS)
+@pytest.mark.parametrize("name", boxes.box_problems())
 def test_boxes_are_judged_by_their_numbers(name: str) -> None:
     one = problem(name)
     reference = standard(one)

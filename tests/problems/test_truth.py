@@ -20,15 +20,15 @@ from validation.solvers.rigid.rocking import friction_needed
 ROCKING = load_scene("field-rocking")
 
 
-@pytest.mark.parametrize("name", [*ASKS, *boxes.ASKS])
+@pytest.mark.parametrize("name", [*ASKS, *boxes.box_problems()])
 def test_every_problem_has_its_exact_motion(name: str) -> None:
     one = problem(name)
     kinds = {"column": "layers", "rocking": "rigid rocking"}
     kinds |= dict.fromkeys(("stack", "mass-ratio"), "column-events")
     kinds |= dict.fromkeys(("spall", "cradle", "joint"), "bars-events")
-    kinds |= dict.fromkeys(boxes.ASKS, "rigid-exact")
+    kinds |= dict.fromkeys(boxes.box_problems(), "rigid-exact")
     truth = truth_of(one.scene)
-    assert (one.truth is None) == (name in boxes.ASKS)
+    assert (one.truth is None) == (name in boxes.box_problems())
     assert truth.name == kinds.get(name, "block-events")
     assert truth.name == "layers" or truth.name in (*one.scene.run.solvers, "rigid rocking")
     if name != "rocking":

@@ -1,35 +1,16 @@
 """CalculiX as a solver: what it refuses, what it is told, its integrator by theory, its contact by exact motions."""
 
-from __future__ import annotations
-
-import shutil
-
 import numpy as np
 import pytest
-from peers.calculix import AsItComes, CalculiX
+from peers.calculix import CalculiX
 from peers.calculix_block import block_deck
 from peers.calculix_column import acceleration, column_deck, parts_of
 from peers.calculix_deck import parsed
 
-from validation.problems.problem import problem, problem_of
-from validation.problems.truth import exact
-from validation.scenes.scene import Scene
-
-needs_ccx = pytest.mark.skipif(shutil.which("ccx") is None, reason="NOT RUN: CalculiX is not installed")
+from validation.problems.problem import problem
 
 
-class Quick(CalculiX):
-    """The chosen settings with fewer increments."""
-
-    def increments(self, scene: Scene) -> int:
-        return 8 if scene.column is None else 4
-
-
-def scene_of(name: str, **values: object) -> Scene:
-    return problem(name).scene.with_values({key.replace("__", "."): value for key, value in values.items()})
-
-
-def column_scene(**column: object) -> Scene:
+def column_scene(**column):
     scene = problem("column").scene
     return scene.with_values({f"column.{key}": value for key, value in column.items()})
 
@@ -64,87 +45,3 @@ def test_the_momentum_of_a_base_is_kept_though_it_start_with_a_jump(moved):
     t = np.linspace(0.0, 1.0, 101)
     reached = np.trapezoid(acceleration(t, moved(t)), t)
     assert abs(reached - (moved(1.0) - moved(0.98)) / 0.02) < 0.02 * abs(reached)
-
-
-def hht(scene: Scene, alpha: float) -> np.ndarray:
-    """Return the centroid of a block on locked springs by HHT [m].
-
-    M a1 + (1 + alpha) K u1 - alpha K u0 = F with beta = (1 - alpha)^2 / 4, gamma = 1/2 - alpha (Hilber, Hughes and
-    Taylor 1977). The acceleration at the start is that which ccx finds with an increment of a tenth of the first one:
-    (M + (1 + alpha) beta (dt / 10)^2 K) a0 = F.
-    """
-    b, t, p = scene.block, scene.time, scene.contact.stiffness
-    h, dt, beta = b.side, t.step, (1 - alpha) ** 2 / 4
-    M, base = np.diag([b.mass, b.mass * h * h / 12]), np.array([1.0, -h / 2])
-    K = 2 * p * np.outer(base, base) + np.diag([0.0, b.side * h * b.young])
-    F = -scene.load.pressure * b.side * np.array([1.0, h / 2])
-    u = v = np.zeros(2)
-    a = np.linalg.solve(M + (1 + alpha) * beta * (dt / 10) ** 2 * K, F)
-    moved = []
-    for _ in range(t.steps):
-        guess = u + dt * v + dt * dt * (0.5 - beta) * a
-        new = np.linalg.solve(M + (1 + alpha) * beta * dt * dt * K, F - (1 + alpha) * K @ guess + alpha * K @ u)
-        v = v + dt * ((0.5 + alpha) * a + (0.5 - alpha) * new)
-        u, a = guess + beta * dt * dt * new, new
-        moved.append(u[0])
-    return np.array(moved)
-
-
-@needs_ccx
-def test_its_default_is_hht_with_alpha_of_a_twentieth():
-    scene = scene_of("locked", time__steps=20)
-    found, expected = AsItComes().solve(scene)["displacement"], hht(scene, -0.05)
-    assert np.max(np.abs(found - expected)) <= 1e-6 * np.max(np.abs(expected))  # seven digits are printed
-
-
-def differences(scene: Scene) -> dict[str, float]:
-    known, found = exact(scene, problem_of(scene).truth).columns, Quick().solve(scene)
-    return {name: float(np.linalg.norm(found[name][: len(v)] - v) / np.linalg.norm(v)) for name, v in known.items()}
-
-
-RECORD = "time,x,y\n0,0,0\n0.01,0.001,0.0005\n0.03,-0.002,0.001\n"
-BOTH = ["displacement", "horizontal_displacement"]
-
-
-@needs_ccx
-@pytest.mark.long
-@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
-def test_locked_springs_under_all_loads_and_a_moving_base(tmp_path, hypothesis):
-    record = tmp_path / "record.csv"
-    record.write_text(RECORD)
-    loads = {"load__eccentricity": 0.2, "load__traction": 5e5, "load__gravity": 9.81, "load__slope": 10.0}
-    block = {"block__poisson": 0.3, "block__hypothesis": hypothesis, "contact__shear_stiffness": 4e8}
-    scene = scene_of("locked", **loads, **block, load__base_motion=str(record), time__steps=20, run__columns=BOTH)
-    assert max(differences(scene).values()) < 0.01
-
-
-@pytest.mark.long
-@needs_ccx
-def test_corners_that_open_slip_and_stick_are_those_of_dda():
-    scene = scene_of("creep", time__steps=30)
-    assert max(differences(scene).values()) < 0.02
-
-
-@pytest.mark.long
-@needs_ccx
-def test_a_block_that_rocks_turns_as_a_rigid_one():
-    scene = scene_of("rocking", time__steps=30, block__tilt=-10.0)
-    assert differences(scene)["rotation"] < 1e-3
-
-
-@pytest.mark.long
-@needs_ccx
-@pytest.mark.parametrize(
-    ("motion", "base"),
-    [("shear", {"base": "rigid"}), ("pressure", {"base": "springs", "base_stiffness": 1e8})],
-)
-def test_waves_through_layers_on_a_moving_base(motion, base):
-    layers = [{"thickness": 6.0, "density": 2000.0, "young": 5e8, "poisson": 0.3}]
-    layers += [{"thickness": 4.0, "density": 1800.0, "young": 2e8, "poisson": 0.2}]
-    joints = [{"height": 6.0, "stiffness": 5e8}]
-    data = problem("column").scene.definition()
-    data["column"] = {"motion": motion, "layer": layers, "joint": joints, "heights": [5.0], **base}
-    data["input"] = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 25.0}
-    data["time"] |= {"step": 2e-3, "steps": 60}
-    data["run"]["columns"] = ["displacement", "contact_pressure", "displacement_1", "stress_1"]
-    assert max(differences(Scene.model_validate(data)).values()) < 0.02

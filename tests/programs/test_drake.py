@@ -3,35 +3,22 @@
 import math
 from importlib.util import find_spec
 
-import numpy as np
 import pytest
-from oracles.box_scenes import box_scene, euler
+from oracles.box_scenes import box_scene
 from peers.boxes import spring_step, substeps
 from peers.drake import OWN_STEP, SPRING_SHARE, AsItComes, Drake, program
-
-from validation.models.plane.boxes import boxes_of
 
 # To look for it costs nothing; to import it takes seconds in every process that collects these tests.
 installed = pytest.mark.skipif(not find_spec("pydrake"), reason="NOT RUN: Drake is not installed")
 # Thousands of steps a second with the chosen settings, few as it comes.
 slowly = pytest.mark.parametrize("solver", [pytest.param(Drake(), marks=pytest.mark.long), AsItComes()],
                                  ids=["chosen", "default"])  # fmt: skip
-both = pytest.mark.parametrize("solver", [Drake(), AsItComes()], ids=["chosen", "default"])
 SLOPE = math.radians(20.0)
 
 
 @installed
 def test_its_default_step_is_that_of_a_new_configuration():
     assert program().MultibodyPlantConfig().time_step == OWN_STEP
-
-
-@installed
-@pytest.mark.parametrize("density", [1.0, 5000.0])
-def test_a_box_without_friction_slides_as_semi_implicit_euler_does_whatever_its_mass(density):
-    scene = box_scene({"density": density}, slope=20.0)
-    expected = euler(scene, OWN_STEP, 0.0, 9.81 * math.sin(SLOPE))
-    # What is left is the tilt by which the contact gives way, a part in a hundred thousand.
-    np.testing.assert_allclose(Drake().solve(scene)["box_1.x"], expected, rtol=1e-5)
 
 
 @installed
@@ -70,22 +57,3 @@ def test_no_dissipation_gives_the_speed_back_where_the_step_resolves_the_contact
     rebound = (height[-1] - height[-2]) / scene.time.step
     loss = math.pi * frequency * scene.time.step / substeps(scene, own_step) / 2
     assert 1 - rebound == pytest.approx(loss, rel=0.2)
-
-
-@installed
-@both
-def test_a_ground_that_moves_takes_a_box_along(solver):
-    scene = box_scene(friction=45.0, base=(0.1, 1.0), steps=20)
-    times = scene.time.step * np.arange(1, 21)
-    expected = [boxes_of(scene).base(time)[0] for time in times]
-    tolerance = 2e-5 if solver.chosen else 2e-3  # as it comes the box leans on one point, and rocks
-    np.testing.assert_allclose(solver.solve(scene)["box_1.x"], expected, atol=tolerance)
-
-
-@installed
-@both
-def test_forces_of_a_pile_are_the_weights_above(solver):
-    scene = box_scene({}, {"density": 500.0}, {"density": 2000.0}, friction=30.0, steps=60)
-    columns = solver.solve(scene)
-    forces = [columns[name][-10:].mean() for name in boxes_of(scene).force_columns]
-    assert forces == pytest.approx([9.81 * 3500.0, 9.81 * 2500.0, 9.81 * 2000.0], rel=0.05)

@@ -4,12 +4,10 @@ import importlib.util
 
 import numpy as np
 import pytest
-from conftest import thinned
 from peers import opensees, opensees_models
 from peers.opensees import AsItComes, NotConverged, OpenSees
 
-from validation.problems.truth import exact, truth_of
-from validation.scenes.scene import load_scene, parse_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.dda import DDA
 
 needs_program = pytest.mark.skipif(
@@ -23,26 +21,21 @@ OF_BLOCK = ["displacement", "horizontal_displacement", "rotation", "contact_pres
 class Told:
     """A program that does nothing but keep what it was told, and does not converge."""
 
-    def __init__(self) -> None:
+    def __init__(self):
         self.said: list[tuple] = []
 
     def __getattr__(self, name):
         return lambda *given: self.said.append((name, *given))
 
-    def analyze(self, *_given) -> int:
+    def analyze(self, *_given):
         return -3
 
-    def getTime(self) -> float:
+    def getTime(self):
         return 0.25
 
     def all(self, name, kind=None):
         """Return what a command was told, of elements those of a kind."""
         return [given for said, *given in self.said if said == name and kind in (None, given[0])]
-
-
-def changed(name, **tables):
-    """Return a built-in scene with whole tables replaced."""
-    return parse_scene(load_scene(name).definition() | tables, name)
 
 
 # ---- without the program ------------------------------------------------------------------------------------------
@@ -63,7 +56,7 @@ def linear_fields(told):
 
 
 @pytest.mark.parametrize("values", [{}, SIZES])
-def test_the_mass_of_two_legs_is_that_of_the_block(values) -> None:
+def test_the_mass_of_two_legs_is_that_of_the_block(values):
     scene, told = load_scene("field-locked").with_values(values), Told()
     opensees_models.block(told, scene)
     at = {node: np.array(point) for node, *point in told.all("node")}
@@ -80,7 +73,7 @@ def test_the_mass_of_two_legs_is_that_of_the_block(values) -> None:
     np.testing.assert_allclose(fields.T @ mass @ fields, expected, atol=1e-12 * m)
 
 
-def test_the_forces_do_the_work_of_the_loads() -> None:
+def test_the_forces_do_the_work_of_the_loads():
     scene = load_scene("field-locked").with_values(
         {**PUSHED, "load.slope": 20.0, "block.width": 3.0, "block.height": 1.25}
     )
@@ -96,13 +89,13 @@ def test_the_forces_do_the_work_of_the_loads() -> None:
 
 
 @pytest.mark.parametrize("solver", [OpenSees, AsItComes])
-def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver) -> None:
+def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver):
     monkeypatch.setattr(opensees, "program", Told)
     with pytest.raises(NotConverged, match=r"did not converge after t = 0\.25 s"):
         solver().solve(load_scene("field-creep"))
 
 
-def test_what_symmetry_forbids_is_not_waited_for() -> None:
+def test_what_symmetry_forbids_is_not_waited_for():
     one = {"displacement": np.ones(4), "horizontal_displacement": np.full(4, 1e-18)}
     other = {"displacement": np.ones(4), "horizontal_displacement": np.zeros(4)}
     assert opensees._alike(one, other, tuple(one))
@@ -126,7 +119,7 @@ def test_what_symmetry_forbids_is_not_waited_for() -> None:
         ("field-sliding", {}),
     ],
 )
-def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values) -> None:
+def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values):
     scheme = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "zero", "run.columns": OF_BLOCK}
     scene = load_scene(name).with_values(values | scheme)
     found, expected = AsItComes().solve(scene), DDA().solve(scene).history.columns
@@ -134,84 +127,3 @@ def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values) -> No
     for column in OF_BLOCK:
         apart = np.linalg.norm(found[column] - expected[column])
         assert apart <= 1e-9 * max(np.linalg.norm(expected[column]), way), column
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("name", "values"),
-    thinned(
-        [
-            ("field-locked", {**PUSHED, "time.steps": 10, "run.columns": OF_BLOCK}),
-            ("field-opening", {"load.eccentricity": -0.2, "contact.shear_stiffness": 0.0, "time.steps": 4}),
-            ("field-rebound", {"time.steps": 100}),
-            ("field-sliding", {"time.steps": 3}),
-            ("field-creep", {"time.steps": 5, "contact.gap": 1e-4, "block.velocity": -0.2}),
-            ("field-rocking", {"block.tilt": -20.0}),
-            ("field-column", {"time.steps": 120}),
-        ],
-        3,
-    ),
-)
-def test_chosen_settings_are_exact_within_a_thousandth(name, values) -> None:
-    check(load_scene(name).with_values(values))
-
-
-LAYERS = [
-    {"thickness": 5.0, "density": 2000.0, "young": 1e9, "poisson": 0.2, "blocks": 3},
-    {"thickness": 7.0, "density": 2400.0, "young": 4e9, "blocks": 4},
-]
-JOINTS = [{"height": 5.0, "stiffness": 4e8}]
-FROM_BELOW = {"at": "base", "shape": "half-sine", "velocity": 0.5, "duration": 0.02}
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("stands", "drive"),
-    thinned(
-        [
-            ({"motion": "pressure", "base": "rigid", "joint": [{"height": 0.0, "stiffness": 4e8}]}, FROM_BELOW),
-            ({"motion": "shear", "base": "springs", "base_stiffness": 5e8, "joint": JOINTS}, FROM_BELOW),
-            (
-                {
-                    "motion": "shear",
-                    "base": "transmitting",
-                    "base_density": 2500.0,
-                    "base_speed": 1414.0,
-                    "joint": JOINTS,
-                },
-                {"at": "base", "shape": "ricker", "velocity": 0.5, "frequency": 15.0},
-            ),
-        ],
-        3,
-    ),
-)
-def test_columns_are_exact_within_a_thousandth(stands, drive) -> None:
-    columns = ["displacement", "displacement_1", "displacement_2"]
-    column = {"layer": LAYERS, "heights": [0.5, 3.5]} | stands
-    check(changed("field-column", column=column, input=drive, run={"columns": columns}))
-
-
-@pytest.mark.long
-@needs_program
-def test_a_rigid_base_may_start_with_a_jump(tmp_path) -> None:
-    (tmp_path / "record.csv").write_text("time,velocity\n0.0,0.5\n0.05,0.2\n0.1,0.3\n")
-    drive = {"at": "base", "record": str(tmp_path / "record.csv")}
-    column = {"layer": LAYERS, "motion": "shear", "base": "rigid", "heights": [2.0]}
-    check(changed("field-column", column=column, input=drive, run={"columns": ["displacement", "displacement_1"]}))
-
-
-@needs_program
-def test_chosen_settings_fall_from_the_start() -> None:
-    scene = load_scene("field-rebound").with_values({"time.steps": 2})
-    found = opensees.stepped(opensees.program(), scene, opensees.Plan(2, chosen=True))
-    t = scene.time.step * np.arange(1, 3)
-    np.testing.assert_allclose(found["displacement"], -t - 9.81 * t**2 / 2, rtol=1e-5)
-
-
-def check(scene) -> None:
-    """Compare the solver with the exact motion of a scene, as long as that is known."""
-    found, expected = OpenSees().solve(scene), exact(scene, truth_of(scene)).columns
-    for column in scene.run.columns:
-        told = expected[column]
-        assert found[column].shape == (scene.time.steps,)
-        assert np.linalg.norm(found[column][: len(told)] - told) <= 1e-3 * np.linalg.norm(told), column

@@ -1,9 +1,6 @@
 """Answers of other programs that are kept: their verdicts are those that the page of what is verified states."""
 
-from __future__ import annotations
-
 import shutil
-from pathlib import Path
 
 import pytest
 from conftest import script
@@ -12,7 +9,7 @@ from validation.gates.gate import Status
 from validation.problems.problem import names
 from validation.suite.matrix import phenomena, phenomenon
 
-SHORT = ("push each", "impact on a corner", "on an incline")
+SHORT = ("push each", "impact on a corner")
 LONG = sorted({shown.name for shown in phenomena() if shown.problems} - {phenomenon(name).name for name in SHORT})
 SPOILED = [  # by ten per cent
     ("pymunk-chipmunk", "stopping", "box.x_m"),
@@ -23,7 +20,7 @@ SPOILED = [  # by ten per cent
 
 
 @pytest.mark.parametrize("name", [*SHORT, *(pytest.param(name, marks=pytest.mark.long) for name in LONG)])
-def test_the_page_states_what_is_judged(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_page_states_what_is_judged(name, monkeypatch):
     verification = script("verification", monkeypatch)
     shown = phenomenon(name)
     fresh = verification.by_others(shown, verification.judged_answers(list(filter(shown.asked_by, names()))))
@@ -31,9 +28,7 @@ def test_the_page_states_what_is_judged(name: str, monkeypatch: pytest.MonkeyPat
 
 
 @pytest.mark.parametrize(("program", "name", "column"), SPOILED)
-def test_a_column_that_is_spoiled_fails(
-    program: str, name: str, column: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_column_that_is_spoiled_fails(program, name, column, monkeypatch, tmp_path):
     verification = script("verification", monkeypatch)
     shutil.copytree(verification.ANSWERS / program, tmp_path / program)
     monkeypatch.setattr(verification, "ANSWERS", tmp_path)
@@ -49,6 +44,6 @@ def test_a_column_that_is_spoiled_fails(
     assert spoiled.judged[name].judgement.status is Status.FAIL
 
 
-def test_every_problem_of_the_pack_asks_for_one_phenomenon() -> None:
+def test_every_problem_of_the_pack_asks_for_one_phenomenon():
     for name in names():
         assert len([shown for shown in phenomena() if shown.asked_by(name)]) == 1, name

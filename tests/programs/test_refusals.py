@@ -5,17 +5,14 @@ import shutil
 import sys
 import tomllib
 from pathlib import Path
-from typing import Any
 
 import pytest
-from peers import calculix, mujoco, opensees, siconos, yade
+from peers import calculix, mujoco, ntdda, opensees, siconos, yade
 
 from validation.scenes import features
 from validation.scenes.scene import load_scene
 
-REFUSALS: dict[str, list[tuple[str, dict[str, Any], str]]] = tomllib.loads(
-    Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8")
-)
+REFUSALS = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))
 PROGRAMS = {
     "siconos": siconos.Siconos,
     "siconos-default": siconos.AsItComes,
@@ -26,11 +23,12 @@ PROGRAMS = {
     "opensees": opensees.OpenSees,
     "opensees-default": opensees.AsItComes,
 }
-ROWS = [(name, *row) for name in PROGRAMS for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
+REFUSING = PROGRAMS | {"ntdda": ntdda.Histories}
+ROWS = [(name, *row) for name in REFUSING for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
 
 
 @pytest.fixture
-def _nothing_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def _nothing_is_there(monkeypatch):
     for module in ("mujoco", "openseespy", "openseespy.opensees"):
         monkeypatch.setitem(sys.modules, module, None)
     monkeypatch.setattr(shutil, "which", lambda name: None)
@@ -39,25 +37,23 @@ def _nothing_is_there(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("_nothing_is_there")
 @pytest.mark.parametrize(("name", "problem", "values", "words"), ROWS)
-def test_what_a_program_cannot_express_is_refused_by_name(
-    name: str, problem: str, values: dict[str, Any], words: str
-) -> None:
+def test_what_a_program_cannot_express_is_refused_by_name(name, problem, values, words):
     scene = load_scene(f"field-{problem}").with_values(values)
     with pytest.raises(NotImplementedError, match=re.escape(words)):
-        PROGRAMS[name]().solve(scene)
+        REFUSING[name]().solve(scene)
 
 
 @pytest.mark.usefixtures("_nothing_is_there")
 @pytest.mark.parametrize("problem", ["locked", "rocking", "column"])
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_that_is_absent_is_named_with_its_recipe(name: str, problem: str) -> None:
+def test_a_program_that_is_absent_is_named_with_its_recipe(name, problem):
     columns = {} if problem == "column" else {"run.columns": ["rotation"] if problem == "rocking" else ["displacement"]}
     with pytest.raises(NotImplementedError, match=r"not installed: (pip install|apt-get install|Debian: apt-get)"):
         PROGRAMS[name]().solve(load_scene(f"field-{problem}").with_values(columns))
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_says_what_it_is_and_handles_features_of_scenes(name: str) -> None:
+def test_a_program_says_what_it_is_and_handles_features_of_scenes(name):
     program = PROGRAMS[name]
     assert set(program().about) == {"program", "version", "recipe", "model", "settings"}
     assert max(map(len, program().about.values())) <= 400

@@ -1,17 +1,10 @@
 """Yade as a solver: what it refuses, that its bodies are the scene's block, and its own integrator."""
 
-import shutil
-
 import numpy as np
 import pytest
 from peers import yade_block, yade_column
-from peers.yade import AsItComes, Yade
 
-from validation.problems.problem import problem_of
-from validation.problems.truth import exact
 from validation.scenes.scene import load_scene, parse_scene
-
-with_yade = pytest.mark.skipif(shutil.which("yade") is None, reason="NOT RUN: yade is not installed")
 
 
 def scene_of(name, **tables):
@@ -59,42 +52,3 @@ def test_a_lattice_has_the_mass_and_the_softness_of_its_layers_and_joints():
     assert (1 / chain.springs).sum() == pytest.approx(3 / 2e9 + 5 / 4e9 + 1 / 1e9 + 1 / 5e9)
     assert chain.heights[[0, -1]] == pytest.approx([0.0, 8.0])
     assert np.all(np.diff(chain.heights) > 0)
-
-
-@pytest.mark.long
-@with_yade
-def test_the_default_integrator_is_the_leapfrog_with_forces_changed_by_a_fifth():
-    """V += dt f (1 - 0.2 sign(f (v + dt f / 2 m))) / m, then x += dt v."""
-    scene = scene_of("locked", time={"steps": 12})
-    model, solver = yade_block.two_bodies(scene), AsItComes()
-    cut = solver.cut(scene, model)
-    dt, m = scene.time.step / cut, np.array([body.mass for body in model.bodies])
-    given = np.array([body.force[1] for body in model.bodies])
-    x = v = np.zeros(2)
-    predicted = []
-    for n in range(cut * scene.time.steps):
-        pull = model.bonds[0].normal * (x[1] - x[0])
-        f = given + np.array([pull - 2 * scene.contact.stiffness * x[0], -pull])
-        v = v + dt * f * (1 - 0.2 * np.sign(f * (v + dt * f / (2 * m)))) / m
-        x = x + dt * v
-        if (n + 1) % cut == 0:
-            predicted.append((x[0] + 3 * x[1]) / 4)
-    found = solver.solve(scene)["displacement"]
-    np.testing.assert_allclose(found, predicted, rtol=0, atol=1e-9 * np.max(np.abs(predicted)))
-
-
-@with_yade
-@pytest.mark.parametrize(
-    ("scene", "most"),
-    [
-        pytest.param(scene_of("opening", time={"steps": 20}), 5e-4, marks=pytest.mark.long),
-        pytest.param(scene_of("creep", time={"steps": 20}), 1e-3, marks=pytest.mark.long),
-        pytest.param(scene_of("column", column={"motion": "shear"}), 2e-3, marks=pytest.mark.long),
-    ],
-    ids=["two bodies", "linkage", "lattice"],
-)
-def test_it_moves_as_the_exact_motion(scene, most):
-    posed = problem_of(scene)
-    truth, found = exact(scene, posed.truth).columns, Yade().solve(scene)
-    for name in scene.run.columns:
-        assert np.linalg.norm(found[name] - truth[name]) < most * np.linalg.norm(truth[name]), name

@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from conftest import thinned
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from oracles.made_cases import made_history
 
 from validation.report.figures import curves, motion
 from validation.report.figures import histories as figures
@@ -77,33 +76,6 @@ def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
         assert len(boxes) in (len(SOLVERS), len(SOLVERS) - 1)  # all, and all but the reference
         assert not any(a.overlaps(b) for a, b in itertools.combinations(boxes, 2))
         assert all(figure.bbox.x0 <= b.x0 and b.x1 <= figure.bbox.x1 for b in boxes)
-
-
-def test_lines_on_one_another_are_one_line_with_all_names():
-    base = np.linspace(0, 1, 50)
-
-    def one(**values):
-        return curves.HistoryPanel("", {name: made_history(0.1, v) for name, v in values.items()}, {}, "bar")
-
-    some = one(dda=base + 0.1, textbook=base + 0.1 + 1e-6, bar=base, fem=base + 1e-3, far=base + 3e-3)
-    assert motion.twins([some], ["displacement"]) == {
-        "dda": {"textbook": pytest.approx(1e-6 / 1.1)}, "bar": {"fem": pytest.approx(1e-3)}, "far": {},
-    }  # fmt: skip
-    repeated = one(**{"dda": base, "dda-textbook": base + 1e-9})
-    assert motion.twins([repeated], ["displacement"]) == {"dda": {}}  # on dda, which it repeats
-    assert motion.twins([some, one(dda=base, textbook=base + 1)], ["displacement"])["dda"] == {}  # in one case only
-
-
-def test_more_swings_than_can_be_drawn_have_their_start_below():
-    time = np.arange(1, 20_001)
-    panels = {
-        w: curves.HistoryPanel("", {"dda": made_history(0.1, 1 - np.cos(w * time))}, {}, None) for w in (0.5, 0.25)
-    }
-    noisy = made_history(0.1, 1 - np.cos(0.005 * time) + 0.09 * np.cos(time))
-    assert motion.start_of([curves.HistoryPanel("", {"dda": noisy}, {}, None)], "displacement") is None
-    span = motion.start_of([panels[0.5]], "displacement")
-    assert span == pytest.approx(12 * 2 * np.pi / 0.5 * 0.1, rel=0.01)  # 24 crossings, 12 periods
-    assert motion.start_of([*panels.values()], "displacement") == pytest.approx(2 * span, rel=0.01)
 
 
 @pytest.mark.parametrize(("lift", "times"), [(0.0, 1.0), (50.0, 1.0), (1e-3, 500.0)])

@@ -7,6 +7,7 @@ from oracles.made_cases import made_history
 from validation.gates.gate import Status
 from validation.problems.answers import Answer
 from validation.problems.bands import Standard
+from validation.problems.cause import Cause
 from validation.problems.judge import Criterion, Judgement
 from validation.problems.problem import problem
 from validation.problems.quantities import Quantity
@@ -25,7 +26,7 @@ def judged():
     )
     found = Judgement("locked", criteria, (Quantity("first peak", "mm", 2.0, 3.0),))
     one = problem("locked")
-    return JudgedAnswer(Answer("locked", one, ANSWER), one, ANSWER, Standard(EXACT, {}, {}), found, None)
+    return JudgedAnswer(Answer("locked", one, ANSWER), one, ANSWER, Standard(EXACT, {}, {}), found, Cause())
 
 
 def test_the_page_has_errors_numbers_and_curves(kept, kept_figures, drawn, tmp_path):

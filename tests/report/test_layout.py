@@ -4,7 +4,7 @@ import pytest
 from matplotlib.figure import Figure
 from pypdf import PdfReader
 
-from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, References, table
+from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, table
 from validation.report.figures.histories import save
 from validation.report.render.pdf import typeset
 
@@ -42,11 +42,3 @@ def test_title_lead_rule_figure_and_table_of_a_chapter_are_on_one_page(pages):
         parts = (f"Chapter {name}", f"Sources {name}.", f"Rule {name}.", f"Figure {name}.", f"Table {name}.")
         missing = [part for part in (*parts, f"row {name}.0", f"row {name}.7") if part not in own]
         assert not missing, (name, missing)
-
-
-@pytest.mark.parametrize("cited", [False, True])
-def test_sources_have_a_title_only_where_some_are_cited(tmp_path, cited):
-    text = "A scheme @newmark1959." if cited else "A scheme."
-    (tmp_path / "made.pdf").write_bytes(typeset(tmp_path, [Paragraph(text), References()]))
-    (page,) = PdfReader(tmp_path / "made.pdf").pages
-    assert ("References" in page.extract_text()) is cited

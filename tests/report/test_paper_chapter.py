@@ -1,7 +1,5 @@
 """The chapter of the study `paper`: the register of claims, and figures from results made by hand."""
 
-import re
-
 import numpy as np
 import pytest
 from oracles.made_cases import kept_study, made_history, made_row
@@ -57,15 +55,6 @@ def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, t
     kept("claims", blocks)
 
 
-def test_the_register_keeps_the_words_of_every_claim():
-    data = get_study("paper").data()
-    names = [f"C{i}" for i in range(1, 23)], [f"S{i}" for i in (13, 16, 20, 21, 25, 29, 32)]
-    assert (data["statements"], data["slips"]) == names
-    assert {name for words in ("statement", "why", "condition") for name in data[words]} == {*names[0], *names[1]}
-    place = re.compile(r"\((abstract|sections?|conclusions?|equations?)\b")
-    assert all(place.search(text) for text in data["statement"].values())
-
-
 # ---- figures 3 to 9 -------------------------------------------------------------------------------------------------
 
 
@@ -99,6 +88,3 @@ def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_p
     assert steps[0.002]["steps"] == pytest.approx(10.472, rel=1e-4)
     angles = {tuple(sorted(row)) for (_, name), row in values.items() if name == "w dt"}
     assert angles >= {("contact",), ("contact", "mode1")}
-
-
-# ---- figure 1 -------------------------------------------------------------------------------------------------------

@@ -12,7 +12,6 @@ from validation.report.render.html import page
 from validation.report.render.pdf import typeset
 from validation.suite.folders import sources_of, study_folders, study_names
 
-PLACES = {"book": "publisher", "phdthesis": "school", "mastersthesis": "school", "inproceedings": "booktitle"}
 CITATION = re.compile(r"@([a-z]+\d{4})\b")
 
 
@@ -22,17 +21,6 @@ def test_what_is_cited_is_a_source():
     cited = set(CITATION.findall(" ".join(texts)))
     assert {"feng2017", "shi1985", "newmark1959", "doolin2004", "hatzor2004", "armero1998", "kane1999"} <= cited
     assert {"housner1963", "miller1978"} <= cited <= set(references())
-
-
-def test_every_source_says_who_wrote_what_when_and_where():
-    sources = references()
-    for key, source in sources.items():
-        assert key == re.sub(r"\W", "", source["author"].partition(",")[0]).lower() + source["year"]
-        assert source["read"].startswith(("full text", "abstract", "nothing"))
-        assert source["title"] and source[PLACES.get(source["kind"], "journal")]
-    paper = sources["feng2017"]
-    for words in (paper["title"], paper["journal"], paper["year"], f"article {paper['pages']}", "9 pages", "18 July"):
-        assert words in PAPER
 
 
 @pytest.mark.parametrize("lists", [True, False])

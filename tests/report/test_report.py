@@ -1,12 +1,15 @@
 """The report is built from a results directory alone, whatever the verdicts are."""
 
+from types import SimpleNamespace
+
 import pytest
 from oracles.made_cases import kept_study, made_row
 from oracles.made_results import made_rows
 
 from validation.errors import InputError
-from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, Paragraph, Table, TableColumn
+from validation.report.blocks import FigureBlock, Table, TableColumn
 from validation.report.book import build, write_figures
+from validation.report.chapters import answers as chapters_answers
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import scene as chapters
 from validation.report.chapters import text as chapters_text
@@ -45,18 +48,6 @@ def test_a_failed_build_leaves_the_old_report(small, tmp_path, monkeypatch, draw
     with pytest.raises(RuntimeError, match="typesetting failed"):
         build(small, out)
     assert out.read_bytes() == b"old"
-
-
-def test_what_did_not_pass_has_a_page_of_its_own_before_the_decisions(made_results):
-    class Page:
-        def blocks(self, name):
-            return [Heading(name)]
-
-    blocks = front_pages(Page(), {}, made_results.verdicts())
-    kinds = [block.text if isinstance(block, Heading) else type(block) for block in blocks]
-    failures = ["Gates that did not pass", Callout, Table]
-    decisions = [part for name in ("step", "springs", "discount") for part in (PageBreak, name)]
-    assert kinds == [Paragraph, "first", Callout, PageBreak, *failures, *decisions, PageBreak]
 
 
 def test_figures_are_written_as_svg_andpng_of(small, tmp_path):
@@ -101,10 +92,17 @@ def told(words):
     return chapters.gate_count([{"verdict": word} for word in words])
 
 
+def taken(seconds):
+    """Return what answers that took some seconds each are said to have taken together."""
+    answers = [SimpleNamespace(seconds=one, history=True) for one in seconds]
+    return chapters_answers._seconds(SimpleNamespace(answers=SimpleNamespace(answers=answers)))
+
+
 NUMBERS = [  # function, value, text
     (band, (5.0, 5.0), "5 … 5"), (band, (-0.0053065, -0.0053055), "−0.0053065 … −0.0053055"),
     (band, (0, 1e-12), "0 … 1×10⁻¹²"), (band, (344.561 - 3e-9, 344.561 + 3e-9), "344.561 ± 3×10⁻⁹"),
     (told, ["PASS"], "its one gate passes"), (told, ["FAIL"], "its one gate fails"),
+    (taken, (1.204, 2.05), "3.3"), (taken, (None,), chapters_answers.DASH),
     (told, ["NOT RUN"], "its one gate did not run"), (told, ["FAIL", "PASS"], "1 of 2 gates fails"),
 ]  # fmt: skip
 

@@ -8,7 +8,6 @@ from validation.problems.quantities import Quantity
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
 from validation.report.chapters.scene import PERIODS, history_block, lead_figure
-from validation.report.chapters.summary import mode_damping
 from validation.scenes.scene import load_scene
 
 FREQUENCY = 345.0  # rad/s
@@ -36,31 +35,11 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 
-def test_a_motion_that_is_driven_is_shown_whole(drawn, tmp_path):
-    case = vibrating(0.001, 0.08, {"mode1.frequency": FREQUENCY})
-    record = tmp_path / "record.csv"
-    record.write_text("time,x\n0,0\n1,0\n")
-    driven = case.scene.with_values({"load.base_motion": str(record)})
-    lead_figure(made_group(made_case(driven, {"dda": {}, "bar": {}}, case.histories)), tmp_path)
-    assert drawn["scene-lead.svg"].axes[0].get_xlim()[1] == pytest.approx(0.2)
-
-
 def test_what_is_rounding_decides_nothing(drawn, tmp_path):
     """Which of two cases is shown would depend on the processor."""
     cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
     (block,) = lead_figure(made_group(*cases), tmp_path)
     assert block.caption.startswith("dt = 0.002 s, of 2 cases the first.")
-
-
-def test_damping_is_told_by_scheme_discount_and_tables():
-    scene = BASE.with_values({"time.step": 0.002, "time.gg": 0.98})
-    parts = mode_damping(made_case(scene, {"dda": {}}), 344.561)
-    assert parts["scheme"] == pytest.approx(0.1602, abs=5e-4)  # of (1/2, 1) at w dt = 0.689
-    assert parts["total"] == pytest.approx(parts["scheme"] + parts["discount"])
-    assert parts["discount"] == pytest.approx(-0.5 * 1e-2 / 0.689 * -2, rel=0.3) and parts["tables"] is None
-    viscous = BASE.with_values({"time.step": 0.002, "damping.mass": 20.0})
-    damped = mode_damping(made_case(viscous, {"dda": {"mode1.damping": 0.19}}), 344.561)
-    assert damped["tables"] == pytest.approx(0.19 - 0.1602, abs=5e-4)
 
 
 def test_a_count_that_is_none_is_no_small_number():

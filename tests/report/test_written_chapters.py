@@ -3,7 +3,9 @@
 import fnmatch
 import re
 import string
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -48,65 +50,22 @@ def table(tmp_path):
     return StudyTable(results, results.manifest("made"))
 
 
-COARSE = {"where": {"time.step": 0.01}}
+TABLE = tomllib.loads(Path(__file__).with_name("queries.toml").read_text(encoding="utf-8"))
 
 
-@pytest.mark.parametrize(
-    ("query", "expression", "values"),
-    [
-        ({}, "time.step", [0.01, 0.002]),
-        ({"sort": "time.step"}, "time.step", [0.002, 0.01]),
-        ({"where": {"time.step": [0.002, 0.5]}}, "time.step", [0.002]),
-        (COARSE, "dda displacement.static", [-0.01]),
-        (COARSE, "dda pressure.settling_step", [None]),  # a word is no number
-        (COARSE, "dda|fem displacement.l2", [0.25]),
-        (COARSE, "fem|dda displacement.l2", [0.25]),
-        (COARSE, "dda work.unknowns", [6]),
-        (COARSE, "dda seconds", [3.0]),
-        (COARSE, "dda seconds.stepping", [2.0]),
-        (COARSE, "closed: ratio", [0.5]),
-        (COARSE, "closed: word", ["stands"]),
-        (COARSE, "order: power", [-2.0]),  # of its scene
-        (COARSE, "owner-a/dda at 10 blocks: other", [9.0]),
-        ({}, "closed: ratio else time.step", [0.5, 0.002]),
-        ({}, "closed: absent", [None, None]),
-        ({}, "column.height", [None, None]),  # of a table that the scene has not
-        ({"scene": "figures-{first}-{second}", **COARSE}, "second", [4.0]),
-        ({"by": "solver", **COARSE}, "* displacement.static", [-0.01, -0.01]),
-        ({"by": "solver", **COARSE}, "solver", ["dda", "fem"]),
-        ({"row": "dda at {blocks} blocks", "of": "owner-*"}, "blocks", [10.0, 20.0]),
-        ({"row": "dda at {blocks} blocks", "of": ["owner-b", "owner-a"]}, "blocks", [20.0, 10.0]),
-        ({"row": "dda at {blocks} blocks", "where": {"blocks": 10}}, ": other", [9.0]),
-        ({"row": "dda at {blocks} blocks", "scene": "owner-{letter}"}, "letter", ["a", "b"]),
-        ({"row": "dda at {blocks} blocks", "metric": "piece {piece}"}, "value", [3.0, 4.0, 5.0]),
-        ({"row": "dda at {blocks} blocks", "metric": "piece {piece}", "sort": ["piece", "blocks"]}, "piece", [1, 1, 2]),
-        ({"of": "nowhere"}, "time.step", []),
-    ],
-)
-def test_a_query_looks_up_what_it_names(table, query, expression, values):
-    assert [table.value(line, expression) for line in table.lines(query)] == values
+@pytest.mark.parametrize("row", TABLE["query"], ids=str)
+def test_a_query_looks_up_what_it_names(table, row):
+    assert [told(table.value(line, row["of"])) for line in table.lines(row["query"])] == row["values"]
 
 
-@pytest.mark.parametrize(
-    ("column", "value"),
-    [
-        ({"of": "time.step"}, 0.01),
-        ({"of": "time.step", "pick": "least"}, 0.002),
-        ({"of": "dda displacement.static", "pick": "most", "among": "time.step"}, -0.01),
-        ({"of": "dda displacement.static", "pick": "least", "among": "time.step"}, -0.02),
-        ({"of": "closed: ratio", "pick": "least", "among": "time.step"}, 0.5),  # of those that have one
-        ({"of": "time.step", "pick": "count"}, 2),
-        ({"of": "time.step", "where": {"time.step": 0.002}}, 0.002),
-        ({"of": "closed: absent", "pick": "most"}, None),
-        ({"of": "time.step", "unless": {"time.step": 0.01}}, 0.002),
-        ({"of": "dda outcome", "pick": "tally"}, "completed 2"),
-        ({"of": "dda outcome", "pick": "tally", "unless": {"dda outcome": "completed"}}, None),
-        ({"of": "time.step", "pick": "count", "where": {"time.step": 1.0}}, 0),
-        ({"of": "time.step", "pick": "count", "positive": True, "where": {"time.step": 1.0}}, None),
-    ],
-)
-def test_a_column_picks_one_of_some_lines(table, column, value):
-    assert table.picked(table.lines({}), column) == value
+@pytest.mark.parametrize("row", TABLE["column"], ids=str)
+def test_a_column_picks_one_of_some_lines(table, row):
+    assert told(table.picked(table.lines({}), row["column"])) == row["value"]
+
+
+def told(value):
+    """Return a value as the table states it, which has no word of its own for nothing."""
+    return "none" if value is None else value
 
 
 MAPS = """
@@ -262,7 +221,9 @@ def queries(folder):
             yield from walk(f"{kind}.{name}", part, {})
 
 
-@pytest.mark.parametrize("name", FOLDERS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name == "standing")) for name in FOLDERS]
+)
 def test_a_chapter_asks_for_what_its_study_has(name):
     folder = FOLDERS[name]
     study = get_study(name)

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 PENDULUM = {
     "tables.py": '''
@@ -143,6 +145,7 @@ def states(path, kind):
     return f"[{kind}]" in path.read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_a_deleted_folder_leaves_the_rest(tmp_path):
     kind = "plane"
     for package in ("dda", "fem_reference", "validation"):

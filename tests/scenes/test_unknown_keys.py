@@ -48,15 +48,6 @@ def test_all_of_them_come_in_one_error_before_any_other(tmp_path):
     )
 
 
-def test_keys_of_a_column_are_looked_for_in_the_tables_of_a_column():
-    data = {"column": {"motion": "pressure", "layer": [{"thickness": 1.0, "E": 1e9, "nu": 0.2}], "young": 1e9}}
-    with pytest.raises(InputError) as refused:
-        parse_scene(data, "x.toml")
-    assert refused.value.field == "column.layer.0.E, column.layer.0.nu, column.young"
-    assert str(refused.value).count("column.layer.young for") == 2
-    assert "column.layer.poisson for column.layer.0.nu" in str(refused.value)
-
-
 @pytest.mark.parametrize(("field", "meant"), MEANT["plane"].items())
 def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field, meant):
     block = {"name": "A", "rectangle": [1.0, 1.0], "velocity": [1.0, 0.0]}

@@ -63,7 +63,7 @@ def test_a_box_turns_with_the_spin_and_the_velocity_it_starts_with():
 
 def test_a_pile_carries_its_weight():
     boxes = [BOX, {**BOX, "density": 8000.0}, BOX]
-    scene = scene_of(*boxes)
+    scene = scene_of(*boxes, seconds=1.0)
     columns = columns_of(scene)
     weights = WEIGHT * np.array([1.0, 10.0, 1.0])
     forces = [columns[name][-1] for name in boxes_of(scene).force_columns]

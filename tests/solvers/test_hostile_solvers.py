@@ -25,7 +25,6 @@ MANY = (
     "deadly:kills_its_group deadly:closes_everything interrupts raises_half_a_character "
     "odd_names SubnormalStatic sound"
 )
-HUNG = "s, the time limit for 50 steps"
 needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the solver finds its pipes in /proc")
 
 
@@ -57,34 +56,17 @@ def told(row, outcome, said):
     return row.outcome is outcome and said in "; ".join(row.notes) and sum(map(len, row.notes)) < 1000
 
 
-SURVIVED = [
-    (target, Outcome(outcome), said)
-    for target, outcome, said in tomllib.loads(Path(__file__).with_name("hostile_solvers.toml").read_text())["survived"]
-]
-FATAL = [  # to the process
-    pytest.param("deadly:writes_half_a_line", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("deadly:drips", Outcome.TIMEOUT, HUNG, marks=needs_linux),
-    pytest.param("deadly:writes_garbage", Outcome.RAISED, "crashed: no answer but", marks=needs_linux),
-    pytest.param("deadly:writes_a_list", Outcome.RAISED, "crashed: no answer but '[1, 2]'", marks=needs_linux),
-    ("deadly:closes_everything", Outcome.RAISED, "crashed: the process ended with status"),
-    ("deadly:closes_and_sleeps", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("deadly:sleeps", Outcome.TIMEOUT, HUNG),
-    ("deadly:spins", Outcome.TIMEOUT, HUNG),
-    ("deadly:ignores_signals", Outcome.TIMEOUT, HUNG),
-    ("deadly:stops_itself", Outcome.TIMEOUT, HUNG),
-    ("deadly:kills_its_group", Outcome.RAISED, "crashed: the process ended with status 137"),
-    ("deadly:crashes", Outcome.RAISED, "crashed: the process ended with status 139: segmentation fault"),
-    ("deadly:kills_itself", Outcome.RAISED, "crashed: the process ended with status 137"),
-]
+TABLES = tomllib.loads(Path(__file__).with_name("hostile_solvers.toml").read_text())
+FATAL = [pytest.param(*case, marks=[needs_linux] * linux) for *case, linux in TABLES["fatal"]]
 
 
 @needs_linux
 def test_one_process_outlives_all_that_solvers_do_in_it(scene, mark):
     """Each is a row with a name, and what it has left disturbs neither the next scene nor the end."""
     used = set()
-    for target, outcome, said in SURVIVED:
+    for target, outcome, said in TABLES["survived"]:
         row = row_of(scene.with_values({"title": target}), "named:Named")
-        assert told(row, outcome, said), (target, row.outcome, row.notes)
+        assert told(row, Outcome(outcome), said), (target, row.outcome, row.notes)
         used.update(worker.workers.values())
     assert len(used) == 1, "the processes that have answered"
     worker.close_all()
@@ -103,9 +85,9 @@ def at_once(scene, monkeypatch):
 @pytest.mark.parametrize(("target", "outcome", "said"), thinned(FATAL, 4))
 def test_what_a_process_does_not_outlive_is_a_row_with_a_name(scene, mark, target, outcome, said, monkeypatch):
     assert UserSolver(target, target).about() == {}, "the process has started"
-    monkeypatch.setenv(VARIABLE, "0.05" if outcome is Outcome.TIMEOUT else "60")
+    monkeypatch.setenv(VARIABLE, "0.05" if outcome == "timeout" else "60")
     row = row_of(scene, target)
-    assert told(row, outcome, said), (row.outcome, row.notes)
+    assert told(row, Outcome(outcome), said), (row.outcome, row.notes)
     worker.close_all()
     assert left(mark) == []
 

@@ -31,7 +31,6 @@ NOT_LINEAR = (
     *("column that opens", "column that slips", "bars that open", "bars that slip"),
 )
 OF_CONTACTS = NOT_LINEAR[-4:]  # columns
-OF_DDA = ("opening in a ramp", "lagged", "turning", "dashpots", "impact")  # of the stepping solvers alone
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
 # what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time, of a
@@ -153,27 +152,13 @@ def assert_same(values, expected, rounding):
         assert np.abs(values[name] - wanted).max() <= rounding * np.abs(wanted).max(), name
 
 
-TAKES = {  # what each solver takes; the other scenes it refuses by name
-    "dda": tuple(SCENES),
-    "dda-textbook": ("locked",),
-    "fem": tuple(name for name in SCENES if name not in OF_DDA),
-    "fenicsx": ("locked", "explicit", "lateral", "sub-blocks", "shaken"),
-    "bar": ("locked", "ramped", "damped", "opening", "opening sub-blocks", "landing"),
-    "continuum": ("locked", "damped"),
-    "layers": ("column",),
-    "block-events": ("locked", "shaken", "opening", "landing", "sliding", "dashpots", "impact"),
-    "bar-events": ("opening", "landing"),
-    "column-events": OF_CONTACTS,
-    "bars-events": OF_CONTACTS[-2:],
-    "rigid-exact": (),  # of boxes on a ground alone, which none of these scenes is
-    "dda-60": ("locked",),
-}
+TAKES = {solver: [name for name, scene in SCENES.items() if solver in scene["solvers"]] for solver in BUILT_IN}
 
 
 def pairs(solver):
     """Return a solver with its scenes; FEniCSx is another program, which is started for its tests alone."""
     marks = [pytest.mark.fenicsx] if solver == "fenicsx" else []
-    return [pytest.param(solver, name, id=f"{solver}-{name}", marks=marks) for name in TAKES.get(solver, ())]
+    return [pytest.param(solver, name, id=f"{solver}-{name}", marks=marks) for name in TAKES[solver]]
 
 
 EVERY = pytest.mark.parametrize(("solver", "name"), [pair for solver in BUILT_IN for pair in pairs(solver)])
@@ -188,7 +173,7 @@ OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if "column"
 @pytest.mark.parametrize("solver", BUILT_IN)
 def test_a_solver_takes_its_scenes_and_no_others(solver, records):
     adapter = get_solver(solver)
-    assert [name for name in SCENES if adapter.refusal(made(name, records)) is None] == list(TAKES[solver])
+    assert [name for name in SCENES if adapter.refusal(made(name, records)) is None] == TAKES[solver]
 
 
 @EVERY

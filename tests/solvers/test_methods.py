@@ -60,16 +60,6 @@ def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver, scene):
             assert np.array_equal(history.columns[name], column), (values, name)
 
 
-@pytest.mark.parametrize("name", ["unlocked-average", "columns-drop-average"])
-def test_the_leapfrog_is_refused_beyond_its_limit_unless_that_is_allowed(name):
-    beyond = {"time.step": 0.1, "time.steps": 3} | SCHEMES["leapfrog"]
-    scene = load_scene(name).expand()[0].with_values(beyond)
-    with pytest.raises(InputError) as caught:
-        solve(scene, "dda")
-    assert caught.value.field == "time.step"
-    assert solve(scene.with_values({"time.allow_unstable": True}), "dda").history is not None
-
-
 def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode():
     frequency = max(mode.frequency for mode in get_solver("dda").modes(LOCKED))
     limit = math.sqrt(2 * 1.99) / frequency

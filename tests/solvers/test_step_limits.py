@@ -1,6 +1,8 @@
 """A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
 
 import math
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,7 +20,7 @@ from validation.solvers.soundness import reach
 BLOCK = {"side": 2.0, "density": 2700.0, "young": 1e9}
 CONTACT = {"stiffness": 1e9}
 OPEN = {**CONTACT, "law": "unilateral"}
-PRESSURE = {"pressure": 5e6}
+PLAIN = {"block": BLOCK, "contact": CONTACT, "load": {"pressure": 5e6}}
 COLUMN = {
     "motion": "shear",
     "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
@@ -29,14 +31,13 @@ STACK = {
     "stiffness": 1e9,
 }
 PULSE = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
-KNOCK = {"at": "top", "shape": "half-sine", "pressure": 1e5, "duration": 0.5}
 
 
 def scene(step, steps=300, **tables):
     """Return a scene under central differences, a block unless `tables` says otherwise."""
-    plain = {"time": {"step": step, "steps": steps, "alpha": 0.0, "delta": 0.5}, "fem": {"elements": 2}}
-    body = {} if "column" in tables else {"block": BLOCK, "contact": CONTACT, "load": PRESSURE}
-    return parse_scene({**body, **plain, **tables}, "limited")
+    body = {} if "column" in tables else PLAIN
+    time = {"step": step, "steps": steps} | tables.get("time", {"alpha": 0.0, "delta": 0.5})
+    return parse_scene({**body, "fem": {"elements": 2}, **tables, "time": time}, "limited")
 
 
 def refusal(solver, limited):
@@ -45,34 +46,21 @@ def refusal(solver, limited):
     return run.notes[-1] if run.outcome is Outcome.REFUSED else None
 
 
-SCENES = {
-    "locked": ("dda", {}),
-    "sixty digits": ("dda-60", {}),
-    "mesh": ("fem", {}),
-    "adaptive": ("dda", {"damping": {"kinetic": "adaptive", "floor": 0.5}}),
-    "opening": ("dda", {"contact": OPEN}),
-    "frictionless": ("dda", {"contact": {**OPEN, "shear_stiffness": 0.0}}),
-    "thrown": ("dda", {"contact": OPEN, "block": {**BLOCK, "velocity": -1.0}, "load": {"gravity": 9.81}}),
-    "sliding": ("dda", {"contact": {**OPEN, "friction": 30.0}, "load": {**PRESSURE, "traction": 1e6}}),
-    "turning": ("dda", {"contact": OPEN, "run": {"geometry": "updated"}}),
-    "opening sub-blocks": ("dda", {"contact": OPEN, "block": {**BLOCK, "subdivide": [2, 2], "glue_ratio": 10.0}}),
-    "opening mesh": ("fem", {"contact": OPEN}),
-    "sliding mesh": ("fem", {"contact": {**OPEN, "friction": 30.0}, "load": {**PRESSURE, "traction": 1e6}}),
-    "column of blocks": ("dda", {"column": COLUMN, "input": PULSE}),
-    "column that opens": ("dda", {"column": {**STACK, "motion": "pressure", "law": "unilateral"}}),
-    "column that slips": (
-        "dda",
-        {"column": {**STACK, "motion": "shear", "law": "frictional", "strength": 1e5}},
-    ),
-    "column of elements": ("fem", {"column": COLUMN, "input": PULSE}),
-    "blocks on a half-space": ("dda", {"column": HALF_SPACE, "input": KNOCK}),
-    "elements on a half-space": ("fem", {"column": HALF_SPACE, "input": KNOCK, "fem": {"elements": 1, "degree": 1}}),
-}
+TABLES = tomllib.loads(Path(__file__).with_name("step_limits.toml").read_text(encoding="utf-8"))
+SCENES = TABLES["limited"]
+
+
+def tables_of(name):
+    """Return the solver of a scene of the table, and the scene's tables."""
+    own = dict(SCENES[name])
+    solver = own.pop("solver")
+    plain = {"column": STACK if "law" in own["column"] else COLUMN} if "column" in own else PLAIN
+    return solver, own | {key: table | own.get(key, {}) for key, table in plain.items()}
 
 
 @pytest.mark.parametrize("name", thinned(SCENES, 4))
 def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name):
-    solver, tables = SCENES[name]
+    solver, tables = tables_of(name)
     said = refusal(solver, scene(1.0, 2, **tables))
     assert said is not None
     limit = float(said.split("must not exceed ")[1].split(" s")[0])
@@ -95,12 +83,21 @@ def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top():
     assert said is not None and "must not exceed" in said
 
 
-GROWING = ("opening", "turning", "opening sub-blocks", "opening mesh", "locked", "mesh", "column of blocks")
+GROWING = (
+    "leapfrog, opening",
+    "opening",
+    "turning",
+    "opening sub-blocks",
+    "opening mesh",
+    "locked",
+    "mesh",
+    "column of blocks",
+)
 
 
 @pytest.mark.parametrize("name", GROWING)
 def test_a_step_that_is_allowed_runs_and_its_growth_is_an_outcome_of_its_own(name):
-    solver, tables = SCENES[name]
+    solver, tables = tables_of(name)
     run = solve(scene(0.05, 20, **tables).with_values({"time.allow_unstable": True}), solver)
     assert run.outcome is Outcome.UNBOUNDED, run.notes
 
@@ -142,47 +139,23 @@ def test_the_motion_of_a_base_enters_the_bound(tmp_path):
     assert reach(shaken) == math.inf
 
 
-AT_REST = {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
+RESTING = STACK | {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
 ABSURD_LAYER = {"thickness": 1e150, "density": 1e8, "young": 1e9, "blocks": 2}
 THIN = {"thickness": 1e-20, "density": 1.0, "young": 1e9, "blocks": 2}
-RIGID_STOPS = {"motion": "pressure", "law": "unilateral", "stiffness": math.inf}
 
 
 @pytest.mark.parametrize("solver", ["dda", "fem"])
-@pytest.mark.parametrize(
-    ("column", "time", "outcome", "words"),
-    [
-        (RIGID_STOPS | AT_REST, {"alpha": 0.0, "delta": 0.5}, Outcome.REFUSED, "alpha"),
-        (
-            RIGID_STOPS | {"layer": [AT_REST["layer"][0] | {"young": math.inf, "blocks": 1}]},
-            {"alpha": 0.0, "delta": 0.5},
-            Outcome.REFUSED,
-            "alpha",
-        ),
-        (
-            {"motion": "shear", "law": "bonded", "layer": [THIN, THIN | {"density": 1e50, "young": 1e300}]},
-            {"alpha": 0.25},
-            Outcome.OVERFLOW,
-            "",
-        ),
-        (
-            HALF_SPACE,
-            {"alpha": 0.25, "delta": 0.4, "gg": 0.0},
-            Outcome.REFUSED,
-            "time.delta",
-        ),
-    ],
-    ids=["elastic on stops", "rigid on stops", "singular", "half-space"],
-)
-def test_what_cannot_be_stepped_is_an_outcome(column, time, outcome, words, solver):
+@pytest.mark.parametrize("case", TABLES["ends"].values(), ids=TABLES["ends"])
+def test_what_cannot_be_stepped_is_an_outcome(case, solver):
+    plain = RESTING if case["column"].get("law") == "unilateral" else COLUMN
     base = {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}
-    limited = scene(1e-4, 20, column=column, input=base)
-    limited = limited.with_values({f"time.{key}": value for key, value in time.items()})
+    limited = scene(1e-4, 20, column=plain | case["column"], input=base)
+    limited = limited.with_values({f"time.{key}": value for key, value in case["time"].items()})
     if get_solver(solver).refusal(limited):
         return  # it takes no such blocks
     run = attempt(get_solver(solver), limited, full=False)[1]
-    assert run.outcome is outcome
-    assert words in run.notes[-1]
+    assert run.outcome == case["outcome"]
+    assert case["says"] in run.notes[-1]
 
 
 @pytest.mark.parametrize("layers", [[ABSURD_LAYER, THIN], [THIN | {"blocks": 100_000}, ABSURD_LAYER]])
@@ -192,35 +165,16 @@ def test_blocks_that_are_no_part_of_a_height_are_refused(layers):
     assert "layer.thickness" in str(error.value)
 
 
-LATE = "time,velocity\n5,0\n6,1\n7,0\n"
-OPENS = STACK | {"motion": "pressure", "law": "unilateral", "gap": 0.01}
-SLIPS = STACK | {"motion": "shear", "law": "frictional", "strength": 1e4}
-SETTLED = OPENS | AT_REST | {"stiffness": 1e3, "gravity": 9.81, "settled": True}
-
-
 @pytest.mark.parametrize("solver", ["dda", "fem", "column-events", "bars-events"])
-@pytest.mark.parametrize(
-    ("column", "drive", "time"),
-    [
-        (OPENS | AT_REST, LATE, {}),
-        (SLIPS | AT_REST, LATE, {}),
-        (SETTLED, None, {"step": 1e-7}),
-        (OPENS | AT_REST | {"gap": 0.0}, {"shape": "sine", "velocity": 0.1, "frequency": 100.0}, {"step": 0.01}),
-        (OPENS | AT_REST, {"shape": "half-sine", "velocity": 0.1, "duration": 0.01}, {"step": 0.02}),
-    ],
-    ids=["late", "late slip", "settled", "drive between steps", "pulse between steps"],
-)
-def test_a_column_with_gaps_and_hardly_a_drive_is_sound(column, drive, time, solver, tmp_path):
-    if isinstance(drive, str):
-        (tmp_path / "late.csv").write_text(drive)
-        drive = {"record": str(tmp_path / "late.csv")}
-    columns = ["displacement"]
-    if column["law"] == "unilateral":
-        columns += ["gap_1", "gap_2"]
+@pytest.mark.parametrize("case", TABLES["sound"].values(), ids=TABLES["sound"])
+def test_a_column_with_gaps_and_hardly_a_drive_is_sound(case, solver, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("late.csv").write_text("time,velocity\n5,0\n6,1\n7,0\n")
+    column = RESTING | {"motion": "pressure", "law": "unilateral", "heights": [0.0, 2.0]} | case.get("column", {})
+    columns = ["displacement", *["gap_1", "gap_2"] * (column["law"] == "unilateral")]
+    stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | case.get("time", {})
+    tables = {"input": {"at": "base"} | case["input"]} if "input" in case else {}
     run = {"solvers": [solver], "columns": columns}
-    stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | time
-    tables = {"input": {"at": "base"} | drive} if drive else {}
-    still = parse_scene({"column": column | {"heights": [0.0, 2.0]}, "time": stepped, "run": run, **tables}, "still")
-    refused = get_solver(solver).refusal(still)
-    assert refused is None
+    still = parse_scene({"column": column, "time": stepped, "run": run, **tables}, "still")
+    assert get_solver(solver).refusal(still) is None
     assert solve(still, solver).outcome is Outcome.COMPLETED

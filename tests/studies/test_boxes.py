@@ -3,9 +3,7 @@
 import pytest
 from faults import seams
 from faults.fault import Fault
-from faults.kill_matrix import cases_of, check_kill_matrix
-
-from validation.suite.folders import get_study
+from faults.kill_matrix import check_study
 
 DDA = ("dda",)
 
@@ -37,6 +35,4 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    study = get_study("boxes")
-    gates = [*study.gates()]
-    check_kill_matrix(study, cases_of(study, gates), gates, FAULTS, tmp_path, finished_cases)
+    check_study("boxes", FAULTS, tmp_path, finished_cases)

@@ -17,7 +17,6 @@ from validation.engine.run import _derived_record, finish
 from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.solvers.registry import get_solver
 from validation.studies.paper import open_close
 from validation.studies.paper.formulas import CLAIMS, CLAIMS_OF_THE_PAPER
 from validation.suite.claims import REGISTER, Band, Evidence, Finding, page
@@ -47,6 +46,7 @@ def test_every_claim_has_its_expected_verdict_and_every_number_its_gate(finished
     assert all(evaluate(gate, finished).status is Status.PASS for gate in PAPER.gates())
 
 
+@pytest.mark.long
 def test_a_changed_threshold_turns_the_verdict_over(finished):
     for claim in CLAIMS:
         numbers = claim.measure(Evidence(finished))
@@ -62,6 +62,7 @@ def test_a_changed_threshold_turns_the_verdict_over(finished):
         assert evaluate(replace(claim.gate(), low=-1.0, high=-0.5), finished).status is Status.FAIL
 
 
+@pytest.mark.long
 def test_the_page_in_docs_is_what_a_fresh_run_writes(finished):
     rows = [_derived_record(finished, REGISTER, claim.id) for claim in CLAIMS]
     text = (ROOT / CLAIMS_OF_THE_PAPER.page).read_text(encoding="utf-8")
@@ -124,36 +125,6 @@ def test_every_number_is_bitten_and_every_verdict_that_a_fault_could_mend(killed
 
 def test_the_command_needs_results(tmp_path):
     assert "run paper" in refused("claims", "--results", tmp_path)
-
-
-SCHEMES = [(0.5, 1.0), (0.5625, 1.0), (0.5, 0.75), (0.25, 0.5), (0.5, 0.5)]
-
-
-def most_solves(alpha, delta, values):
-    """Return the most solves of a step and the cuts of the paper's unlocked block, p = 100E, dt = 1 ms."""
-    scheme = {"time.alpha": alpha, "time.delta": delta, "time.steps": 200}
-    case = load_scene("open-close").expand()[0].with_values(scheme | values)
-    prepared = get_solver("dda").prepare(case)
-    prepared.run()
-    record = prepared.contact_record()
-    assert record.solves is not None and record.cuts is not None
-    return int(record.solves.max()), int(record.cuts.sum())
-
-
-@pytest.mark.parametrize(("alpha", "delta"), SCHEMES)
-def test_two_contacts_without_friction_converge_at_any_damping(alpha, delta):
-    for eccentricity, traction in ((0.0, 0.0), (0.4, 5e5), (0.6, 1e5)):
-        free = {"contact.shear_stiffness": 0.0, "load.eccentricity": eccentricity, "load.traction": traction}
-        solves, cuts = most_solves(alpha, delta, free)
-        assert solves <= 3 and cuts == 0
-
-
-def test_contacts_glued_in_shear_and_loaded_off_centre_may_need_many_solves_with_damping_as_without():
-    off_centre = [{"load.eccentricity": 0.4, "load.traction": 5e5}, {"load.eccentricity": 0.6, "load.traction": 1e5}]
-    damped = [most_solves(0.5625, 1.0, load)[0] for load in off_centre]
-    undamped = [most_solves(0.25, 0.5, load)[0] for load in off_centre]
-    assert max(damped) > 3 and max(undamped) > 3
-    assert most_solves(0.5625, 1.0, {})[0] <= 3  # in the middle both corners move as one
 
 
 # Ways in a second by an independent program of six unknowns and two corners [mm], by time step [s].

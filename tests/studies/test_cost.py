@@ -47,16 +47,12 @@ def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
         assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
 
 
-def test_filtered_modes_are_the_bar_and_many_small_elements():
+def test_filtered_modes_are_the_bar():
     fine = {"time.step": 2e-4, "time.steps": 100, "fem.elements": 128}
     modal = ModalFilter().solve(PAPER.with_values(fine)).history
     exact = solve(PAPER.with_values(fine), "continuum").history
     for name, column in modal.columns.items():
         assert np.abs(column - exact.columns[name]).max() < 2e-4 * np.abs(column).max()
-    heavy = GRANITE.with_values({"time.step": 2e-6, "time.steps": 1500, "fem.elements": 128, "fem.degree": 1} | AVERAGE)
-    modal, mesh = ModalFilter().solve(heavy).history, solve(heavy, "fem").history
-    for name, column in modal.columns.items():
-        assert np.abs(column - mesh.columns[name]).max() < 2e-3 * np.abs(column).max()
 
 
 # ---- window and norm ----------------------------------------------------------------------------------------------
@@ -76,17 +72,6 @@ def solve_modes(scene):
     from validation.solvers.registry import get_solver
 
     return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
-
-
-def test_the_running_mean_of_a_sudden_load_is_the_answer_to_one_that_rises():
-    """By linearity; both are stepped, and the steps differ in what they make of the rise."""
-    ladder = Ladder.of(PAPER)
-    scene = PAPER.with_values({"time.step": 1e-5, "time.steps": 2000} | AVERAGE)
-    sudden, rising = (solve(scene.with_values({"load.ramp": ramp}), "dda").history for ramp in (0.0, ladder.mean))
-    grid = np.append(0.0, sudden.time)
-    for name in ("displacement", "contact_pressure"):
-        mean = measures.running_mean(measures.on_grid(sudden, name, grid), round(ladder.mean / 1e-5))[1:]
-        assert np.abs(mean - rising.columns[name]).max() < 3e-3 * np.abs(mean).max()
 
 
 def test_a_history_of_long_steps_is_straight_between_them():
@@ -161,6 +146,24 @@ def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
 # ---- the table of a study -----------------------------------------------------------------------------------------
 
 
+LINES = """
+figures-3-4 | dda |  | outcome | completed |  | None
+figures-3-4 | dda |  | mode1.damping | 0.17 | 1 | None
+figures-3-4 | dda |  | work.unknowns | 6 |  | None
+figures-3-4 | dda |  | work.solves | 41 |  | None
+figures-3-4 | dda |  | work.steps | 40 |  | None
+figures-3-4 | dda |  | seconds.setup | 0.25 | s | None
+figures-3-4 | dda |  | seconds.stepping | 0.5 | s | None
+figures-3-4 | dda |  | estimate | 2e-15 |  | None
+figures-3-4 | bar |  | outcome | completed |  | None
+figures-3-4 | bar |  | mode1.damping | 0.15 | 1 | None
+figures-3-4 | bar |  | seconds.stepping | 0.1 | s | None
+figures-3-4 | dda | bar | displacement.l2 | 0.031 | 1 | 1.0
+figures-3-4 | dda | bar | pressure.l2 | 0.032 | 1 | 1.0
+owner | order |  | power | 2.0 |  | None
+"""
+
+
 def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path):
     scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
     work = {"unknowns": 6, "solves": 41, "steps": 40}
@@ -173,17 +176,11 @@ def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path):
     results = Results(tmp_path)
     manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
     derived = {"derived": [{"scene": "owner", "name": "order", "metrics": {"power": 2.0}}]}
-    lines = list(tidy(results, manifest | derived))
-    numbers = {(row.solver, row.reference, row.metric): row.value for row in lines}
-    assert len(numbers) == len(lines)
-    assert numbers["dda", "", "outcome"] == "completed" and numbers["dda", "", "estimate"] == 2e-15
-    assert numbers["dda", "", "work.solves"] == 41 and numbers["dda", "", "seconds.stepping"] == 0.5
-    assert numbers["dda", "", "mode1.damping"] == 0.17 and numbers["bar", "", "mode1.damping"] == 0.15
-    assert numbers["dda", "bar", "displacement.l2"] == 0.031 and ("bar", "", "estimate") not in numbers
-    units = {(row.metric, row.window, row.unit) for row in lines if row.metric in ("displacement.l2", "seconds.setup")}
-    assert units == {("displacement.l2", 1.0, "1"), ("seconds.setup", None, "s")}
-    last = lines[-1]
-    assert (last.scene, last.case, last.solver, last.metric) == ("owner", "", "order", "power")
+    lines = [
+        f"{row.scene} | {row.solver} | {row.reference} | {row.metric} | {row.value} | {row.unit} | {row.window}"
+        for row in tidy(results, manifest | derived)
+    ]
+    assert "\n".join(lines) == LINES.strip()
 
 
 # ---- orders -------------------------------------------------------------------------------------------------------
@@ -342,13 +339,3 @@ def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
     cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
     assert cheapest["error.force"] <= 1e-3
     assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
-
-
-def test_a_seeded_fault_makes_the_gates_red(sound, tmp_path, monkeypatch):
-    fault = FAULTS[0]
-    fault.seam.wrap(monkeypatch, fault.replacement)
-    faulty = Results(tmp_path)
-    study = paper_alone()
-    run_study(study, faulty)
-    red = {verdict["metric"] for verdict in faulty.verdicts("cost") if verdict["verdict"] == "FAIL"}
-    assert red == {"reached.dda", "sub_blocks", "model"}

@@ -20,6 +20,7 @@ from validation.scenes.places import LIBRARY, scene_files
 from validation.scenes.scene import load_scene
 from validation.suite.folders import get_study, study_folders, study_names
 
+SLOW = ("standing", "touching", "stability")  # whose bands take seconds
 HERE = Path(str(validation.studies.__file__)).parent
 STUDY = """
 [study]
@@ -131,7 +132,9 @@ def test_a_folder_that_is_taken_away_leaves_the_others_whole(folder, tmp_path, m
     assert typed("list", "studies").returncode == 0
 
 
-@pytest.mark.parametrize("name", study_names())
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name in SLOW)) for name in study_names()]
+)
 def test_what_gates_and_derived_rows_need_is_run(name):
     study = get_study(name)
     owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes())

@@ -11,7 +11,7 @@ import scipy.linalg
 from conftest import beside
 from faults import seams
 from faults.fault import Fault, late, no_damping, no_discount, of_first, thousandth, times, told, with_scheme
-from faults.kill_matrix import cases_of, check_kill_matrix
+from faults.kill_matrix import check_study
 
 import dda
 from dda.bodies.gap_form import ModalForm
@@ -277,7 +277,6 @@ KILLS = {
     "limits": LIMITS,
 }
 SHORT = {  # some gates and the faults that bite them, in the short tests
-    "meeting": (("meeting-land", "meeting-tower", "meeting-spinning"), MEETING[:2]),
     "spin": (("spin-flight", "spin-turns"), [SPIN[0], *SPIN[2:]]),
     "columns": (
         ("columns-domino", "columns-settle[time.step=0.02", "columns-slips-steps[time.step=0.005"),
@@ -290,24 +289,17 @@ SHORT = {  # some gates and the faults that bite them, in the short tests
 }
 
 
-def check(name, faults, is_checked, directory, finished):
-    """Check the kill matrix of some gates of a study."""
-    study = get_study(name)
-    gates = [gate for gate in study.gates() if is_checked(gate)]
-    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished)
-
-
 @pytest.mark.long
 @pytest.mark.parametrize("name", KILLS)
 def test_every_gate_is_bitten_and_every_fault_is_seen(name, tmp_path, finished_cases):
     left_out = LEFT_OUT if name == "subblocks" else ("waves-facts",)  # without runs, bitten in test_facts.py
-    check(name, KILLS[name], lambda gate: not any(w in gate.scene for w in left_out), tmp_path, finished_cases)
+    check_study(name, KILLS[name], tmp_path, finished_cases, lambda gate: not any(w in gate.scene for w in left_out))
 
 
 @pytest.mark.parametrize("name", SHORT)
 def test_gates_of_some_scenes_are_bitten(name, tmp_path, finished_cases):
     words, faults = SHORT[name]
-    check(name, faults, lambda gate: gate.scene.startswith(words), tmp_path, finished_cases)
+    check_study(name, faults, tmp_path, finished_cases, lambda gate: gate.scene.startswith(words))
 
 
 @pytest.mark.long

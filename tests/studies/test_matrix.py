@@ -1,7 +1,9 @@
 """The verification matrix: every gate can be looked up, a phenomenon is found by its name and judges any solver."""
 
 import json
+import tomllib
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 from conftest import typed
@@ -12,6 +14,7 @@ from validation.gates.gate import Gate
 from validation.suite import matrix
 from validation.suite.matrix import phenomena, phenomenon, unstated
 
+MARGINS = tomllib.loads(Path(__file__).with_name("margins.toml").read_text(encoding="utf-8"))["margin"]
 STUDY = """
 [study]
 name = "added"
@@ -79,25 +82,12 @@ def test_a_name_of_none_or_several_is_refused(text, advice):
     assert typed("verify", text).returncode == 2
 
 
-@pytest.mark.parametrize(
-    ("band", "value", "target", "margin"),
-    [
-        ((0.0, 0.1), 0.025, 0.0, 0.75),
-        ((1e-17, 0.1), 0.025, 0.0, 0.75),
-        ((-0.2, 0.1), -0.05, 0.0, 0.75),
-        ((-0.2, 0.1), 0.2, 0.0, -1.0),
-        ((1.9, 2.1), 2.05, 2.0, 0.5),
-        ((-2.1, -1.9), -1.95, -2.0, 0.5),
-        ((3.0, 3.0), 3.0, 3.0, None),
-        ((0.0, 1e-12), 1e-13, 0.0, None),
-        ((5.0, 5.0 + 1e-12), 5.0, 5.0, None),
-        ((-float("inf"), 0.0), -3.0, 0.0, None),
-    ],
-)
-def test_the_margin_is_what_is_left_of_the_way_from_target_to_edge(band, value, target, margin):
-    gate = Gate("s", ("dda",), "m", *band, "r")
-    assert gate.target == pytest.approx(target, abs=1e-11)
-    assert gate.margin(value) == (margin if margin is None else pytest.approx(margin))
+@pytest.mark.parametrize("row", MARGINS, ids=str)
+def test_the_margin_is_what_is_left_of_the_way_from_target_to_edge(row):
+    gate = Gate("s", ("dda",), "m", *row["band"], "r")
+    assert gate.target == pytest.approx(row["target"], abs=1e-11)
+    margin = gate.margin(row["value"])
+    assert ("none" if margin is None else pytest.approx(margin)) == row["margin"]
 
 
 def test_the_kind_of_a_reference_is_one_of_four():
@@ -105,7 +95,7 @@ def test_the_kind_of_a_reference_is_one_of_four():
         Gate("s", ("dda",), "m", 0, 1, "r", "guess")
 
 
-@pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.1, 1)])
+@pytest.mark.parametrize(("factor", "status"), [pytest.param(1.0, 0, marks=pytest.mark.long), (1.1, 1)])
 def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, tmp_path, monkeypatch):
     boxes = phenomenon("boxes")
     sliding = replace(boxes, gates=tuple(gate for gate in boxes.gates if gate.scene == "boxes-sliding"))

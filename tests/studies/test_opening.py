@@ -6,17 +6,15 @@ from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
-from conftest import thinned
 from faults import seams
 from faults.fault import Fault, scaled, told
-from faults.kill_matrix import check_kill_matrix
+from faults.kill_matrix import check_study
 
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.metrics.catalogue import pair
 from validation.suite.bands import half_unit
-from validation.suite.folders import get_study
 
 
 def pressed(found):
@@ -65,8 +63,7 @@ FAULTS = [  # of the data by parts in 1e11 and less, which move every number by 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    cases = get_study("opening").cases()
-    check_kill_matrix(get_study("opening"), cases, get_study("opening").gates(), FAULTS, tmp_path, finished_cases)
+    check_study("opening", FAULTS, tmp_path, finished_cases)
 
 
 @pytest.mark.parametrize(
@@ -109,31 +106,3 @@ def local_orders(alpha, delta, degree):
 @pytest.mark.parametrize("degree", [pytest.param(1, marks=pytest.mark.long), 2])
 def test_elements_as_long_as_the_front_do_under_constant_acceleration(degree):
     assert local_orders(0.5, 1.0, degree) == pytest.approx([2.0 * degree] * 3, abs=0.1)
-
-
-@pytest.mark.parametrize(("degree", "expected"), thinned([(1, (1.45, 1.85, 1.97)), (2, (2.90, 3.73, 3.92))], 2))
-def test_average_acceleration_takes_a_quarter_of_the_front(degree, expected):
-    """The front is not damped: halving elements of a front, a half and a quarter of it comes up to the full order."""
-    orders = local_orders(0.25, 0.5, degree)
-    assert orders == pytest.approx(expected, abs=0.05)
-    full = 2 * degree
-    assert orders[0] < 0.8 * full < 0.97 * full < orders[2]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("stiffness", "orders"),
-    [
-        (1e9, {"displacement.l2": (0.65, 0.85), "pressure.l2": (0.5, 0.75), "pressure.max": (0.4, 0.6)}),
-        (1e11, {"displacement.l2": (0.65, 0.85), "pressure.l2": (0.15, 0.4), "pressure.max": (-0.3, 0.3)}),
-    ],
-)
-def test_the_bar_under_a_scheme_tends_to_the_exact_bar_below_order_1(stiffness, orders):
-    """Constant acceleration over 0.03 s, from dt = 0.2 to 0.05 ms: a front is smeared."""
-    scene = load_scene("unlocked-ledger").expand()[0].with_values({"contact.stiffness": stiffness})
-    coarse, fine = (
-        histories_of(scene.with_values({"time.step": dt, "time.steps": round(0.03 / dt)}), "bar", "bar-events")
-        for dt in (2e-4, 5e-5)
-    )
-    for metric, (low, high) in orders.items():
-        assert low < math.log(pair(metric, *coarse) / pair(metric, *fine), 4) < high, metric

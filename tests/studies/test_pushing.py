@@ -7,7 +7,6 @@ import pytest
 from validation.models.plane.canon import wedges_of
 from validation.scenes.scene import load_scene
 from validation.studies.pushing.exact import Pushing, at, events
-from validation.studies.pushing.formulas import problem_of
 
 DEGREES = {angle: math.tan(math.radians(angle)) for angle in (10, 15, 25, 30, 40)}
 BOTH = Pushing((5400, 2700), (DEGREES[15], DEGREES[25]), math.radians(30), 2e7, 0.0, (0.2, 0.0))
@@ -56,16 +55,6 @@ PRINTED = [
 def test_the_pieces_give_the_events_and_the_ends_of_another_program(problem, until, instants, ways):
     assert [time for time, _ in events(problem, until)] == pytest.approx(instants, abs=1e-9)
     assert at(problem, until)[:2] == pytest.approx(ways, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "problem"), [("pushing-both", BOTH), ("pushing-held", HELD), ("pushing-locked", STOPS)]
-)
-def test_the_scenes_state_these_problems(name, problem):
-    stated = problem_of(load_scene(name).expand()[0])
-    assert stated.masses == pytest.approx(problem.masses) and stated.friction == pytest.approx(problem.friction)
-    numbers = ("slope", "stiffness", "gap", "speeds")
-    assert [getattr(stated, key) for key in numbers] == [getattr(problem, key) for key in numbers]
 
 
 @pytest.mark.parametrize(

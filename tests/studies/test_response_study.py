@@ -1,6 +1,5 @@
 """The study `response`: each of its gates is bitten by a fault, and its records are what its scenes say."""
 
-import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault, late, thousandth, with_scheme
@@ -8,10 +7,7 @@ from faults.kill_matrix import check_kill_matrix, failed
 
 from validation.engine.run import finish
 from validation.runs.results import Results
-from validation.scenes.record import base_record
-from validation.scenes.scene import load_scene
-from validation.studies.response import formulas as response
-from validation.studies.response.formulas import BASE, DAMPING, FREQUENCIES, LOW
+from validation.studies.response.formulas import BASE
 from validation.suite.folders import get_study
 
 STUDY = get_study("response")
@@ -55,14 +51,3 @@ def test_gates_on_steps_are_bitten(tmp_path, finished_cases):
     stepped = (BASE, "viscous")
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
     check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)
-
-
-@pytest.mark.parametrize(("name", "frequencies", "step"), [(BASE, FREQUENCIES, 0.002), (DAMPING, LOW, 0.01)])
-def test_records_are_sines_of_a_millimetre_of_whole_periods(name, frequencies, step):
-    record = base_record(load_scene(name).expand()[0])
-    assert record is not None
-    sines = 1e-3 * np.sin(2 * np.pi * np.outer(frequencies, record.time)).sum(axis=0)
-    assert np.allclose(record.time, step * np.arange(701), rtol=1e-14)
-    assert np.allclose(record.y, sines, rtol=0, atol=1e-15)
-    periods = np.array(frequencies) * step * response.WINDOWS[name]
-    assert np.allclose(periods, np.round(periods), rtol=1e-12)

@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 from faults import seams
 from faults.fault import Fault, of_first, scaled
-from faults.kill_matrix import check_kill_matrix
+from faults.kill_matrix import check_study
 from scipy.integrate import solve_ivp
 
 from dda.bodies import turning_step as step
 from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
 from dda.march.step import steps_by
-from fem_reference.exact.rocking import RockingBlock
-from validation.studies.rocking import formulas as rocking
 from validation.studies.toppling import formulas as toppling
 from validation.suite.bands import cases
-from validation.suite.folders import get_study
 from validation.theory.rocking import Rectangle
 
 DDA = ("dda",)
@@ -120,9 +117,9 @@ FAULTS = {
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("study", [get_study("rocking"), get_study("toppling")], ids=lambda study: study.name)
+@pytest.mark.parametrize("study", FAULTS)
 def test_every_gate_is_bitten_and_every_fault_is_seen(study, tmp_path, finished_cases):
-    check_kill_matrix(study, study.cases(), study.gates(), FAULTS[study.name], tmp_path, finished_cases)
+    check_study(study, FAULTS[study], tmp_path, finished_cases)
 
 
 PRECISELY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}
@@ -157,13 +154,6 @@ def test_quarter_periods_and_falls_are_those_of_the_differential_equation():
     rates = motion.sol(np.linspace(0, duration, 4001))[1]
     squared = np.trapezoid(rates**2, dx=duration / 4000)
     assert tower.squared_rate(slope - tower.alpha, duration) == pytest.approx(squared, rel=1e-6)
-
-
-def test_the_closed_forms_are_those_of_the_exact_rocking_of_the_other_package():
-    for height, tilt in ((2.0, 1e-3), (4.0, 1e-3), (8.0, 0.12)):
-        own, other = Rectangle(2.0, height, 9.81), RockingBlock(2.0, height, 9.81)
-        assert own.quarter_period(tilt) == pytest.approx(other.quarter_period(tilt), rel=1e-12)
-        assert own.housner == pytest.approx(other.ratio, rel=1e-14)
 
 
 def test_the_numbers_of_the_page_are_those_of_the_closed_forms():
@@ -202,21 +192,3 @@ def test_pulses_overturn_as_the_differential_equation_says(size):
         assert block.pulse_peak(k, duration) == pytest.approx(np.max(tilts), rel=1e-7) and np.max(tilts) < block.alpha
     else:
         assert after.sol(block.pulse_overturning(k, duration) - duration)[0] == pytest.approx(block.alpha, rel=1e-7)
-
-
-def test_the_record_of_the_base_is_the_pulse_of_the_study():
-    from validation.scenes.record import base_record
-
-    for case in cases(rocking.PULSED):
-        record = base_record(case)
-        inside = record.time <= rocking.DURATION + 1e-12
-        assert np.allclose(record.x[inside], rocking.PUSH * record.time[inside] ** 2 / 2, atol=1e-12)
-        end, last = rocking.DURATION, record.time[-1]
-        assert (
-            record.x[-1] == pytest.approx(rocking.PUSH * (end**2 / 2 + end * (last - end)))
-            and last >= case.time.duration
-        )
-    sizes = [
-        rocking.PUSH / 9.81 / Rectangle(c.block.width, 4.0, 9.81).pulse_threshold(0.36) for c in cases(rocking.PULSED)
-    ]
-    assert sizes == pytest.approx([0.9, 0.99, 1.01], abs=1e-9)

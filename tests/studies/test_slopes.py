@@ -8,17 +8,13 @@ import pytest
 from conftest import thinned
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, scaled, told
-from faults.kill_matrix import cases_of, check_kill_matrix
-from oracles.sliding_dda import Slider, run
+from faults.kill_matrix import check_study
+from oracles.sliding_block import SLIDER, history
 
 from validation import solve
-from validation.scenes.record import base_record
 from validation.scenes.scene import load_scene
-from validation.solvers.rigid.sliding import rigid_slide
 from validation.studies.creep import formulas as creep
-from validation.studies.slopes import formulas as sliding
 from validation.suite.bands import cases
-from validation.suite.folders import get_study
 from validation.theory import friction
 
 
@@ -58,24 +54,19 @@ FAULTS = [
 
 @pytest.mark.long
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    study = get_study("slopes")
-    gates = [gate for gate in study.gates() if gate.scene != "slope-facts"]  # those are bitten in test_facts.py
-    check_kill_matrix(study, study.cases(), gates, FAULTS, tmp_path, finished_cases)
+    # The facts are bitten in test_facts.py.
+    check_study("slopes", FAULTS, tmp_path, finished_cases, lambda gate: gate.scene != "slope-facts")
 
 
-def test_the_record_of_the_shaking_is_its_formula():
-    record = base_record(next(cases(sliding.QUAKE)))
-    t = record.time
-    parts = ((0.042, 1.3, 0.0), (0.0085, 2.9, 1.0), (0.0022, 5.3, 2.0))
-    swings = sum(size * np.sin(2 * np.pi * rate * t + phase) for size, rate, phase in parts)
-    assert record.x == pytest.approx((t / 0.4) ** 3 * np.exp(3 - 3 * t / 0.4) * swings, rel=1e-9, abs=1e-12)
-    ways = [{way for _, way in rigid_slide(case, smooth=True).switches} for case in cases(sliding.QUAKE)]
-    assert ways == [{0, 1}, {0, 1}, {-1, 0, 1}, {-1, 0, 1}]
-
-
-def gates_of(*scenes):
-    """Return the gates of the study of creep on some scenes."""
-    return [gate for gate in get_study("creep").gates() if gate.scene.partition("[")[0] in scenes]
+def check_creep(faults, directory, finished_cases, scenes, is_checked=lambda gate: True):
+    """Check the kill matrix of the gates of the study of creep on some scenes."""
+    check_study(
+        "creep",
+        faults,
+        directory,
+        finished_cases,
+        lambda gate: gate.scene.partition("[")[0] in scenes and is_checked(gate),
+    )
 
 
 COARSE = "creep-steps[time.step=0.01"
@@ -86,19 +77,16 @@ CREEP = [
 
 
 def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path, finished_cases):
-    gates = [g for g in gates_of(creep.STEPS, creep.LAGGED) if g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"]
-    study = get_study("creep")
-    check_kill_matrix(study, cases_of(study, gates), gates, CREEP, tmp_path, finished_cases)
+    scenes = (creep.STEPS, creep.LAGGED)
+    check_creep(
+        CREEP, tmp_path, finished_cases, scenes, lambda g: g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"
+    )
 
 
 @pytest.mark.long
 def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path, finished_cases):
-    exact = gates_of(creep.EXACT)
     faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
-    own = [case for case in get_study("creep").cases() if case.scene.name.startswith(creep.EXACT)]
-    check_kill_matrix(
-        get_study("creep"), own, [g for g in exact if g.metric != "share"], faults, tmp_path, finished_cases
-    )
+    check_creep(faults, tmp_path, finished_cases, (creep.EXACT,), lambda gate: gate.metric != "share")
 
 
 def kept_reference(sound):
@@ -125,18 +113,13 @@ SPRINGS = [
 
 @pytest.mark.long
 def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path, finished_cases):
-    gates = gates_of(creep.STIFFNESS, creep.DAMPED)
-    own = [case for case in get_study("creep").cases() if case.scene.name.startswith((creep.STIFFNESS, creep.DAMPED))]
-    check_kill_matrix(get_study("creep"), own, gates, SPRINGS, tmp_path, finished_cases)
+    check_creep(SPRINGS, tmp_path, finished_cases, (creep.STIFFNESS, creep.DAMPED))
 
 
 @pytest.mark.long
 def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path, finished_cases):
-    gates = gates_of(creep.STEPS, creep.LAGGED, "creep-claim", *creep.REFINED)
-    others = (creep.EXACT, creep.STIFFNESS, creep.DAMPED)
-    own = [case for case in get_study("creep").cases() if not case.scene.name.startswith(others)]
-    soft = next(fault for fault in SPRINGS if fault.name == "springs a thousandth soft")
-    check_kill_matrix(get_study("creep"), own, gates, [*CREEP, soft], tmp_path, finished_cases)
+    scenes = (creep.STEPS, creep.LAGGED, "creep-claim", *creep.REFINED)
+    check_creep([*CREEP, SPRINGS[2]], tmp_path, finished_cases, scenes)
 
 
 def test_dda_is_the_plain_program_step_by_step():
@@ -146,15 +129,16 @@ def test_dda_is_the_plain_program_step_by_step():
             {"contact.rules": rules, "contact.band": [0.0, 0.0], "time.step": 1e-3, "time.steps": 150}
         )
         data = oracle(case, rules == "lagged")
-        found, plain = solve(case, "dda").history.columns, run(data)
-        for name, other in (("horizontal_displacement", plain.u), ("displacement", plain.v)):
+        found, plain = solve(case, "dda").history.columns, history(data)
+        for name, other in (("horizontal_displacement", plain.sideways), ("displacement", plain.displacement)):
             assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
 
 
 def oracle(case, lagged):
     c, t = case.contact, case.time
     pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
-    return Slider(phi=c.friction or 0.0, p=c.stiffness, ps=c.shear, force=pull, dt=t.step, steps=t.steps, lagged=lagged)
+    values = {"phi": c.friction or 0.0, "p": c.stiffness, "ps": c.shear, "dt": t.step, "steps": t.steps}
+    return replace(SLIDER, force=pull, lagged=lagged, **values)
 
 
 CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n

@@ -5,8 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from validation.models.plane.canon import slide_of, spinning_of
-from validation.scenes.scene import load_scene
 from validation.theory.spinning import Slide, Spinning
 
 SQUARE = Spinning(2.0, 2.0, 2700.0, 1e8, 0.25, 20.0)
@@ -48,11 +46,3 @@ def test_a_rigid_block_tips_as_two_other_programs_have_it():
     assert stops.start + stops.stopping_distance == pytest.approx(-0.251274209990, abs=1e-12)
     with pytest.raises(ValueError, match="time"):
         rough.turn(0.94)  # the slide ends at 0.936 s
-
-
-def test_the_scenes_state_these_problems():
-    assert spinning_of(load_scene("spin-square").expand()[0]) == SQUARE
-    assert spinning_of(load_scene("spin-rectangle").expand()[0]) == RECTANGLE
-    slide = slide_of(load_scene("spin-ledge").expand()[1])
-    assert slide.friction == pytest.approx(0.3) and slide.start == pytest.approx(-1.5)
-    assert slide_of(load_scene("spin-stopping").expand()[0]).stopping_distance == pytest.approx(3.18552497451580020)

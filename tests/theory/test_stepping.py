@@ -137,10 +137,10 @@ def test_beyond_the_limit_a_root_leaves_the_unit_circle(stepping):
 
 @pytest.mark.parametrize("name", [name for name in SCHEMES if SCHEMES[name].scheme != "composite"])
 def test_the_response_of_a_mode_is_what_a_driven_history_settles_to(name):
-    stepping = replace(SCHEMES[name], gg=0.9)
+    stepping = replace(SCHEMES[name], gg=0.7)
     natural, driven = 0.8, 0.5
     amplitude = 1 / (natural**2 - complex(stepping.squared_frequency(driven)))
-    settled = stepped(stepping, natural, 600, driven)[-1] * cmath.exp(-1j * driven * 600)
+    settled = stepped(stepping, natural, 150, driven)[-1] * cmath.exp(-1j * driven * 150)
     assert settled == pytest.approx(amplitude, rel=1e-9)
 
 

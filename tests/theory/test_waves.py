@@ -56,18 +56,6 @@ def test_waves_in_glued_blocks(ratio, speed, left):
     assert error == pytest.approx(speed, rel=6e-5)
 
 
-@pytest.mark.parametrize("glue", [None, 1e9, 1e13])
-def test_wavenumber_solves_the_recurrence(glue):
-    column = waves.Column(0.5, 2000.0, 1.8e9, glue)
-    stepping, w = Stepping(2e-4, 0.4, 0.9, 0.97), np.array([30.0, 900.0, 5000.0, 12000.0])
-    w2 = stepping.squared_frequency(w)
-    (A, B), k = column.ends(w2), column.wavenumber(w2)
-    target = -A / B if glue is None else (B**2 - A**2 - 2 * A * glue) / (2 * B * glue)
-    assert np.allclose(np.cos(k * 0.5), target, rtol=1e-9)
-    assert np.all(k.imag < 0)
-    assert np.all(k.real > 0)
-
-
 def test_beyond_the_cut_off_the_wave_decays():
     k = COLUMN.wavenumber(np.array([1.1, 2.0, 50.0]) * 12 * SPEED**2 / 0.25)
     assert np.allclose(k.real * 0.5, np.pi)

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from validation.problems.problem import Problem
     from validation.suite.judging import JudgedSet
 
+ASKED = "judge --help names the problems, dda-validate list scenes the built-in scenes"
 INSTALLED = "installed"  # in the place of a source: all solvers that installed packages bring
 
 
@@ -146,9 +147,13 @@ def _sources(named: Sequence[str]) -> list[str]:
 def _asked(name: str, assignments: list[str] | None) -> Problem:
     """Return a problem of the pack by name, or the one that a scene poses."""
     from validation.problems.problem import names, problem, problem_of
-    from validation.scenes.scene import parse_assignment
+    from validation.scenes.scene import parse_assignment, scene_names
+    from validation.scenes.unknown import did_you_mean
 
     if name not in names():
+        if name not in scene_names() and not Path(name).exists():
+            advice = did_you_mean(Path(name).stem, [*names(), *scene_names()]) or ASKED
+            raise InputError("no such problem, scene or scene file", source=name, advice=advice)
         return problem_of(one_case(name, assignments))
     if not assignments:
         return problem(name)

@@ -25,7 +25,7 @@ from validation.diagnosis import evidence, sentences
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES, UNEXPLAINED, all_benign
 from validation.diagnosis.evidence import Departure, Stage
-from validation.diagnosis.fits.bar import ARITHMETIC, last_digits, norm, outlying, spread_of_most, white
+from validation.diagnosis.fits.bar import ARITHMETIC, LAGS, last_digits, norm, outlying, spread_of_most, white
 from validation.diagnosis.numbers import CandidateChange, Values
 from validation.diagnosis.one_change import Fitted, fitted, nearest, nearest_start
 from validation.diagnosis.reading import Foreign
@@ -59,7 +59,7 @@ SAME_NUMBER = 1e-4  # relative: two fits that came to the same number are one
 MOST_ALIKE = 6  # causes that are listed
 ELSEWHERE = 0.1  # of a factor's logarithm: a number with whose change by that no row changes is none
 NOISE = 1e-2  # of the largest value: more is not put down to noise
-NOISY = 100  # rows from which on noise can be told from a shape
+NOISY = 4 * LAGS  # rows from which on all lags are there by which noise is told from a shape
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,15 +15,15 @@ none.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from itertools import combinations
 
 import numpy as np
 
-from validation.diagnosis.causes import CAUSES, CONTACT_METHODS, benign_springs
-from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals
+from validation.diagnosis.causes import BAND_FIELDS, CAUSES, CONTACT_METHODS, benign_springs
+from validation.diagnosis.fits.fit import Fit, changed, fit, fit_one, intervals, is_factor
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import FINE_BANDS, Move, dead_bands, moves
 from validation.diagnosis.schemes import SHARED
@@ -60,6 +60,7 @@ SAME_PROGRAM = 1e-8  # relative difference, of roundings
 OTHER_PROGRAMS = 1e-3  # of ntdda and its relatives, whose other habits stand beside it
 RAYLEIGH = ("viscous-damping", "stiffness-damping")  # C = a0 M + a1 K, which programs have together
 BASES = ((5.0, 1.0), (5.0, 1.25), (20.0, 1.0))  # mass of a base to begin with over the block's, change of softness
+MANIFOLD = 10.0  # times a factor that give the same rows: these tell that it is large or small, and no number
 NEUTRAL = Variant(0.5, 1.0, 1.0)  # numbers of a variant by which nothing is changed
 
 
@@ -174,6 +175,8 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     """Return the verdict over candidates."""
     nearest = min(explanations, key=lambda f: f.fit.misfit, default=Explanation((), scene_fit))
     fine = [f for f in explanations if accepted(target, scene_fit, f.fit)]
+    fewer = _fewer(target, scene_fit.variant, fine)
+    fine += [f for f in fewer if accepted(target, scene_fit, f.fit)]
     fine = [f for f in fine if is_determined(target, scene_fit, f)]
     if not fine:
         return Verdict(scene_fit, nearest, False)
@@ -181,7 +184,9 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
     scores = {id(f): score(target, deviations, f) for f in fine}
     near = min(scores.values()) + CLEAR
     close = sorted((f for f in fine if scores[id(f)] < near), key=lambda f: scores[id(f)])
-    best = min((f for f in close if f.ids == close[0].ids), key=lambda f: len(f.fit.free))
+    # a change is there only if the rows are clearly worse without it
+    ids = min((f.ids for f in close if set(f.ids) <= set(close[0].ids)), key=len)
+    best = min((f for f in close if f.ids == ids), key=lambda f: len(f.fit.free))
     best, names = _canonical(target, best, close)
     # not the best one with a further part that has no effect
     alike = {f.ids: f for f in reversed(close) if f.ids not in names and not set(best.ids) < set(f.ids)}
@@ -197,6 +202,28 @@ def decided(target: Target, scene_fit: Fit, explanations: Sequence[Explanation])
         aliases=aliases,
         others=tuple(others.values()),
     )
+
+
+def _fewer(target: Target, scene: Variant, explanations: Sequence[Explanation]) -> list[Explanation]:
+    """Return explanations of several changes without each of them, fitted from where they are.
+
+    Candidates are pursued by what they leave before all of them are in: a dead band may stand in for the mass of a base
+    that is fitted later, and has then no effect.
+    """
+    nearest = {f.ids: f for f in sorted(explanations, key=lambda f: -f.fit.misfit) if len(f.moves) > 1}
+    starts: list[Start] = []
+    for f in nearest.values():
+        for move in f.moves:
+            if move.id in SURROUNDINGS:  # without which they are tried anyway
+                continue
+            names = {*move.changes, *move.free}
+            rest = tuple(other for other in f.moves if other is not move)
+            if move.id in BAND_FIELDS and "opens" in names:  # without its limit the contact still opens
+                names -= {"opens"}
+                rest = (Move("contact-opened", {"opens": True}), *rest)
+            without = changed(f.fit.variant, {name: getattr(scene, name) for name in names})
+            starts.append((rest, without, _without(f.fit.free, names)))
+    return _fits(target, starts, ROUNDS)
 
 
 def score(target: Target, deviations: Array, explanation: Explanation) -> float:
@@ -261,7 +288,7 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
     same = [f for f in _further(clean, verdict.others) if f.fit.misfit <= SAME_PROGRAM]
     if set(best.ids) <= {*FACTORS}:
         factors = {move.id: move for move in moves(target, scene) if move.id in FACTORS}
-        pairs = [(factors[one], factors[two]) for one, two in combinations(factors, 2)]
+        pairs = [(factors[one], factors[two]) for one, two in itertools.combinations(factors, 2)]
         pairs = [pair for pair in pairs if set(best.ids).isdisjoint({move.id for move in pair})]
         same += [f for f in fitted(clean, scene, pairs) if f.fit.misfit <= SAME_PROGRAM]
     distinct = {f.ids: f for f in reversed(same) if is_determined(clean, fit_one(clean, scene), f)}
@@ -318,23 +345,39 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
     """Whether the rows determine every free number, and as another one than that by which nothing is changed.
 
     HHT at alpha_f = 1e-7 is average acceleration, and a dashpot of nothing the scene's own contact: a number says
-    nothing if such a special case explains the rows as well, or if no row changes with it.
+    nothing if such a special case explains the rows as well, if no row changes with it, or if they leave open how
+    many times the scene's it is.
     """
     solution, scene = explanation.fit, scene_fit.variant
+    v = solution.variant
     special_cases: list[dict[str, float]] = []
+    many_times: list[dict[str, float]] = []
     for name in solution.free:
         if name in ("alpha", "delta"):
             special_cases.append({"alpha": scene.alpha, "delta": scene.delta})
         elif name == "spectral":
-            special_cases += [{name: number} for number in SHARED.get(solution.variant.family, ())]
+            special_cases += [{name: number} for number in SHARED.get(v.family, ())]
         elif name == "gg":
             special_cases.append({name: scene.gg})
         else:
             special_cases.append({name: getattr(NEUTRAL, name)})
+        if is_factor(name):
+            many_times += [{name: getattr(v, name) * MANIFOLD}, {name: getattr(v, name) / MANIFOLD}]
+        elif name == "softness":
+            many_times += [{name: v.softness + math.log(MANIFOLD)}, {name: v.softness - math.log(MANIFOLD)}]
     if not all(math.isfinite(interval.half_width) for interval in intervals(solution).values()):
         return False
-    specials = [fit_one(target, changed(solution.variant, case)) for case in special_cases]
+    specials = fit(target, [(changed(v, case), ()) for case in (*special_cases, *many_times)])
+    # beside a stiffness that is hardly felt the other numbers are hardly others
+    near = [each.misfit <= SHARE * scene_fit.misfit for each in specials[len(special_cases) :]]
+    starts = [(changed(v, case), _without(solution.free, case)) for case in itertools.compress(many_times, near)]
+    specials += fit(target, starts, ROUNDS)
     return not any(each.misfit <= NEGLIGIBLE or accepted(target, scene_fit, each) for each in specials)
+
+
+def _without(free: Sequence[str], names: Collection[str]) -> tuple[str, ...]:
+    """Return the free numbers that are left where some are not."""
+    return tuple(name for name in free if name not in names)
 
 
 def _stands_out(target: Target, scene_fit: Fit, explanation: Explanation) -> bool:
@@ -394,7 +437,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
     pairs: list[tuple[Move, ...]] = [(move, discount) for move in of_schemes if len(move.free) < 2]
     few = _few(target, scene, before.single)
     if not scene.opens:
-        pairs += [pair for pair in combinations(few, 2) if _together(pair)]
+        pairs += [pair for pair in itertools.combinations(few, 2) if _together(pair)]
         damping = tuple(move for move in every if move.id in RAYLEIGH)
         pairs += [damping] if len(damping) == len(RAYLEIGH) else []
     verdict = _nearer(decided(target, before.scene_fit, fitted(target, scene, pairs)), before)
@@ -403,7 +446,7 @@ def twofold(target: Target, scene: Variant, before: Verdict) -> Verdict:
     faults = [move for move in few if move.id not in SURROUNDINGS]
     faults += [move for move in every if move.changes.get("reopening") == OTHER_PROGRAMS]
     parts = _surroundings(target, scene)
-    around = [tuple(combo) for size in (1, 2, 3) for combo in combinations(parts, size)]
+    around = [tuple(combo) for size in (1, 2, 3) for combo in itertools.combinations(parts, size)]
     beside = fitted(target, scene, [(move, *parts) for move in faults if _together((move, *parts))])[:MOST_ALIKE]
     fewer = [(f.moves[0], *some) for f in beside for some in around if _together((f.moves[0], *some))]
     explanations = [f for f in fitted(target, scene, fewer) if benign_springs(target.column, f.fit.variant)]
@@ -419,7 +462,7 @@ def _nearer(*verdicts: Verdict) -> Verdict:
 def _around(target: Target, scene: Variant) -> list[Explanation]:
     """Return two or three of what surrounds a block: a softer base, weight, moving geometry."""
     parts = _surroundings(target, scene)
-    combos = [tuple(parts[:1])] + [combo for size in (2, 3) for combo in combinations(parts, size)]
+    combos = [tuple(parts[:1])] + [combo for size in (2, 3) for combo in itertools.combinations(parts, size)]
     explanations = fitted(target, scene, combos)
     soft = [f for f in explanations if len(f.moves) == 1]
     return sorted([*explanations, *_heavy(target, explanations[:2]), *_heavy(target, soft)], key=lambda f: f.fit.misfit)

@@ -332,6 +332,9 @@ def _nearest(start: Habits, search: SlopeSearch) -> Judged:
     before_landing = [_before_landing(replace(start, along=along), search) for along in (True, False)]
     banded = _with_band(min(before_landing, key=early_size), search)
     habits = _fitted(banded, (True, True), search, STAGES[-1])
+    if habits.band is not None:  # it may have stood in for a weight and springs that were not fitted to so many steps
+        plain = _fitted(replace(habits, band=None), (True, True), search, STAGES[-1])
+        habits = habits if _gains(habits, plain, search) else plain
     nearest_habits = judged(habits)
     has_weight = abs(habits.weight) > NONE
     has_springs = abs(habits.compliance(search.scene)) > YIELDS
@@ -397,9 +400,13 @@ def _with_band(habits: Habits, search: SlopeSearch) -> Habits:
         ratio = shares[1] / shares[0]
         low = longest[0] / ratio
         high = longest[0] * ratio
+    return best if _gains(best, habits, search) else habits
+
+
+def _gains(banded: Habits, plain: Habits, search: SlopeSearch) -> bool:
+    """Whether habits with a dead band leave so much less of a history than others without that it is there."""
     steps = search.scene.time.steps
-    gain = _size_of(habits, search, steps) / max(_size_of(best, search, steps), ROUNDED)
-    return best if gain >= BAND_GAIN else habits
+    return _size_of(plain, search, steps) >= BAND_GAIN * max(_size_of(banded, search, steps), ROUNDED)
 
 
 def _nearness(habits: Habits, search: SlopeSearch) -> tuple[int, float]:

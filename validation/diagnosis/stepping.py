@@ -21,7 +21,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from functools import partial
 from types import SimpleNamespace
 from typing import Any
 
@@ -38,6 +37,8 @@ OPEN_CLOSE_ITERATIONS = 6  # as in other DDA programs
 BLOCK = 32  # steps that are summed up at once
 UNEQUAL = 1e-9  # relative difference of two time steps
 PLACES = [1, 4, 3]  # of v, ey and ex among the six unknowns of a block
+WITH_BASE = 4  # unknowns
+FALLS = np.array([1.0, 0.0, 0.0, 1.0])  # which of them have a weight: v and b
 
 
 def histories(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) -> Histories:
@@ -99,7 +100,7 @@ def _stepped(rectangle: Rectangle, variants: Sequence[Variant], steps: Array) ->
 def _unknowns(rectangle: Rectangle, v: Variant) -> int:
     """Return how many unknowns a variant moves: with a base, with lateral strain, or without it."""
     if v.base > 0 and v.softness > 0:
-        return 4
+        return WITH_BASE
     return 3 if rectangle.poisson + v.poisson or v.other_plane else 2
 
 
@@ -157,25 +158,24 @@ class Stepper:
             self.gg_velocity = np.where(is_printed[:, None], share[:, None], self.gg_velocity)
         self.keeps_springs = of.kept != "stress"
         self.gravity = of.gravity * rectangle.gravity + of.weight * GRAVITY
-        has_base = (of.base > 0) & (of.softness > 0)
-        soft = np.where(has_base, 0.0, of.softness)
-        self.springs = rectangle.normal * np.exp(-soft)
-        self.base_mass = np.where(has_base, of.base, 1.0)
-        self.base_spring = np.where(has_base, rectangle.normal / np.expm1(np.where(has_base, of.softness, 1.0)), 1.0)
-        self.has_base = has_base
         self.wide = of.side  # at rest, over the scene's
         self.high = of.side * of.tall
         self.is_damped = bool(np.any(of.viscous) or np.any(of.structural))
+        soft = 0.0 if unknowns == WITH_BASE else of.softness
+        self.springs = rectangle.normal * np.exp(-soft)
+        self.base_width = rectangle.width * self.wide  # at rest [m]
         # what the scene's own matrices hold of every variant's
         model = rectangle.model
         normal, shear = dda.spring_vectors(model.block, 0)
-        self.masses = model.mass[PLACES, PLACES][:, None] * of.density
-        self.masses[1:] *= of.inertia
+        of_block = (
+            model.mass[PLACES, PLACES][:, None] * of.density * np.array([1.0 + 0 * of.base, of.inertia, of.inertia])
+        )
+        self.masses = np.concatenate([of_block, of.base * of_block[:1]])
         self.moduli = model.block.section.area * rectangle.elasticity(variants)
         self.lever = normal[0, 4]
         self.top = model.block.corners[2, 1] / 2
         self.shear_springs = rectangle.shear * np.exp(-soft * of.tied) * shear[0, 3] ** 2
-        self.load = of.load * rectangle.pressure * rectangle.width * self.wide
+        self.load = of.load * rectangle.pressure * self.base_width
 
     # ---- matrices ---------------------------------------------------------------------------------------------------
 
@@ -191,29 +191,22 @@ class Stepper:
         """
         d = self.d
         area = wide * high
-        M = np.zeros((len(closed), d, d))
-        M[:, 0, 0] = self.masses[0] * area
-        M[:, 1, 1] = self.masses[1] * area * high**2
+        nothing = np.zeros_like(area)
+        masses = np.array([area, area * high**2, area * wide**2, self.wide * self.high]) * self.masses
+        M = masses.T[:, :d, None] * np.eye(d)
+        gap = np.array([nothing + 1.0, self.lever * high, nothing, nothing - 1.0]).T[:, :d]
+        top = np.array([nothing + 1.0, self.of.strain_load * self.top * high, nothing, nothing]).T[:, :d]
+        F = -self.load[:, None] * top - self.gravity[:, None] * masses.T[:, :d] * FALLS[:d]
+        k = self.springs * closed
+        kx = self.shear_springs * wide**2 * closed
         K = np.zeros_like(M)
         strains = min(d, 3)
         K[:, 1:strains, 1:strains] = area[:, None, None] * self.moduli[:, : strains - 1, : strains - 1]
         carried = K * (self.of.kept != "springs")[:, None, None]
-        k = self.springs * closed
-        gap = np.zeros((len(closed), d))
-        gap[:, 0] = 1.0
-        gap[:, 1] = self.lever * high
-        kx = self.shear_springs * wide**2 * closed
-        F = np.zeros_like(gap)
-        F[:, 0] = -self.load - M[:, 0, 0] * self.gravity
-        F[:, 1] = -self.load * self.of.strain_load * self.top * high
         if d > 2:
-            M[:, 2, 2] = self.masses[2] * area * wide**2
             K[:, 2, 2] += kx
-        if d > 3:
-            gap[:, 3] = -1.0 * self.has_base
-            M[:, 3, 3] = self.base_mass * self.masses[0] * self.wide * self.high
-            K[:, 3, 3] = carried[:, 3, 3] = self.base_spring
-            F[:, 3] = gap[:, 3] * M[:, 3, 3] * self.gravity
+        if d == WITH_BASE:
+            K[:, 3, 3] = carried[:, 3, 3] = self.rectangle.normal / np.expm1(self.of.softness)
         K += k[:, None, None] * gap[:, :, None] * gap[:, None, :]
         lost = k * (1 - self.of.coupling) * gap[:, 1]  # of the springs' entry between v and ey
         for i, j in ((0, 1), (1, 0)):
@@ -329,28 +322,15 @@ class Stepper:
         rows[:, 1, 0] = -self.springs / self.base_width
         return rows
 
-    @property
-    def base_width(self) -> Array:
-        """Width of the base at rest [m]."""
-        return np.asarray(self.rectangle.width * self.wide)
-
     # ---- locked contact in equal steps ------------------------------------------------------------------------------
 
     def powers(self, dt: float, steps: int, parts: int) -> tuple[Array, Array]:
         """Return displacement and pressure of locked contact in equal steps, each (steps, variants)."""
         small = dt / parts
-        observers = self.observers()
-        if self.variants[0].exact:
-            T = self.exponential(self.at_rest(), dt)
-            rows = observers @ T  # of the first step, then of more and more of them
-        elif self.force == "springs":
-            T = np.linalg.matrix_power(self.matrix(self.at_rest(), small), parts)
-            rows = observers @ T
-        else:
-            T, pressure = self._with_force(small)
-            earlier_parts = np.linalg.matrix_power(T, parts - 1)
-            rows = np.concatenate([observers[:, :1] @ T, pressure[:, None]], axis=1) @ earlier_parts
-            T = T @ earlier_parts
+        T, rows = self._locked_step(small)
+        earlier_parts = np.linalg.matrix_power(T, parts - 1)
+        rows = rows @ earlier_parts  # of the first step, then of more and more of them
+        T = T @ earlier_parts
         state = self.start(small)
         power = T
         length = 1
@@ -364,6 +344,20 @@ class Stepper:
             state = times(power, state)
         observed = np.concatenate(blocks, axis=1)[:, :steps]
         return observed[..., 0].T, observed[..., 1].T
+
+    def _locked_step(self, dt: float) -> tuple[Array, Array]:
+        """Return the matrix of a step of locked contact, and the rows of displacement and pressure by its start."""
+        observers = self.observers()
+        if self.force == "springs":
+            T = self.exponential(self.at_rest(), dt) if self.variants[0].exact else self.matrix(self.at_rest(), dt)
+            return T, observers @ T
+        free, push, contact, gaps = self.forced_step(dt)
+        force = closed_force(self.force, contact, Gaps(*(row.T for row in gaps))).T
+        T = free + push[:, :, None] * force[:, None, :]
+        if self.force == "energy-conserving":
+            force = -contact.stiffness[:, None] * T[:, 0]
+        pressure = force / self.base_width[:, None]
+        return T, np.concatenate([observers[:, :1] @ T, pressure[:, None]], axis=1)
 
     # ---- contact methods with a force of their own ------------------------------------------------------------------
 
@@ -398,41 +392,31 @@ class Stepper:
         contact = Contact(self.springs, dashpot, self.of.restitution, self.of.clipped, push[:, 0], added_rate)
         return T, push, contact, Gaps(gap, self.gg_velocity * rate, T[:, 0], np.einsum("vi,vij->vj", rate, T))
 
-    def _with_force(self, dt: float) -> tuple[Array, Array]:
-        """Return the matrix of a step with the force of locked contact, and its pressure as a row by the start."""
-        free, push, contact, gaps = self.forced_step(dt)
-        force = closed_force(self.force, contact, Gaps(*(row.T for row in gaps))).T
-        T = free + push[:, :, None] * force[:, None, :]
-        if self.force == "energy-conserving":
-            force = -contact.stiffness[:, None] * T[:, 0]
-        return T, np.asarray(force / self.base_width[:, None])
-
     # ---- one by one -------------------------------------------------------------------------------------------------
 
     def loop(self, steps: Array) -> Histories:
         """Return the histories of contact that opens or geometry that moves."""
         first = float(steps[0])
         moving = Moving(self.start(first), np.ones(len(self.variants), dtype=bool), self.wide, self.high)
-        observers = self.observers()
+        displacement_row = self.observers()[:, 0]
         columns = []
         before = 0.0
         for dt in steps.tolist():
             if dt != before:
-                advance = self._advance_springs(dt) if self.force == "springs" else self._advance_force(dt)
+                matrices = self._matrices(dt) if self.force == "springs" else []
+                forced_step = None if self.force == "springs" else self.forced_step(dt)
                 ratio = dt / (before or dt)
                 moving.state[:, self.U] *= ratio
                 moving.state[:, self.W] *= ratio**2
                 before = dt
-            pressure, is_open = advance(moving, observers[:, 1])
-            columns.append((np.sum(observers[:, 0] * moving.state, axis=-1), pressure, is_open))
+            if forced_step is None:
+                pressure, is_open = self._opening(dt, matrices, moving)
+            else:
+                pressure, is_open = self._forced(*forced_step, moving)
+            columns.append((np.sum(displacement_row * moving.state, axis=-1), pressure, is_open))
         return Histories(*map(np.array, zip(*columns, strict=True)))
 
-    def _advance_force(self, dt: float) -> partial[tuple[Array, Flags]]:
-        return partial(self._forced, *self.forced_step(dt))
-
-    def _forced(
-        self, free: Array, push: Array, contact: Contact, gaps: Gaps, moving: Moving, _: Array
-    ) -> tuple[Array, Flags]:
+    def _forced(self, free: Array, push: Array, contact: Contact, gaps: Gaps, moving: Moving) -> tuple[Array, Flags]:
         """Make a step of contact with a force of its own; return pressure and open flags at its end."""
         values = Gaps(*(np.sum(row * moving.state, axis=-1) for row in gaps))
         force, closed = force_of(self.force, contact, values)
@@ -441,18 +425,14 @@ class Stepper:
             force = np.maximum(-contact.stiffness * moving.state[:, 0], 0.0)
         return force / self.base_width, ~closed
 
-    def _advance_springs(self, dt: float) -> partial[tuple[Array, Flags]]:
-        matrices: list[tuple[Array, Array]] = []  # of each stage, with closed and with open contact
-        if not np.any(self.of.updated):
-            ends = [self.at_rest(closed) for closed in (True, False)]
-            for stage in range(len(self.stages)):
-                closed_matrix, open_matrix = (self.stage_matrix(q, dt, stage) for q in ends)
-                matrices.append((closed_matrix, open_matrix))
-        return partial(self._opening, dt, matrices)
+    def _matrices(self, dt: float) -> list[list[Array]]:
+        """Return the matrices of each stage with closed and with open contact; none where the geometry moves."""
+        if np.any(self.of.updated):
+            return []
+        ends = [self.at_rest(closed) for closed in (True, False)]
+        return [[self.stage_matrix(q, dt, stage) for q in ends] for stage in range(len(self.stages))]
 
-    def _opening(
-        self, dt: float, matrices: Sequence[tuple[Array, Array]], moving: Moving, pressure_row: Array
-    ) -> tuple[Array, Flags]:
+    def _opening(self, dt: float, matrices: Sequence[Sequence[Array]], moving: Moving) -> tuple[Array, Flags]:
         """Make a step of springs that open and close; return pressure and open flags at its end."""
         of = self.of
         state = moving.state
@@ -493,7 +473,7 @@ class Stepper:
         moving.state = end
         moving.closed = closed
         pressing = np.where(by_mean_gap, end[:, 0] < 0, closed)
-        return np.where(pressing, np.sum(pressure_row * end, axis=-1), 0.0), ~pressing
+        return np.where(pressing, -self.springs / self.base_width * end[:, 0], 0.0), ~pressing
 
 
 def _closed_by_start(lags: Array, closed: Flags, gap: Array) -> Flags:

@@ -43,12 +43,13 @@ class Section(BaseModel):
         return True
 
 
-def keys_of(table: type[Section]) -> Iterator[tuple[str, FieldInfo, Key]]:
-    """Yield name, field and description of the keys of a table, without the tables in it."""
+@functools.cache  # asked for every table of every case of a sweep
+def keys_of(table: type[Section]) -> tuple[tuple[str, FieldInfo, Key], ...]:
+    """Return name, field and description of the keys of a table, without the tables in it."""
+    keys = []
     for name, field in table.model_fields.items():
-        for key in field.metadata:
-            if isinstance(key, Key):
-                yield field.alias or name, field, key
+        keys += [(field.alias or name, field, key) for key in field.metadata if isinstance(key, Key)]
+    return tuple(keys)
 
 
 def key_of_any_entry(field: str, tables: Mapping[str, type[Section]]) -> str:
@@ -68,8 +69,14 @@ def stated(table: Section) -> Iterator[tuple[str, Any, Key]]:
 
 def stated_value(table: Section, key_name: str) -> Any:
     """Return the value of a key by the name that a file gives it."""
+    return getattr(table, _attribute(type(table), key_name))
+
+
+@functools.cache
+def _attribute(table: type[Section], key_name: str) -> str:
+    """Return the attribute that holds a key as it is stated."""
     alias = f"stated_{key_name}"
-    return getattr(table, alias if alias in type(table).model_fields else key_name)
+    return alias if alias in table.model_fields else key_name
 
 
 def check_needs(tables: Mapping[str, Section]) -> None:
@@ -82,7 +89,10 @@ def check_needs(tables: Mapping[str, Section]) -> None:
     """
     for place, table in tables.items():
         for inside, entry in [("", table), *_entries(table)]:
-            for name, value, key in stated(entry):
+            for name, field, key in keys_of(type(entry)):
+                value = stated_value(entry, name) if key.needs else field.default
+                if value == field.default:
+                    continue
                 for requirement in key.needs:
                     if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import functools
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
@@ -71,10 +72,15 @@ def refuse_unknown_keys(data: Data, tables: Mapping[str, type[Section]], source:
     )
 
 
-def _names(place: str, tables: Mapping[str, type[Section]]) -> list[str]:
+def _names(place: str, tables: Mapping[str, type[Section]]) -> tuple[str, ...]:
     """Return the names of a table's keys as a file states them; the name of a scene is that of its file."""
-    fields = tables[place].model_fields.items()
-    return [field.alias or name for name, field in fields if place or name != "name"]
+    return _names_of(tables[place], not place)
+
+
+@functools.cache  # asked for every table of every case of a sweep
+def _names_of(table: type[Section], is_scene: bool) -> tuple[str, ...]:
+    names = [field.alias or name for name, field in table.model_fields.items()]
+    return tuple(name for name in names if not (is_scene and name == "name"))
 
 
 def _unknown_keys(

@@ -1,18 +1,15 @@
 """Rigid polygons of a scene of blocks in the plane for programs of contact: what each is, in convex parts."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.blocks import centroid
 from validation.models.plane.geometry import triangles_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array
 from validation.scenes.outline import area
-from validation.scenes.scene import Scene
 
 
 @dataclass(frozen=True)
@@ -29,12 +26,12 @@ class PolygonBody:
     corners: Array  # about the centroid, before it is turned by the angle, shape (n, 2) [m]
 
     @property
-    def mass(self) -> float:
+    def mass(self):
         """Mass [kg]."""
         return self.density * area(tuple(map(tuple, self.corners)))
 
     @property
-    def inertia(self) -> float:
+    def inertia(self):
         """Moment of inertia about the centroid [kg m2]: of the triangles from it to each edge."""
         ahead = np.roll(self.corners, -1, axis=0)
         double = self.corners[:, 0] * ahead[:, 1] - self.corners[:, 1] * ahead[:, 0]
@@ -42,7 +39,7 @@ class PolygonBody:
         return self.density * float(double @ squares) / 12
 
     @property
-    def parts(self) -> list[list[tuple[float, float]]]:
+    def parts(self):
         """Convex polygons that it is made of: itself, or triangles."""
         points = [(float(x), float(y)) for x, y in self.corners]
         before, ahead = (
@@ -54,7 +51,7 @@ class PolygonBody:
         return [[points[number] for number in corners] for corners in triangles_of(tuple(points))]
 
 
-def bodies_of(scene: Scene) -> list[PolygonBody]:
+def bodies_of(scene):
     """Return the blocks of a scene, those that are held among them.
 
     Raises
@@ -75,7 +72,7 @@ def bodies_of(scene: Scene) -> list[PolygonBody]:
     return [_body(block) for block in plane.assembly.blocks]
 
 
-def _body(block: PlacedBlock) -> PolygonBody:
+def _body(block):
     middle = centroid(block.vertices)
     turned = np.array(block.vertices) - middle
     cosine = math.cos(block.angle)
@@ -84,13 +81,13 @@ def _body(block: PlacedBlock) -> PolygonBody:
     return PolygonBody(block.name, block.held, block.density, middle, block.angle, block.velocity, block.spin, corners)
 
 
-def friction_between(scene: Scene, first: int, second: int) -> float:
+def friction_between(scene, first, second):
     """Return tan(phi) between two blocks; that of 90 degrees where nothing slips."""
     springs = scene.table(PlaneSection).assembly.springs_between(first, second)
     coefficient = springs.friction_coefficient if springs else 0.0
     return math.tan(math.pi / 2) if coefficient is None else coefficient
 
 
-def moving_names(scene: Scene) -> list[str]:
+def moving_names(scene):
     """Return the names of the blocks that move."""
     return [block.name for block in scene.table(PlaneSection).assembly.blocks if not block.held]

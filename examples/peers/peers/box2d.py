@@ -1,16 +1,12 @@
 """Box2D v3 as a solver of rigid polygons: soft contact in sub-steps, in the plane, in single precision."""
 
-from __future__ import annotations
-
 import math
 
 from peers.bodies import bodies_of, friction_between
-from peers.boxes import Pose, base_velocity, record, substeps
+from peers.boxes import base_velocity, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.models.plane.tables import PlaneSection
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 RECIPE = "pip install pyb2d3==0.11.1"
 USUAL_STEP = 1 / 60  # s: that of Box2D's documentation of b2World_Step, as are four sub-steps
@@ -30,7 +26,7 @@ class World:
         Box2D is not installed, or the scene has what it cannot express.
     """
 
-    def __init__(self, scene: Scene, *, default: bool) -> None:
+    def __init__(self, scene, *, default):
         blocks = bodies_of(scene)
         plane = scene.table(PlaneSection)
         if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
@@ -71,7 +67,7 @@ class World:
                 shape = self.box2d.shape_def(density=block.density, material=material)
                 body.create_polygon_shape(shape, self.box2d.polygon(part))
 
-    def advance(self, start: float, step: float) -> None:
+    def advance(self, start, step):
         """Make one step of Box2D, and follow the angles, which it folds at pi."""
         if self.moves:
             self.ground.linear_velocity = (
@@ -82,7 +78,7 @@ class World:
         for number, body in enumerate(self.boxes):
             self.turns[number] += math.remainder(body.angle - self.turns[number], math.tau)
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return position and angle of each block."""
         return [(body.position.x, body.position.y, turn) for body, turn in zip(self.boxes, self.turns, strict=True)]
 
@@ -100,7 +96,7 @@ class Box2D(ExternalProgram):
         "restitution at every speed, no sleeping"
     )
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises

@@ -1,28 +1,21 @@
 """Boxes on a ground for programs of contact: the program's own step beside the instants of a scene, and the columns."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Sequence
 
 import numpy as np
 
 from peers.bodies import moving_names
-from validation.models.plane.boxes import Box, BoxesOnGround
 from validation.models.plane.boxes import boxes_of as read_boxes
 from validation.models.plane.history import POSE
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 from validation.solvers.foreign import PROGRAM_STEPS
 
-Pose = tuple[float, float, float]  # x [m], y [m], angle [rad]; counter-clockwise positive, and not folded at pi
 ROUNDING = 1e-9
 SLOW_CORRECTION = 0.2  # 1/s
 FAST_CORRECTION = 20.0  # 1/s
 SPRING_RESOLUTION = 0.005  # angular frequency times step of the lightest box on a contact of given stiffness
 
 
-def boxes_of(scene: Scene) -> BoxesOnGround:
+def boxes_of(scene):
     """Return the boxes on a ground of a scene of blocks in the plane.
 
     Raises
@@ -36,7 +29,7 @@ def boxes_of(scene: Scene) -> BoxesOnGround:
         raise NotImplementedError(str(error)) from None
 
 
-def on_endless_ground(scene: Scene) -> BoxesOnGround:
+def on_endless_ground(scene):
     """Return the boxes of a scene for a program whose ground is a plane without end.
 
     Raises
@@ -49,7 +42,7 @@ def on_endless_ground(scene: Scene) -> BoxesOnGround:
     return boxes_of(scene)
 
 
-def ground_ends(scene: Scene) -> bool:
+def ground_ends(scene):
     """Whether a box stands, or would be carried by its velocity, beyond an end of the ground."""
     pile = boxes_of(scene)
     for box in pile.boxes:
@@ -61,7 +54,7 @@ def ground_ends(scene: Scene) -> bool:
     return False
 
 
-def is_pile(scene: Scene) -> bool:
+def is_pile(scene):
     """Whether a scene is of boxes on a ground, below each of which there is a force."""
     try:
         read_boxes(scene)
@@ -70,12 +63,12 @@ def is_pile(scene: Scene) -> bool:
     return True
 
 
-def substeps(scene: Scene, own_step: float) -> int:
+def substeps(scene, own_step):
     """Return how many steps a program makes in one of the scene's, at most as long as the one it is used with [s]."""
     return max(1, math.ceil(scene.time.step / own_step - ROUNDING))
 
 
-def spring_step(scene: Scene) -> float:
+def spring_step(scene):
     """Return a step that resolves a contact of given stiffness [s]; no bound where none is given."""
     pile = boxes_of(scene)
     if pile.stiffness is None:
@@ -83,14 +76,14 @@ def spring_step(scene: Scene) -> float:
     return SPRING_RESOLUTION * math.sqrt(min(box.mass for box in pile.boxes) / pile.stiffness)
 
 
-def corners_of(box: Box) -> list[tuple[float, float]]:
+def corners_of(box):
     """Return the corners of a box from its centre, the two lower ones first [m]."""
     half_width = box.width / 2
     half_height = box.height / 2
     return [(side * half_width, end * half_height) for end in (-1, 1) for side in (-1, 1)]
 
 
-def correction_rate(scene: Scene) -> float:
+def correction_rate(scene):
     """Return the rate at which overlap is to decay in a program that corrects it by a velocity that stays [1/s].
 
     A landing overlaps by as much as the program's step, and what a box is pushed out by it keeps: energy that no one
@@ -102,7 +95,7 @@ def correction_rate(scene: Scene) -> float:
     return FAST_CORRECTION if piled else SLOW_CORRECTION
 
 
-def base_velocity(scene: Scene, start: float, step: float, position: float) -> float:
+def base_velocity(scene, start, step, position):
     """Return the velocity [m/s] that takes the ground from where it is [m] to where it must be at the end of a step.
 
     Read back from the program before every step, so that its rounding does not add up.
@@ -112,12 +105,12 @@ def base_velocity(scene: Scene, start: float, step: float, position: float) -> f
 
 
 def record(
-    scene: Scene,
-    own_step: float,
-    advance: Callable[[float, float], None],
-    poses: Callable[[], Sequence[Pose]],
-    forces: Callable[[], Sequence[float]] | None = None,
-) -> dict[str, Array]:
+    scene,
+    own_step,
+    advance,
+    poses,
+    forces=None,
+):
     """Step a program through a scene and return its columns.
 
     Parameters
@@ -155,7 +148,7 @@ def record(
     return named(scene, rows, per_row * scene.time.steps)
 
 
-def named(scene: Scene, rows: Array, program_steps: int) -> dict[str, Array]:
+def named(scene, rows, program_steps):
     """Return the columns of an answer.
 
     Parameters

@@ -7,16 +7,8 @@ that moves as the base does, pressure-overclosure LINEAR with slope 2p / length 
 2 p_s / length, which is the law of DDA's corners. A column is a stack of C3D8 that is guided sideways.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from peers.calculix_deck import RECIPE, Stopped, refuse, run, version
 from peers.programs import ExternalProgram
-
-if TYPE_CHECKING:
-    from peers.calculix_deck import Array
-    from validation.scenes.scene import Scene
 
 BLOCK, COLUMN = 3000, 1000  # increments of a run, so that it takes some ten seconds
 TRIES = 3  # runs with ever halved increments before one that does not converge is given up
@@ -39,11 +31,11 @@ class CalculiX(ExternalProgram):
     settings = f"average acceleration (ALPHA=0), {BLOCK} increments (columns {COLUMN}), forces to 1e-6"
     accurate = True
 
-    def version(self) -> str:
+    def version(self):
         """Return the version of the program."""
         return version()
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Run a scene; a run that ccx gives up is made again with half the increments.
 
         Raises
@@ -62,11 +54,11 @@ class CalculiX(ExternalProgram):
                 last = error
         raise last
 
-    def increments(self, scene: Scene) -> int:
+    def increments(self, scene):
         """Return the increments of a step."""
         return max(2, (BLOCK if scene.column is None else COLUMN) // scene.time.steps)
 
-    def _solved(self, scene: Scene, sub: int) -> dict[str, Array]:
+    def _solved(self, scene, sub):
         from peers.calculix_block import block_columns, block_deck
         from peers.calculix_column import column_columns, column_deck
 
@@ -81,6 +73,6 @@ class AsItComes(CalculiX):
     settings = "HHT (ALPHA=-0.05) in the steps of the scene, convergence as it comes"
     accurate = False
 
-    def increments(self, scene: Scene) -> int:
+    def increments(self, scene):
         """Return the increments of a step, which is one."""
         return 1

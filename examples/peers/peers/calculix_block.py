@@ -1,19 +1,11 @@
 """The block of one strain in CalculiX: one solid element that stays affine, on springs or in penalty contact."""
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.blocks import push_of, tangent_of, turn_of
 from peers.calculix_deck import Deck, amplitude, node, number, refuse, row
-
-if TYPE_CHECKING:
-    from peers.calculix_deck import Array
-    from validation.scenes.scene import Scene
-    from validation.scenes.tables import BlockSection
 
 GLUED = 1e6  # coefficient of friction of a corner that never slips while closed
 BALLAST = 1e5  # kinetic energy of the ballast over the greatest of the scene
@@ -22,7 +14,7 @@ FACES = {"small": ("S3",), "updated": ("S3", "S4", "S5", "S6")}  # the base; eve
 COLUMNS = {"displacement", "contact_pressure", "horizontal_displacement", "rotation"}
 
 
-def _constants(block: BlockSection) -> list[str]:
+def _constants(block):
     """Return the elastic constants of the plane of the block; across it nothing strains."""
     E, mu = block.young, block.poisson
     shear = E / (2 * (1 + mu))
@@ -33,7 +25,7 @@ def _constants(block: BlockSection) -> list[str]:
     return ["*ELASTIC,TYPE=ORTHO", row(*values) + ",", row(shear, 293.0)]
 
 
-def _check_block(scene: Scene) -> None:
+def _check_block(scene):
     contact, run = scene.contact, scene.run
     refuse(scene.time.discount != 1, "the discount gg on velocities is a damping that CalculiX does not have")
     refuse(contact.cohesion > 0, "contact in CalculiX has friction but no cohesion")
@@ -43,7 +35,7 @@ def _check_block(scene: Scene) -> None:
     refuse(scene.block.rectangle is None, outline)
 
 
-def block_deck(scene: Scene, sub: int) -> Deck:
+def block_deck(scene, sub):
     """Return the model of a block under its loads."""
     _check_block(scene)
     b, t = scene.block, scene.time
@@ -67,17 +59,16 @@ def block_deck(scene: Scene, sub: int) -> Deck:
     return deck
 
 
-def _placed(scene: Scene, width: float, height: float) -> Array:
+def _placed(scene, width, height):
     """Return the corners at t = 0 [m], turned about the one that stays down and lifted by the gap."""
     corners = np.array([[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]])
     angle = math.radians(scene.block.tilt)
     pivot = np.array([0.0 if angle >= 0 else width, 0.0])
     turn = turn_of(angle)
-    placed: Array = pivot + (corners - pivot) @ turn.T + [0.0, scene.contact.gap]
-    return placed
+    return pivot + (corners - pivot) @ turn.T + [0.0, scene.contact.gap]
 
 
-def _locked(scene: Scene, deck: Deck, width: float) -> str:
+def _locked(scene, deck, width):
     """Put springs that push and pull under the corners; return the set of their feet."""
     deck.model += ["*NODE,NSET=FEET", node(11, 0.0, -1.0, 0.0), node(12, width, -1.0, 0.0)]
     for name, dof, stiffness in (("NORMAL", 2, scene.contact.stiffness), ("SHEAR", 1, scene.contact.shear)):
@@ -87,7 +78,7 @@ def _locked(scene: Scene, deck: Deck, width: float) -> str:
     return "FEET"
 
 
-def _contact(scene: Scene, deck: Deck, width: float, height: float) -> str:
+def _contact(scene, deck, width, height):
     """Let the corners touch the upper face of an element that moves as the base does; return the set of its nodes."""
     c, faces = scene.contact, FACES[scene.run.geometry]
     length = width if len(faces) == 1 else width + height  # a corner carries half of the faces that meet there
@@ -110,7 +101,7 @@ def _contact(scene: Scene, deck: Deck, width: float, height: float) -> str:
     return "GROUND"
 
 
-def _record(scene: Scene) -> tuple[Array, Array, Array]:
+def _record(scene):
     """Return instants [s] and displacements [m] of the base, to be read linearly and held beyond the ends."""
     from validation.scenes.record import base_record
 
@@ -120,13 +111,13 @@ def _record(scene: Scene) -> tuple[Array, Array, Array]:
     return record.time, record.x, record.y
 
 
-def _pull(scene: Scene, width: float) -> float:
+def _pull(scene, width):
     """Return a bound of the forces of all loads [N]."""
     load = scene.load
     return scene.block.mass * load.gravity + width * (abs(load.pressure) + abs(load.traction))
 
 
-def _travel(scene: Scene, width: float, height: float) -> float:
+def _travel(scene, width, height):
     """Return a length that the block does not slide beyond [m]."""
     T, (_, x, y) = scene.time.duration, _record(scene)
     free = abs(scene.block.velocity) * T + _pull(scene, width) / scene.block.mass * T * T
@@ -134,7 +125,7 @@ def _travel(scene: Scene, width: float, height: float) -> float:
     return 2 * (width + height + scene.contact.gap + free + moved)
 
 
-def _ballast(scene: Scene, deck: Deck, width: float, height: float) -> None:
+def _ballast(scene, deck, width, height):
     """Add a heavy element that flies by itself, far away, at a constant speed.
 
     ccx gives up an increment of a dynamic contact whose energy changes by 0.8 % (at rebounds 0.25 %) of the greatest
@@ -157,7 +148,7 @@ def _ballast(scene: Scene, deck: Deck, width: float, height: float) -> None:
     deck.model += ["*INITIAL CONDITIONS,TYPE=VELOCITY", row("BALLAST", "2", SPEED)]
 
 
-def _loads(scene: Scene, deck: Deck, width: float, base: str) -> None:
+def _loads(scene, deck, width, base):
     """Put pressure, traction and weight on the block, and the record on its base."""
     load = scene.load
     time, x, y = _record(scene)
@@ -176,7 +167,7 @@ def _loads(scene: Scene, deck: Deck, width: float, base: str) -> None:
         deck.loads += ["*DLOAD", row("BLOCK", "GRAV", load.gravity, math.sin(turn), -math.cos(turn), 0.0)]
 
 
-def block_columns(scene: Scene, found: Array) -> dict[str, Array]:
+def block_columns(scene, found):
     """Return the columns of a block from the displacements of its four corners, shape (steps, 4, 2)."""
     width, height = scene.block.rectangle
     time, _, y = _record(scene)

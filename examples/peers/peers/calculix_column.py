@@ -1,21 +1,12 @@
 """A column of layers in CalculiX: a stack of solid elements that is guided sideways."""
 
-from __future__ import annotations
-
 import itertools
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.calculix_deck import Deck, amplitude, node, number, refuse, row
 from peers.columns import NEAR, Stretch, stretches
-
-if TYPE_CHECKING:
-    from peers.calculix_deck import Array
-    from validation.models.column.tables import ColumnSection
-    from validation.scenes.drive import Motion
-    from validation.scenes.scene import Scene
 
 ELEMENTS = 60  # shared among the parts of a column by the time that a wave takes through them
 FEWEST = 2  # elements of a part, whose three levels give the stress at its ends
@@ -31,11 +22,10 @@ class Part:
     levels: tuple[int, ...]
 
 
-def check_column(scene: Scene) -> ColumnSection:
+def check_column(scene):
     """Return the column of a scene that can be expressed."""
     column = scene.column
     refuse(column is None, "a column is needed")
-    assert column is not None
     joints = [joint.height for joint in column.joint]
     refuse(scene.time.discount != 1, "the discount gg on velocities is a damping that CalculiX does not have")
     refuse(column.glue is not None, "glue is DDA's own springs between the blocks of a layer, and no layer is made of")
@@ -46,11 +36,11 @@ def check_column(scene: Scene) -> ColumnSection:
     return column
 
 
-def parts_of(column: ColumnSection) -> list[Part]:
+def parts_of(column):
     """Cut a column at its layers, joints and observed heights."""
     cut = stretches(column, column.heights)
     passing = sum(stretch.passing for stretch in cut)
-    parts: list[Part] = []
+    parts = []
     last = 0
     for stretch in cut:
         first = last + 1 if stretch.spring is not None or not parts else last
@@ -59,11 +49,11 @@ def parts_of(column: ColumnSection) -> list[Part]:
     return parts
 
 
-def _nodes(level: int) -> list[int]:
+def _nodes(level):
     return [4 * level + k for k in range(1, 5)]
 
 
-def column_deck(scene: Scene, sub: int) -> Deck:
+def column_deck(scene, sub):
     """Return the model of a column and what drives it."""
     from validation.scenes.drive import motion_at
 
@@ -82,10 +72,10 @@ def column_deck(scene: Scene, sub: int) -> Deck:
     return deck
 
 
-def _stack(parts: list[Part], deck: Deck) -> None:
+def _stack(parts, deck):
     """Add nodes, elements and materials."""
     deck.model += ["*NODE,NSET=STACK"]
-    placed: dict[int, float] = {}
+    placed = {}
     for part in parts:
         ends = part.stretch.bottom, part.stretch.top
         placed |= zip(part.levels, np.linspace(*ends, len(part.levels)), strict=True)
@@ -101,7 +91,7 @@ def _stack(parts: list[Part], deck: Deck) -> None:
     deck.model += ["*ELSET,ELSET=ALL", *(f"PART{k}" for k in range(len(parts)))]
 
 
-def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instants: Array, drive: Motion) -> None:
+def _base(column, parts, deck, dof, instants, drive):
     """Add the base and the joints, and what comes in through the base."""
     lowest, element = _nodes(parts[0].levels[0]), parts[-1].levels[-1] + 4
     deck.model += ["*NODE,NSET=FEET"]
@@ -129,9 +119,7 @@ def _base(column: ColumnSection, parts: list[Part], deck: Deck, dof: int, instan
     deck.model += ["*BOUNDARY", *still]
 
 
-def _transmit(
-    impedance: float, lowest: list[int], element: int, deck: Deck, dof: int, instants: Array, drive: Motion
-) -> None:
+def _transmit(impedance, lowest, element, deck, dof, instants, drive):
     """Put dashpots under the column, and the load of the wave that comes up."""
     deck.model += ["*ELEMENT,TYPE=DASHPOTA,ELSET=DASH"]
     deck.model += [f"{element + n},{low},{n}" for low, n in zip(lowest, _nodes(0), strict=True)]
@@ -140,15 +128,14 @@ def _transmit(
     deck.loads += ["*CLOAD,AMPLITUDE=WAVE", *(f"{n},{dof},0.25" for n in lowest)]
 
 
-def acceleration(instants: Array, moved: Array) -> Array:
+def acceleration(instants, moved):
     """Return an acceleration whose trapezoids keep the momentum of a base that moves from rest, jumps included."""
     dt = instants[1]
     inner = (moved[2:] - 2 * moved[1:-1] + moved[:-2]) / dt**2
-    found: Array = np.concatenate([[2 * (moved[1] - moved[0]) / dt**2], inner, inner[-1:]])
-    return found
+    return np.concatenate([[2 * (moved[1] - moved[0]) / dt**2], inner, inner[-1:]])
 
 
-def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
+def column_columns(scene, found):
     """Return the columns of a column from the displacements of its levels, shape (steps, levels, 3)."""
     from validation.scenes.drive import motion_at
 
@@ -168,10 +155,9 @@ def column_columns(scene: Scene, found: Array) -> dict[str, Array]:
     return {name: values for name, values in columns.items() if name in scene.run.columns}
 
 
-def _stress(part: Part, u: Array, first: int, below: bool) -> Array:
+def _stress(part, u, first, below):
     """Return the stress at the upper or lower end of a part from its three levels there [Pa], compression positive."""
     h = part.stretch.length / (len(part.levels) - 1)
     a, b, c = (part.levels[k] - first for k in ((-1, -2, -3) if below else (0, 1, 2)))
     slope = (3 * u[:, a] - 4 * u[:, b] + u[:, c]) / (2 * h)
-    found: Array = part.stretch.modulus * (-slope if below else slope)
-    return found
+    return part.stretch.modulus * (-slope if below else slope)

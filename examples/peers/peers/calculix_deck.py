@@ -1,23 +1,14 @@
 """Input files of CalculiX (ccx), the program's run on one, and what it printed."""
 
-from __future__ import annotations
-
 import os
 import re
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 RECIPE = "apt-get install calculix-ccx (Debian 12: 2.20-1)"
 LIMIT, ALLOWANCE = 100.0, 0.02  # s, of a run and for each of its increments: some three times what they take
@@ -40,7 +31,7 @@ class Deck:
     loads: list[str] = field(default_factory=list)
     printed: list[int] = field(default_factory=list)  # nodes
 
-    def text(self, accurate: bool) -> str:
+    def text(self, accurate):
         """Return the input file, with the settings that were chosen or as the program comes."""
         times = row(self.step / self.sub, self.step * self.steps)
         lines = [*self.model, "*NSET,NSET=OUT", *map(str, self.printed)]
@@ -53,28 +44,28 @@ class Deck:
         return "\n".join([*lines, *self.loads, *printed])
 
 
-def number(value: float) -> str:
+def number(value):
     """Return a number in the twenty characters that ccx reads."""
     return f"{value:.12e}"
 
 
-def row(*values: float | str) -> str:
+def row(*values):
     """Return a data line."""
     return ",".join(v if isinstance(v, str) else number(v) for v in values)
 
 
-def node(name: int, x: float, y: float, z: float) -> str:
+def node(name, x, y, z):
     """Return the data line of a node."""
     return row(str(name), x, y, z)
 
 
-def amplitude(name: str, time: Iterable[float], values: Iterable[float]) -> list[str]:
+def amplitude(name, time, values):
     """Return the lines of an amplitude, which is linear between its instants and held beyond them."""
     rows = [row(t, v) for t, v in zip(time, values, strict=True)]
     return [f"*AMPLITUDE,NAME={name}", *rows]
 
 
-def refuse(condition: bool, what: str) -> None:
+def refuse(condition, what):
     """Say that a scene cannot be expressed.
 
     Raises
@@ -86,7 +77,7 @@ def refuse(condition: bool, what: str) -> None:
         raise NotImplementedError(what)
 
 
-def program() -> str:
+def program():
     """Return the command of CalculiX.
 
     Raises
@@ -100,7 +91,7 @@ def program() -> str:
     return found
 
 
-def version() -> str:
+def version():
     """Return what the program says of its version, or that it is not installed."""
     try:
         said = subprocess.run([program(), "-v"], capture_output=True, text=True, check=False).stdout
@@ -110,7 +101,7 @@ def version() -> str:
     return found.group(1) if found else "unknown"
 
 
-def run(deck: Deck, accurate: bool) -> Array:
+def run(deck, accurate):
     """Run an input file on one core; return the displacements of the printed nodes, shape (steps, nodes, 3).
 
     Raises
@@ -144,7 +135,7 @@ def run(deck: Deck, accurate: bool) -> Array:
     return found[: deck.steps]
 
 
-def parsed(text: str, nodes: int) -> tuple[Array, Array]:
+def parsed(text, nodes):
     """Return the instants and displacements of a .dat file, shapes (instants,) and (instants, nodes, 3)."""
     text = re.sub(r"(?<=\d)([+-]\d{3})\b", r"E\1", text)  # Fortran's exponents of three digits
     times = [float(value) for value in re.findall(r"and time\s+(\S+)", text)]

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from validation.models.column.tables import ColumnSection, LayerSection
+    from validation.models.column.tables import LayerSection
 
 NEAR = 1e-9  # of a column's height, within which two levels are one
 
@@ -37,21 +36,21 @@ class Stretch:
     spring: float | None
 
     @property
-    def length(self) -> float:
+    def length(self):
         """Its length [m]."""
         return self.top - self.bottom
 
     @property
-    def passing(self) -> float:
+    def passing(self):
         """Time in which a wave passes it [s]."""
         return self.length * math.sqrt(self.layer.density / self.modulus)
 
 
-def stretches(column: ColumnSection, heights: Iterable[float] = ()) -> list[Stretch]:
+def stretches(column, heights=()):
     """Return the stretches of a column from the base upwards, cut at heights as well."""
     joints = {joint.height: joint.stiffness for joint in column.springs}
     near = NEAR * column.height
-    found: list[Stretch] = []
+    found = []
     bottom = 0.0
     for layer in column.layer:
         top = bottom + layer.thickness

@@ -1,18 +1,12 @@
 """DART as a solver of rigid boxes: free bodies on a long box whose motion is prescribed, DART's own contact."""
 
-from __future__ import annotations
-
 import itertools
 import math
-from typing import Any
 
-from peers.boxes import Pose, boxes_of, record
+from peers.boxes import boxes_of, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
-from validation.models.plane.boxes import BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 RECIPE = "pip install dartpy==6.20.0"
 OWN_STEP = 1e-3  # s: what World.getTimeStep() is before anybody sets it
@@ -25,7 +19,7 @@ GROUND_DEPTH = 10.0  # m: the boxes are 1 m deep
 class World:
     """A scene in DART."""
 
-    def __init__(self, scene: Scene, *, sleeps: bool) -> None:
+    def __init__(self, scene, *, sleeps):
         self.dart = imported("dartpy", "DART", RECIPE)
         self.boxes = boxes_of(scene)
         self.world = self.dart.simulation.World()
@@ -51,7 +45,7 @@ class World:
             self.bodies.append(body)
             self.rotations.append(Rotation(start[2]))
 
-    def _body(self, name: str, size: tuple[float, float, float]) -> tuple[Any, Any]:
+    def _body(self, name, size):
         """Add a free body of a box's shape; return its joint to the world, and it.
 
         Friction of a pair is the smaller coefficient of the two bodies, restitution the product of the two.
@@ -70,14 +64,14 @@ class World:
         return joint, body
 
     @staticmethod
-    def _place(joint: Any, pose: Pose, velocity: tuple[float, float, float]) -> None:
+    def _place(joint, pose, velocity):
         """Set pose and velocity: a rotation about each axis first, then a translation along each."""
         x, y, angle = pose
         u, v, spin = velocity
         joint.setPositions([0.0, 0.0, angle, x, y, 0.0])
         joint.setVelocities([0.0, 0.0, spin, u, v, 0.0])
 
-    def advance(self, time: float, step: float) -> None:
+    def advance(self, time, step):
         """Make a step, over which the ground moves as far as it is prescribed."""
         if self.boxes.base_amplitude:
             end, _ = self.boxes.base(time + step)
@@ -86,7 +80,7 @@ class World:
         self.world.setTimeStep(step)
         self.world.step()
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return positions and angles of the boxes."""
         poses = []
         for body, rotation in zip(self.bodies, self.rotations, strict=True):
@@ -96,7 +90,7 @@ class World:
             poses.append((float(transform[0, 3]), float(transform[1, 3]), angle))
         return poses
 
-    def forces(self) -> list[float]:
+    def forces(self):
         """Return the normal force between each box and what is below it."""
         names = ["ground", *(f"box_{number}" for number in range(1, len(self.bodies) + 1))]
         forces = dict.fromkeys(itertools.pairwise(names), 0.0)
@@ -109,25 +103,9 @@ class World:
         return list(forces.values())
 
 
-def _skeleton(collision_object: Any) -> str:
+def _skeleton(collision_object):
     """Return the name of the body that a shape of a contact belongs to."""
     return str(collision_object.getShapeFrame().asShapeNode().getBodyNodePtr().getSkeleton().getName())
-
-
-def _check(boxes: BoxesOnGround) -> None:
-    """Refuse what DART cannot express.
-
-    Raises
-    ------
-    NotImplementedError
-        The scene asks for it.
-    """
-    if boxes.stiffness is not None:
-        raise NotImplementedError("plane.contact.stiffness: DART's contact is rigid, a condition on impulses")
-    if 0 < boxes.friction_coefficient <= LEAST_FRICTION:
-        raise NotImplementedError(f"plane.contact.friction: DART leaves away a coefficient of up to {LEAST_FRICTION:g}")
-    if 0 < boxes.rebound <= LEAST_RESTITUTION:
-        raise NotImplementedError(f"plane.contact.restitution: DART leaves away one of up to {LEAST_RESTITUTION:g}")
 
 
 class Dart(ExternalProgram):
@@ -141,7 +119,7 @@ class Dart(ExternalProgram):
     sleeps = False
     settings = "step 0.25 ms, no sleeping; else as it comes: FCL, Dantzig's solver of the boxed LCP, no split impulse"
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises
@@ -149,7 +127,13 @@ class Dart(ExternalProgram):
         NotImplementedError
             DART is not installed, or the scene has what it cannot express.
         """
-        _check(boxes_of(scene))
+        boxes = boxes_of(scene)
+        if boxes.stiffness is not None:
+            raise NotImplementedError("plane.contact.stiffness: DART's contact is rigid, a condition on impulses")
+        if 0 < boxes.friction_coefficient <= LEAST_FRICTION:
+            raise NotImplementedError(f"plane.contact.friction: DART leaves away up to {LEAST_FRICTION:g}")
+        if 0 < boxes.rebound <= LEAST_RESTITUTION:
+            raise NotImplementedError(f"plane.contact.restitution: DART leaves away one of up to {LEAST_RESTITUTION:g}")
         world = World(scene, sleeps=self.sleeps)
         # A body that sleeps has no contacts, so that DART tells no force.
         forces = None if self.sleeps else world.forces

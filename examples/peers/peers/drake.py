@@ -1,19 +1,12 @@
 """Drake as a solver of rigid boxes: bodies on planar joints over a half-space, with Drake's compliant contact."""
 
-from __future__ import annotations
-
 import itertools
 import logging
 import math
-from collections.abc import Iterator
-from typing import Any
 
-from peers.boxes import Pose, boxes_of, on_endless_ground, record, spring_step, substeps
+from peers.boxes import boxes_of, on_endless_ground, record, spring_step, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.plane.boxes import Box, BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 RECIPE = "pip install drake==1.51.1"
 OWN_STEP = 1e-3  # s: MultibodyPlantConfig.time_step before anybody sets it
@@ -24,7 +17,7 @@ BASE_CORNERS = 4  # of a box of 1 m depth
 RESOLUTION = 0.5  # m: no box needs one, but Drake asks for it
 
 
-def program() -> Any:
+def program():
     """Import Drake.
 
     Raises
@@ -45,7 +38,7 @@ class World:
     the change of the ground's velocity, so that the positions are those that a moved ground would give.
     """
 
-    def __init__(self, scene: Scene, own_step: float, *, chosen: bool) -> None:
+    def __init__(self, scene, own_step, *, chosen):
         self.drake = program()
         self.boxes = on_endless_ground(scene)
         self.chosen = chosen
@@ -72,7 +65,7 @@ class World:
         self.end = 0.0
         self.base_velocity = 0.0
 
-    def _ground(self) -> Any:
+    def _ground(self):
         """Add the half-space; return its number of Drake's."""
         stiffness = self.boxes.stiffness
         if self.chosen and stiffness is not None:
@@ -84,7 +77,7 @@ class World:
         half_space = self.drake.HalfSpace()
         return self.plant.RegisterCollisionGeometry(self.plant.world_body(), pose, half_space, "ground", properties)
 
-    def _box(self, number: int, box: Box) -> None:
+    def _box(self, number, box):
         """Add a box that moves in the plane."""
         inertia = self.drake.SpatialInertia.SolidBoxWithMass(box.mass, box.width, box.height, 1.0)
         body = self.plant.AddRigidBody(f"box_{number}", inertia)
@@ -94,7 +87,7 @@ class World:
         joint = self.drake.PlanarJoint(f"joint_{number}", self.plant.world_frame(), body.body_frame(), [0.0, 0.0, 0.0])
         self.joints.append(self.plant.AddJoint(joint))
 
-    def _shapes(self, box: Box) -> Iterator[tuple[str, Any, Any, Any]]:
+    def _shapes(self, box):
         """Yield name, pose, shape and properties of what touches other bodies."""
         if self.chosen and self.boxes.stiffness is not None:
             # Hydroelastic contact loses stiffness with depth, for the pressure falls towards the sides of a box.
@@ -109,7 +102,7 @@ class World:
             self.drake.AddCompliantHydroelasticProperties(RESOLUTION, MODULUS, properties)
         yield "", self.drake.RigidTransform(), self.drake.Box(box.width, box.height, 1.0), properties
 
-    def _material(self, stiffness: float | None) -> Any:
+    def _material(self, stiffness):
         """Return friction, and where the scene asks for them dissipation and stiffness, of one of two bodies.
 
         The friction of two equal bodies is theirs; their stiffness is half of that of each.
@@ -124,7 +117,7 @@ class World:
             properties.AddProperty("material", "point_contact_stiffness", 2 * stiffness)
         return properties
 
-    def advance(self, time: float, step: float) -> None:
+    def advance(self, time, step):
         """Make a step."""
         self.end = time + step
         if self.boxes.base_amplitude:
@@ -135,7 +128,7 @@ class World:
         # The update of a step is made as soon as its beginning has passed: half a step on, rounding cannot miss it.
         self.simulator.AdvanceTo(time + step / 2)
 
-    def _push(self, acceleration: float) -> None:
+    def _push(self, acceleration):
         """Apply what an acceleration of the ground is in its own frame."""
         forces = []
         for joint, box in zip(self.joints, self.boxes.boxes, strict=True):
@@ -145,7 +138,7 @@ class World:
             forces.append(force)
         self.plant.get_applied_spatial_force_input_port().FixValue(self.context, forces)
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return positions and angles of the boxes."""
         poses = []
         base, _ = self.boxes.base(self.end)
@@ -154,7 +147,7 @@ class World:
             poses.append((float(x) + base, float(y), float(joint.get_rotation(self.context))))
         return poses
 
-    def forces(self) -> list[float]:
+    def forces(self):
         """Return the normal force between each box and what is below it, across the upper side of the latter."""
         forces = [0.0] * len(self.joints)
         results = self.plant.get_contact_results_output_port().Eval(self.context)
@@ -168,31 +161,12 @@ class World:
             self._add(forces, surface.id_M(), surface.id_N(), contact.F_Ac_W().translational())
         return forces
 
-    def _add(self, forces: list[float], first: Any, second: Any, force: Any) -> None:
+    def _add(self, forces, first, second, force):
         """Add a force between two bodies, where one stands on the other."""
         lower, upper = sorted((self.numbers[first], self.numbers[second]))
         if upper - lower == 1:
             angle = self.joints[lower - 1].get_rotation(self.context) if lower else 0.0
             forces[lower] += abs(math.cos(angle) * float(force[1]) - math.sin(angle) * float(force[0]))
-
-
-def _check(boxes: BoxesOnGround, *, chosen: bool) -> None:
-    """Refuse what Drake cannot express.
-
-    Raises
-    ------
-    NotImplementedError
-        The scene asks for it.
-    """
-    if 0 < boxes.rebound < 1:
-        raise NotImplementedError(
-            "plane.contact.restitution: Drake's contact has a dissipation, whose rebound depends on mass and speed; "
-            "0 (its own dissipation) and 1 (none) only"
-        )
-    if chosen and boxes.stiffness is not None and len(boxes.boxes) > 1:
-        raise NotImplementedError(
-            "plane.contact.stiffness: of a box alone, whose corners have it; corners of others meet edges"
-        )
 
 
 class Drake(ExternalProgram):
@@ -206,7 +180,7 @@ class Drake(ExternalProgram):
     step = OWN_STEP
     settings = "step 1 ms; hydroelastic contact of 100 GPa, given stiffness at the corners; stiction tolerance 1e-6 m/s"
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises
@@ -214,7 +188,16 @@ class Drake(ExternalProgram):
         NotImplementedError
             Drake is not installed, or the scene has what it cannot express.
         """
-        _check(boxes_of(scene), chosen=self.chosen)
+        boxes = boxes_of(scene)
+        if 0 < boxes.rebound < 1:
+            raise NotImplementedError(
+                "plane.contact.restitution: Drake's contact has a dissipation, whose rebound depends on mass and "
+                "speed; 0 (its own dissipation) and 1 (none) only"
+            )
+        if self.chosen and boxes.stiffness is not None and len(boxes.boxes) > 1:
+            raise NotImplementedError(
+                "plane.contact.stiffness: of a box alone, whose corners have it; corners of others meet edges"
+            )
         own_step = self.step
         if self.chosen:
             own_step = min(own_step, SPRING_SHARE * spring_step(scene))

@@ -6,19 +6,13 @@ the box; the friction acts r below the corner, which errs by r in its arm. Two b
 face of the other. A ground that moves is at rest in its own frame, in which a box of mass m bears the load -m A''(t).
 """
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, corners_of, named, on_endless_ground, substeps
+from peers.boxes import corners_of, named, on_endless_ground, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.plane.boxes import Box, BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 PACKAGE = "exudyn"
 RECIPE = "pip install exudyn==1.13.6"
@@ -30,8 +24,6 @@ DEEP = 2.0  # radius over the deepest penetration
 BEYOND = 1e-3  # of its width that a face goes beyond its corners, so that boxes of equal width stand on these
 WIDE = 1e4  # half the width of the ground over the size of a box
 EARLY = 1e-9  # of the interval of rows: rounding of Exudyn's sum of steps
-Columns = dict[str, Array]
-State = tuple[float, Array, Array]  # time [s], positions and velocities of the boxes, shape (boxes, 3)
 
 
 class Exudyn(ExternalProgram):
@@ -49,7 +41,7 @@ class Exudyn(ExternalProgram):
         "friction proportional to slip below 1e-6 m/s; no recommended step sizes, tolerances in units of the weight"
     )
 
-    def solve(self, scene: Scene) -> Columns:
+    def solve(self, scene):
         """Return the columns of a scene of rigid boxes.
 
         Raises
@@ -73,7 +65,7 @@ class Exudyn(ExternalProgram):
         rows = model.rows(settings, scene.time.step * np.arange(1.0, scene.time.steps + 1))
         return named(scene, rows, time.numberOfSteps)
 
-    def stiffness(self, pile: BoxesOnGround, step: float) -> list[float]:
+    def stiffness(self, pile, step):
         """Return the stiffness of the contact below each box, where the scene gives none [N/m].
 
         An impact errs by about the square of the angle of its vibration in a step, (w h)^2, and a box sinks by g / w^2:
@@ -82,7 +74,7 @@ class Exudyn(ExternalProgram):
         square = (self.angle / self.own_step) ** 2 * self.own_step / step
         return [carried * square for carried in carried_masses(pile)]
 
-    def choose(self, time: Any, pile: BoxesOnGround) -> None:
+    def choose(self, time, pile):
         """Set what differs from Exudyn's defaults in its `TimeIntegrationSettings`."""
         weight = min(box.mass for box in pile.boxes) * acceleration(pile)
         time.generalizedAlpha.spectralRadius = 1.0
@@ -101,21 +93,21 @@ class AsItComes(Exudyn):
         "has no default: a box sinks by 0.1 % of its height under its weight on Earth"
     )
 
-    def stiffness(self, pile: BoxesOnGround, step: float) -> list[float]:
+    def stiffness(self, pile, step):
         """Return the stiffness of the contact below each box, where the scene gives none [N/m]."""
         return [carried * EARTH / (SINKS * pile.boxes[0].height) for carried in carried_masses(pile)]
 
-    def choose(self, time: Any, pile: BoxesOnGround) -> None:
+    def choose(self, time, pile):
         """Leave Exudyn's settings as they are."""
 
 
-def carried_masses(pile: BoxesOnGround) -> list[float]:
+def carried_masses(pile):
     """Return the mass that stands on the contact below each box [kg]."""
     masses = [box.mass for box in pile.boxes]
     return [sum(masses[number:]) for number in range(len(masses))]
 
 
-def fastest(pile: BoxesOnGround) -> float:
+def fastest(pile):
     """Return the speed with which a corner may hit the ground, if nothing is gained [m/s]."""
     squares = []
     for box in pile.boxes:
@@ -129,12 +121,12 @@ def fastest(pile: BoxesOnGround) -> float:
     return math.sqrt(max(squares))
 
 
-def acceleration(pile: BoxesOnGround) -> float:
+def acceleration(pile):
     """Return gravity, or where there is none what stops the fastest corner within the height of a box [m/s2]."""
     return pile.gravity or fastest(pile) ** 2 / pile.boxes[0].height or 1.0
 
 
-def corner_law(pile: BoxesOnGround, stiffness: float, mass: float) -> dict[str, float]:
+def corner_law(pile, stiffness, mass):
     """Return Exudyn's parameters of one of two corners, from stiffness [N/m] and mass [kg] of what stands on both.
 
     A stiffness that the scene gives is that of an elastic spring. Restitution 0 is critical damping of a flat landing,
@@ -163,7 +155,7 @@ class Model:
         Slip below which friction is proportional to it [m/s]; None is Exudyn's own.
     """
 
-    def __init__(self, exudyn: Any, pile: BoxesOnGround, stiffness: list[float], friction_zone: float | None) -> None:
+    def __init__(self, exudyn, pile, stiffness, friction_zone):
         self.exudyn = exudyn
         self.items = exudyn.itemInterface
         self.pile = pile
@@ -178,8 +170,8 @@ class Model:
         laws = [corner_law(pile, k, mass) for k, mass in zip(stiffness, carried, strict=True)]
         if friction_zone is not None:
             laws = [{**law, "frictionProportionalZone": friction_zone} for law in laws]
-        self.nodes: list[int] = []
-        self.bodies: list[int] = []
+        self.nodes = []
+        self.bodies = []
         for box, start in zip(pile.boxes, pile.starts, strict=True):
             self.add_box(box, start)
         ground = self.system.AddObject(self.items.ObjectGround())
@@ -197,7 +189,7 @@ class Model:
             self.contacts.append(on_lower + on_upper)
         self.system.Assemble()
 
-    def add_box(self, box: Box, start: Pose) -> None:
+    def add_box(self, box, start):
         """Add a planar rigid body, its weight, and the inertial load of a ground that moves."""
         items = self.items
         initial = [*box.velocity, box.spin]
@@ -220,13 +212,13 @@ class Model:
 
     def touch(
         self,
-        body: int,
-        points: list[tuple[float, float]],
-        other: int,
-        face: tuple[float, float],
-        half_width: float,
-        law: dict[str, float],
-    ) -> list[int]:
+        body,
+        points,
+        other,
+        face,
+        half_width,
+        law,
+    ):
         """Add contact of corners of one body with a face of another; the face has a level and an outward direction."""
         items = self.items
         level, outward = face
@@ -251,7 +243,7 @@ class Model:
             contacts.append(self.system.AddObject(contact))
         return contacts
 
-    def rows(self, settings: Any, instants: Array) -> Array:
+    def rows(self, settings, instants):
         """Run and return x, y, angle and normal force of each box at instants, shape (instants, boxes, 4).
 
         Exudyn shortens steps where contact switches, so that its own instants are others: positions between them are
@@ -262,7 +254,7 @@ class Model:
         done = 0
         previous = self.state(0.0)
 
-        def after_step(system: Any, time: float) -> bool:
+        def after_step(system, time):
             nonlocal done, previous
             # Rows at the end of a step, but for rounding, are that state itself.
             state = self.state(time)
@@ -284,7 +276,7 @@ class Model:
             rows[row, :, 0] += self.pile.base(float(instant))[0]
         return rows
 
-    def state(self, time: float) -> State:
+    def state(self, time):
         """Return time, positions and velocities of the boxes, shape (boxes, 3)."""
         data = self.system.systemData
         reference = data.GetODE2Coordinates(self.exudyn.ConfigurationType.Reference)
@@ -292,7 +284,7 @@ class Model:
         return time, (data.GetODE2Coordinates() + reference).reshape(shape), data.GetODE2Coordinates_t().reshape(shape)
 
 
-def between(first: State, last: State, time: float) -> Array:
+def between(first, last, time):
     """Return positions at an instant, from positions and velocities at two instants."""
     start, x0, v0 = first
     end, x1, v1 = last

@@ -11,19 +11,13 @@ Contact is sought once, in the first step, between faces that are parallel and w
 then move with both bodies, half with each. Boxes that start tilted, slide far or turn over are refused for this reason.
 """
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, on_endless_ground, record, substeps
+from peers.boxes import on_endless_ground, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
-from validation.models.plane.boxes import Box, BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 PACKAGE = "compas_lmgc90"
 RECIPE = "pip install compas==2.15.1 && pip install --no-deps compas_lmgc90==0.1.11"
@@ -36,7 +30,6 @@ POINTS = 4  # of the contact of two rectangles
 FOREVER = 1e6  # s
 TRIANGLES = (1, 3, 4, 1, 4, 2, 5, 6, 8, 5, 8, 7, 1, 2, 6, 1, 6, 5, 2, 4, 8, 2, 8, 6, 4, 3, 7, 4, 7, 8, 3, 1, 5, 3, 5, 7)
 LAW = "iqsc0"  # name of a law that set_see_tables expects
-Columns = dict[str, Array]
 
 
 class LMGC90(ExternalProgram):
@@ -49,7 +42,7 @@ class LMGC90(ExternalProgram):
     own_step = 1e-3  # s
     settings = "theta = 1/2 at 1 ms; contact is sought within twice the lift of the boxes and their size"
 
-    def solve(self, scene: Scene) -> Columns:
+    def solve(self, scene):
         """Return the columns of a scene of rigid boxes.
 
         Raises
@@ -67,7 +60,7 @@ class LMGC90(ExternalProgram):
         finally:
             model.solver.finalize()
 
-    def alert(self, pile: BoxesOnGround) -> float:
+    def alert(self, pile):
         """Return the distance within which contact is sought [m]."""
         return max(2 * box.lift + max(box.width, box.height) for box in pile.boxes)
 
@@ -78,7 +71,7 @@ class AsItComes(LMGC90):
     own_step = DEFAULT_STEP
     settings = "theta = 1/2 at 10 ms, contact is sought within 1 mm: the defaults of compas_lmgc90.Solver"
 
-    def alert(self, pile: BoxesOnGround) -> float:
+    def alert(self, pile):
         """Return the distance within which contact is sought [m]."""
         far = max(box.lift for box in pile.boxes)
         if far > DEFAULT_ALERT:
@@ -87,7 +80,7 @@ class AsItComes(LMGC90):
         return DEFAULT_ALERT
 
 
-def refuse(pile: BoxesOnGround) -> None:
+def refuse(pile):
     """Refuse what this part of LMGC90 cannot express."""
     tilted = [math.degrees(box.angle) for box in pile.boxes if box.angle]
     if tilted:
@@ -101,7 +94,7 @@ def refuse(pile: BoxesOnGround) -> None:
         raise NotImplementedError(f"plane.block.at: {why}, got {lifted[0]:g} m")
 
 
-def contact_law(pile: BoxesOnGround) -> tuple[str, list[float]]:
+def contact_law(pile):
     """Return the name of the contact law, and its parameters."""
     if pile.stiffness is not None:
         return "ELASTIC_REPELL_CLB", [pile.stiffness / POINTS, pile.friction_coefficient]
@@ -125,7 +118,7 @@ class Model:
         Distance within which contact is sought [m].
     """
 
-    def __init__(self, program: Any, pile: BoxesOnGround, step: float, alert: float) -> None:
+    def __init__(self, program, pile, step, alert):
         self.solver = program()
         self.pile = pile
         self.step = step
@@ -140,7 +133,7 @@ class Model:
         self.touched = [False] * len(pile.boxes)  # whether a box was ever borne
         self.result = self.solver.compute_one_step()  # in which boxes get their momentum
 
-    def build(self, alert: float) -> list[Array]:
+    def build(self, alert):
         """Give LMGC90 the scene; return the principal axes of the boxes, a row an axis."""
         solver = self.solver
         pile = self.pile
@@ -160,7 +153,7 @@ class Model:
         frames = solver.get_initial_state().body_frames[1:]
         return [np.array(frame).reshape(3, 3) for frame in frames]
 
-    def add_ground(self) -> None:
+    def add_ground(self):
         """Add a slab whose velocity is driven, wide enough for all boxes."""
         left = min(box.x - box.width for box in self.pile.boxes)
         right = max(box.x + box.width for box in self.pile.boxes)
@@ -176,7 +169,7 @@ class Model:
         for freedom in range(1, 7):
             self.solver.set_drvdof(1, freedom, along if freedom == 1 else [0.0] * 6, True, False)
 
-    def add_box(self, number: int, box: Box, start: Pose) -> None:
+    def add_box(self, number, box, start):
         """Add a box where a step with its velocities leads to its start."""
         back = self.step * THETA  # this step goes from rest to the velocity
         x = start[0] - back * box.velocity[0]
@@ -203,13 +196,13 @@ class Model:
             instants = [0.0, self.step, FOREVER]
             self.solver.set_drvdof(number, freedom, [*instants, first, force, force], False, True)
 
-    def advance(self, time: float, step: float) -> None:
+    def advance(self, time, step):
         """Make a step."""
         self.result = self.solver.compute_one_step()
         for bodies, local in zip(self.result.interaction_bodies, self.result.interaction_rloc, strict=True):
             self.touched[max(bodies) - 2] |= local[1] > 0
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return x, y and angle of each box.
 
         Raises
@@ -238,7 +231,7 @@ class Model:
             poses.append((x, z, angle))
         return poses
 
-    def refuse_far(self, number: int, slip: float, angle: float) -> None:
+    def refuse_far(self, number, slip, angle):
         """Refuse what the points of a contact do not follow.
 
         They move by half the slip s. Friction mu N at the base of what stands there, of height H and width w, puts the
@@ -253,7 +246,7 @@ class Model:
         if angle > math.pi / 2:
             raise NotImplementedError(f"{why} box {number + 1}, which turns over")
 
-    def forces(self) -> list[float]:
+    def forces(self):
         """Return the normal force below each box."""
         forces = [0.0] * len(self.pile.boxes)
         for bodies, local in zip(self.result.interaction_bodies, self.result.interaction_rloc, strict=True):
@@ -261,7 +254,7 @@ class Model:
         return forces
 
 
-def cuboid(width: float, depth: float, height: float, angle: float = 0.0) -> tuple[list[float], list[int]]:
+def cuboid(width, depth, height, angle=0.0):
     """Return the vertices of a box about its centre, turned from x to z, and its triangles counted from 1."""
     signs = [(x, y, z) for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)]
     corners = np.array(signs) * (width / 2, depth / 2, height / 2)

@@ -6,8 +6,6 @@ springs are springs of fixed tendons, which are linear combinations of joints; t
 one that only pushes, its plasticity one that slips, at a yield that follows the normal force from sub-step to sub-step.
 """
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
@@ -15,12 +13,10 @@ import numpy as np
 from peers.blocks import push_of
 from peers.mujoco_boxes import boxes
 from peers.mujoco_column import column
-from peers.mujoco_model import FREE, MOST, RECIPE, Columns, March, Network, Spring, model_text, parts, refuse
+from peers.mujoco_model import FREE, MOST, RECIPE, March, Network, Spring, model_text, parts, refuse
 from peers.programs import ExternalProgram
-from validation.runs.history import Array
 from validation.scenes import features
 from validation.scenes.record import base_record
-from validation.scenes.scene import Scene
 
 SLIPS = 1e-30  # m: the yield of a corner that is open; zero would be none
 FINE, COARSE, MANY = 0.1, 0.7, 60_000  # w dt of RK4, where more sub-steps than that would follow, and what is many
@@ -41,21 +37,21 @@ GLUE = 100.0  # coefficient of friction of a corner that never slips, of a box
 TURNING = 1e-4  # sub-step over (h / g)^(1/2) of a block that turns
 
 
-def sizes(scene: Scene) -> tuple[float, float]:
+def sizes(scene):
     """Return width and height of an upright rectangle on its lower edge [m]; other outlines are refused."""
     size = scene.block.rectangle
     refuse("the block is no upright rectangle on its lower edge, and its mass matrix not diagonal", where=size is None)
     return size or (0.0, 0.0)
 
 
-def loads(scene: Scene) -> tuple[float, float, float]:
+def loads(scene):
     """Return forces towards +x and upwards of all loads [N], and how far towards +x the pressure acts [m]."""
     q, (a, _), turn = scene.load, sizes(scene), math.radians(scene.load.slope)
     weight, push = scene.block.mass * q.gravity, push_of(scene)
     return q.traction * a + weight * math.sin(turn), -push - weight * math.cos(turn), -push * q.eccentricity
 
 
-def block_network(scene: Scene) -> Network:
+def block_network(scene):
     """Return a block of one strain on its corner springs; tendons 3, 4 are those across the base, 5, 6 along it."""
     b, c, q, (a, h), m = scene.block, scene.contact, scene.load, sizes(scene), scene.block.mass
     E, mu, area = b.young, b.poisson, a * h
@@ -81,7 +77,7 @@ def block_network(scene: Scene) -> Network:
     )
 
 
-def upright(scene: Scene) -> bool:
+def upright(scene):
     """Whether nothing moves the corners along the base, so that their springs along it stay relaxed."""
     q, record = scene.load, base_record(scene)
     still = record is None or not record.x.any()
@@ -91,7 +87,7 @@ def upright(scene: Scene) -> bool:
 class Corners:
     """What a drive does before each sub-step: the base moves, and corners slip at the normal force that they get."""
 
-    def __init__(self, scene: Scene, network: Network, march: March, instants: Array) -> None:
+    def __init__(self, scene, network, march, instants):
         self.scene, self.march, self.dt = scene, march, float(instants[1])
         self.tan = None if scene.contact.friction is None else math.tan(math.radians(scene.contact.friction))
         self.held = scene.contact.cohesion * sizes(scene)[0] / 2
@@ -107,11 +103,11 @@ class Corners:
             march.data.qpos[6:8] = self.path[0][0], y[0]
 
     @property
-    def needed(self) -> bool:
+    def needed(self):
         """Whether there is anything to do."""
         return self.slips or self.path is not None
 
-    def __call__(self, number: int) -> None:
+    def __call__(self, number):
         """Do it before a sub-step."""
         data = self.march.data
         if self.path is not None:
@@ -125,7 +121,7 @@ class Corners:
                 self.march.model.tendon_springyield[5 + corner] = max(holds, SLIPS) if w < 0 else SLIPS
 
 
-def spring_block(scene: Scene, *, default: bool) -> Columns:
+def spring_block(scene, *, default):
     """Return the motion of a block of one strain on its corner springs."""
     network, t, width = block_network(scene), scene.time, sizes(scene)[0]
     slips = any(spring.slips for spring in network.springs)
@@ -139,7 +135,7 @@ def spring_block(scene: Scene, *, default: bool) -> Columns:
     if slips and not default:
         march.start_between()
 
-    def report() -> Array:
+    def report():
         w = march.data.qpos @ corners.normal.T + scene.contact.gap
         pressed = -w if scene.contact.law == "locked" else np.maximum(-w, 0.0)
         u, v, _, ty, tx, _ = march.data.qpos[:6]
@@ -150,7 +146,7 @@ def spring_block(scene: Scene, *, default: bool) -> Columns:
     return _named(found)
 
 
-def rigid_box(scene: Scene, *, default: bool) -> Columns:
+def rigid_box(scene, *, default):
     """Return the motion of a rigid box on a plane with MuJoCo's own contact."""
     (a, h), b, q, t = sizes(scene), scene.block, scene.load, scene.time
     refuse("a rigid box on a plane has no base that moves", where=q.base_motion is not None)
@@ -171,7 +167,7 @@ def rigid_box(scene: Scene, *, default: bool) -> Columns:
     march.data.qfrc_applied[:] = q.traction * a, -push, -push * q.eccentricity - q.traction * a * h / 2
     march.data.qpos[2], march.data.qvel[1] = tilt, b.velocity
 
-    def report() -> Array:
+    def report():
         march.look()
         x, z, turned = march.data.qpos
         return np.array([z, march.pressing() / a, x, turned - tilt])
@@ -179,12 +175,12 @@ def rigid_box(scene: Scene, *, default: bool) -> Columns:
     return _named(march.rows(t.steps, round(t.step / dt), report))
 
 
-def _named(rows: Array) -> Columns:
+def _named(rows):
     names = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
     return dict(zip(names, rows.T, strict=True))
 
 
-def _rubs(scene: Scene, default: bool) -> str:
+def _rubs(scene, default):
     """Return the attributes of a geom with the scene's friction, the same for box and plane."""
     c = scene.contact
     tangent = math.tan(math.radians(c.friction or 0.0))
@@ -197,7 +193,7 @@ def _rubs(scene: Scene, default: bool) -> str:
     return f'condim="3" friction="{tangent!r} 0 0"' if tangent else 'condim="1"'
 
 
-def _stiff(dt: float) -> str:
+def _stiff(dt):
     """Return the attributes of a contact nearly as stiff as a step bears, critically damped."""
     rate = 0.3 / dt
     return f' solref="{-rate * rate!r} {-2 * rate!r}" solimp="0.9999 0.9999 0.001 0.5 2"'
@@ -217,7 +213,7 @@ class MuJoCo(ExternalProgram):
         "rigid boxes: semi-implicit Euler at 0.25 ms, elliptic cones, an approach turned in one step"
     )
 
-    def solve(self, scene: Scene) -> Columns:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises
@@ -236,7 +232,7 @@ class MuJoCo(ExternalProgram):
             return rigid_box(scene, default=self.default)
         return spring_block(scene, default=self.default)
 
-    def boxed(self, scene: Scene) -> bool:
+    def boxed(self, scene):
         """Whether a rigid box on a plane is the scene's model: where it turns far, if it is nearly rigid."""
         if scene.run.geometry == "small":
             return False
@@ -259,7 +255,7 @@ class AsItComes(MuJoCo):
         "semi-implicit Euler at the step of the scene, rigid boxes at 2 ms; solref, solimp and cones as they come"
     )
 
-    def boxed(self, scene: Scene) -> bool:
+    def boxed(self, scene):
         """Whether a rigid box on a plane is the scene's model."""
         (a, h), c = sizes(scene), scene.contact
         turns, pile = scene.run.geometry == "updated", scene.block.young * a / h >= RIGID * 2 * c.stiffness
@@ -267,5 +263,5 @@ class AsItComes(MuJoCo):
         return c.law == "unilateral" and (turns or pile or c.friction is not None)
 
 
-def _pushed(scene: Scene) -> bool:
+def _pushed(scene):
     return scene.load.pressure != 0 or scene.load.traction != 0

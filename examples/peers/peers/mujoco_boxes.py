@@ -13,17 +13,13 @@ A spring of given stiffness is the other end of the same law: with an impedance 
 what else pushes, and its force is proportional to the depth.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
 from peers.bodies import bodies_of, friction_between
 from peers.boxes import (
     SLOW_CORRECTION,
-    Pose,
     base_velocity,
     boxes_of,
     ground_ends,
@@ -32,10 +28,9 @@ from peers.boxes import (
     spring_step,
     substeps,
 )
-from peers.mujoco_model import Columns, March, model_text, refuse
+from peers.mujoco_model import March, model_text, refuse
 from peers.spatial import check_plane
 from validation.models.plane.tables import PlaneSection
-from validation.scenes.scene import Scene
 
 USUAL_STEP = 0.002  # s: MuJoCo's option.timestep as it comes
 STEP = 0.00025  # s
@@ -59,7 +54,7 @@ OPTIONS = 'cone="elliptic" impratio="1e6" tolerance="1e-12"'
 class World:
     """Blocks as bodies of MuJoCo: free in space as they come, else on joints that keep them in the plane."""
 
-    def __init__(self, scene: Scene, *, default: bool) -> None:
+    def __init__(self, scene, *, default):
         self.scene = scene
         self.default = default
         self.blocks = bodies_of(scene)
@@ -84,7 +79,7 @@ class World:
         options = f'timestep="{step!r}"' if default else f'timestep="{step!r}" {OPTIONS}'
         # A plane without end is the ground that one takes as it comes; held prisms are it elsewhere.
         self.flat = default and not self.moves and is_pile(scene) and not ground_ends(scene)
-        self.meshes: list[str] = []
+        self.meshes = []
         bodies = "".join(map(self._body, range(len(self.blocks))))
         pairs = "" if default else f"<contact>{''.join(self._pairs(step))}</contact>"
         more = f"<asset>{''.join(self.meshes)}</asset>{pairs}"
@@ -95,7 +90,7 @@ class World:
         if given:
             self._soften(boxes_of(scene).stiffness or 0.0)
 
-    def _body(self, number: int) -> str:
+    def _body(self, number):
         block = self.blocks[number]
         x, y = block.place
         density = block.density
@@ -115,14 +110,14 @@ class World:
         )
         return f'<body pos="{x!r} 0 {y!r}" {turned}>{joints}{geoms}</body>'
 
-    def _surface(self) -> str:
+    def _surface(self):
         """Return the attributes of a geom: its friction, of a pair the greater of the two; else pairs state it."""
         if not self.default:
             return 'contype="0" conaffinity="0"'
         friction = self._friction(0, 1)
         return f'condim="3" friction="{friction!r} 0 0"' if friction else 'condim="1"'
 
-    def _shape(self, part: list[tuple[float, float]]) -> str:
+    def _shape(self, part):
         """Return a convex part: a box where it is a level rectangle, of exact contacts in MuJoCo, else a mesh."""
         xs, ys = ([point[axis] for point in part] for axis in (0, 1))
         levels = [{round(value / SAME) for value in values} for values in (xs, ys)]
@@ -134,10 +129,10 @@ class World:
         self.meshes.append(f'<mesh name="{name}" vertex="{vertices}"/>')
         return f'type="mesh" mesh="{name}"'
 
-    def _friction(self, first: int, second: int) -> float:
+    def _friction(self, first, second):
         return min(friction_between(self.scene, first, second), STICKS)
 
-    def _pairs(self, step: float) -> Iterator[str]:
+    def _pairs(self, step):
         piled = len(self.moving) > 1
         if self.rebound:
             impedance = REBOUND_IMPEDANCE
@@ -155,14 +150,14 @@ class World:
                 if not (block.held and self.blocks[below].held):
                     yield from self._pair(below, upper, law)
 
-    def _pair(self, first: int, second: int, law: str) -> Iterator[str]:
+    def _pair(self, first, second, law):
         friction = self._friction(first, second)
         slides = f'condim="3" friction="{friction!r} {friction!r} 0 0 0"' if friction else 'condim="1"'
         for part in range(len(self.blocks[first].parts)):
             for other in range(len(self.blocks[second].parts)):
                 yield f'<pair geom1="{first}.{part}" geom2="{second}.{other}" {law} {slides}/>'
 
-    def _start(self) -> None:
+    def _start(self):
         """Set angles and velocities."""
         data = self.march.data
         for number, block in enumerate(self.moving):
@@ -177,7 +172,7 @@ class World:
                 data.qpos[place + 2] = block.angle
                 data.qvel[place : place + 3] = along, up, block.spin
 
-    def _soften(self, stiffness: float) -> None:
+    def _soften(self, stiffness):
         """Make the contact of a box with the ground a spring.
 
         A contact's force is k' r / R with k' = K / d of `solref`, d the impedance, and R the regularisation that MuJoCo
@@ -195,7 +190,7 @@ class World:
         data.qpos[:] = start
         model.pair_solref[:] = -stiffness / CORNERS * COMPLIANT * regularisation, 0.0
 
-    def advance(self, start: float, step: float) -> None:
+    def advance(self, start, step):
         """Make one step of MuJoCo, and follow the angles of boxes that are free in space, which are folded at pi."""
         data = self.march.data
         if self.moves:
@@ -207,7 +202,7 @@ class World:
                 check_plane(1 - 2 * (x * x + z * z))
                 self.turns[number] = turn + math.remainder(-2 * math.atan2(y, w) - turn, math.tau)
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return position and angle of each block; what is no number after a breakdown."""
         data = self.march.data
         if data.warning.number.any():
@@ -223,7 +218,7 @@ class World:
                 poses.append((x + along, y + up, angle))
         return poses
 
-    def forces(self) -> list[float]:
+    def forces(self):
         """Return the normal force below each box in the present state [N]."""
         self.march.look()
         data = self.march.data
@@ -239,7 +234,7 @@ class World:
         return list(values.values())
 
 
-def boxes(scene: Scene, *, default: bool) -> Columns:
+def boxes(scene, *, default):
     """Return the motion of rigid polygons.
 
     Raises

@@ -1,17 +1,12 @@
 """Columns of MuJoCo: masses on a line with springs between them, half of each cell's mass at either end."""
 
-from __future__ import annotations
-
 import math
 
 import numpy as np
 
-from peers.columns import NEAR, Stretch, stretches
-from peers.mujoco_model import MOST, Columns, March, Network, Spring, parts, refuse
-from validation.models.column.tables import ColumnSection
-from validation.runs.history import Array
-from validation.scenes.drive import Motion, motion_at
-from validation.scenes.scene import Scene
+from peers.columns import NEAR, stretches
+from peers.mujoco_model import MOST, March, Network, Spring, parts, refuse
+from validation.scenes.drive import motion_at
 
 CELLS, MOST_CELLS = 8, 2000  # cells in what a wave passes in a step, and all masses of a column
 RESOLVED = 0.7  # w dt of RK4
@@ -30,7 +25,7 @@ class Chain:
         Mass that moves with a rigid base [kg/m2].
     """
 
-    def __init__(self, scene: Scene, *, default: bool) -> None:
+    def __init__(self, scene, *, default):
         self.column = _column(scene)
         cut = stretches(self.column)
         self.masses, self.heights, self.springs = list[float](), list[float](), list[Spring]()
@@ -44,7 +39,7 @@ class Chain:
             passed = math.sqrt(one.modulus / one.layer.density) * scene.time.step
             self._pile(one, one.layer.thickness / one.layer.blocks if default else passed / CELLS)
 
-    def _stand(self, foot: float | None) -> None:
+    def _stand(self, foot):
         """Place a mass on the springs, or on the dampers, of a base that is not rigid."""
         impedance = self.column.impedance
         if foot is not None:
@@ -57,7 +52,7 @@ class Chain:
         self.masses.append(0.0)
         self.heights.append(0.0)
 
-    def _pile(self, one: Stretch, cell: float) -> None:
+    def _pile(self, one, cell):
         """Set cells upon each other."""
         low, length = one.bottom, one.length
         count = max(math.ceil(length / cell * (1 - NEAR)), 1)
@@ -73,11 +68,11 @@ class Chain:
             self.masses.append(half)
             self.heights.append(low + length * (number + 1) / count)
 
-    def _link(self, stiffness: float) -> None:
+    def _link(self, stiffness):
         upper = len(self.masses)
         self.springs.append(Spring({str(upper - 1): -1.0, str(upper): 1.0}, stiffness))
 
-    def network(self, rate: float) -> Network:
+    def network(self, rate):
         """Return the masses and springs; `rate` is that of a damping of the masses [1/s]."""
         masses = {str(number): mass for number, mass in enumerate(self.masses)}
         damping = {name: rate * mass for name, mass in masses.items()}
@@ -86,10 +81,9 @@ class Chain:
         return Network(masses, self.springs, damping)
 
 
-def _column(scene: Scene) -> ColumnSection:
+def _column(scene):
     """Return the column of a scene; one with joints that a chain has not is refused."""
     c = scene.column
-    assert c is not None
     heights = sorted(spring.height for spring in c.springs)
     near = NEAR * c.height
     refuse("a joint on the top carries nothing", where=any(height >= c.height - near for height in heights))
@@ -99,7 +93,7 @@ def _column(scene: Scene) -> ColumnSection:
     return c
 
 
-def column(scene: Scene, *, default: bool) -> Columns:
+def column(scene, *, default):
     """Return the motion of a column of masses: displacements, and the pressure on the base."""
     t = scene.time
     refuse("gg = 0 has no rate -ln(gg) / dt", where=t.discount == 0)
@@ -112,7 +106,7 @@ def column(scene: Scene, *, default: bool) -> Columns:
     passes = chain.column.base == "transmitting"
     below = chain.ground * (2 * middle.velocity if passes else middle.displacement)
 
-    def drive(number: int) -> None:
+    def drive(number):
         force = march.data.qfrc_applied
         force[:] = 0.0
         force[0] += below[number]
@@ -123,7 +117,7 @@ def column(scene: Scene, *, default: bool) -> Columns:
     return _reported(chain, base, rows[:, 0], rows[:, 1:])
 
 
-def _reported(chain: Chain, base: Motion, rate: Array, x: Array) -> Columns:
+def _reported(chain, base, rate, x):
     """Return the columns from the rate of the lowest mass, shape (steps,), and all displacements, (steps, masses)."""
     if chain.column.base == "transmitting":
         pressure = chain.ground * (2 * base.velocity - rate)

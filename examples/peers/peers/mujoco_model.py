@@ -1,22 +1,17 @@
 """Masses on MuJoCo's slide joints, tendons that are springs, and the steps of a compiled model."""
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from peers.packages import imported
-from validation.runs.history import Array
 
 RECIPE = "pip install mujoco==4.0.0"
 FREE = 1e30  # m: a rest length, or a yield, that is never reached
 MOST = 3_000_000  # sub-steps beyond which a scene is refused
-Columns = dict[str, Array]
-Drive = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -39,20 +34,20 @@ class Network:
     damping: dict[str, float] = field(default_factory=dict)  # joint to its damper [N s/m]
     forces: dict[str, float] = field(default_factory=dict)  # joint to its constant force [N]
 
-    def text(self, options: str) -> str:
+    def text(self, options):
         """Return the model in MuJoCo's XML."""
         return model_text(options, "".join(map(self._body, self.masses)), "".join(map(_tendon, self.springs)))
 
-    def _body(self, name: str) -> str:
+    def _body(self, name):
         damping = self.damping.get(name, 0.0)
         joint = f'<joint name="{name}" type="slide" axis="1 0 0" damping="{damping!r}"/>'
         return f'<body><inertial pos="0 0 0" mass="{self.masses[name]!r}" diaginertia="1 1 1"/>{joint}</body>'
 
-    def vector(self, values: Mapping[str, float]) -> Array:
+    def vector(self, values):
         """Return values of joints in the order of the joints."""
         return np.array([values.get(name, 0.0) for name in self.masses])
 
-    def frequency(self) -> float:
+    def frequency(self):
         """Return a bound of the greatest angular frequency with all springs at work, and of the dampers' rates [1/s].
 
         Gershgorin's for the symmetric M^(-1/2) K M^(-1/2).
@@ -66,13 +61,13 @@ class Network:
         return max(math.sqrt(total.max()), float((self.vector(self.damping) / m).max()))
 
 
-def model_text(options: str, world: str, tendons: str = "", gravity: str = "0 0 0", contact: str = "") -> str:
+def model_text(options, world, tendons="", gravity="0 0 0", contact=""):
     """Return a model in MuJoCo's XML."""
     option = f'<option gravity="{gravity}" {options}><flag autoreset="disable"/></option>'
     return f"<mujoco>{option}<worldbody>{world}</worldbody><tendon>{tendons}</tendon>{contact}</mujoco>"
 
 
-def _tendon(spring: Spring) -> str:
+def _tendon(spring):
     terms = "".join(f'<joint joint="{name}" coef="{c!r}"/>' for name, c in spring.factors.items())
     plastic = f'springyield="{FREE!r}"' if spring.slips else ""
     return f'<fixed stiffness="{spring.stiffness!r}" springlength="0 0" {plastic}>{terms}</fixed>'
@@ -87,7 +82,7 @@ class March:
         MuJoCo is not installed.
     """
 
-    def __init__(self, text: str, network: Network | None = None) -> None:
+    def __init__(self, text, network=None):
         self.mujoco = imported("mujoco", "MuJoCo", RECIPE)
         self.model = self.mujoco.MjModel.from_xml_string(text)
         for i, spring in enumerate(network.springs if network else []):  # not by XML, to which -1 means something else
@@ -96,16 +91,16 @@ class March:
         if network is not None:
             self.data.qfrc_applied[:] = network.vector(network.forces)
 
-    def look(self) -> None:
+    def look(self):
         """Compute what belongs to the present state: lengths, accelerations, forces of the contact."""
         self.mujoco.mj_forward(self.model, self.data)
 
-    def start_between(self) -> None:
+    def start_between(self):
         """Set the velocities back by half a step: semi-implicit Euler from there is the leapfrog, of order two."""
         self.look()
         self.data.qvel[:] -= self.data.qacc * self.model.opt.timestep / 2
 
-    def pressing(self) -> float:
+    def pressing(self):
         """Return the sum of the normal forces of the contacts in the present state [N]."""
         force, total = np.zeros(6), 0.0
         for number in range(self.data.ncon):
@@ -113,7 +108,7 @@ class March:
             total += float(force[0])
         return total
 
-    def rows(self, steps: int, each: int, report: Callable[[], Array], drive: Drive | None = None) -> Array:
+    def rows(self, steps, each, report, drive=None):
         """Make `each` sub-steps before every row and return the rows; rows after a breakdown are NaN."""
         found = np.full((steps, len(report())), np.nan)
         with self.silent():
@@ -124,7 +119,7 @@ class March:
                 found[step] = report()
         return found
 
-    def _advance(self, done: int, count: int, drive: Drive | None) -> None:
+    def _advance(self, done, count, drive):
         if drive is None:
             self.mujoco.mj_step(self.model, self.data, count)
             return
@@ -133,7 +128,7 @@ class March:
             self.mujoco.mj_step(self.model, self.data)
 
     @contextmanager
-    def silent(self) -> Iterator[None]:
+    def silent(self):
         """Keep MuJoCo from writing a file of warnings where it is run; a breakdown is told by the rows."""
         before = self.mujoco.get_mju_user_warning()
         self.mujoco.set_mju_user_warning(lambda text: None)
@@ -143,7 +138,7 @@ class March:
             self.mujoco.set_mju_user_warning(before)
 
 
-def refuse(why: str, *, where: bool) -> None:
+def refuse(why, *, where):
     """Refuse a scene in words where something is so.
 
     Raises
@@ -155,7 +150,7 @@ def refuse(why: str, *, where: bool) -> None:
         raise NotImplementedError(why)
 
 
-def parts(frequency: float, step: float, steps: int, fine: float, coarse: float, many: int) -> int:
+def parts(frequency, step, steps, fine, coarse, many):
     """Return into how many sub-steps a step is cut: `fine` of w dt, coarser where that makes many."""
     each = max(math.ceil(step * frequency / fine), 1)
     each = max(min(each, many // steps), math.ceil(step * frequency / coarse), 1)

@@ -1,24 +1,18 @@
 """Newton as a solver of rigid boxes: free bodies over a plane, by one of Newton's solvers on the processor."""
 
-from __future__ import annotations
-
 import atexit
 import math
 import os
 import shutil
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from peers.boxes import Pose, boxes_of, on_endless_ground, record, substeps
+from peers.boxes import boxes_of, on_endless_ground, record, substeps
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from peers.spatial import Rotation, check_plane
-from validation.models.plane.boxes import BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 RECIPE = "pip install newton==1.8.0 warp-lang==1.19.0"
 OWN_STEP = (
@@ -32,7 +26,7 @@ CONTACT_FREQUENCY = 0.3  # (stiffness / mass)^(1/2) of a box times the step; 2 i
 FRICTION_RATE = 0.35  # friction per speed, over mass, times the step; 0.8 is the limit of a box that tilts
 
 
-def program() -> Any:
+def program():
     """Import Newton.
 
     Raises
@@ -52,7 +46,7 @@ def program() -> Any:
     return imported("newton", "Newton", RECIPE)
 
 
-def _has_writable_cache() -> bool:
+def _has_writable_cache():
     """Whether warp can write what it compiles where it does so by itself."""
     folder = Path(os.environ.get("WARP_CACHE_PATH") or Path.home() / ".cache" / "warp")
     try:
@@ -69,7 +63,7 @@ class World:
     A ground that moves along itself turns into gravity: over a step, the change of its velocity.
     """
 
-    def __init__(self, scene: Scene, material: dict[str, float], solver: str, settings: dict[str, Any]) -> None:
+    def __init__(self, scene, material, solver, settings):
         self.newton = program()
         import warp
 
@@ -101,11 +95,11 @@ class World:
         self.collisions = self.newton.CollisionPipeline(self.model)
         self.contacts = self.collisions.contacts()
         self.steps = 0
-        self.graphs: list[Any] = [None, None]
+        self.graphs = [None, None]
         self.end = 0.0
         self.base_velocity = 0.0
 
-    def advance(self, time: float, step: float) -> None:
+    def advance(self, time, step):
         """Make a step."""
         self.end = time + step
         if self.boxes.base_amplitude:
@@ -128,13 +122,13 @@ class World:
         self.state, self.next_state = self.next_state, self.state
         self.steps += 1
 
-    def _step(self, step: float) -> None:
+    def _step(self, step):
         """Find the contacts and make a step, from one state to the other."""
         self.state.clear_forces()
         self.collisions.collide(self.state, self.contacts)
         self.solver.step(self.state, self.next_state, self.control, self.contacts, step)
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return positions and angles of the boxes."""
         poses = []
         base, _ = self.boxes.base(self.end)
@@ -155,7 +149,7 @@ class Newton(ExternalProgram):
     solver = ""
     step = OWN_STEP
 
-    def check(self, boxes: BoxesOnGround) -> None:
+    def check(self, boxes):
         """Refuse what the solver cannot express.
 
         Raises
@@ -164,15 +158,15 @@ class Newton(ExternalProgram):
             The scene asks for it.
         """
 
-    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
+    def material(self, boxes, step):
         """Return what bodies are made of beside their friction and restitution, by the names of Newton."""
         return {}
 
-    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
+    def options(self, boxes):
         """Return the arguments of the solver."""
         return {}
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises
@@ -194,14 +188,14 @@ class XPBDAsItComes(Newton):
     solver = "SolverXPBD"
     settings = "all as it comes, restitution enabled where a scene has one; 1/500 s as in Newton's example of shapes"
 
-    def check(self, boxes: BoxesOnGround) -> None:
+    def check(self, boxes):
         """Refuse a stiffness."""
         if boxes.stiffness is not None:
             raise NotImplementedError(
                 "plane.contact.stiffness: XPBD's contact is a condition on positions, and has none"
             )
 
-    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
+    def options(self, boxes):
         """Enable restitution, which Newton leaves away otherwise."""
         return {"enable_restitution": True} if boxes.rebound else {}
 
@@ -213,7 +207,7 @@ class SemiImplicitAsItComes(Newton):
     solver = "SolverSemiImplicit"
     settings = "all as it comes: 2.5 kN/m and 100 N s/m a contact point; 1/500 s as in Newton's example of shapes"
 
-    def check(self, boxes: BoxesOnGround) -> None:
+    def check(self, boxes):
         """Refuse a restitution that dampers do not have."""
         if 0 < boxes.rebound < 1:
             raise NotImplementedError(
@@ -221,7 +215,7 @@ class SemiImplicitAsItComes(Newton):
                 "0 (its own damper) and 1 (none) only"
             )
 
-    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
+    def material(self, boxes, step):
         """Return the stiffness of a corner, and no damper where nothing is to be lost."""
         material = {}
         if boxes.stiffness is not None:
@@ -237,11 +231,11 @@ class XPBD(XPBDAsItComes):
     step = FINE_STEP
     settings = "step 1/2000 s, ten iterations (two as it comes), no rolling or torsional friction"
 
-    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
+    def material(self, boxes, step):
         """Return Coulomb's friction alone."""
         return {"mu_torsional": 0.0, "mu_rolling": 0.0}
 
-    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
+    def options(self, boxes):
         """Return more iterations."""
         return {"iterations": ITERATIONS, **super().options(boxes)}
 
@@ -252,7 +246,7 @@ class SemiImplicit(SemiImplicitAsItComes):
     step = FINE_STEP
     settings = "1/2000 s; contact as stiff and friction as steep as the step bears, critical damper, no angular damping"
 
-    def material(self, boxes: BoxesOnGround, step: float) -> dict[str, float]:
+    def material(self, boxes, step):
         """Return the springs and dampers of a corner, from the mass of the lightest box."""
         mass = min(box.mass for box in boxes.boxes)
         frequency = CONTACT_FREQUENCY / step
@@ -265,6 +259,6 @@ class SemiImplicit(SemiImplicitAsItComes):
             material["kd"] = 2 * math.sqrt(mass * boxes.stiffness) / BASE_CORNERS
         return material | super().material(boxes, step)
 
-    def options(self, boxes: BoxesOnGround) -> dict[str, Any]:
+    def options(self, boxes):
         """Take the damping of rotation away."""
         return {"angular_damping": 0.0}

@@ -1,15 +1,12 @@
 """ntdda as a solver: two histories that it wrote, for the scenes they are of; of polygons the program itself."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 from peers import ntdda_live
 from validation.diagnosis.reading import read
-from validation.runs.history import Array
 from validation.scenes import features
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 
 PLACE = Path("docs") / "examples" / "ntdda"  # in the repository, which has one copy of them
 # Its scene beside a history, and what that says otherwise: the contacts of the program do not pull.
@@ -45,7 +42,7 @@ class Histories:
         "settings": "those of the runs: 2 ms, constant acceleration with alpha = 1/2, delta = 1",
     }
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the first rows of the history whose problem the scene poses, or what the program answers.
 
         Raises
@@ -72,7 +69,7 @@ class Histories:
         return {name: values[:steps] for name, values in columns.items() if values is not None}
 
 
-def directory() -> Path:
+def directory():
     """Return where the histories are.
 
     Raises
@@ -86,7 +83,7 @@ def directory() -> Path:
     return found
 
 
-def facts(scene: Scene) -> dict[str, Any]:
+def facts(scene):
     """Return what the motion of a block depends on, by field."""
     tables = {name: getattr(scene, name) for name in ("block", "contact", "load", "time", "damping")}
     found = {

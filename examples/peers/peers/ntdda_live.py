@@ -5,8 +5,6 @@ hold it. Its blocks have one strain, its contacts springs p at corners, p/2.5 al
 gravity 9.81 straight down whatever its input says, constant acceleration with alpha = 1/2, delta = 1.
 """
 
-from __future__ import annotations
-
 import math
 import shutil
 import subprocess
@@ -15,11 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from peers.bodies import PolygonBody, bodies_of, friction_between
+from peers.bodies import bodies_of, friction_between
 from peers.boxes import named
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 COMMAND = "ntdda"
 GRAVITY = (0.0, -9.81)
@@ -80,7 +76,7 @@ ANALYSIS = """<?xml version="1.0" standalone="no"?>
 """
 
 
-def solve(scene: Scene) -> dict[str, Array]:
+def solve(scene):
     """Return position and angle of each block that moves, a value a step of the scene.
 
     Raises
@@ -122,20 +118,19 @@ def solve(scene: Scene) -> dict[str, Array]:
     return named(scene, rows.transpose(1, 0, 2), own_steps(scene))
 
 
-def own_steps(scene: Scene) -> int:
+def own_steps(scene):
     """Return how many steps the program makes."""
     return math.ceil(scene.time.duration / OWN_STEP - 1e-9)
 
 
-def placed(block: PolygonBody, points: Array) -> Array:
+def placed(block, points):
     """Return points of a block where they are at t = 0 [m]."""
     cosine = math.cos(block.angle)
     sine = math.sin(block.angle)
-    corners: Array = points @ np.array([[cosine, sine], [-sine, cosine]]) + block.place
-    return corners
+    return points @ np.array([[cosine, sine], [-sine, cosine]]) + block.place
 
 
-def geometry(blocks: list[PolygonBody]) -> str:
+def geometry(blocks):
     """Return the lines that cut the blocks out, the points that hold and those that are measured."""
     edges = []
     for block in blocks:
@@ -160,9 +155,9 @@ def geometry(blocks: list[PolygonBody]) -> str:
     return GEOMETRY.format(near=BEYOND * size, **dict(zip(("lines", "fixed", "measured"), texts, strict=True)))
 
 
-def on_lines(edges: list[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
+def on_lines(edges):
     """Return edges, those united that lie on one line and touch."""
-    united: list[tuple[Array, Array]] = []
+    united = []
     left = list(edges)
     while left:
         start, end = left.pop()
@@ -185,7 +180,7 @@ def on_lines(edges: list[tuple[Array, Array]]) -> list[tuple[Array, Array]]:
     return united
 
 
-def analysis(scene: Scene, blocks: list[PolygonBody]) -> str:
+def analysis(scene, blocks):
     """Return material, friction and steps; blocks that are rigid have p over one metre for Young's modulus."""
     density = blocks[0].density
     friction = math.degrees(math.atan(friction_between(scene, 0, 1)))
@@ -200,7 +195,7 @@ def analysis(scene: Scene, blocks: list[PolygonBody]) -> str:
     )
 
 
-def measured_points(text: str) -> list[Array]:
+def measured_points(text):
     """Return the rows of each measured point: step, time, dt, x, y, way, vx, vy, v."""
     points = []
     for part in text.split("measpoint")[1:]:
@@ -209,7 +204,7 @@ def measured_points(text: str) -> list[Array]:
     return points
 
 
-def pose_of(first: Array, second: Array, block: PolygonBody, scene: Scene) -> Array:
+def pose_of(first, second, block, scene):
     """Return x, y and angle of a block at a scene's steps, by its centroid and a second point, shape (steps, 3)."""
     times = scene.time.step * np.arange(1, scene.time.steps + 1)
     if first[-1, 1] < times[-1] * (1 - 1e-6):
@@ -219,9 +214,8 @@ def pose_of(first: Array, second: Array, block: PolygonBody, scene: Scene) -> Ar
     started = math.atan2(*(at_start[1] - at_start[0])[::-1])
     angle = block.angle + np.unwrap([started, *np.arctan2(arm[:, 1], arm[:, 0])])[1:] - started
     columns = [np.interp(times, first[:, 1], values) for values in (first[:, 3], first[:, 4], angle)]
-    pose: Array = np.column_stack(columns)
-    return pose
+    return np.column_stack(columns)
 
 
-def _text(numbers: Array | list[float]) -> str:
+def _text(numbers):
     return " ".join(f"{float(number):.15g}" for number in numbers)

@@ -3,20 +3,14 @@
 `opensees_models` has the models. Here stand how they are stepped and what they do not express.
 """
 
-from __future__ import annotations
-
 import math
 import os
-from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
-from peers.opensees_models import NEAR, Look, Plan, block, column, loads, parts
+from peers.opensees_models import NEAR, Plan, block, column, loads, parts
 from peers.programs import ExternalProgram
-from validation.runs.history import Array
 from validation.scenes import features
-from validation.scenes.scene import Scene
 from validation.solvers.columns.elements import ground_of
 
 PACKAGE, RECIPE = "openseespy", "pip install openseespy==3.7.1.2"
@@ -29,8 +23,6 @@ FIRST = 1e-6  # of a sub-step: the first one, at whose end the acceleration is t
 SMALL, ROUNDING = 1e-10, 1e-14  # of what springs give, and of a way: increment at which Newton's iteration ends
 ITERATIONS = 30
 MODEL = "tri31 and truss masses: exactly one strain; contact zeroLengthContactASDimplex; a column of trusses"
-
-Columns = dict[str, Array]
 
 
 class NotConverged(RuntimeError):
@@ -51,7 +43,7 @@ class OpenSees(ExternalProgram):
     )
     settings = f"Newmark 1/2, 1/4; sub-steps {FINER} times finer until the history changes by less than {ENOUGH:g}"
 
-    def solve(self, scene: Scene) -> Columns:
+    def solve(self, scene):
         """Return the history of a scene, a column to its values at the steps.
 
         Raises
@@ -68,10 +60,10 @@ class OpenSees(ExternalProgram):
         finally:
             ops.wipe()
 
-    def history(self, ops: Any, scene: Scene) -> Columns:
+    def history(self, ops, scene):
         """Return the history of the finest round, or of the first that hardly differs from the one before."""
-        before: Columns | None = None
-        failed: NotConverged | None = None
+        before = None
+        failed = None
         for count in _counts(scene):
             try:
                 found = stepped(ops, scene, Plan(count, chosen=True))
@@ -91,7 +83,7 @@ class AsItComes(OpenSees):
 
     settings = "Newmark 1/2, 1/4 from zero acceleration, Newton-Raphson; the step of the scene"
 
-    def history(self, ops: Any, scene: Scene) -> Columns:
+    def history(self, ops, scene):
         """Return the history at the scene's step."""
         return stepped(ops, scene, Plan(1, chosen=False))
 
@@ -99,7 +91,7 @@ class AsItComes(OpenSees):
 # ---- the program --------------------------------------------------------------------------------------------------
 
 
-def program() -> Any:
+def program():
     """Return the program's module, told to write nothing.
 
     Raises
@@ -115,7 +107,7 @@ def program() -> Any:
     return ops
 
 
-def _counts(scene: Scene) -> Iterator[int]:
+def _counts(scene):
     """Return the numbers of sub-steps that are tried, the first one however many steps there are."""
     count = COARSEST
     yield count
@@ -123,19 +115,19 @@ def _counts(scene: Scene) -> Iterator[int]:
         yield count
 
 
-def work(scene: Scene, plan: Plan) -> float:
+def work(scene, plan):
     """Return sub-steps, times what a mesh adds."""
     elements = 0 if scene.column is None else sum(part.elements for part in parts(scene, plan))
     return scene.time.steps * plan.count * (1 + elements / 50)
 
 
-def _alike(one: Columns, other: Columns, names: tuple[str, ...]) -> bool:
+def _alike(one, other, names):
     nothing = NOTHING * max(np.linalg.norm(values) for name, values in one.items() if "displacement" in name)
     asked = [name for name in names if name in one]
     return all(np.linalg.norm(one[n] - other[n]) <= ENOUGH * np.linalg.norm(one[n]) + nothing for n in asked)
 
 
-def stepped(ops: Any, scene: Scene, plan: Plan) -> Columns:
+def stepped(ops, scene, plan):
     """Return the history of a scene by a plan.
 
     Raises
@@ -144,7 +136,7 @@ def stepped(ops: Any, scene: Scene, plan: Plan) -> Columns:
         Newton's iteration found no equilibrium.
     """
     ops.wipe()
-    look: Look = block(ops, scene) if scene.column is None else column(ops, scene, plan)
+    look = block(ops, scene) if scene.column is None else column(ops, scene, plan)
     ops.test("NormDispIncr", tolerance(scene), ITERATIONS, 0)
     ops.system("BandGeneral" if scene.column is not None else "FullGeneral")
     if plan.chosen:
@@ -157,7 +149,7 @@ def stepped(ops: Any, scene: Scene, plan: Plan) -> Columns:
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
-def _march(ops: Any, scene: Scene, plan: Plan, look: Look) -> Iterator[dict[str, float]]:
+def _march(ops, scene, plan, look):
     """Step; yield what is seen at the end of each step of the scene."""
     inner = scene.time.step / plan.count
     if plan.chosen:
@@ -169,7 +161,7 @@ def _march(ops: Any, scene: Scene, plan: Plan, look: Look) -> Iterator[dict[str,
         yield look()
 
 
-def tolerance(scene: Scene) -> float:
+def tolerance(scene):
     """Return the increment at which Newton's iteration ends [m]; where all is linear, its first one is exact.
 
     It is small beside what the springs give, and no smaller than the rounding of the way on which a block may go.
@@ -183,7 +175,7 @@ def tolerance(scene: Scene) -> float:
     return (SMALL * given + ROUNDING * way) or SMALL
 
 
-def _analyze(ops: Any, count: int, length: float) -> None:
+def _analyze(ops, count, length):
     if ops.analyze(count, length) != 0:
         raise NotConverged(f"OpenSees: Newton's iteration did not converge after t = {ops.getTime():.6g} s")
 
@@ -191,7 +183,7 @@ def _analyze(ops: Any, count: int, length: float) -> None:
 # ---- what is not expressed ----------------------------------------------------------------------------------------
 
 
-def refuse(scene: Scene, handles: frozenset[str]) -> None:
+def refuse(scene, handles):
     """Refuse a scene of which a field would not be taken.
 
     What is DDA's own way to step or to find contact states is no part of a scene's physics and is not read:
@@ -212,7 +204,7 @@ def refuse(scene: Scene, handles: frozenset[str]) -> None:
         raise NotImplementedError(means)
 
 
-def _reasons_of_column(scene: Scene) -> Iterator[str]:
+def _reasons_of_column(scene):
     if scene.column.glue is not None:
         yield "column.glue is between DDA's blocks, which a column of trusses does not have"
     ground_of(scene)  # refuses joints and heights that are none
@@ -223,7 +215,7 @@ def _reasons_of_column(scene: Scene) -> Iterator[str]:
         yield "run.columns: of a column, displacements alone are reported"
 
 
-def _reasons_of_block(scene: Scene) -> Iterator[str]:
+def _reasons_of_block(scene):
     b, q = scene.block, scene.load
     size = scene.block.rectangle
     if size is None:

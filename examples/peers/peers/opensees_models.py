@@ -11,20 +11,14 @@ so that nothing is approximated but time. Where the block turns far, three bars 
 in the place of the triangle, and the block is rigid. The contact is a penalty element with Coulomb's friction.
 """
 
-from __future__ import annotations
-
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from peers.blocks import push_of, tangent_of, turn_of
 from peers.columns import NEAR, Stretch, stretches
-from validation.runs.history import Array
 from validation.scenes.drive import motion_at
-from validation.scenes.scene import Scene
 
 LEFT, RIGHT, TOP = 1, 2, 3  # nodes of the block
 GROUND = 10  # added to a node: what it stands on
@@ -32,8 +26,6 @@ SHARES = {LEFT: 0.25, RIGHT: 0.25, TOP: 0.5}  # of the centroid
 SPRINGS = {LEFT: 4, RIGHT: 5}  # elements below the ends of the base
 GLUED = 1e9  # coefficient of friction of a corner that never slips
 FAR = 1_000_000  # from here on are the numbers of springs and held nodes of a column
-
-Look = Callable[[], dict[str, float]]  # the columns of a history at this instant
 
 
 @dataclass(frozen=True)
@@ -55,7 +47,7 @@ class Plan:
 # ---- the block ----------------------------------------------------------------------------------------------------
 
 
-def block(ops: Any, scene: Scene) -> Look:
+def block(ops, scene):
     """Build the block of a scene on its contact; return how it is looked at."""
     ops.model("basic", "-ndm", 2, "-ndf", 2)
     at = corners(scene)
@@ -72,7 +64,7 @@ def block(ops: Any, scene: Scene) -> Look:
     return lambda: seen(ops, scene, at)
 
 
-def corners(scene: Scene) -> dict[int, Array]:
+def corners(scene):
     """Return where the nodes of the block are at t = 0 [m]: turned about the corner that stays down."""
     width, height = scene.block.rectangle or (0.0, 0.0)
     tilt = math.radians(scene.block.tilt)
@@ -82,7 +74,7 @@ def corners(scene: Scene) -> dict[int, Array]:
     return {node: down + turn @ (np.array(point) - down) for node, point in upright.items()}
 
 
-def _body(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
+def _body(ops, scene, at):
     """Give the block its stiffness and its mass."""
     b, far = scene.block, scene.run.geometry == "updated"
     ops.uniaxialMaterial("Elastic", 1, b.young if far else 0.0)
@@ -99,7 +91,7 @@ def _body(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
         ops.element(bar, element, node, TOP, b.base_length if far else 1.0, 1, *mass)
 
 
-def _stand(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
+def _stand(ops, scene, at):
     """Put the ends of the base on their springs, whose nodes lie below them by the gap that there is."""
     c = scene.contact
     ops.uniaxialMaterial("Elastic", 3, c.stiffness)
@@ -116,7 +108,7 @@ def _stand(ops: Any, scene: Scene, at: dict[int, Array]) -> None:
             ops.element("zeroLengthContactASDimplex", element, ground, node, *law, "-orient", 0.0, 1.0, 0.0)
 
 
-def loads(scene: Scene) -> dict[int, tuple[float, float]]:
+def loads(scene):
     """Return the forces on the nodes that do the work of a scene's loads [N]."""
     b, q = scene.block, scene.load
     pressed = push_of(scene)
@@ -127,7 +119,7 @@ def loads(scene: Scene) -> dict[int, tuple[float, float]]:
     return {node: (x + more[node][0], y + more[node][1]) for node, (x, y) in found.items()}
 
 
-def seen(ops: Any, scene: Scene, at: dict[int, Array]) -> dict[str, float]:
+def seen(ops, scene, at):
     """Return the block's columns now."""
     moved = {node: np.array(ops.nodeDisp(node)) for node in SHARES}
     centroid = sum(share * moved[node] for node, share in SHARES.items())
@@ -140,7 +132,7 @@ def seen(ops: Any, scene: Scene, at: dict[int, Array]) -> dict[str, float]:
     }
 
 
-def _turned(scene: Scene, at: dict[int, Array], moved: dict[int, Array]) -> float:
+def _turned(scene, at, moved):
     """Return the rotation since t = 0 [rad]: of the base where it is large, else (dv/dx - du/dy) / 2."""
     base, apart = at[RIGHT] - at[LEFT], moved[RIGHT] - moved[LEFT]
     if scene.run.geometry == "updated":
@@ -162,14 +154,14 @@ class Part:
     elements: int
 
     @property
-    def levels(self) -> Array:
+    def levels(self):
         """Where its nodes are [m]."""
         return np.linspace(self.stretch.bottom, self.stretch.top, self.elements + 1)
 
 
-def parts(scene: Scene, plan: Plan) -> list[Part]:
+def parts(scene, plan):
     """Return the parts of a column from the base upwards."""
-    found: list[Part] = []
+    found = []
     inner = scene.time.step / plan.count
     for one in stretches(scene.column):
         length = one.layer.thickness / one.layer.blocks
@@ -179,7 +171,7 @@ def parts(scene: Scene, plan: Plan) -> list[Part]:
     return found
 
 
-def column(ops: Any, scene: Scene, plan: Plan) -> Look:
+def column(ops, scene, plan):
     """Build the column of a scene; return how it is looked at."""
     ops.model("basic", "-ndm", 1, "-ndf", 1)
     levels, nodes = _trusses(ops, parts(scene, plan), consistent=plan.chosen)
@@ -198,7 +190,7 @@ def column(ops: Any, scene: Scene, plan: Plan) -> Look:
         _shake(ops, scene, instants, inner)
         carried = 1.0
 
-    def look() -> dict[str, float]:
+    def look():
         base = carried * float(np.interp(ops.getTime(), instants, drive.displacement))
         moved = base + np.array([ops.nodeDisp(node, 1) for node in nodes])
         seen_at = np.interp(scene.column.heights, levels, moved).tolist()
@@ -207,7 +199,7 @@ def column(ops: Any, scene: Scene, plan: Plan) -> Look:
     return look
 
 
-def _trusses(ops: Any, made_of: list[Part], consistent: bool) -> tuple[Array, list[int]]:
+def _trusses(ops, made_of, consistent):
     """Stack trusses, with springs where the column has joints; return levels [m] and nodes from the base upwards."""
     levels, nodes = [0.0], [1]
     ops.node(1, 0.0)
@@ -223,21 +215,21 @@ def _trusses(ops: Any, made_of: list[Part], consistent: bool) -> tuple[Array, li
     return np.array(levels), nodes
 
 
-def _node(ops: Any, levels: list[float], nodes: list[int], level: float) -> int:
+def _node(ops, levels, nodes, level):
     nodes.append(nodes[-1] + 1)
     levels.append(level)
     ops.node(nodes[-1], level)
     return nodes[-1]
 
 
-def _tie(ops: Any, one: int, other: int, stiffness: float, viscosity: float) -> None:
+def _tie(ops, one, other, stiffness, viscosity):
     """Put a spring and a dashpot between two nodes at one place; its number is that of no truss."""
     tag = FAR + other
     ops.uniaxialMaterial("Elastic", tag, stiffness, viscosity)
     ops.element("zeroLength", tag, one, other, "-mat", tag, "-dir", 1)
 
 
-def _foot(ops: Any, scene: Scene, base: int) -> int:
+def _foot(ops, scene, base):
     """Hold the column's base; return the node on which the wave from below acts."""
     stiffness = [joint.stiffness for joint in scene.column.springs if joint.height == 0]
     foot, held = base, 2 * FAR
@@ -254,14 +246,14 @@ def _foot(ops: Any, scene: Scene, base: int) -> int:
     return foot
 
 
-def _push(ops: Any, node: int, force: Array, inner: float) -> None:
+def _push(ops, node, force, inner):
     """Let a force act on a node, given at the ends of the sub-steps [N for a unit of area]."""
     ops.timeSeries("Path", 1, "-dt", inner, "-values", *map(float, force))
     ops.pattern("Plain", 1, 1)
     ops.load(node, 1.0)
 
 
-def _shake(ops: Any, scene: Scene, instants: Array, inner: float) -> None:
+def _shake(ops, scene, instants, inner):
     """Move the base by inertia in the base's frame: mean accelerations over sub-steps, which have its velocities."""
     ahead, behind = (motion_at(scene, np.maximum(0.0, instants + part * inner)).velocity for part in (0.5, -0.5))
     lengths = np.where(instants > 0, inner, inner / 2)

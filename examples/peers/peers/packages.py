@@ -1,13 +1,10 @@
 """Programs that are Python packages: imported where they are needed, and named where they are absent."""
 
-from __future__ import annotations
-
 import importlib
 import importlib.metadata
-from typing import Any
 
 
-def imported(module: str, title: str, recipe: str) -> Any:
+def imported(module, title, recipe):
     """Return the module of a program.
 
     Raises
@@ -21,7 +18,7 @@ def imported(module: str, title: str, recipe: str) -> Any:
         raise NotImplementedError(f"{title} is not installed: {recipe}") from error
 
 
-def version_of(package: str) -> str:
+def version_of(package):
     """Return the version of a package, or that it is not installed."""
     try:
         return importlib.metadata.version(package)

@@ -1,7 +1,5 @@
 """What the adapters of other programs have in common: what is run, in words."""
 
-from __future__ import annotations
-
 from peers.packages import version_of
 from validation.scenes import features
 
@@ -16,12 +14,12 @@ class ExternalProgram:
     model = ""  # how a scene is expressed in it
     settings = ""
 
-    def version(self) -> str:
+    def version(self):
         """Return its version, or that it is not installed."""
         return version_of(self.package)
 
     @property
-    def about(self) -> dict[str, str]:
+    def about(self):
         """What is run, in words."""
         return {
             "program": self.program,

@@ -1,17 +1,12 @@
 """pymunk as a solver of rigid polygons: Chipmunk's sequential impulses at the velocities, in the plane."""
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
-from peers.bodies import PolygonBody, bodies_of, friction_between
-from peers.boxes import Pose, base_velocity, record
+from peers.bodies import bodies_of, friction_between
+from peers.boxes import base_velocity, record
 from peers.packages import imported
 from peers.programs import ExternalProgram
 from validation.models.plane.tables import PlaneSection
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 RECIPE = "pip install pymunk==7.3.1"
 USUAL_STEP = 1 / 60  # s: of most of its examples, and the one that the default of collision_bias is worked out for
@@ -30,7 +25,7 @@ class World:
         pymunk is not installed, or the scene has what it cannot express.
     """
 
-    def __init__(self, scene: Scene, *, default: bool) -> None:
+    def __init__(self, scene, *, default):
         blocks = bodies_of(scene)
         plane = scene.table(PlaneSection)
         if any(math.isfinite(law.stiffness) for law in (plane.contact, *plane.pair) if law and law.stiffness):
@@ -57,7 +52,7 @@ class World:
             for second in range(first):
                 self._rub(second, first)
 
-    def _add(self, block: PolygonBody, number: int) -> Any:
+    def _add(self, block, number):
         kinds = self.pymunk.Body
         if block.held:
             body = kinds(body_type=kinds.KINEMATIC if self.moves else kinds.STATIC)
@@ -75,38 +70,38 @@ class World:
             self.space.add(shape)
         return body
 
-    def _rub(self, first: int, second: int) -> None:
+    def _rub(self, first, second):
         """Give two blocks the friction between them: a shape's own would be multiplied by the other one's."""
         friction = friction_between(self.scene, first, second)
 
-        def before(arbiter: Any, _space: Any, _data: Any) -> None:
+        def before(arbiter, _space, _data):
             arbiter.friction = friction
 
         self.space.on_collision(first + 1, second + 1, pre_solve=before)
 
-    def advance(self, start: float, step: float) -> None:
+    def advance(self, start, step):
         """Make one step of pymunk."""
         if self.moves:
             self.ground.velocity = base_velocity(self.scene, start, step, self.ground.position.x - self.middle), 0.0
         self.space.step(step)
 
-    def poses(self) -> list[Pose]:
+    def poses(self):
         """Return position and angle of each block."""
         return [(*body.position, body.angle) for body in self.boxes]
 
-    def forces(self) -> list[float]:
+    def forces(self):
         """Return the normal force below each box, the mean of the last step [N]."""
         values = []
         below = self.ground
         for body in self.boxes:
-            impulses: list[float] = []
+            impulses = []
             body.each_arbiter(_add_impulse, below, impulses)
             values.append(sum(impulses) / self.space.current_time_step)
             below = body
         return values
 
 
-def _add_impulse(arbiter: Any, below: Any, impulses: list[float]) -> None:
+def _add_impulse(arbiter, below, impulses):
     """Note the normal impulse of a contact if it is one with the body below."""
     if below in arbiter.bodies:
         impulses.append(abs(arbiter.total_impulse.dot(arbiter.normal)))
@@ -122,7 +117,7 @@ class Pymunk(ExternalProgram):
     default = False
     settings = f"step 1/1920 s, {ITERATIONS} iterations, slop 10 micrometres, overlap corrected at 60 1/s"
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene.
 
         Raises

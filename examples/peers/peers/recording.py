@@ -3,8 +3,6 @@
 What a solver refuses or cannot run has no table. Values are rounded to `DIGITS` digits; a verdict asks three.
 """
 
-from __future__ import annotations
-
 import argparse
 import json
 import platform
@@ -18,8 +16,7 @@ from validation.engine.measure import completed
 from validation.problems.answers import FILE, TABLE, folder_name
 from validation.problems.data import ANSWERS, PACK
 from validation.problems.pack import TIME, csv_text
-from validation.problems.problem import Problem, names, problem
-from validation.runs.history import History
+from validation.problems.problem import names, problem
 from validation.solvers.registry import get_solver
 from validation.solvers.user import UserSolver
 from validation.suite.judging import DEFAULTS
@@ -37,7 +34,7 @@ SCHEMES = {
 }
 
 
-def record(name: str, posed: Problem, root: Path, version: str | None) -> None:
+def record(name, posed, root, version):
     """Ask a solver a problem and write what it answers to its folder below a directory."""
     solver = get_solver(name)
     run = completed(solver, posed.scene)
@@ -72,7 +69,7 @@ def record(name: str, posed: Problem, root: Path, version: str | None) -> None:
     folder.joinpath(f"{posed.name}{TABLE}").write_text(table_of(posed, run.history), encoding="utf-8")
 
 
-def table_of(posed: Problem, history: History) -> str:
+def table_of(posed, history):
     """Return a history as the table of an answer."""
     columns = [name for name in posed.columns if name in history.columns]
     values = np.column_stack([posed.instants, *(history.columns[name][: len(posed.instants)] for name in columns)])
@@ -80,7 +77,7 @@ def table_of(posed: Problem, history: History) -> str:
     return csv_text([[TIME, *map(posed.named, columns)], *rows])
 
 
-def main() -> None:
+def main():
     """Ask the solvers that the command line names."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("directory", type=Path, help="where folders PROGRAM/VERSION/SETTINGS are written")

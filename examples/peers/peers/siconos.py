@@ -4,14 +4,11 @@ Matrices are made here and in `siconos_column`, and go as JSON to `siconos_progr
 the package `siconos`: every step of time, every complementarity problem and every impact is Siconos'.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import subprocess
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -27,7 +24,6 @@ RADIANS = 0.02  # of the fastest vibration in a step, settings for accuracy
 VISCOUS = 1e-6  # of the friction's complementarity: what makes its matrix definite, see `complementarity`
 GLUED = 1e3  # tan(phi) of a corner that does not slip while it is closed
 SOFT = 1e-3  # of the block's height: weight on springs or in the block from which it is not taken as rigid
-Scene = Any  # validation.scenes.scene.Scene: importing this file costs numpy only
 
 
 class Siconos(ExternalProgram):
@@ -49,7 +45,7 @@ class Siconos(ExternalProgram):
         "1 ms, relations at the middle of the step, Lemke's pivots, piles up to 100 000 iterations"
     )
 
-    def version(self) -> str:
+    def version(self):
         """Return the version of Debian's package, or that there is none."""
         try:
             command = ["dpkg-query", "-W", "-f", "${Version}", "python3-siconos"]
@@ -57,7 +53,7 @@ class Siconos(ExternalProgram):
         except OSError:
             return "unknown"
 
-    def solve(self, scene: Scene) -> dict[str, np.ndarray]:
+    def solve(self, scene):
         """Return the columns of a scene that the model has.
 
         Raises
@@ -88,7 +84,7 @@ class AsItComes(Siconos):
     )
 
 
-def ask(request: dict[str, Any]) -> dict[str, Any]:
+def ask(request):
     """Run the program's side and return its answer, arrays of one row for each step of the scene.
 
     Raises
@@ -115,13 +111,13 @@ def ask(request: dict[str, Any]) -> dict[str, Any]:
         return {name: np.asarray(value) for name, value in json.loads(answer.read_text()).items()}
 
 
-def substeps(scene: Scene, rate: float, fine: bool) -> int:
+def substeps(scene, rate, fine):
     """Return the number of steps in one of the scene's, from the fastest rate of the model [rad/s]."""
     wanted = math.ceil(scene.time.step * rate / RADIANS) if fine else 1
     return max(1, min(wanted, MOST // scene.time.steps))
 
 
-def block(scene: Scene, fine: bool) -> dict[str, np.ndarray]:
+def block(scene, fine):
     """Run a block and return all its columns."""
     sizes = scene.block.rectangle
     if sizes is None:
@@ -133,7 +129,7 @@ def block(scene: Scene, fine: bool) -> dict[str, np.ndarray]:
     return springs(scene, *sizes)
 
 
-def matrices(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
+def matrices(scene, a, h):
     """Return mass, stiffness, load and the rows of the corners in (u, v, ux, uy, vx, vy), with x, y from the centroid.
 
     M = m diag(1, 1, a^2/12, h^2/12, a^2/12, h^2/12) [kg, kg m2], shape (6,); K = a h S' D S [N/m, N m], shape (6, 6);
@@ -158,20 +154,20 @@ def matrices(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
     }
 
 
-def fastest(of: dict[str, np.ndarray], stiffness: np.ndarray) -> float:
+def fastest(of, stiffness):
     """Return the highest natural frequency [rad/s]."""
     root = np.sqrt(of["M"])
     return math.sqrt(float(np.linalg.eigvalsh(stiffness / np.outer(root, root))[-1]))
 
 
-def columns_of(q: np.ndarray, pressure: np.ndarray) -> dict[str, np.ndarray]:
+def columns_of(q, pressure):
     """Return the columns of histories of the six unknowns, shape (steps, 6)."""
     turned = (q[:, 4] - q[:, 3]) / 2
     moved = {"displacement": q[:, 1], "horizontal_displacement": q[:, 0], "rotation": turned}
     return {**moved, "contact_pressure": pressure}
 
 
-def locked(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:
+def locked(scene, a, h, fine):
     """Run a block on springs that push and pull: M q'' + K q = F by Moreau and Jean's theta method."""
     of, p, ps = matrices(scene, a, h), scene.contact.stiffness, scene.contact.shear
     K = of["K"] + p * of["gap"].T @ of["gap"] + ps * of["slide"].T @ of["slide"]
@@ -180,12 +176,12 @@ def locked(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray
     return columns_of(q, -p * (q @ of["gap"].T).sum(axis=1) / a)
 
 
-def times(scene: Scene, parts: int) -> dict[str, float]:
+def times(scene, parts):
     """Return what every request says of time."""
     return {"step": scene.time.step / parts, "parts": parts, "steps": scene.time.steps}
 
 
-def springs(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
+def springs(scene, a, h):
     """Run a block on springs without tension; the pressure is that of its own springs at the ends of the steps.
 
     Raises
@@ -204,7 +200,7 @@ def springs(scene: Scene, a: float, h: float) -> dict[str, np.ndarray]:
     return columns_of(q, c.stiffness * np.maximum(0.0, -(q @ of["gap"].T) - c.gap).sum(axis=1) / a)
 
 
-def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: int) -> dict[str, Any]:
+def complementarity(scene, of, a, parts):
     """Return x' = A x + b + B l, y = C x + D l + e, 0 <= y perp l >= 0 with x = (q, q', r), lengths in units of d.
 
     Of each corner y = w + N/p with l = N/p, and, where it rubs, two y = (tan(phi) N + C -+ p_s (s - r)) / p_s with the
@@ -236,7 +232,7 @@ def complementarity(scene: Scene, of: dict[str, np.ndarray], a: float, parts: in
     return {"A": A, "B": B, "C": C, "D": D, "b": b, "e": e, "x0": x0, "ends": ends}
 
 
-def pile(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:
+def pile(scene, a, h, fine):
     """Run a rigid block on two rigid corners; where the geometry is updated, its rotation is not small."""
     c, turns = scene.contact, scene.run.geometry == "updated"
     of = matrices(scene, a, h)
@@ -259,12 +255,12 @@ def pile(scene: Scene, a: float, h: float, fine: bool) -> dict[str, np.ndarray]:
     return {"horizontal_displacement": q[:, 0] - start[0], "rotation": q[:, 2] - tilt}
 
 
-def corner_on_ground(corner: Any) -> dict[str, Any]:
+def corner_on_ground(corner):
     """Return the contact of a corner of the lowest body with the ground."""
     return {"body": 0, "corner": corner, "other": None, "level": 0.0, "outward": 1.0, "carried": 0}
 
 
-def refuse_rigid(scene: Scene, force: np.ndarray, h: float) -> None:
+def refuse_rigid(scene, force, h):
     """Refuse what a rigid block on Siconos' own contact cannot be asked."""
     c, load, turns = scene.contact, scene.load, scene.run.geometry == "updated"
     asked = [name for name in scene.run.columns if name not in ("horizontal_displacement", "rotation")]
@@ -286,7 +282,7 @@ def refuse_rigid(scene: Scene, force: np.ndarray, h: float) -> None:
         raise NotImplementedError("contact: friction holds the block, and what moves it are springs, not rigid corners")
 
 
-def column(scene: Scene, fine: bool) -> dict[str, np.ndarray]:
+def column(scene, fine):
     """Run a column and return its displacements."""
     from peers.siconos_column import Chain
 

@@ -6,18 +6,12 @@ the scene gives a stiffness, a level box without friction is a mass on springs w
 system.
 """
 
-from __future__ import annotations
-
 import math
-from typing import Any
 
 import numpy as np
 
 from peers.boxes import named, on_endless_ground, substeps
 from peers.siconos import corner_on_ground, times
-from validation.models.plane.boxes import Box, BoxesOnGround
-from validation.runs.history import Array
-from validation.scenes.scene import Scene
 
 DEFAULT_STEP = 5e-4  # s: h of MechanicsHdf5Runner.run, for Siconos' kernel has no default
 CHOSEN_STEP = 1e-3  # s
@@ -25,7 +19,7 @@ ITERATIONS = 100_000  # at most, of a projected Gauss-Seidel solution for a pile
 OF_VIBRATION = 0.02  # rad of a box on its springs in a step
 
 
-def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
+def boxes(scene, fine, ask):
     """Return the columns of a scene of rigid boxes; `ask` runs the program's side."""
     pile = on_endless_ground(scene)
     if pile.stiffness is not None:
@@ -58,7 +52,7 @@ def boxes(scene: Scene, fine: bool, ask: Any) -> dict[str, Array]:
     return named(scene, rows, parts * scene.time.steps)
 
 
-def contacts(pile: BoxesOnGround) -> list[dict[str, Any]]:
+def contacts(pile):
     """Return a contact for each corner that may touch: corner and face in their bodies' frames, and who is carried."""
     first = pile.boxes[0]
     requests = []
@@ -70,7 +64,7 @@ def contacts(pile: BoxesOnGround) -> list[dict[str, Any]]:
     return requests
 
 
-def between(pile: BoxesOnGround, number: int, side: float) -> dict[str, Any]:
+def between(pile, number, side):
     """Return the contact of a box with the one below it on one side: of the corner that is the inner one of two."""
     upper = pile.boxes[number]
     lower = pile.boxes[number - 1]
@@ -83,12 +77,12 @@ def between(pile: BoxesOnGround, number: int, side: float) -> dict[str, Any]:
     return {"body": number - 1, "corner": corner, **face, "carried": number}
 
 
-def edge(box: Box, side: float) -> float:
+def edge(box, side):
     """Return where the left or right side of a level box is [m]."""
     return box.x + side * box.width / 2
 
 
-def springs(scene: Scene, pile: BoxesOnGround, fine: bool, ask: Any) -> dict[str, Array]:
+def springs(scene, pile, fine, ask):
     """Return the columns of a level box on two springs without tension: 0 <= N perp y + N / k >= 0 at each corner.
 
     The state is x, y, vx, vy, with y from where the springs are relaxed; l = N / (k d) and the gap come in units of a

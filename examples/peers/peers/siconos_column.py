@@ -1,15 +1,12 @@
 """A column of layers as a chain of linear elements with consistent mass, per unit of area, for `siconos`."""
 
-from __future__ import annotations
-
 import itertools
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from peers.columns import NEAR, Stretch, stretches
+from peers.columns import NEAR, stretches
 
 SHORTEST = 0.1  # rad of the pulse's highest frequency in a step, settings for accuracy
 LEAST, MOST = 4, 20_000  # steps in one of the scene's, and of a run, that settings for accuracy choose
@@ -32,7 +29,7 @@ class Chain:
     parts: int  # steps in one of the scene's
 
     @classmethod
-    def of(cls, scene: Any, fine: bool) -> Chain:
+    def of(cls, scene, fine):
         """Return the chain of a scene's column.
 
         Raises
@@ -58,19 +55,19 @@ class Chain:
             carried = drive.displacement[parts::parts, None]
         return cls(M, K, C, elements, int(c.impedance is None), load, signal, carried, parts)
 
-    def request(self) -> dict[str, np.ndarray]:
+    def request(self):
         """Return what the program is given."""
         own = slice(self.held, None)
         square = {"M": self.M[own, own], "K": self.K[own, own], "C": self.C[own, own]}
         return {**square, "load": self.load[own], "signal": self.signal}
 
-    def columns(self, heights: tuple[float, ...], q: np.ndarray) -> dict[str, np.ndarray]:
+    def columns(self, heights, q):
         """Return the displacements of the top and of the heights."""
         full = np.hstack([np.zeros((len(q), self.held)), q]) + self.carried
         seen = {f"displacement_{i + 1}": full @ self.row_at(z) for i, z in enumerate(heights)}
         return {"displacement": full[:, -1], **seen}
 
-    def row_at(self, height: float) -> np.ndarray:
+    def row_at(self, height):
         """Return the row that interpolates at a height; where two elements meet, in the lower one."""
         node, low, high = next((one for one in self.elements if height <= one[2] * (1 + NEAR)), self.elements[-1])
         share, row = (height - low) / (high - low), np.zeros(len(self.M))
@@ -78,7 +75,7 @@ class Chain:
         return row
 
 
-def pulse_parts(scene: Any) -> int:
+def pulse_parts(scene):
     """Return the number of steps in one of the scene's that follow its pulse, or a record, by `ELEMENTS` at most."""
     drive = scene.input
     highest = 3 * drive.frequency if drive.frequency else 5 / drive.duration if drive.duration else 0.0  # Hz
@@ -87,12 +84,12 @@ def pulse_parts(scene: Any) -> int:
     return max(1, min(max(LEAST, wanted), affordable, MOST // scene.time.steps))
 
 
-def passing(c: Any) -> float:
+def passing(c):
     """Return the time in which a wave passes the column [s]."""
     return sum(layer.thickness * math.sqrt(layer.density / c.modulus(layer)) for layer in c.layer)
 
 
-def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, list[Element]]:
+def assembled(c, travel):
     """Return mass and stiffness of a column on its base's node, and the elements.
 
     `travel` is the time in which a wave passes an element [s]: sqrt(2) steps, at which the errors of a linear element
@@ -104,8 +101,8 @@ def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, lis
         raise NotImplementedError("column.joint: one at the top joins nothing")
     if travel is not None:
         travel = max(travel, passing(c) / ELEMENTS)
-    elements: list[Element] = []
-    parts: list[tuple[int, float, float]] = []  # lower node, a sixth of the mass, stiffness
+    elements = []
+    parts = []  # lower node, a sixth of the mass, stiffness
     for one in stretches(c):
         if one.spring is not None:
             parts.append((len(parts), 0.0, one.spring))
@@ -119,7 +116,7 @@ def assembled(c: Any, travel: float | None) -> tuple[np.ndarray, np.ndarray, lis
     return M, K, elements
 
 
-def _count(one: Stretch, travel: float | None) -> int:
+def _count(one, travel):
     """Return the number of elements of a stretch."""
     if travel is None:
         return max(1, math.ceil(one.layer.blocks * one.length / one.layer.thickness - NEAR * one.layer.blocks))

@@ -3,13 +3,9 @@
 A request names one of three models and holds its matrices; the answer has a row for each step of the scene.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator
-from typing import Any
 
 LEMKE = 404  # SICONOS_FRICTION_2D_LEMKE
 ROUNDING = 1e-12  # of the size of a box
@@ -20,10 +16,8 @@ try:
 except ImportError:  # Debian's package of Siconos brings it
     sys.exit(ABSENT)
 
-Request = dict[str, Any]
 
-
-def stepped(sk: Any, system: Any, interactions: list[Any], solvers: tuple[Any, Any], given: Request) -> Any:
+def stepped(sk, system, interactions, solvers, given):
     """Return a time stepping of one dynamical system with its interactions."""
     model = sk.NonSmoothDynamicalSystem(0.0, 2 * given["step"] * given["parts"] * given["steps"])
     model.insertDynamicalSystem(system)
@@ -32,7 +26,7 @@ def stepped(sk: Any, system: Any, interactions: list[Any], solvers: tuple[Any, A
     return sk.TimeStepping(model, sk.TimeDiscretisation(0.0, given["step"]), *solvers)
 
 
-def rows(stepping: Any, given: Request, before: Callable[[int], None] = lambda number: None) -> Iterator[bool]:
+def rows(stepping, given, before=lambda number: None):
     """Make all steps; yield at the end of each whether it is one of the scene's."""
     for number in range(given["steps"] * given["parts"]):
         before(number)
@@ -41,7 +35,7 @@ def rows(stepping: Any, given: Request, before: Callable[[int], None] = lambda n
         yield (number + 1) % given["parts"] == 0
 
 
-def linear(sk: Any, given: Request) -> dict[str, Any]:
+def linear(sk, given):
     """M q'' + C q' + K q = F by Moreau and Jean's theta method from rest; F times a signal, where there is one."""
     M, K, C = (np.array(given[name]) for name in "MKC")
     size, load, signal = len(M), np.array(given["load"]), given["signal"]
@@ -50,7 +44,7 @@ def linear(sk: Any, given: Request) -> dict[str, Any]:
     system.setFExtPtr(force)
     pushed = [int(i) for i in np.flatnonzero(load)]
 
-    def push(number: int) -> None:
+    def push(number):
         if signal is not None or number == 0:
             for i in pushed:
                 force.setValue(i, float(load[i] * (1.0 if signal is None else signal[number])))
@@ -60,7 +54,7 @@ def linear(sk: Any, given: Request) -> dict[str, Any]:
     return {"q": [np.array(system.q()).tolist() for at in rows(stepping, given, push) if at]}
 
 
-def complementarity(sk: Any, given: Request) -> dict[str, Any]:
+def complementarity(sk, given):
     """Solve x' = A x + b + B l, 0 <= C x + D l + e perp l >= 0 by the theta-gamma scheme, at the middle of the step.
 
     Rows from `ends` on hold for x at its end, which is twice the middle less the start: held at the middle, a force
@@ -75,7 +69,7 @@ def complementarity(sk: Any, given: Request) -> dict[str, Any]:
     relation.setDPtr(D)
     relation.setePtr(offset)
 
-    def before(number: int) -> None:
+    def before(number):
         at_start = own[ends:] @ system.x() if ends < len(e) else ()
         for i in range(0 if number == 0 else ends, len(e)):
             offset.setValue(i, float(e[i] - (at_start[i - ends] if i >= ends else 0.0)))
@@ -93,7 +87,7 @@ def complementarity(sk: Any, given: Request) -> dict[str, Any]:
     return {"x": found, "opened": bool(opened)}
 
 
-def boxes(sk: Any, given: Request) -> dict[str, Any]:
+def boxes(sk, given):
     """Move rigid boxes (x, y, angle) whose corners Siconos keeps out of faces, with friction and Newton's restitution.
 
     A contact is a corner of one body and a face of another, or of the ground. Its relation is linear in a step, about
@@ -134,7 +128,7 @@ def boxes(sk: Any, given: Request) -> dict[str, Any]:
     positions = [system.q() for system in systems]  # of the stepping: what they were before is not moved
     rates = [system.velocity() for system in systems]
 
-    def before(number: int) -> None:
+    def before(number):
         if given["amplitude"]:
             rate = given["rate"]
             change = math.sin(rate * step * (number + 1)) - math.sin(rate * step * number)
@@ -144,8 +138,8 @@ def boxes(sk: Any, given: Request) -> dict[str, Any]:
         if given["turns"]:
             update(given, contacts, positions, rates)
 
-    poses: list[Any] = []
-    forces: list[Any] = []
+    poses = []
+    forces = []
     for at in rows(stepping, given, before):
         if at:
             poses.append([np.array(q).tolist() for q in positions])
@@ -156,7 +150,7 @@ def boxes(sk: Any, given: Request) -> dict[str, Any]:
     return {"poses": poses, "forces": forces}
 
 
-def update(given: Request, contacts: list[Any], positions: list[Any], rates: list[Any]) -> None:
+def update(given, contacts, positions, rates):
     """Set the relations of a step: its rows for velocities, and an offset that makes them give the gap at its start.
 
     A gap within rounding is taken as closed: a corner that rounding lifts would stay open for a step.
@@ -176,7 +170,7 @@ def update(given: Request, contacts: list[Any], positions: list[Any], rates: lis
         offset.setValue(0, gap - sum(factor * value for factor, value in zip(lines[0], flat, strict=True)))
 
 
-def gap_of(contact: Request, q: list[Any]) -> float:
+def gap_of(contact, q):
     """Return how far a corner is from a face [m]."""
     x, y = arm(contact["corner"], q[0][2])
     if len(q) == 1:
@@ -185,7 +179,7 @@ def gap_of(contact: Request, q: list[Any]) -> float:
     return normal[0] * (q[0][0] + x - q[1][0]) + normal[1] * (q[0][1] + y - q[1][1]) - contact["level"]
 
 
-def velocities(contact: Request, q: list[Any]) -> list[list[float]]:
+def velocities(contact, q):
     """Return the rows of normal and tangential velocity of a corner from a face, of 3 or 6 factors."""
     face_angle = q[1][2] if len(q) == 2 else 0.0
     lever = arm(contact["corner"], q[0][2])
@@ -200,7 +194,7 @@ def velocities(contact: Request, q: list[Any]) -> list[list[float]]:
     return lines
 
 
-def arm(corner: np.ndarray, angle: float) -> tuple[float, float]:
+def arm(corner, angle):
     """Return where a corner is from the centroid [m]."""
     c, s = math.cos(angle), math.sin(angle)
     return c * corner[0] - s * corner[1], s * corner[0] + c * corner[1]
@@ -209,7 +203,7 @@ def arm(corner: np.ndarray, angle: float) -> tuple[float, float]:
 KINDS = {"linear": linear, "complementarity": complementarity, "boxes": boxes}
 
 
-def main(request: str, answer: str) -> int:
+def main(request, answer):
     """Read a request, write its answer."""
     try:
         import siconos.kernel as sk

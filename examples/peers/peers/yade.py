@@ -4,25 +4,15 @@
 that the program `yade` runs, which knows nothing of scenes.
 """
 
-from __future__ import annotations
-
 import math
 from dataclasses import asdict
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.programs import ExternalProgram
 from peers.yade_block import block
-from peers.yade_bodies import RECIPE, Drive, Model, Motion, run, version
+from peers.yade_bodies import RECIPE, Motion, run, version
 from peers.yade_column import column
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from validation.scenes.scene import Scene
-
-    Array = NDArray[np.float64]
 
 FINE, COARSE = 0.05, 1.6  # time step times the highest frequency: chosen, and 0.8 of the critical 2 (Yade's own factor)
 LINKED = 1.0  # the same where the highest frequencies are those of hard bonds, which nothing excites, or of a lattice
@@ -48,11 +38,11 @@ class Yade(ExternalProgram):
     staggered = True  # whether the velocities at t = 0 are taken half a step back, where leapfrog has them
     settings = "leapfrog without damping; step times highest frequency at most 0.05, in a column 1"
 
-    def version(self) -> str:
+    def version(self):
         """Return the version of the program."""
         return version()
 
-    def solve(self, scene: Scene) -> dict[str, Array]:
+    def solve(self, scene):
         """Return the columns of a scene that Yade can report."""
         if scene.time.discount != 1:
             raise NotImplementedError("time.gg, DDA's discount of velocities, is no part of the program")
@@ -63,7 +53,7 @@ class Yade(ExternalProgram):
         found = column(scene, self) if scene.column is not None else block(scene, self)
         return {name: values for name, values in found.items() if name in scene.run.columns}
 
-    def cut(self, scene: Scene, model: Model) -> int:
+    def cut(self, scene, model):
         """Return the number of explicit steps in a step of the scene."""
         fraction = self.fraction if len(model.bodies) < 3 else self.linked
         count = math.ceil(scene.time.step * model.highest() / fraction)
@@ -73,7 +63,7 @@ class Yade(ExternalProgram):
             )
         return count
 
-    def move(self, scene: Scene, model: Model, drive: Drive | None = None) -> Motion:
+    def move(self, scene, model, drive=None):
         """Run the program on a model."""
         request = {
             **asdict(model),

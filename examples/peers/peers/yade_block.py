@@ -15,29 +15,18 @@ for half of it; two rotors, turned by it against each other, add what is missing
     masses: feet 2 m / 16, rotors 2 m / 16, upper 3 m / 4;    feet and rotors turning: m a^2 / 12
 """
 
-from __future__ import annotations
-
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.blocks import push_of, turn_of
 from peers.yade_bodies import Body, Bond, Floor, Model, Point
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from peers.yade import Yade
-    from validation.scenes.scene import Scene
-
-    Array = NDArray[np.float64]
-
 RIGID = 1e3  # Young's modulus times width over height, over the stiffness of the contact, beyond which a block is rigid
 STIFF = 3e3  # stiffness of what is to be rigid, over the greatest other one
 
 
-def block(scene: Scene, solver: Yade) -> dict[str, Array]:
+def block(scene, solver):
     """Return the motion of a block."""
     refuse(scene)
     model = one_body(scene) if is_rigid(scene) else linkage(scene) if leans(scene) else two_bodies(scene)
@@ -56,7 +45,7 @@ def block(scene: Scene, solver: Yade) -> dict[str, Array]:
     return {name: values[1:] for name, values in columns.items()}
 
 
-def refuse(scene: Scene) -> None:
+def refuse(scene):
     """Refuse what the bodies cannot carry, by the name of its field."""
     b, c, load = scene.block, scene.contact, scene.load
     updated = scene.run.geometry == "updated"
@@ -78,14 +67,14 @@ def refuse(scene: Scene) -> None:
         raise NotImplementedError("block.young: the block deforms under its weight, and one that turns is rigid here")
 
 
-def is_rigid(scene: Scene) -> bool:
+def is_rigid(scene):
     """Whether a block is one rigid body: it turns, or its own ratio is nothing beside that of the contact."""
     (width, height), c = scene.block.rectangle, scene.contact
     ratio = scene.block.young * width / height / (2 * max(c.stiffness, c.shear))
     return scene.run.geometry == "updated" or ratio >= RIGID
 
 
-def floor_of(scene: Scene, height: float = 0.0) -> Floor:
+def floor_of(scene, height=0.0):
     """Return the floor of a scene below points whose lowest line stands at some height.
 
     Without shear stiffness the springs are those of no friction; without friction a closed contact never slips.
@@ -96,26 +85,26 @@ def floor_of(scene: Scene, height: float = 0.0) -> Floor:
     return Floor(height - c.gap, c.stiffness, c.shear or c.stiffness, angle, cohesion, c.law == "locked")
 
 
-def gravity_of(scene: Scene) -> tuple[float, float]:
+def gravity_of(scene):
     """Return gravity, turned by the slope [m/s2]."""
     slope = math.radians(scene.load.slope)
     return scene.load.gravity * math.sin(slope), -scene.load.gravity * math.cos(slope)
 
 
-def top_load(scene: Scene) -> tuple[tuple[float, float], float]:
+def top_load(scene):
     """Return the force on the top edge [N] and its moment about the middle of that edge [N m]."""
     load, (width, _) = scene.load, scene.block.rectangle
     push = push_of(scene)
     return (load.traction * width, -push), -push * load.eccentricity
 
 
-def leans(scene: Scene) -> bool:
+def leans(scene):
     """Whether anything but a centred load across the base acts on a block."""
     load = scene.load
     return bool(load.eccentricity or load.traction or (load.slope and load.gravity))
 
 
-def two_bodies(scene: Scene) -> Model:
+def two_bodies(scene):
     """Return the block of one strain under a centred load as two bodies, see the head of the module."""
     (a, h), b, ((_, down), _) = scene.block.rectangle, scene.block, top_load(scene)
     sole, stiff = wide(scene), 9 * a / (4 * h) * b.young
@@ -126,7 +115,7 @@ def two_bodies(scene: Scene) -> Model:
     return Model((lower, upper), (Bond((0, 1), (0, 0), stiff, stiff / 2),), floor_of(scene), gravity_of(scene))
 
 
-def linkage(scene: Scene) -> Model:
+def linkage(scene):
     """Return the block of one strain as an upper body, two feet and two rotors, see the head of the module."""
     (a, h), b, ((along, down), torque) = scene.block.rectangle, scene.block, top_load(scene)
     m, arm, out = b.mass, a / 4, a / 8
@@ -149,7 +138,7 @@ def linkage(scene: Scene) -> Model:
     return Model((*feet, *rotors, upper), bonds, floor_of(scene), gravity_of(scene))
 
 
-def foot(scene: Scene, side: int, arm: float, out: float) -> tuple[Point, ...]:
+def foot(scene, side, arm, out):
     """Return the points of the left (-1) or right (1) foot: to upper body, other foot, floor and rotors."""
     (a, h), sole = scene.block.rectangle, wide(scene)
     return (
@@ -160,12 +149,12 @@ def foot(scene: Scene, side: int, arm: float, out: float) -> tuple[Point, ...]:
     )
 
 
-def rotor(way: int, arm: float, out: float) -> tuple[Point, ...]:
+def rotor(way, arm, out):
     """Return the points of a rotor to the left and the right foot: below and above its centre, or the other way."""
     return tuple(Point((-side * out, way * side * arm), out, touches=False) for side in (-1, 1))
 
 
-def one_body(scene: Scene) -> Model:
+def one_body(scene):
     """Return a rigid block; one that turns stands on small spheres at its corners, else on wide ones above them."""
     (a, h), b, (force, torque) = scene.block.rectangle, scene.block, top_load(scene)
     inertia, moment = b.mass * (a**2 + h**2) / 12, torque - force[0] * h / 2
@@ -182,12 +171,12 @@ def one_body(scene: Scene) -> Model:
     return Model((body,), (), floor_of(scene, -radius), gravity_of(scene))
 
 
-def wide(scene: Scene) -> float:
+def wide(scene):
     """Return the radius of the spheres that a block stands on which does not turn: more than they go in [m]."""
     return float(max(scene.block.rectangle[1] / 4, deepest(scene)))
 
 
-def deepest(scene: Scene) -> float:
+def deepest(scene):
     """Return a bound of how deep a corner of a rigid block is pressed into its springs [m].
 
     The mass falls by the gap and by what the tilt has lifted it, and lands with all its energy on one spring.

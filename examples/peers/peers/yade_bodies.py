@@ -1,7 +1,5 @@
 """What Yade is given and how it is run: rigid bodies with contact points, bonds between them, a floor, a drive."""
 
-from __future__ import annotations
-
 import json
 import math
 import os
@@ -10,16 +8,10 @@ import subprocess
 import tempfile
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from peers.yade_program import ANSWER, REQUEST
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    Array = NDArray[np.float64]
 
 RECIPE = "apt-get install yade"
 LONGEST = 280.0  # s of a run
@@ -91,7 +83,7 @@ class Model:
     floor: Floor | None = None
     gravity: tuple[float, float] = (0.0, 0.0)  # [m/s2]
 
-    def highest(self) -> float:
+    def highest(self):
         """Return an upper bound of the highest frequency [rad/s], from twice the rows of M^-1 K (Gershgorin)."""
         rows = np.zeros(len(self.bodies))
         for bond in self.bonds:
@@ -104,7 +96,7 @@ class Model:
                     rows[i] += self._softness(i, math.hypot(*point.at), self.floor)
         return math.sqrt(2 * float(rows.max()))
 
-    def _softness(self, i: int, lever: float, springs: Bond | Floor) -> float:
+    def _softness(self, i, lever, springs):
         """Return the stiffness of springs on a body over its mass and inertia [1/s2]."""
         body, most = self.bodies[i], max(abs(springs.normal), springs.shear)
         if body.fixed:
@@ -117,13 +109,13 @@ class Model:
 class Motion:
     """What Yade answers: one row for each step of the scene, one column for each body."""
 
-    x: Array  # [m]
-    y: Array  # [m]
-    turn: Array  # [rad]
-    force: Array  # of the floor, or of what is below the first body, on what stands on it [N], shape (steps,)
+    x: np.ndarray  # [m]
+    y: np.ndarray  # [m]
+    turn: np.ndarray  # [rad]
+    force: np.ndarray  # of the floor, or of what is below the first body, on what stands on it [N], shape (steps,)
 
 
-def version() -> str:
+def version():
     """Return the program's version, as it says it itself."""
     program = shutil.which("yade")
     if program is None:
@@ -132,7 +124,7 @@ def version() -> str:
     return next((line.split()[-1] for line in said.splitlines() if "version" in line.lower()), said.strip())
 
 
-def run(request: dict[str, Any]) -> dict[str, Any]:
+def run(request):
     """Run the program in a directory of its own and return its answer.
 
     Raises
@@ -163,5 +155,4 @@ def run(request: dict[str, Any]) -> dict[str, Any]:
         )
         if not (script.parent / ANSWER).exists():
             raise RuntimeError(f"yade gave no answer: {(done.stderr or done.stdout)[-300:]}")
-        answer: dict[str, Any] = json.loads((script.parent / ANSWER).read_text())
-        return answer
+        return json.loads((script.parent / ANSWER).read_text())

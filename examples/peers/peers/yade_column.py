@@ -1,28 +1,17 @@
 """A column as a lattice of Yade's particles: each bound to the next, a dashpot or a ground below the first."""
 
-from __future__ import annotations
-
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from peers.columns import NEAR, stretches
 from peers.yade_bodies import Body, Bond, Drive, Model, Point
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from peers.yade import Yade
-    from validation.scenes.scene import Scene
-
-    Array = NDArray[np.float64]
-
 MOST_PARTICLES = 2000
 
 
-def column(scene: Scene, solver: Yade) -> dict[str, Array]:
+def column(scene, solver):
     """Return the motion of a column: a lattice of particles, each bound to the next, per unit of area."""
     from validation.scenes.drive import motion_at
 
@@ -51,12 +40,12 @@ def column(scene: Scene, solver: Yade) -> dict[str, Array]:
 class Lattice:
     """Particles from the base upwards."""
 
-    heights: Array  # [m], shape (particles,)
-    masses: Array  # per unit of area [kg/m2], shape (particles,)
-    springs: Array  # between neighbours, per unit of area [N/m3], shape (particles - 1,)
+    heights: np.ndarray  # [m], shape (particles,)
+    masses: np.ndarray  # per unit of area [kg/m2], shape (particles,)
+    springs: np.ndarray  # between neighbours, per unit of area [N/m3], shape (particles - 1,)
 
 
-def lattice(scene: Scene) -> Lattice:
+def lattice(scene):
     """Return a column's particles: the masses of cells that a wave crosses in a hundredth of the pulse's period.
 
     A cell has half of its mass at each end; where a joint or the springs of the base cut the column, the two ends stay
@@ -82,7 +71,7 @@ def lattice(scene: Scene) -> Lattice:
     return Lattice(np.array(heights), np.array(masses), np.array(springs))
 
 
-def shortest(scene: Scene) -> float:
+def shortest(scene):
     """Return the time in which a wave is to cross a cell [s]."""
     if scene.input.record is not None:
         return float(scene.time.step) / 4

@@ -4,11 +4,8 @@ It knows nothing of scenes; `peers.yade_bodies` writes what it reads. The loop i
 of the script and its look at the motion come between the contact forces and the step, where both are of one instant.
 """
 
-from __future__ import annotations
-
 import json
 import math
-from typing import Any
 
 REQUEST, ANSWER = "request.json", "answer.json"
 HELD = 1e30  # N: adhesion of what never breaks
@@ -18,11 +15,11 @@ WIDE = 1e6  # m: half of the floor's edges
 class Program:
     """Bodies and bonds of a request in the program."""
 
-    def __init__(self, request: dict[str, Any], yade: Any) -> None:
+    def __init__(self, request, yade):
         self.yade, self.omega, self.request = yade, yade.O, request
         self.drive, self.dt = request["drive"], request["dt"]
         self.below = 0.0  # force of the half-space on the first body [N]
-        self.rows: dict[str, list[Any]] = {"x": [], "y": [], "turn": [], "force": []}
+        self.rows = {"x": [], "y": [], "turn": [], "force": []}
         self._materials()
         self.floor = self._add_floor()
         self.bodies = [self._add(body) for body in request["bodies"]]
@@ -30,10 +27,10 @@ class Program:
         self._engines()
         self.bonds = self._bind_all()
 
-    def _materials(self) -> None:
+    def _materials(self):
         """Make the materials of what carries a body's mass, of points and floor, and of bonds."""
         yade, floor = self.yade, self.request["floor"]
-        more: dict[str, Any] = {}
+        more = {}
         self.cohesion = 0.0  # Pa, which the program multiplies by the square of the radius
         if floor is not None:
             radius = max(p["radius"] for body in self.request["bodies"] for p in body["points"] if p["touches"])
@@ -47,7 +44,7 @@ class Program:
         self.omega.materials.append(point or yade.FrictMat(density=1e-12, label="point", **more))
         self.omega.materials.append(yade.CohFrictMat(density=1e-12, label="bond"))
 
-    def _add_floor(self) -> int | None:
+    def _add_floor(self):
         """Add the floor, a box whose upper face is far wider than anything moves."""
         floor = self.request["floor"]
         if floor is None:
@@ -55,7 +52,7 @@ class Program:
         at, size = (0, floor["height"] - 1, 0), (WIDE, 1, WIDE)
         return int(self.omega.bodies.append(self.yade.utils.box(at, size, fixed=True, material="point", mask=1)))
 
-    def _add(self, body: dict[str, Any]) -> tuple[int, list[int]]:
+    def _add(self, body):
         """Add a body as a clump whose mass and inertia are given; return its number and those of its points.
 
         A heavy sphere that meets nothing puts the clump's centre where it is to be; its weight is then overwritten.
@@ -78,7 +75,7 @@ class Program:
         self.omega.forces.setPermT(number, (0, 0, body["torque"]))
         return number, sorted(members)[1:]
 
-    def _engines(self) -> None:
+    def _engines(self):
         """Set the loop."""
         yade, period = self.yade, 1 if self.drive is not None else self.request["cut"]
         sticky = yade.Ip2_CohFrictMat_CohFrictMat_CohFrictPhys(
@@ -99,7 +96,7 @@ class Program:
             yade.NewtonIntegrator(damping=self.request["damping"], gravity=(*self.request["gravity"], 0)),
         ]
 
-    def _bind_all(self) -> list[Any]:
+    def _bind_all(self):
         """Make the bonds between bodies, and those to a floor that holds."""
         bonds = []
         for bond in self.request["bonds"]:
@@ -111,7 +108,7 @@ class Program:
                     self._bind(self.floor, body.id, self.request["floor"])
         return bonds
 
-    def _bind(self, one: int, other: int, springs: dict[str, float]) -> Any:
+    def _bind(self, one, other, springs):
         """Make a bond that holds, unstrained as it stands, and set its stiffnesses."""
         made = self.yade.utils.createInteraction(one, other)
         made.phys.kn, made.phys.ks, made.phys.unp = springs["normal"], springs["shear"], made.geom.penetrationDepth
@@ -120,7 +117,7 @@ class Program:
             made.phys.momentRotationLaw, made.phys.kr, made.phys.maxRollPl = True, bending, -1.0
         return made
 
-    def before_the_step(self) -> None:
+    def before_the_step(self):
         """Apply the drive at this instant, and look at the motion where a step of the scene ends."""
         step = self.omega.iter
         if self.drive is not None:
@@ -128,7 +125,7 @@ class Program:
         if step % self.request["cut"] == 0:
             self._look()
 
-    def _push(self, step: int) -> None:
+    def _push(self, step):
         """Press on the last body; move the first one, or act on it as the half-space below does.
 
         The dashpot takes the mean of the velocities before and after the step, as it is of second order then.
@@ -145,16 +142,16 @@ class Program:
         self.below = z * (2 * coming - velocity)
         self._act(first, self.below)
 
-    def _act(self, number: int, force: float) -> None:
+    def _act(self, number, force):
         """Add a force along the axis of the drive for this step."""
         self.omega.forces.addF(number, [force if i == self.drive["axis"] else 0.0 for i in range(3)])
 
-    def _pull(self, axis: int) -> float:
+    def _pull(self, axis):
         """Return the force of the lowest bond on what is above it [N]."""
         phys = self.bonds[0].phys
         return float(phys.normalForce[axis] + phys.shearForce[axis])
 
-    def _look(self) -> None:
+    def _look(self):
         """Keep a row of the motion."""
         states = [self.omega.bodies[number].state for number, _ in self.bodies]
         self.rows["x"].append([state.pos[0] for state in states])
@@ -163,14 +160,14 @@ class Program:
         self.rows["turn"].append([2 * math.atan2(q[2], q[3]) for q in turned])
         self.rows["force"].append(self._standing())
 
-    def _standing(self) -> float:
+    def _standing(self):
         """Return the force on what stands on the floor, or on the half-space or the ground below the first body [N]."""
         if self.drive is not None:
             return self.below if self.drive["impedance"] else self._pull(self.drive["axis"])
         pairs = self.omega.interactions.withBody(self.floor) if self.floor is not None else ()
         return sum(float(pair.phys.normalForce[1]) for pair in pairs if pair.isReal)
 
-    def run(self) -> dict[str, list[Any]]:
+    def run(self):
         """Move everything and return the rows, the state at t = 0 first."""
         self.omega.run(self.request["cut"] * self.request["steps"] + 1, True)
         return self.rows

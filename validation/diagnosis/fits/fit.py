@@ -160,6 +160,11 @@ def bounds(name: str, variant: Variant) -> tuple[float, float]:
     return NUMBERS[name].get("low", LEAST_FACTOR), NUMBERS[name].get("high", LARGEST_FACTOR)
 
 
+def is_factor(name: str) -> bool:
+    """Whether a free number is a factor, without a range of its own."""
+    return "low" not in NUMBERS[name]
+
+
 def changed(variant: Variant, changes: Mapping[str, Any]) -> Variant:
     """Return a variant with some fields replaced, by name."""
     return replace(variant, **changes)

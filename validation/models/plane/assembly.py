@@ -5,7 +5,8 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
@@ -16,15 +17,14 @@ from validation.models.plane.contents import PlaneContents
 from validation.models.plane.geometry import Segment
 from validation.models.plane.history import POSE, RESERVED
 from validation.models.plane.joints import PlaneContactSection
-from validation.scenes.outline import area
 from validation.scenes.unknown import did_you_mean
 
 OVERLAP = 0.01  # of the thinner block: deeper, and no compression of springs at the start explains it
+Members = Mapping[str, Sequence[int]]
 TOUCHING = 1e-6  # of the thinner block: nearer blocks touch, and edges that are so near are one
 
 
-@dataclass(frozen=True)
-class StatedContact:
+class StatedContact(NamedTuple):
     """A corner of a block that may press on an edge of another one, by their numbers."""
 
     block: int
@@ -34,8 +34,7 @@ class StatedContact:
     springs: PlaneContactSection
 
 
-@dataclass(frozen=True)
-class Bond:
+class Bond(NamedTuple):
     """Glue at both ends of a part of an edge that two blocks share."""
 
     first: int
@@ -45,8 +44,7 @@ class Bond:
     shear: float  # N/m
 
 
-@dataclass(frozen=True)
-class BlockLoad:
+class BlockLoad(NamedTuple):
     """A force on a block [N], or a traction on a part of its edge [Pa]."""
 
     block: int
@@ -61,29 +59,39 @@ class Assembly:
     """Blocks, what joins them and what drives them, by the numbers of the blocks."""
 
     blocks: tuple[PlacedBlock, ...]
-    members: Mapping[str, tuple[int, ...]]  # the blocks of each name: its own, those it is cut into, or generates
-    contacts: tuple[StatedContact, ...]
-    bonds: tuple[Bond, ...]
-    loads: tuple[BlockLoad, ...]
+    members: Members  # the blocks of each name: its own, those it is cut into, or generates
     springs: PlaneContactSection | None  # of pairs that state none
-    springs_of_pairs: Mapping[tuple[int, int], PlaneContactSection]
+    springs_of_pairs: dict[tuple[int, int], PlaneContactSection]
+    contacts: tuple[StatedContact, ...] = ()
+    bonds: tuple[Bond, ...] = ()
+    loads: tuple[BlockLoad, ...] = ()
 
     def springs_between(self, first: int, second: int) -> PlaneContactSection | None:
         """Return the springs of corners between two blocks, None where nothing touches."""
         return self.springs_of_pairs.get((min(first, second), max(first, second)), self.springs)
 
     @property
+    def all_springs(self) -> list[PlaneContactSection]:
+        """Return the springs of all pairs of blocks."""
+        return [*self.springs_of_pairs.values(), *([self.springs] if self.springs else [])]
+
+    @property
+    def moving(self) -> list[PlacedBlock]:
+        """Return the blocks that are neither fixed nor driven."""
+        return [block for block in self.blocks if not block.held]
+
+    @property
     def thinnest(self) -> float:
         """Return the least thickness of a block that moves [m]."""
-        return min(thickness(block.vertices) for block in self.blocks if not block.held)
+        return min(block.thickness for block in self.moving)
 
     @property
     def pose_columns(self) -> tuple[str, ...]:
         """Return the columns of a history that a scene keeps if it does not say: the poses of what may move."""
-        return tuple(f"{block.name}.{part}" for block in self.blocks if not block.held for part in POSE)
+        return tuple(f"{block.name}.{part}" for block in self.moving for part in POSE)
 
 
-def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], dict[str, tuple[int, ...]]]:
+def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], Members]:
     """Return the blocks where they are at t = 0, and the numbers of those that each name means.
 
     Raises
@@ -104,7 +112,7 @@ def placed_blocks(plane: PlaneContents) -> tuple[tuple[PlacedBlock, ...], dict[s
     if len(set(names)) < len(names):
         repeated = next(name for name in names if names.count(name) > 1)
         raise ValueError(f"block: names must differ, got {repeated!r} twice")
-    return tuple(blocks), {name: tuple(numbers) for name, numbers in members.items()}
+    return tuple(blocks), members
 
 
 def _sections(plane: PlaneContents) -> Iterator[tuple[str, str, PlaneBlockSection]]:
@@ -128,7 +136,7 @@ def assembled(plane: PlaneContents) -> Assembly:
         so soft that a block falls through another one.
     """
     blocks, members = placed_blocks(plane)
-    springs_of_pairs = {}
+    assembly = Assembly(blocks, members, plane.contact, {})
     for number, pair in enumerate(plane.pair):
         if plane.contact is None:
             raise ValueError("contact: is required with pair, got none")
@@ -140,28 +148,20 @@ def assembled(plane: PlaneContents) -> Assembly:
         pairs = [(min(i, j), max(i, j)) for i, j in itertools.product(first, second) if i != j]
         if not pairs:
             raise ValueError(f"pair.{number}.blocks: must name two blocks, got {pair.blocks[0]!r} twice")
-        springs_of_pairs.update(dict.fromkeys(pairs, springs))
-    assembly = Assembly(
-        blocks=blocks,
-        members=members,
-        contacts=(),
-        bonds=tuple(_bonds(plane, blocks, members)),
-        loads=tuple(_loads(plane, blocks, members)),
-        springs=plane.contact,
-        springs_of_pairs=springs_of_pairs,
-    )
-    contacts = tuple(_contacts(plane, assembly))
-    return Assembly(**{**vars(assembly), "contacts": contacts})
+        assembly.springs_of_pairs.update(dict.fromkeys(pairs, springs))
+    bonds = tuple(_bonds(plane, assembly))
+    loads = tuple(_loads(plane, assembly))
+    return replace(assembly, contacts=tuple(_contacts(plane, assembly)), bonds=bonds, loads=loads)
 
 
-def _named(members: Mapping[str, tuple[int, ...]], name: str, field: str) -> tuple[int, ...]:
+def _named(members: Members, name: str, field: str) -> Sequence[int]:
     if name not in members:
         question = did_you_mean(name, members)
         raise ValueError(f"{field}: must name a block, got {name!r}{f'; {question}' if question else ''}")
     return members[name]
 
 
-def _one(members: Mapping[str, tuple[int, ...]], name: str, field: str) -> int:
+def _one(members: Members, name: str, field: str) -> int:
     """Return the number of the one block that a name means."""
     numbers = _named(members, name, field)
     if len(numbers) > 1:
@@ -169,10 +169,10 @@ def _one(members: Mapping[str, tuple[int, ...]], name: str, field: str) -> int:
     return numbers[0]
 
 
-def _bonds(
-    plane: PlaneContents, blocks: Sequence[PlacedBlock], members: Mapping[str, tuple[int, ...]]
-) -> Iterator[Bond]:
+def _bonds(plane: PlaneContents, assembly: Assembly) -> Iterator[Bond]:
     """Yield the bonds that a scene states, and the glue of blocks that are cut."""
+    blocks = assembly.blocks
+    members = assembly.members
     for number, bond in enumerate(plane.bond):
         firsts, seconds = (_named(members, name, f"bond.{number}.blocks") for name in bond.blocks)
         if all(blocks[i].held for i in (*firsts, *seconds)):
@@ -205,9 +205,9 @@ def _shared_edges(blocks: Sequence[PlacedBlock], first: int, second: int) -> lis
     return list(geometry.shared_edges(one, other, TOUCHING * min(thickness(one), thickness(other))))
 
 
-def _loads(
-    plane: PlaneContents, blocks: Sequence[PlacedBlock], members: Mapping[str, tuple[int, ...]]
-) -> Iterator[BlockLoad]:
+def _loads(plane: PlaneContents, assembly: Assembly) -> Iterator[BlockLoad]:
+    blocks = assembly.blocks
+    members = assembly.members
     for number, load in enumerate(plane.load):
         field = f"load.{number}"
         named = range(len(blocks)) if load.block is None else _named(members, load.block, f"{field}.block")
@@ -227,7 +227,7 @@ def _loads(
 
 def _edge_parts(block: PlacedBlock, edge: Segment) -> Iterator[Segment]:
     """Yield the parts of a line that are edges of a block: of either direction along it."""
-    tolerance = TOUCHING * thickness(block.vertices)
+    tolerance = TOUCHING * block.thickness
     start, end = np.array(edge)
     across = tolerance * np.array([start[1] - end[1], end[0] - start[0]]) / np.hypot(*(end - start))
     for side in (across, -across):  # a strip whose long side is the line, on one side of it and on the other
@@ -243,16 +243,14 @@ def _contacts(plane: PlaneContents, assembly: Assembly) -> Iterator[StatedContac
         field = f"touch.{number}"
         block = _one(assembly.members, touch.block, f"{field}.block")
         on = _one(assembly.members, touch.on, f"{field}.on")
-        outline, other = assembly.blocks[block].vertices, assembly.blocks[on].vertices
-        for key, index, corners, name in (
-            ("corner", touch.corner, outline, touch.block),
-            ("edge", touch.edge, other, touch.on),
-        ):
-            if index >= len(corners):
-                raise ValueError(f"{field}.{key}: must be from 0 to {len(corners) - 1} of {name}, got {index}")
+        pair = assembly.blocks[block], assembly.blocks[on]
+        outline, other = (one.vertices for one in pair)
+        for key, index, one in zip(("corner", "edge"), (touch.corner, touch.edge), pair, strict=True):
+            if index >= (count := len(one.vertices)):
+                raise ValueError(f"{field}.{key}: must be from 0 to {count - 1} of {one.name}, got {index}")
         if block == on:
             raise ValueError(f"{field}.on: must be another block, got {touch.on!r}")
-        if assembly.blocks[block].held and assembly.blocks[on].held:
+        if all(one.held for one in pair):
             raise ValueError(f"{field}: one of two blocks must move, got {touch.block} and {touch.on}")
         share, outside = geometry.corner_on_edge(outline[touch.corner], other, touch.edge)
         size = min(thickness(outline), thickness(other))
@@ -280,7 +278,7 @@ def check(plane: PlaneContents, assembly: Assembly) -> None:
     blocks = assembly.blocks
     if all(block.held for block in blocks):
         raise ValueError(f"block: one at least must move, got {len(blocks)} that are fixed or driven")
-    sizes = np.array([thickness(block.vertices) for block in blocks])
+    sizes = np.array([block.thickness for block in blocks])
     joined = {number for bond in assembly.bonds for number in (bond.first, bond.second)}
     joined |= {number for contact in assembly.contacts for number in (contact.block, contact.on)}
     if not assembly.contacts:
@@ -312,7 +310,7 @@ def _check_springs(plane: PlaneContents, assembly: Assembly, number: int, size: 
     pairs = [springs for pair, springs in assembly.springs_of_pairs.items() if number in pair]
     stiffness = min(springs.stiffness for springs in (*pairs, assembly.springs) if springs is not None)
     softest = [f"pair.{k}" for k, pair in enumerate(plane.pair) if pair.stiffness == stiffness] or ["contact"]
-    mass = block.density * area(block.vertices)
+    mass = block.mass
     for cause, depth in (
         ("weight", mass * math.hypot(*plane.gravity) / stiffness),
         ("velocity", math.hypot(*block.velocity) * math.sqrt(mass / stiffness)),

@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from validation.runs.history import Array
 from validation.scenes.keys import Key, Section
-from validation.scenes.outline import check_polygon
+from validation.scenes.outline import area, check_polygon
 from validation.scenes.tables import Count, Flag, Positive, Real, Stiffness
 
 Point = tuple[Real, Real]
@@ -21,6 +21,7 @@ Vertices = tuple[tuple[float, float], ...]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
 PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
 Hypothesis = Literal["plane stress", "plane strain"]
+OF_MATERIAL = ("density", "young", "poisson")  # what a block may state itself
 Sides = Annotated[Count, Field(ge=3, le=1000)]
 
 
@@ -44,6 +45,31 @@ class PlacedBlock:
     def held(self) -> bool:
         """Whether nothing moves it but a record, if that."""
         return self.fixed or self.motion is not None
+
+    @property
+    def corners(self) -> Array:
+        """Its corners, shape (n, 2) [m]."""
+        return np.array(self.vertices)
+
+    @property
+    def centroid(self) -> tuple[float, float]:
+        """Its centroid [m]."""
+        return centroid(self.vertices)
+
+    @property
+    def thickness(self) -> float:
+        """The least extent normal to an edge [m]."""
+        return thickness(self.vertices)
+
+    @property
+    def area(self) -> float:
+        """Its area [m2]."""
+        return area(self.vertices)
+
+    @property
+    def mass(self) -> float:
+        """Its mass of unit depth [kg]."""
+        return self.density * self.area
 
 
 class PlaneMaterialSection(Section):
@@ -122,7 +148,8 @@ class PlaneBlockSection(Section):
         if self.rectangle is not None:
             x, y = self.rectangle[0] / 2, self.rectangle[1] / 2
             return ((-x, -y), (x, -y), (x, y), (-x, y))
-        turns = [2 * math.pi * k / (self.sides or 1) for k in range(self.sides or 1)]
+        sides = self.sides or 1
+        turns = [2 * math.pi * k / sides for k in range(sides)]
         radius = self.radius or 1.0
         return tuple((radius * math.cos(turn), radius * math.sin(turn)) for turn in turns)
 
@@ -131,22 +158,22 @@ class PlaneBlockSection(Section):
 
         Parts of a block that turns have the velocities of one rigid body.
         """
-        centre = np.array(centroid(moved(self.outline, self.at, self.turned)))
+        centre = centroid(moved(self.outline, self.at, self.turned))
+        stated = {key: value for key in OF_MATERIAL if (value := getattr(self, key)) is not None}
+        made_of = {key: getattr(material, key) for key in OF_MATERIAL} | stated
         for suffix, outline in self._parts():
             vertices = moved(outline, self.at, self.turned)
-            arm = np.array(centroid(vertices)) - centre
+            x, y = np.subtract(centroid(vertices), centre).tolist()
             yield PlacedBlock(
                 name=f"{name}{suffix}",
                 vertices=vertices,
-                density=material.density if self.density is None else self.density,
-                young=material.young if self.young is None else self.young,
-                poisson=material.poisson if self.poisson is None else self.poisson,
                 hypothesis=material.hypothesis,
                 fixed=self.fixed,
                 motion=self.motion,
-                velocity=(self.velocity[0] - self.spin * float(arm[1]), self.velocity[1] + self.spin * float(arm[0])),
+                velocity=(self.velocity[0] - self.spin * y, self.velocity[1] + self.spin * x),
                 spin=self.spin,
                 angle=math.radians(self.turned),
+                **made_of,
             )
 
     def _parts(self) -> Iterator[tuple[str, Vertices]]:
@@ -167,10 +194,9 @@ def cells(
     Triangles of a cell are ``_2_1a``, below its diagonal, and ``_2_1b``.
     """
     along, up = subdivide
-    xs = [width * i / along for i in range(along + 1)]
-    ys = [height * j / up for j in range(up + 1)]
-    rows, columns = enumerate(itertools.pairwise(ys), start=1), enumerate(itertools.pairwise(xs), start=1)
-    for (row, (low, high)), (column, (left, right)) in itertools.product(rows, list(columns)):
+    for row, column in itertools.product(range(1, up + 1), range(1, along + 1)):
+        left, right = (width * i / along for i in (column - 1, column))
+        low, high = (height * j / up for j in (row - 1, row))
         a, b, c, d = (left, low), (right, low), (right, high), (left, high)
         if pattern == "squares":
             yield f"_{column}_{row}", (a, b, c, d)
@@ -213,6 +239,6 @@ def second_moments(vertices: Vertices) -> Array:
 def thickness(vertices: Vertices) -> float:
     """Return the least extent of an outline normal to one of its edges [m]."""
     points = np.array(vertices)
-    edges = np.roll(points, -1, axis=0) - points
-    normals = np.column_stack([-edges[:, 1], edges[:, 0]]) / np.hypot(*edges.T)[:, None]
-    return float(np.min(np.ptp(points @ normals.T, axis=0)))
+    x, y = (np.roll(points, -1, axis=0) - points).T
+    normals = np.stack([-y, x]) / np.hypot(x, y)
+    return float(np.min(np.ptp(points @ normals, axis=0)))

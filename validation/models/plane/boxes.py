@@ -183,13 +183,14 @@ def boxes_on_ground(plane: PlaneSection) -> BoxesOnGround:
         raise ValueError("boxes on a ground must have a contact of friction alone")
     blocks = plane.assembly.blocks
     held = [block for block in blocks if block.held]
-    if len(held) != 1 or abs(max(y for _, y in held[0].vertices)) > UPRIGHT or not _is_level(held[0]):
+    heights = sorted(y for block in held for _, y in block.vertices)[-2:]  # of the ends of the highest edge
+    if len(held) != 1 or max(map(abs, heights)) > UPRIGHT:
         rule = "the ground must be one block that is fixed or driven, its top level at y = 0, and a slope be gravity"
         raise ValueError(f"{rule} that leans, got {len(held)} such blocks")
     amplitude, frequency = (0.0, 1.0) if held[0].motion is None else harmonic(held[0].motion)
     return BoxesOnGround(
         ground=held[0].name,
-        boxes=tuple(_boxes([block for block in blocks if not block.held])),
+        boxes=tuple(_boxes(plane.assembly.moving)),
         pull=plane.gravity,
         friction=90.0 if contact.friction is None else contact.friction,
         restitution=contact.restitution,
@@ -225,17 +226,11 @@ def harmonic(path: str) -> tuple[float, float]:
     return float(amplitude), float(frequency)
 
 
-def _is_level(block: PlacedBlock) -> bool:
-    """Whether the highest edge of a block lies along x."""
-    heights = sorted(y for _, y in block.vertices)
-    return heights[-1] - heights[-2] <= UPRIGHT
-
-
 def _boxes(blocks: list[PlacedBlock]) -> Iterator[Box]:
     """Yield the blocks as rectangles, each on the one before."""
     top = 0.0
     for block in blocks:
-        corners = np.array(block.vertices)
+        corners = block.corners
         along = corners[1] - corners[0]
         up = corners[-1] - corners[0]
         width = math.hypot(*along)

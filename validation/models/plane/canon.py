@@ -6,17 +6,19 @@ friction where that is enough, and the same exact motions and limits. Answers ar
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.assembly import Assembly
+from validation.models.plane.blocks import PlacedBlock
 from validation.models.plane.limits import can_rest
-from validation.models.plane.posed import EITHER_WAY, PlaneCase, PlaneProblem
+from validation.models.plane.posed import FRICTION, decided, varied, within
 from validation.models.plane.tables import PlaneSection
-from validation.problems.numbered import UNKNOWN, JudgedNumber, around
+from validation.problems.numbered import UNKNOWN, JudgedNumber
 from validation.runs.history import Array, History
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
@@ -38,12 +40,18 @@ TOGETHER = 1e-9  # of the time: touches that are one
 
 def moving_blocks(scene: Scene) -> list[PlacedBlock]:
     """Return the blocks that move."""
-    return [block for block in scene.table(PlaneSection).assembly.blocks if not block.held]
+    return scene.table(PlaneSection).assembly.moving
 
 
 def friction_of(plane: PlaneSection) -> float:
     """Return tan(phi) of contacts, 0 of smooth ones."""
     return (plane.contact.friction_coefficient if plane.contact else None) or 0.0
+
+
+def rough(assembly: Assembly, first: int, second: int) -> float:
+    """Return tan(phi) between two blocks, 0 where they are smooth."""
+    springs = assembly.springs_between(first, second)
+    return (springs.friction_coefficient if springs else None) or 0.0
 
 
 def stiffness_of(scene: Scene) -> float:
@@ -54,8 +62,8 @@ def stiffness_of(scene: Scene) -> float:
 
 def extent(block: PlacedBlock) -> tuple[float, float]:
     """Return width and height of a block [m]."""
-    width, height = np.ptp(block.vertices, axis=0)
-    return float(width), float(height)
+    width, height = np.ptp(block.corners, axis=0).tolist()
+    return width, height
 
 
 def spinning_of(scene: Scene) -> Spinning:
@@ -68,7 +76,7 @@ def slide_of(scene: Scene) -> Slide:
     """Return the exact problem of a block that slides over a table."""
     (block,) = moving_blocks(scene)
     plane = scene.table(PlaneSection)
-    place, _ = centroid(block.vertices)
+    place, _ = block.centroid
     return Slide(*extent(block), friction_of(plane), place, block.velocity[0], -plane.gravity[1])
 
 
@@ -78,10 +86,7 @@ def wedges_of(scene: Scene) -> Wedges:
     assembly = plane.assembly
     rock, passive, active = (assembly.members[name][0] for name in ("rock", "passive", "active"))
     first, second = (plane.density * area(assembly.blocks[block].vertices) for block in (active, passive))
-    below, between = (
-        (contact.friction_coefficient if contact else None) or 0.0
-        for contact in (assembly.springs_between(passive, rock), assembly.springs_between(passive, active))
-    )
+    below, between = (rough(assembly, passive, other) for other in (rock, active))
     return Wedges((first, second), (ACTIVE, PASSIVE), below, between, -plane.gravity[1])
 
 
@@ -124,8 +129,8 @@ def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
     """Return the two blocks of a scene as moving polygons about their centroids."""
     bodies = []
     for block in scene.table(PlaneSection).assembly.blocks:
-        middle = centroid(block.vertices)
-        bodies.append(MovingPolygon(np.array(block.vertices) - middle, middle, block.velocity, block.spin))
+        middle = block.centroid
+        bodies.append(MovingPolygon(block.corners - middle, middle, block.velocity, block.spin))
     first, second = bodies
     return first, second
 
@@ -136,7 +141,7 @@ def polygons(scene: Scene) -> tuple[MovingPolygon, MovingPolygon]:
 def moved(history: History, block: PlacedBlock) -> Array:
     """Return how far the centroid of a block has moved since t = 0, shape (rows, 2) [m]."""
     place: Array = np.column_stack([history.columns[f"{block.name}.{part}"] for part in "xy"])
-    return place - centroid(block.vertices)
+    return place - block.centroid
 
 
 def falls(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -146,30 +151,30 @@ def falls(scene: Scene) -> tuple[JudgedNumber, ...]:
     mu = plane.contact.friction_coefficient if plane.contact else 0.0
     rests = can_rest([block.vertices for block in blocks], [block.held for block in blocks], mu, plane.gravity)
     moving = moving_blocks(scene)
-    least = FALLEN * math.sqrt(min(area(block.vertices) for block in moving))
+    least = FALLEN * math.sqrt(min(block.area for block in moving))
 
-    def measure(history: History) -> float:
-        return float(max(np.linalg.norm(moved(history, block)[-1]) for block in moving) > least)
-
-    exact = float(not rests)
     reason = f"1 where a centroid has moved by more than {least:.3g} m; the limit is five per cent of a datum away"
-    return (JudgedNumber("falls", "1", exact, exact, exact, 1.0, reason, measure),)
+    return (
+        decided(
+            "falls",
+            not rests,
+            reason,
+            lambda history: bool(max(np.linalg.norm(moved(history, block)[-1]) for block in moving) > least),
+        ),
+    )
 
 
-def _distance(
-    name: str, block: PlacedBlock, along: Sequence[float], exact: float, changed: Sequence[float]
-) -> JudgedNumber:
-    """Return a way along a direction in the end [m], that one per cent of tan(phi) changes."""
-    reason = "one per cent of tan(phi), which is not known better, changes it by as much"
-    return around(name, "m", exact, changed, reason, measure=lambda history: float(moved(history, block)[-1] @ along))
+def _distance(name: str, block: PlacedBlock, way: Callable[[float], float]) -> JudgedNumber:
+    """Return a way along x in the end [m], by a factor on tan(phi)."""
+    return varied(name, "m", way, FRICTION, lambda history: float(moved(history, block)[-1] @ (1.0, 0.0)))
 
 
 def stopping(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a block slides to rest."""
     slide = slide_of(scene)
     (block,) = moving_blocks(scene)
-    changed = [replace(slide, friction=factor * slide.friction).stopping_distance for factor in EITHER_WAY]
-    return (_distance("distance to rest", block, (1.0, 0.0), slide.stopping_distance, changed),)
+    name = "distance to rest"
+    return (_distance(name, block, lambda f: replace(slide, friction=f * slide.friction).stopping_distance),)
 
 
 def ledge(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -178,16 +183,13 @@ def ledge(scene: Scene) -> tuple[JudgedNumber, ...]:
     if slide.tips is None:
         return stopping(scene)
     (block,) = moving_blocks(scene)
-    end = scene.time.duration
-    turns = [replace(slide, friction=factor * slide.friction).turn(end) for factor in (1.0, *EITHER_WAY)]
     return (
-        around(
+        varied(
             "turn over the ledge",
             "rad",
-            turns[0],
-            turns[1:],
-            "one per cent of tan(phi), which is not known better, changes it by as much",
-            measure=lambda history: -float(history.columns[f"{block.name}.angle"][-1]),
+            lambda factor: replace(slide, friction=factor * slide.friction).turn(scene.time.duration),
+            FRICTION,
+            lambda history: -float(history.columns[f"{block.name}.angle"][-1]),
         ),
     )
 
@@ -198,34 +200,33 @@ def pushing(scene: Scene) -> tuple[JudgedNumber, ...]:
     assembly = plane.assembly
     along, across = plane.gravity
     ground = next(number for number, block in enumerate(assembly.blocks) if block.held)
-    weights = []
-    for number, block in enumerate(assembly.blocks):
-        if not block.held:
-            springs = assembly.springs_between(number, ground)
-            weights.append((area(block.vertices), (springs.friction_coefficient if springs else None) or 0.0))
-    mean = sum(weight * mu for weight, mu in weights) / sum(weight for weight, _ in weights)
-    ways = [(along + factor * mean * across) * scene.time.duration**2 / 2 for factor in (1.0, *EITHER_WAY)]
-    names = [f"distance slid, {block.name}" for block in moving_blocks(scene)]
-    pairs = zip(names, moving_blocks(scene), strict=True)
-    return tuple(_distance(name, block, (1.0, 0.0), ways[0], ways[1:]) for name, block in pairs)
+    numbers = [number for number, block in enumerate(assembly.blocks) if not block.held]
+    grips = [assembly.blocks[number].area * rough(assembly, number, ground) for number in numbers]
+    mean = sum(grips) / sum(block.area for block in assembly.moving)
+    return tuple(
+        _distance(
+            f"distance slid, {block.name}", block, lambda f: (along + f * mean * across) * scene.time.duration**2 / 2
+        )
+        for block in assembly.moving
+    )
 
 
 def wedges(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the accelerations of two wedges that slide, over the last two thirds: put on at once, weight rings."""
     exact = wedges_of(scene)
-    motions = [replace(exact, below=f * exact.below, between=f * exact.between).motion() for f in (1.0, *EITHER_WAY)]
     numbers = []
     for block in moving_blocks(scene):
         dip = {"active": ACTIVE, "passive": PASSIVE}[block.name]
         direction = (-math.cos(dip), -math.sin(dip))
 
+        def rate(f: float, name: str = block.name) -> float:
+            return replace(exact, below=f * exact.below, between=f * exact.between).motion()[name]
+
         def acceleration(history: History, block: PlacedBlock = block, down: Sequence[float] = direction) -> float:
             late = history.time > history.time[-1] / 3
             return 2 * float(np.polyfit(history.time[late], (moved(history, block) @ down)[late], 2)[0])
 
-        rates = [motion[block.name] for motion in motions]
-        why = "one per cent of tan(phi), which is not known better, changes it by as much"
-        numbers.append(around(f"acceleration, {block.name}", "m/s2", rates[0], rates[1:], why, measure=acceleration))
+        numbers.append(varied(f"acceleration, {block.name}", "m/s2", rate, FRICTION, acceleration))
     return tuple(numbers)
 
 
@@ -234,17 +235,15 @@ def spinning(scene: Scene) -> tuple[JudgedNumber, ...]:
     (block,) = moving_blocks(scene)
     exact = spinning_of(scene)
     times = np.linspace(0.0, scene.time.duration, 1 + scene.time.steps)
-    rigid = block.angle + block.spin * scene.time.duration
-    bodies = [replace(exact, young=factor * exact.young) for factor in (1.0, *EITHER_WAY)]
-    lags = [block.spin * scene.time.duration - float(body.at(times)["angle"][-1]) for body in bodies]
+    turn = block.spin * scene.time.duration
+    rigid = block.angle + turn
     return (
-        around(
+        varied(
             "angle behind a rigid block",
             "rad",
-            lags[0],
-            lags[1:],
-            "one per cent of Young's modulus, which is not known better, changes it by as much",
-            measure=lambda history: rigid - float(history.columns[f"{block.name}.angle"][-1]),
+            lambda factor: turn - float(replace(exact, young=factor * exact.young).at(times)["angle"][-1]),
+            "Young's modulus, which is not known better,",
+            lambda history: rigid - float(history.columns[f"{block.name}.angle"][-1]),
         ),
     )
 
@@ -253,21 +252,18 @@ def truss(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return where half a truss is that drops on its springs."""
     (block,) = moving_blocks(scene)
     exact = half_truss(scene)
-    ways = []
-    for factor in (1.0, *EITHER_WAY):
+
+    @functools.cache
+    def way(factor: float) -> Array:
         body = replace(exact, abutment=factor * exact.abutment, crown=factor * exact.crown)
         start, end = body.motion(np.array([0.0, scene.time.duration]))
-        ways.append((float(start[1] - end[1]), float(end[2] - start[2])))
-    why = "one per cent of the stiffness of its springs, which is not known better, changes it by as much"
-    sunk, turned = ([way[number] for way in ways] for number in (0, 1))
+        return np.asarray(np.subtract(end, start))
+
+    datum = "the stiffness of its springs, which is not known better,"
     angle = f"{block.name}.angle"
-
-    def turn(history: History) -> float:
-        return block.angle - float(history.columns[angle][-1])
-
     return (
-        around("sinking", "m", sunk[0], sunk[1:], why, measure=lambda history: -float(moved(history, block)[-1][1])),
-        around("turn", "rad", turned[0], turned[1:], why, measure=turn),
+        varied("sinking", "m", lambda f: -float(way(f)[1]), datum, lambda h: -float(moved(h, block)[-1][1])),
+        varied("turn", "rad", lambda f: float(way(f)[2]), datum, lambda h: block.angle - float(h.columns[angle][-1])),
     )
 
 
@@ -281,11 +277,8 @@ def corner(scene: Scene) -> tuple[JudgedNumber, ...]:
     arm = float(landed.arms(landed.angle)[number][0])
     approach = abs(landed.velocity[1] + landed.spin * arm)
     why = "one per cent of the speed of the corner as it lands: no rebound is known better"
-
-    def number_of(
-        name: str, unit: str, exact: float, scale: float, measure: Callable[[History], float]
-    ) -> JudgedNumber:
-        return JudgedNumber(name, unit, exact, exact - UNKNOWN * scale, exact + UNKNOWN * scale, scale, why, measure)
+    vertical = landed.velocity[1] + impulse / body.mass
+    spin = landed.spin + impulse * arm / body.inertia
 
     def rate(history: History, part: str) -> float:
         half = len(history.time) // 2
@@ -297,14 +290,8 @@ def corner(scene: Scene) -> tuple[JudgedNumber, ...]:
         return rate(history, "y") + body.gravity * float(middle - time)
 
     return (
-        number_of("speed upwards", "m/s", landed.velocity[1] + impulse / body.mass, approach, speed),
-        number_of(
-            "spin",
-            "rad/s",
-            landed.spin + impulse * arm / body.inertia,
-            approach / abs(arm),
-            lambda history: rate(history, "angle"),
-        ),
+        within("speed upwards", "m/s", vertical, approach, why, speed),
+        within("spin", "rad/s", spin, approach / abs(arm), why, lambda history: rate(history, "angle")),
     )
 
 
@@ -322,11 +309,8 @@ def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
         row = int(rows[0]) if len(rows) else len(off)
         return row, off[min(row, len(off) - 1)]
 
-    def touched(history: History) -> float:
-        return float(departure(history)[0] < len(history.time))
-
     if not touches:
-        return (JudgedNumber("touches", "1", 0.0, 0.0, 0.0, 1.0, "they pass each other", touched),)
+        return (decided("touches", False, "they pass each other", lambda h: departure(h)[0] < len(h.time)),)
     touch = touches[0]
     low, high = normals(first, second, touch)
 
@@ -338,67 +322,16 @@ def touching(scene: Scene) -> tuple[JudgedNumber, ...]:
         _, off = departure(history)
         return math.remainder(math.atan2(off[1], off[0]) - (low + high) / 2, math.tau)
 
+    earliest = (1 - UNKNOWN) * touch.time
+    latest = (1 + UNKNOWN) * touch.time + 2 * scene.time.step
+    path = "one per cent of the speeds, and two rows, in which it leaves its path by a millimetre"
+    ends = "both ends of the edge are known to one per cent of its length"
+    push = "push beside the normal of the edge that is hit"
+    room = (high - low) / 2 + TURNED
     return (
-        JudgedNumber(
-            "first row after the touch",
-            "s",
-            touch.time,
-            (1 - UNKNOWN) * touch.time,
-            (1 + UNKNOWN) * touch.time + 2 * scene.time.step,
-            touch.time,
-            "one per cent of the speeds, and two rows, in which it leaves its path by a millimetre",
-            time,
-        ),
-        JudgedNumber(
-            "push beside the normal of the edge that is hit",
-            "rad",
-            0.0,
-            (low - high) / 2 - TURNED,
-            (high - low) / 2 + TURNED,
-            1.0,
-            "both ends of the edge are known to one per cent of its length",
-            beside,
-        ),
+        JudgedNumber("first row after the touch", "s", touch.time, earliest, latest, touch.time, path, time),
+        JudgedNumber(push, "rad", 0.0, -room, room, 1.0, ends, beside),
     )
 
 
-CANON_ASKS = {
-    "stopping": "A box that slides to rest: how far?",
-    "ledge": "A box that slides over the end of a table: when does it tip, and does one that is slower stop?",
-    "spinning": "An elastic block that is set spinning: which angle does its centrifugal strain cost?",
-    "pushing": "Two blocks on a slope, the upper one with less friction: how far do they slide together?",
-    "wedges": "A wedge that drives another one out: how far do both slide?",
-    "safety": "The same wedges about their factor of safety of 1: do they stand?",
-    "columns": "Five columns on a stepped base: do they stand?",
-    "arch": "A semicircular arch of seven straight voussoirs: does it stand?",
-    "overhang": "Three blocks that overhang a table: do they stand?",
-    "leaning": "A block that leans on a wall as rough as the floor: does it stand?",
-    "truss": "Half a truss that drops on its springs: where is it after 0.1 s?",
-    "corner": "A rectangle that lands on a corner without friction or loss: how does it leave?",
-    "touch-pentagon": "A triangle and a pentagon fly at each other: when do they touch, and which edge is hit?",
-    "touch-clip": "A diamond that clips the corner of a square: when, and does its own edge turn it?",
-    "touch-fast": "A triangle that turns fast clips the corner of a square: when, and with which edge?",
-    "touch-miss": "A diamond that passes a square: do they touch?",
-}
-
-
-def canon_problems() -> tuple[PlaneProblem, ...]:
-    """Return the problems, each with the cases beside its own scene."""
-    thinner = [{"name": "arch", "radius": 10.0, "thickness": 0.9092, "voussoirs": 7}]
-    farther = [{"name": "pile", "count": 3, "rectangle": [2.0, 0.5], "offsets": [-0.65, 0.525, 1.05]}]
-    steeper = [{"name": "column", "width": 1.0, "heights": [2, 4, 4, 4, 4], "dip": 28.13, "rise": 1.0}]
-    return (
-        PlaneProblem("stopping", stopping, changeable=("contact.friction", "gravity")),
-        PlaneProblem("ledge", ledge, (PlaneCase("tan 0.55", {"plane.contact.friction": 28.810793742973}),)),
-        PlaneProblem("spinning", spinning, changeable=("young", "density", "poisson")),
-        PlaneProblem("pushing", pushing, changeable=("gravity", "pair")),
-        PlaneProblem("wedges", wedges, changeable=("contact.friction",)),
-        PlaneProblem("safety", falls, (PlaneCase("less friction", {"plane.contact.friction": 28.14}),)),
-        PlaneProblem("columns", falls, (PlaneCase("steeper", {"plane.columns": steeper}),)),
-        PlaneProblem("arch", falls, (PlaneCase("thinner", {"plane.arch": thinner}),)),
-        PlaneProblem("overhang", falls, (PlaneCase("farther", {"plane.stack": farther}),)),
-        PlaneProblem("leaning", falls, (PlaneCase("less friction", {"plane.contact.friction": 11.12}),)),
-        PlaneProblem("truss", truss, changeable=("contact.stiffness", "density")),
-        PlaneProblem("corner", corner),
-        *(PlaneProblem(f"touch-{name}", touching) for name in ("pentagon", "clip", "fast", "miss")),
-    )
+CANON_NUMBERS = (stopping, ledge, pushing, wedges, falls, spinning, truss, corner, touching)

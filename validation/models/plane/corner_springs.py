@@ -28,10 +28,9 @@ from validation.advice.friction import left_of_a_distance
 from validation.advice.plain import PlainAnswer, in_columns
 from validation.errors import InputError
 from validation.models.plane.assembly import OVERLAP
-from validation.models.plane.blocks import PlacedBlock, centroid, second_moments, thickness
+from validation.models.plane.blocks import PlacedBlock, second_moments
 from validation.models.plane.tables import OWN_STIFFNESS, PlaneSection
 from validation.runs.numbers import share_text, significant
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.theory.edges import edge
 from validation.theory.statics import elasticity, plane_moduli
@@ -73,14 +72,13 @@ def highest_frequency(block: PlacedBlock, stiffness: float) -> float:
     linear = LINEAR[:1] if math.isinf(block.young) else LINEAR
     moments = second_moments(block.vertices)
     mass = np.zeros((2 + len(linear), 2 + len(linear)))
-    mass[:2, :2] = area(block.vertices) * np.eye(2)
+    mass[:2, :2] = block.area * np.eye(2)
     mass[2:, 2:] = np.einsum("ikl,jkm,lm->ij", linear, linear, moments)
     strains = np.zeros_like(mass)
     if len(linear) > 1:
-        strains[3:, 3:] = area(block.vertices) * elasticity(*plane_moduli(block.young, block.poisson, block.hypothesis))
-    corners = np.array(block.vertices) - centroid(block.vertices)
+        strains[3:, 3:] = block.area * elasticity(*plane_moduli(block.young, block.poisson, block.hypothesis))
     greatest = 0.0
-    for corner in corners:
+    for corner in block.corners - block.centroid:
         B = np.column_stack([np.eye(2), (linear @ corner).T])
         squares = eigh(strains + stiffness * B.T @ B, block.density * mass, eigvals_only=True)
         greatest = max(greatest, float(squares[-1]))
@@ -110,9 +108,9 @@ def moving_advice(scene: Scene, error: float, keep_springs: bool = False) -> Mov
         rule = "advise tells of contacts of moving blocks, and nothing touches"
         raise InputError(rule, source=scene.name, field="plane.contact", value="nothing")
     softest, stiffest = springs
-    moving = [block for block in plane.assembly.blocks if not block.held]
-    masses = np.array([block.density * area(block.vertices) for block in moving])
-    sizes = np.array([thickness(block.vertices) for block in moving])
+    moving = plane.assembly.moving
+    masses = np.array([block.mass for block in moving])
+    sizes = np.array([block.thickness for block in moving])
     speeds = np.array([math.hypot(*block.velocity) for block in moving])
     weight = float(np.sum(masses)) * math.hypot(*plane.gravity)
     landings = speeds * np.sqrt(masses / softest)
@@ -152,8 +150,7 @@ def spring_range(plane: PlaneSection) -> tuple[float, float] | None:
 
     Where a contact is rigid they are those that `dda` takes in its place.
     """
-    assembly = plane.assembly
-    laws = [*assembly.springs_of_pairs.values(), *([] if assembly.springs is None else [assembly.springs])]
+    laws = plane.assembly.all_springs
     normal = [OWN_STIFFNESS if math.isinf(law.stiffness) else law.stiffness for law in laws]
     shear = [OWN_STIFFNESS if math.isinf(law.shear) else law.shear for law in laws]
     return (min(normal), max(normal + shear)) if laws else None

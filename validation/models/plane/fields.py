@@ -28,8 +28,8 @@ def write_fields(path: Path, assembly: Assembly, history: History) -> None:
     assembly, history
         The blocks, and a history that has poses and strains of all of them and the forces of all contacts.
     """
-    corners = [np.array(block.vertices) for block in assembly.blocks]
-    firsts = np.concatenate([[0], np.cumsum([len(outline) for outline in corners])]).tolist()
+    corners = [block.vertices for block in assembly.blocks]
+    firsts = np.cumsum([0, *map(len, corners)]).tolist()
     triangles = [np.array(triangles_of(block.vertices)) for block in assembly.blocks]
     points = np.pad(np.vstack(corners), ((0, 0), (0, 1)))
     cells = [("triangle", np.vstack([first + part for first, part in zip(firsts, triangles, strict=False)]))]

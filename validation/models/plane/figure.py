@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.blocks import centroid, thickness
+from validation.models.plane.blocks import centroid
 from validation.models.plane.geometry import inside
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.tables import PlaneSection, Segment
@@ -76,7 +76,7 @@ def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
             sketch.polygon(block.vertices, **FIXED)
         if block.motion is not None:
             travel = np.array([LONGEST * sketch.size, 0.0])
-            sketch.arrow(centroid(block.vertices) - travel / 2, travel, head="<|-|>")
+            sketch.arrow(block.centroid - travel / 2, travel, head="<|-|>")
     for contact in assembly.contacts:
         sketch.dot(assembly.blocks[contact.block].vertices[contact.corner])
     _draw_tractions(sketch, [(load.edge, load.vector) for load in assembly.loads if load.edge is not None])
@@ -92,7 +92,7 @@ def _draw_moving(sketch: Sketch, assembly: Assembly) -> None:
         if speed:
             vector = length * np.array(block.velocity) / speed
             va = "top" if block.velocity[1] < 0 else "bottom"  # of an arrow downwards the name stands above
-            sketch.arrow(centroid(block.vertices), vector, f"{speed:.3g} m/s", va=va)
+            sketch.arrow(block.centroid, vector, f"{speed:.3g} m/s", va=va)
 
 
 def _name_blocks(axes: Any, assembly: Assembly) -> None:
@@ -100,9 +100,9 @@ def _name_blocks(axes: Any, assembly: Assembly) -> None:
     millimetre = np.ptp(axes.get_xlim()) / size_of(axes)[0]  # of the drawing, in metres
     loaded = {load.block for load in assembly.loads if load.edge is None}
     for number, block in enumerate(assembly.blocks):
-        x, y = centroid(block.vertices)
+        x, y = block.centroid
         if number in loaded or any(block.velocity):  # an arrow downwards leaves room above
-            y += (0.28 if block.velocity[1] < 0 else -0.28) * thickness(block.vertices)
+            y += (0.28 if block.velocity[1] < 0 else -0.28) * block.thickness
         half = LETTER * len(block.name) / 2 * millimetre
         heights = y + np.array([-0.5, 0.0, 0.5]) * NAME_HEIGHT * millimetre
         places = np.array([(x + side, height) for side in (-half, 0.0, half) for height in heights])
@@ -144,13 +144,8 @@ def frames_figure(
 
 def _limits(assembly: Assembly, frames: Sequence[Sequence[Array]]) -> tuple[Array, Array]:
     """Return the lower left and the upper right corner of what moves, with room for arrows about it [m]."""
-    moving = [
-        outline
-        for outlines in frames
-        for block, outline in zip(assembly.blocks, outlines, strict=True)
-        if not block.held
-    ]
-    corners = np.vstack(moving or frames[0])
+    moving = [number for number, block in enumerate(assembly.blocks) if not block.held]
+    corners = np.vstack([outlines[number] for outlines in frames for number in moving] or frames[0])
     low, high = corners.min(axis=0), corners.max(axis=0)
     room = LONGEST * float(np.max(high - low))
     return low - room, high + room

@@ -18,6 +18,8 @@ from validation.scenes.keys import Key, Section
 from validation.scenes.tables import Angle, Count, Index, NonNegative, Positive, Real
 
 MOST_BLOCKS = 20_000  # polygons are lists, made before memory is predicted
+Outlines = Iterator[tuple[str, Vertices, bool]]  # what a block is called behind the name, its corners, whether fixed
+Size = Annotated[tuple[Positive, Positive], Key("m", "width and height of each")]
 Several = Annotated[Count, Field(le=MOST_BLOCKS)]
 
 
@@ -28,7 +30,7 @@ class GeneratorSection(Section):
     at: Annotated[Point, Key("m", "where the origin of its frame is")] = (0.0, 0.0)
     turned: Annotated[Real, Key("deg", "about that origin, counter-clockwise")] = 0.0
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield what each block is called behind the name, its corners in the own frame, and whether it is fixed."""
         raise NotImplementedError
 
@@ -44,7 +46,7 @@ class StackSection(GeneratorSection):
     """Equal rectangles on each other, from the lowest up; the origin is the middle of its foot."""
 
     count: Annotated[Several, Key("", "of blocks")]
-    rectangle: Annotated[tuple[Positive, Positive], Key("m", "width and height of each")]
+    rectangle: Size
     offsets: Annotated[tuple[Real, ...], Key("m", "of each block from the one below, the first from the origin")] = ()
     gap: Annotated[NonNegative, Key("m", "between blocks, and below the first one")] = 0.0
 
@@ -54,7 +56,7 @@ class StackSection(GeneratorSection):
             raise ValueError(f"offsets must be one for each block, {self.count}, got {len(self.offsets)}")
         return self
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the blocks from the lowest up."""
         width, height = self.rectangle
         middles = np.cumsum(self.offsets or [0.0] * self.count).tolist()
@@ -76,7 +78,7 @@ class WallSection(GeneratorSection):
             raise ValueError(f"rows and bricks must make at most {MOST_BLOCKS} blocks, got {count}")
         return self
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the bricks row by row from below, ``2_3`` the third of the second row."""
         width, height = self.rectangle
         whole = [width * k for k in range(self.bricks + 1)]
@@ -104,24 +106,23 @@ class ArchSection(GeneratorSection):
             raise ValueError(f"thickness must be below twice the radius {self.radius:g}, got {self.thickness:g}")
         return self
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the voussoirs from the left, and the abutments ``left`` and ``right``, as long as the arch is thick."""
         inner, outer = self.radius - self.thickness / 2, self.radius + self.thickness / 2
         half = math.radians(self.opening) / 2
         # Joint j stands at this angle from the vertical, clockwise; a joint is computed once, so that neighbours share
         # their corners to the last digit.
-        angles = [half * (2 * j / (self.voussoirs * self.chords) - 1) for j in range(self.voussoirs * self.chords + 1)]
+        count = self.voussoirs * self.chords
+        angles = [half * (2 * j / count - 1) for j in range(count + 1)]
         intrados = [(inner * math.sin(a), inner * math.cos(a)) for a in angles]
         extrados = [(outer * math.sin(a), outer * math.cos(a)) for a in angles]
         for number in range(self.voussoirs):
             arc = slice(number * self.chords, (number + 1) * self.chords + 1)
             yield f"{number + 1}", (*intrados[arc], *reversed(extrados[arc])), False
         for side, joint, sign in (("left", 0, -1.0), ("right", -1, 1.0)):
-            down = self.thickness * math.cos(half), -self.thickness * math.sin(half)
+            x, y = sign * self.thickness * math.cos(half), -self.thickness * math.sin(half)
             (a, b), (c, d) = intrados[joint], extrados[joint]
-            away = sign * down[0], down[1]
-            foot = ((c + away[0], d + away[1]), (a + away[0], b + away[1]))
-            corners = ((a, b), (c, d), *foot)
+            corners = ((a, b), (c, d), (c + x, d + y), (a + x, b + y))
             yield side, corners if sign < 0 else corners[::-1], True
 
 
@@ -137,17 +138,14 @@ class ColumnsSection(GeneratorSection):
     rise: Annotated[NonNegative, Key("m", "of the base from a column to the next one")] = 0.0
     base: Annotated[Positive, Key("m", "thickness of the fixed base below the toe")] = 1.0
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the columns from the toe on, and the fixed ``base``."""
         turn = -math.radians(self.dip)
         count = len(self.heights)
         for number, height in enumerate(self.heights):
             column = upright(-self.width * (number + 1), self.rise * number, self.width, height)
             yield f"{number + 1}", rotated(column, turn), False
-        steps = []
-        for number in range(count):
-            level = self.rise * number
-            steps += [(-self.width * number, level), (-self.width * (number + 1), level)]
+        steps = [(-self.width * (k + side), self.rise * k) for k in range(count) for side in (0, 1)]
         treads = list(dict.fromkeys(steps)) if self.rise else [steps[0], steps[-1]]
         beyond = 2 * self.width  # on which what has slid off comes to lie
         last = -self.width * count
@@ -178,7 +176,7 @@ class SlopeSection(GeneratorSection):
                 raise ValueError(f"{name} must be one for each rectangle, {len(self.rectangles)}, got {len(values)}")
         return self
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the blocks from above, and the fixed ``ground``."""
         turn = -math.radians(self.angle)
         zeros = (0.0,) * len(self.rectangles)
@@ -217,19 +215,20 @@ class RandomSection(GeneratorSection):
                 raise ValueError(f"{name} must be the least and the greatest, got {[low, high]}")
         return self
 
-    def outlines(self) -> Iterator[tuple[str, Vertices, bool]]:
+    def outlines(self) -> Outlines:
         """Yield the blocks; corners keep a share of a full turn over their number apart, so that none is a splinter."""
         random: Any = np.random.Generator(np.random.PCG64(self.seed))
         cell = 2 * self.radii[1]
+        least, most = self.corners
         for number in range(self.count):
-            corners = int(random.integers(self.corners[0], self.corners[1] + 1))
+            corners = int(random.integers(least, most + 1))
             radius = random.uniform(*self.radii)
             start = random.uniform(0, 2 * math.pi)
             angles = start + 2 * math.pi * (np.arange(corners) + random.uniform(0, 0.5, corners)) / corners
             row, column = divmod(number, self.across)
-            centre = np.array([(column + 0.5) * cell, (row + 0.5) * cell])
-            points = centre + radius * np.column_stack([np.cos(angles), np.sin(angles)])
-            yield f"{number + 1}", tuple((float(x), float(y)) for x, y in points), False
+            x = (column + 0.5) * cell + radius * np.cos(angles)
+            y = (row + 0.5) * cell + radius * np.sin(angles)
+            yield f"{number + 1}", tuple(zip(x.tolist(), y.tolist(), strict=True)), False
 
 
 def upright(left: float, low: float, width: float, height: float) -> Vertices:

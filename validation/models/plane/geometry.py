@@ -47,7 +47,8 @@ def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
     """Yield the middles of the pieces into which the edges of one outline are cut by those of the other."""
     starts = np.array(other)
     along = np.roll(starts, -1, axis=0) - starts
-    for start, end in _edges(one):
+    points = np.array(one)
+    for start, end in zip(points, np.roll(points, -1, axis=0), strict=True):
         edge = end - start
         crosses = edge[0] * along[:, 1] - edge[1] * along[:, 0]
         apart = starts - start
@@ -62,31 +63,22 @@ def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
             yield start + (low + high) / 2 * edge
 
 
-def _edges(outline: Vertices) -> Iterator[tuple[Array, Array]]:
-    points = np.array(outline)
-    yield from zip(points, np.roll(points, -1, axis=0), strict=True)
-
-
 def inner_point(outline: Vertices) -> Array:
     """Return a point inside an outline [m]: the centre of its largest triangle."""
     triangles = np.array(outline)[np.array(triangles_of(outline))]
-    u, v = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
-    largest = int(np.argmax(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0]))
-    centre: Array = triangles[largest].mean(axis=0)
-    return centre
+    areas = [_twice_area(*triangle) for triangle in triangles]
+    return np.asarray(triangles[np.argmax(areas)].mean(axis=0))
 
 
 def inside(points: Array, outline: Vertices) -> NDArray[np.bool_]:
     """Return which points lie inside an outline, by the number of its edges that a ray to the right crosses."""
     x, y = points[:, :1], points[:, 1:]
-    corners = np.array(outline)
-    following = np.roll(corners, -1, axis=0)
-    spans = (corners[:, 1] > y) != (following[:, 1] > y)
+    x0, y0 = np.array(outline).T
+    x1, y1 = np.roll(x0, -1), np.roll(y0, -1)
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = (y - corners[:, 1]) / (following[:, 1] - corners[:, 1])
-        crossed = spans & (x < corners[:, 0] + share * (following[:, 0] - corners[:, 0]))
-    within: NDArray[np.bool_] = np.count_nonzero(crossed, axis=1) % 2 == 1
-    return within
+        left = x < x0 + (y - y0) / (y1 - y0) * (x1 - x0)
+    crossed = ((y0 > y) != (y1 > y)) & left
+    return np.asarray(np.count_nonzero(crossed, axis=1) % 2 == 1)
 
 
 def distances(points: Array, outline: Vertices) -> Array:
@@ -95,36 +87,35 @@ def distances(points: Array, outline: Vertices) -> Array:
     along = np.roll(corners, -1, axis=0) - corners
     apart = points[:, None, :] - corners
     share = np.clip(np.sum(apart * along, axis=2) / np.sum(along**2, axis=1), 0, 1)
-    nearest: Array = np.min(np.linalg.norm(apart - share[:, :, None] * along, axis=2), axis=1)
-    return nearest
+    return np.asarray(np.min(np.linalg.norm(apart - share[:, :, None] * along, axis=2), axis=1))
 
 
 def gap(first: Vertices, second: Vertices) -> float:
     """Return the distance of two outlines [m]: that of a corner from an edge, as they do not cross."""
-    return min(float(np.min(distances(np.array(first), second))), float(np.min(distances(np.array(second), first))))
+    pairs = (first, second), (second, first)
+    return min(float(np.min(distances(np.array(one), other))) for one, other in pairs)
 
 
 def shared_edges(first: Vertices, second: Vertices, tolerance: float) -> Iterator[Segment]:
     """Yield the parts of edges of the first outline that are, within a tolerance [m], edges of the second one."""
-    for a, b in _edges(first):
-        length = float(np.hypot(*(b - a)))
+    one, other = ([complex(*corner) for corner in (*outline, outline[0])] for outline in (first, second))
+    for a, b in itertools.pairwise(one):
+        length = abs(b - a)
         along = (b - a) / length
-        for c, d in _edges(second):
-            offsets = [abs(along[0] * (point - a)[1] - along[1] * (point - a)[0]) for point in (c, d)]
-            start, end = max(0.0, float((d - a) @ along)), min(length, float((c - a) @ along))
-            if max(offsets) <= tolerance and (d - c) @ along < 0 and end - start > tolerance:
-                p, q = a + start * along, a + end * along
-                yield (float(p[0]), float(p[1])), (float(q[0]), float(q[1]))
+        for c, d in itertools.pairwise(other):
+            p, q = ((place - a) * along.conjugate() for place in (d, c))
+            start, end = max(0.0, p.real), min(length, q.real)
+            if max(abs(p.imag), abs(q.imag)) <= tolerance and p.real < q.real and end - start > tolerance:
+                ends = (a + start * along, a + end * along)
+                yield (ends[0].real, ends[0].imag), (ends[1].real, ends[1].imag)
 
 
 def corner_on_edge(corner: tuple[float, float], outline: Vertices, edge: int) -> tuple[float, float]:
     """Return where along an edge the foot of a corner is, as a share of it, and how far outside the corner is [m]."""
-    start = np.array(outline[edge])
-    along = np.array(outline[(edge + 1) % len(outline)]) - start
-    apart = np.array(corner) - start
-    share = float(apart @ along) / float(along @ along)
-    outward = np.array([along[1], -along[0]]) / np.hypot(*along)  # of an outline that runs counter-clockwise
-    return share, float(apart @ outward)
+    start = complex(*outline[edge])
+    along = complex(*outline[(edge + 1) % len(outline)]) - start
+    apart = (complex(*corner) - start) * along.conjugate()
+    return apart.real / abs(along) ** 2, (0.0 - apart.imag) / abs(along)
 
 
 def triangles_of(outline: Vertices) -> list[tuple[int, int, int]]:
@@ -145,12 +136,11 @@ def _is_ear(points: Array, left: list[int], place: int) -> bool:
     a, b, c = points[list(corners)]
     if _twice_area(a, b, c) <= 0:
         return False
-    others = points[[corner for corner in left if corner not in corners]]
-    covered = np.all([_twice_area(p, q, others.T[:, :, None]) >= 0 for p, q in ((a, b), (b, c), (c, a))], axis=0)
+    others = points[[corner for corner in left if corner not in corners]].T
+    covered = np.all([_twice_area(p, q, others) >= 0 for p, q in ((a, b), (b, c), (c, a))], axis=0)
     return not covered.any()
 
 
 def _twice_area(a: Array, b: Array, c: Array) -> Array:
     """Return twice the signed area of triangles whose third corners may be many [m2]."""
-    area: Array = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
-    return area
+    return np.asarray((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))

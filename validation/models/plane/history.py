@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from validation.runs.columns import ColumnKind
 
@@ -54,34 +54,38 @@ OF_ENERGY: Mapping[str, tuple[str, str]] = {
 }
 _OF_CONTACT = re.compile(r"(\w+)\.(\d+)-(\w+)\.(\d+)\.(\w+)")
 _OF_PAIR = re.compile(r"(\w+)-(\w+)\.(\w+)")
-_OF_BLOCK = re.compile(r"(\w+)\.(\w+)")
+WHOLE = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY}
 
 
-@dataclass(frozen=True)
-class ColumnPlace:
+class ColumnPlace(NamedTuple):
     """What a column is of: a block, a contact (block, corner, other block, edge), a pair of blocks, or all blocks."""
 
     part: str  # "x", "normal", "kinetic"
+    meaning: tuple[str, str]  # unit, and what it is
     block: str = ""
     contact: tuple[str, int, str, int] | None = None
     pair: tuple[str, str] | None = None
     whole: str = ""  # "momentum" or "energy"
 
 
-def place_of(column: str) -> ColumnPlace | None:
-    """Return what a column is of by its name, None where no column is called so."""
+def place_of(column: str) -> ColumnPlace:
+    """Return what a column is of by its name.
+
+    Raises
+    ------
+    KeyError
+        If no column is called so.
+    """
     if match := _OF_CONTACT.fullmatch(column):
-        contact = match[1], int(match[2]), match[3], int(match[4])
-        return ColumnPlace(match[5], contact=contact) if match[5] in OF_CONTACT else None
+        block, corner, on, edge, part = match.groups()
+        return ColumnPlace(part, OF_CONTACT[part], contact=(block, int(corner), on, int(edge)))
     if match := _OF_PAIR.fullmatch(column):
-        return ColumnPlace(match[3], pair=(match[1], match[2])) if match[3] in OF_PAIR else None
-    match = _OF_BLOCK.fullmatch(column)
-    if match is None:
-        return None
-    whole = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY}.get(match[1])
-    if whole is not None:
-        return ColumnPlace(match[2], whole=match[1]) if match[2] in whole else None
-    return ColumnPlace(match[2], block=match[1]) if match[2] in OF_BLOCK else None
+        first, second, part = match.groups()
+        return ColumnPlace(part, OF_PAIR[part], pair=(first, second))
+    name, _, part = column.partition(".")
+    if name in WHOLE:
+        return ColumnPlace(part, WHOLE[name][part], whole=name)
+    return ColumnPlace(part, OF_BLOCK[part], block=name)
 
 
 class PlaneColumns(Mapping[str, ColumnKind]):
@@ -89,12 +93,8 @@ class PlaneColumns(Mapping[str, ColumnKind]):
 
     def __getitem__(self, column: str) -> ColumnKind:
         place = place_of(column)
-        if place is None:
-            raise KeyError(column)
-        of_blocks = OF_BLOCK if place.block else OF_CONTACT
-        parts = {MOMENTUM: OF_MOMENTUM, ENERGY: OF_ENERGY, "": OF_PAIR if place.pair else of_blocks}
-        unit, meaning = parts[place.whole][place.part]
-        return ColumnKind(unit, meaning, words=column, from_zero=place.part not in POSE or bool(place.whole))
+        from_zero = place.part not in POSE or bool(place.whole)
+        return ColumnKind(*place.meaning, words=column, from_zero=from_zero)
 
     def __iter__(self) -> Iterator[str]:
         return iter(())

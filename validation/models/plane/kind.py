@@ -53,15 +53,16 @@ class BlocksInThePlane(Kind):
 
 def _is_column(column: str, assembly: Assembly) -> bool:
     """Whether a column is of blocks, corners and edges that there are; of contacts, where these are stated."""
-    place = place_of(column)
-    if place is None:
+    try:
+        place = place_of(column)
+    except KeyError:
         return False
     corners = {block.name: len(block.vertices) for block in assembly.blocks}
     if place.contact is not None:
         block, corner, on, edge = place.contact
         if not (corner < corners.get(block, 0) and edge < corners.get(on, 0) and block != on):
             return False
-        stated = [(one.block, one.corner, one.on, one.edge) for one in assembly.contacts]
+        stated = [one[:4] for one in assembly.contacts]
         return not stated or numbers_of(place.contact, [*corners]) in stated
     if place.pair is not None:
         return {*place.pair} <= {*corners} and len({*place.pair}) == len(place.pair)

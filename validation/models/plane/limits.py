@@ -15,12 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import brentq, linprog
 
+from validation.models.plane.blocks import Vertices as Outline
 from validation.models.plane.blocks import centroid
 from validation.models.plane.generators import ArchSection, ColumnsSection, GeneratorSection
-from validation.runs.history import Array
 from validation.scenes.outline import area
-
-Outline = tuple[tuple[float, float], ...]
 
 NEAR = 1e-6  # m, by which a corner that touches an edge may be beside it
 LEAST_PUSH = 1e-7  # m2 of rock: what a toe begins to need; a recursion is zero below its limit
@@ -28,12 +26,12 @@ PARALLEL = 1e-6  # sine of the angle between faces that lie on each other
 
 
 class ContactPoint(NamedTuple):
-    """A place where two blocks touch."""
+    """A place where two blocks touch; points and vectors are complex numbers x + i y."""
 
     block: int  # whose corner it is
     on: int  # whose edge
-    place: Array  # (2,) [m]
-    normal: Array  # (2,) outwards from the edge
+    place: complex  # [m]
+    normal: complex  # outwards from the edge
 
 
 def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
@@ -41,29 +39,24 @@ def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
     corners = [np.array(outline) for outline in outlines]
     lows = [points.min(axis=0) - NEAR for points in corners]
     highs = [points.max(axis=0) for points in corners]
-    for block, points in enumerate(corners):
-        for on, others in enumerate(corners):
+    rings = [points @ (1, 1j) for points in corners]
+    for block, ring in enumerate(rings):
+        faces = np.roll(ring, -1) - ring
+        faces = faces / np.abs(faces)
+        for on, others in enumerate(rings):
             if block == on or np.any(lows[block] > highs[on]) or np.any(lows[on] > highs[block]):
                 continue
-            for start, end in zip(others, np.roll(others, -1, axis=0), strict=True):
-                length = float(np.hypot(*(end - start)))
+            for start, end in zip(others, np.roll(others, -1), strict=True):
+                length = abs(end - start)
                 along = (end - start) / length
-                normal = np.array([along[1], -along[0]])
-                before = (points - start) @ along
-                is_on_line = np.abs((points - start) @ normal) <= NEAR
-                for number in np.flatnonzero(is_on_line & (before >= -NEAR) & (before <= length + NEAR)):
-                    if NEAR < before[number] < length - NEAR or _lies_on(points, int(number), along):
-                        yield ContactPoint(block, on, points[number], normal)
-
-
-def _lies_on(points: Array, number: int, along: Array) -> bool:
-    """Whether an edge that meets in a corner runs against a direction: its face lies on that one."""
-    for first, second in ((number - 1, number), (number, (number + 1) % len(points))):
-        side = points[second] - points[first]
-        side = side / np.hypot(*side)
-        if abs(side[0] * along[1] - side[1] * along[0]) < PARALLEL and side @ along < 0:
-            return True
-    return False
+                apart = (ring - start) * along.conjugate()
+                opposite = faces * along.conjugate()
+                lies_on = (np.abs(opposite.imag) < PARALLEL) & (opposite.real < 0)
+                lies_on |= np.roll(lies_on, 1)  # of the faces that meet in a corner either
+                inside = (apart.real > NEAR) & (apart.real < length - NEAR)
+                over = (apart.real >= -NEAR) & (apart.real <= length + NEAR)
+                for number in np.flatnonzero((np.abs(apart.imag) <= NEAR) & over & (inside | lies_on)):
+                    yield ContactPoint(block, on, complex(ring[number]), complex(-1j * along))
 
 
 def can_rest(
@@ -80,34 +73,26 @@ def can_rest(
     gravity
         In which direction the weights act.
     """
-    rows = {number: 3 * place for place, number in enumerate(k for k, fixed in enumerate(held) if not fixed)}
     points = list(contact_points(outlines))
-    balance = np.zeros((3 * len(rows), 2 * len(points)))
-    weights = np.zeros(3 * len(rows))
-    for number, row in rows.items():
-        x, y = centroid(outlines[number])
-        borne = -area(outlines[number]) * np.array(gravity) / math.hypot(*gravity)
-        weights[row : row + 3] = [*borne, x * borne[1] - y * borne[0]]
-    slides = []
+    balance = np.zeros((len(outlines), 3, 2 * len(points)))
+    weights = np.zeros((len(outlines), 3))
+    for number, outline in enumerate(outlines):
+        x, y = centroid(outline)
+        borne = -area(outline) * np.array(gravity) / math.hypot(*gravity)
+        weights[number] = [*borne, x * borne[1] - y * borne[0]]
     for column, point in enumerate(points):
-        along = np.array([point.normal[1], -point.normal[0]])
-        for number, sign in ((point.block, 1.0), (point.on, -1.0)):
-            if number in rows:
-                arm = point.place
-                for place, direction in enumerate((point.normal, along)):
-                    force = [*direction, arm[0] * direction[1] - arm[1] * direction[0]]
-                    balance[rows[number] : rows[number] + 3, 2 * column + place] += sign * np.array(force)
-        for sign in (1.0, -1.0) if mu is not None else ():
-            bound = np.zeros(2 * len(points))
-            bound[2 * column] = -(mu or 0.0)
-            bound[2 * column + 1] = sign
-            slides.append(bound)
+        for place, direction in enumerate((point.normal, -1j * point.normal)):
+            force = [direction.real, direction.imag, (point.place.conjugate() * direction).imag]
+            balance[point.block, :, 2 * column + place] += force
+            balance[point.on, :, 2 * column + place] -= force
+    moving = ~np.array(held)
+    slides = None if mu is None else np.kron(np.eye(len(points)), [[-mu, 1.0], [-mu, -1.0]])
     solution = linprog(
         np.zeros(2 * len(points)),
-        A_ub=np.array(slides) if slides else None,
-        b_ub=np.zeros(len(slides)) if slides else None,
-        A_eq=balance,
-        b_eq=weights / np.max(np.abs(weights)),
+        A_ub=slides,
+        b_ub=None if slides is None else np.zeros(len(slides)),
+        A_eq=balance[moving].reshape(-1, 2 * len(points)),
+        b_eq=weights[moving].ravel() / np.max(np.abs(weights[moving])),
         bounds=[(0.0, None), (None, None)] * len(points),
         method="highs",
     )
@@ -116,12 +101,8 @@ def can_rest(
 
 def drawn(section: GeneratorSection) -> tuple[list[Outline], list[bool]]:
     """Return the outlines that a table draws, and which of them are fixed."""
-    outlines = []
-    held = []
-    for _, outline, fixed in section.outlines():
-        outlines.append(outline)
-        held.append(fixed)
-    return outlines, held
+    parts = list(section.outlines())
+    return [outline for _, outline, _ in parts], [fixed for *_, fixed in parts]
 
 
 def last_that_rests(rests: Callable[[float], bool], stands: float, falls: float) -> float:

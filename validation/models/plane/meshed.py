@@ -12,10 +12,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from validation.models.plane.assembly import Assembly, StatedContact
-from validation.models.plane.blocks import PlacedBlock, centroid
-from validation.models.plane.geometry import Segment, corner_on_edge
+from validation.models.plane.blocks import PlacedBlock
 from validation.models.plane.history import ENERGY, OF_MOMENTUM, numbers_of, place_of
-from validation.models.plane.tables import PlaneSection
+from validation.models.plane.tables import PlaneSection, Point
 from validation.runs.history import Array
 from validation.runs.run import Run
 from validation.scenes.scene import Scene
@@ -28,6 +27,7 @@ if TYPE_CHECKING:
 
 FACING = 1e-6  # sine of the angle between a face and the edge in front of it, below which a strip lies on both
 TOUCHING = 1e-12  # gap over the thinnest block that rounding leaves of a corner on an edge
+OF_BODIES = ("density", "young", "poisson", "hypothesis", "velocity", "spin")
 RATES = {"vx": "x", "vy": "y", "spin": "angle"}
 MEANS = ("x", "y", "angle", "ex", "ey", "gxy")  # of a body, in the order of `PlaneModel.means`
 OF_ENERGY = {
@@ -96,25 +96,18 @@ class MovingMesh(Prepared):
         loads = [load for load in self.assembly.loads if load.block == number]
         return PlaneBody(
             polygons=(block.vertices,),
-            density=block.density,
-            young=block.young,
-            poisson=block.poisson,
-            hypothesis=block.hypothesis,
             rectangle=_is_upright(block),
             tractions=tuple((load.edge, load.vector) for load in loads if load.edge is not None),
             forces=tuple((load.place, load.vector) for load in loads if load.edge is None),
             gravity=plane.gravity,
-            velocity=block.velocity,
-            spin=block.spin,
             elements=ELEMENTS if self.scene.fem.elements is None else self.scene.fem.elements,
             degree=self.scene.fem.degree,
+            **{name: getattr(block, name) for name in OF_BODIES},
         )
 
     def _column(self, result: BodiesResult, column: str) -> Array:
         """Return a column of a result by its name."""
         place = place_of(column)
-        if place is None:
-            raise ValueError(f"run.columns: must be of blocks, contacts or all, got {column!r}")
         names = [block.name for block in self.assembly.blocks]
         if place.whole == ENERGY:
             total = np.asarray(sum(result.energy.values()))
@@ -123,15 +116,14 @@ class MovingMesh(Prepared):
             return np.asarray(result.momentum[:, [*OF_MOMENTUM].index(place.part)])
         if place.contact is not None:
             contact = numbers_of(place.contact, names)
-            contacts = [(one.block, one.corner, one.on, one.edge) for one in self.assembly.contacts]
+            contacts = [one[:4] for one in self.assembly.contacts]
             return np.asarray(getattr(result, place.part)[:, contacts.index(contact)])
-        number = names.index(place.block)
-        return self._of_block(result, number, place.part)
+        return self._of_block(result, names.index(place.block), place.part)
 
     def _of_block(self, result: BodiesResult, number: int, part: str) -> Array:
         """Return what a block does; a fixed one nothing."""
         block = self.assembly.blocks[number]
-        start = dict(zip(MEANS, (*centroid(block.vertices), block.angle), strict=False)).get(part, 0.0)
+        start = dict(zip(MEANS, (*block.centroid, block.angle), strict=False)).get(part, 0.0)
         if block.held:
             return np.full(len(result.time), start)
         row = str(len(MEANS) * self.moving.index(number) + MEANS.index(RATES.get(part, part)))
@@ -140,41 +132,42 @@ class MovingMesh(Prepared):
 
 def _is_upright(block: PlacedBlock) -> bool:
     """Whether a block is a rectangle with sides along the axes."""
-    sides = np.roll(np.array(block.vertices), -1, axis=0) - np.array(block.vertices)
+    sides = np.roll(block.corners, -1, axis=0) - block.corners
     return len(sides) == 4 and bool(np.all(np.min(abs(sides), axis=1) == 0))
+
+
+def _pair(place: complex) -> Point:
+    return place.real, place.imag
 
 
 def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, width: float) -> PatchContact:
     """Return the springs of a corner over the strip of its block's face, seen from the block that moves."""
     from fem_reference import PatchContact
 
-    vertices = np.array(assembly.blocks[contact.block].vertices)
-    outline = np.array(assembly.blocks[contact.on].vertices)
-    along = np.roll(outline, -1, axis=0)[contact.edge] - outline[contact.edge]
-    along = along / np.hypot(*along)
-    normal = np.array([along[1], -along[0]])
-    corner = vertices[contact.corner]
+    ring, others = ([complex(*corner) for corner in assembly.blocks[k].vertices] for k in (contact.block, contact.on))
+    along = others[(contact.edge + 1) % len(others)] - others[contact.edge]
+    normal = -1j * along / abs(along)
+    corner = ring[contact.corner]
     end = corner
-    for neighbour in (vertices[contact.corner - 1], vertices[(contact.corner + 1) % len(vertices)]):
-        side = (neighbour - corner) / np.hypot(*(neighbour - corner))
-        if abs(side @ normal) < FACING:
+    for neighbour in (ring[contact.corner - 1], ring[(contact.corner + 1) % len(ring)]):
+        side = (neighbour - corner) / abs(neighbour - corner)
+        if abs((side * normal.conjugate()).real) < FACING:
             end = corner + width * side
-    gap = corner_on_edge((float(corner[0]), float(corner[1])), assembly.blocks[contact.on].vertices, contact.edge)[1]
+    gap = ((corner - others[contact.edge]) * normal.conjugate()).real
     if abs(gap) <= TOUCHING * assembly.thinnest:
         gap = 0.0
     first, second = contact.block, contact.on
     if assembly.blocks[first].held:
-        corner = corner - gap * normal
-        end = end - gap * normal
+        corner, end = corner - gap * normal, end - gap * normal
         first, second = second, first
         normal = -normal
     springs = contact.springs
     return PatchContact(
         moving.index(first),
         None if assembly.blocks[second].held else moving.index(second),
-        (float(corner[0]), float(corner[1])),
-        (float(end[0]), float(end[1])),
-        (float(normal[0]), float(normal[1])),
+        _pair(corner),
+        _pair(end),
+        _pair(normal),
         springs.stiffness,
         springs.shear,
         springs.friction_coefficient if springs.shear else None,
@@ -184,24 +177,18 @@ def _contact(assembly: Assembly, moving: list[int], contact: StatedContact, widt
 
 
 def _glue(assembly: Assembly, moving: list[int], width: float) -> list[PatchContact]:
-    """Return the springs at both ends of what blocks are glued along."""
+    """Return the springs at both ends of what blocks are glued along, over parts as wide as a patch."""
     from fem_reference import PatchContact
 
     contacts = []
     for bond in assembly.bonds:
         first, second = (bond.second, bond.first) if assembly.blocks[bond.first].held else (bond.first, bond.second)
         below = None if assembly.blocks[second].held else moving.index(second)
-        for start, end in (_strip(bond.edge, width), _strip((bond.edge[1], bond.edge[0]), width)):
-            along = np.subtract(*bond.edge) / np.hypot(*np.subtract(*bond.edge))
-            normal = float(-along[1]), float(along[0])
-            side = moving.index(first)
-            contacts.append(PatchContact(side, below, start, end, normal, bond.stiffness, bond.shear, bonded=True))
+        start, end = (complex(*place) for place in bond.edge)
+        along = (start - end) / abs(start - end)
+        sides = moving.index(first), below
+        springs = bond.stiffness, bond.shear
+        for place, inwards in ((start, -along), (end, along)):
+            strip = _pair(place), _pair(place + width * inwards)
+            contacts.append(PatchContact(*sides, *strip, _pair(1j * along), *springs, bonded=True))
     return contacts
-
-
-def _strip(edge: Segment, width: float) -> Segment:
-    """Return the part of an edge from its start that is as wide as a patch."""
-    start = np.array(edge[0])
-    along = np.subtract(edge[1], edge[0])
-    end = start + width * along / np.hypot(*along)
-    return edge[0], (float(end[0]), float(end[1]))

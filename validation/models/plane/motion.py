@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from validation.models.plane.assembly import Assembly
-from validation.models.plane.blocks import PlacedBlock, centroid
+from validation.models.plane.blocks import PlacedBlock
 from validation.models.plane.history import contact_column, place_of
 from validation.runs.history import Array, History
 
@@ -21,27 +21,25 @@ def outlines_at(assembly: Assembly, history: History, step: int) -> list[Array]:
 
 def _outline(block: PlacedBlock, history: History, step: int) -> Array:
     """X + R(turn) (I + strain) (corner - centroid); a block whose pose is not kept stays where it was."""
-    corners = np.array(block.vertices)
-    columns = history.columns
-    if f"{block.name}.x" not in columns:
-        return corners
-    x, y = (float(columns[f"{block.name}.{part}"][step]) for part in ("x", "y"))
-    angle = float(columns[name][step]) if (name := f"{block.name}.angle") in columns else block.angle
-    ex, ey, gxy = (
-        float(columns[name][step]) if (name := f"{block.name}.{part}") in columns else 0.0
-        for part in ("ex", "ey", "gxy")
-    )
-    turn = angle - block.angle
+
+    def value(part: str, missing: float = 0.0) -> float:
+        column = history.columns.get(f"{block.name}.{part}")
+        return missing if column is None else float(column[step])
+
+    if f"{block.name}.x" not in history.columns:
+        return block.corners
+    turn = value("angle", block.angle) - block.angle
     rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    stretch = np.array([[1 + ex, gxy / 2], [gxy / 2, 1 + ey]])
-    outline: Array = np.array([x, y]) + (corners - centroid(block.vertices)) @ (rotation @ stretch).T
-    return outline
+    shear = value("gxy") / 2
+    stretch = np.array([[1 + value("ex"), shear], [shear, 1 + value("ey")]])
+    arms = block.corners - block.centroid
+    return np.asarray([value("x"), value("y")] + arms @ (rotation @ stretch).T)
 
 
 def contacts_of(history: History) -> list[Contact]:
     """Return the contacts whose normal force a history has."""
-    places = (place_of(column) for column in history.columns)
-    return [place.contact for place in places if place is not None and place.contact and place.part == "normal"]
+    places = [place_of(column) for column in history.columns if column.endswith(".normal")]
+    return [place.contact for place in places if place.contact is not None]
 
 
 def force_on_corner(contact: Contact, outlines: Mapping[str, Array], history: History, step: int) -> Array:

@@ -10,20 +10,29 @@ from pathlib import Path
 import numpy as np
 
 import dda
-from validation.errors import InputError
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.history import ENERGY, GAP, OF_BLOCK, OF_MOMENTUM, contact_column, numbers_of, place_of
 from validation.models.plane.joints import PlaneContactSection
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.run import Outcome, Run
-from validation.scenes.outline import area
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Prepared
 from validation.solvers.translation import naming
 
 ROUNDING = 1e-9
+OF_BLOCKS = ("vertices", "density", "young", "poisson", "hypothesis", "fixed", "velocity", "spin", "name")
+PARTS = {  # where a result has what a column of a block tells
+    "x": ("centroid", 0),
+    "y": ("centroid", 1),
+    "vx": ("velocity", 0),
+    "vy": ("velocity", 1),
+    "spin": ("velocity", 2),
+    "ex": ("strain", 0),
+    "ey": ("strain", 1),
+    "gxy": ("strain", 2),
+}
 
 
 def springs_of(contact: PlaneContactSection) -> dda.ContactSprings:
@@ -45,34 +54,20 @@ def model_of(plane: PlaneSection) -> dda.PlaneModel:
     assembly = plane.assembly
     blocks = [
         dda.PlaneBlock(
-            block.vertices,
-            block.density,
-            young=block.young,
-            poisson=block.poisson,
-            hypothesis=block.hypothesis,
-            fixed=block.fixed,
             motion=None if block.motion is None else _driven(block.motion),
-            velocity=block.velocity,
-            spin=block.spin,
-            name=block.name,
+            **{name: getattr(block, name) for name in OF_BLOCKS},
         )
         for block in assembly.blocks
     ]
-    loads = [
-        dda.PlaneLoad(load.block, load.vector, place=load.place, edge=load.edge, ramp=load.ramp)
-        for load in assembly.loads
-    ]
+    loads = [dda.PlaneLoad(*load) for load in assembly.loads]
     if plane.ramp:
         for number, block in enumerate(assembly.blocks):
-            mass = block.density * area(block.vertices)
+            mass = block.mass
             weight = mass * plane.gravity[0], mass * plane.gravity[1]
             loads += [] if block.held else [dda.PlaneLoad(number, weight, ramp=plane.ramp)]
     return dda.PlaneModel(
         blocks,
-        contacts=[
-            dda.CornerOnEdge(contact.block, contact.corner, contact.on, contact.edge, springs_of(contact.springs))
-            for contact in assembly.contacts
-        ],
+        contacts=[dda.CornerOnEdge(*contact[:4], springs_of(contact.springs)) for contact in assembly.contacts],
         bonds=[
             dda.EdgeBond(bond.first, bond.second, *bond.edge, bond.stiffness, bond.shear) for bond in assembly.bonds
         ],
@@ -135,8 +130,6 @@ class MovingBlocks(Prepared):
     def _column(self, result: dda.PlaneResult, names: list[str], column: str) -> Array:
         """Return a column of a result by its name; a contact that never carried a force has carried none."""
         place = place_of(column)
-        if place is None:
-            raise InputError("must be a column", source=self.scene.name, field="run.columns", value=repr(column))
         if place.whole == ENERGY:
             values = result.energy[place.part.replace("_", " ")]
         elif place.whole:
@@ -156,19 +149,10 @@ class MovingBlocks(Prepared):
         return np.asarray(values)[self.rows]
 
     def _of_block(self, result: dda.PlaneResult, block: int, part: str) -> Array:
-        start = self.plane.assembly.blocks[block].angle
-        values = {
-            "x": result.centroid[:, block, 0],
-            "y": result.centroid[:, block, 1],
-            "angle": start + result.angle[:, block],
-            "vx": result.velocity[:, block, 0],
-            "vy": result.velocity[:, block, 1],
-            "spin": result.velocity[:, block, 2],
-            "ex": result.strain[:, block, 0],
-            "ey": result.strain[:, block, 1],
-            "gxy": result.strain[:, block, 2],
-        }
-        return np.asarray(values[part])
+        if part == "angle":
+            return np.asarray(self.plane.assembly.blocks[block].angle + result.angle[:, block])
+        field, number = PARTS[part]
+        return np.asarray(getattr(result, field)[:, block, number])
 
     def _write_fields(self, result: dda.PlaneResult, names: list[str]) -> None:
         """Write outlines, strains and contact forces of all blocks."""

@@ -9,10 +9,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 from validation.errors import InputError
-from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, centroid, second_moments
+from validation.models.plane.blocks import PlacedBlock, PlaneBlockSection, second_moments
 from validation.models.plane.joints import PlaneContactSection, PlaneTouchSection
 from validation.models.plane.tables import BODIES, PlaneSection
-from validation.scenes.outline import area
 from validation.scenes.plain import PlainHooks
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene
@@ -60,7 +59,7 @@ class HOOKS(PlainHooks):
 
 def _block(block: PlacedBlock) -> dict[str, Any]:
     """Return a block of unit depth: its outline and its centroid at t = 0, and what moves it from there."""
-    mass = block.density * area(block.vertices)
+    mass = block.mass
     record = None if block.motion is None else read_record(Path(block.motion))
     rows = (
         None if record is None else {"time_s": record.time.tolist(), "x_m": record.x.tolist(), "y_m": record.y.tolist()}
@@ -70,7 +69,7 @@ def _block(block: PlacedBlock) -> dict[str, Any]:
         "fixed": block.fixed,
         "motion": rows,
         "vertices_m": [list(corner) for corner in block.vertices],
-        "centroid_m": list(centroid(block.vertices)),
+        "centroid_m": list(block.centroid),
         "angle_rad": block.angle,
         "young_Pa": None if math.isinf(block.young) else block.young,
         "poisson": None if math.isinf(block.young) else block.poisson,

@@ -3,81 +3,108 @@
 from __future__ import annotations
 
 import functools
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+import tomllib
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any, NamedTuple
 
 from validation.models.plane.boxes import boxes_of
-from validation.problems.numbered import UNKNOWN, JudgedNumber
+from validation.problems.numbered import UNKNOWN, JudgedNumber, around
+from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 
 PREFIX = "rigid-"  # of the scenes of problems
 EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
+FRICTION = "tan(phi), which is not known better,"
+
+TABLE = tomllib.loads(Path(__file__).with_name("problems.toml").read_text(encoding="utf-8"))
+Numbers = Callable[[Scene], tuple[JudgedNumber, ...]]  # what is measured on answers to a scene
+Measure = Callable[[History], float | None]
 
 
-@dataclass(frozen=True)
-class PlaneCase:
-    """A case of a problem.
-
-    Attributes
-    ----------
-    label
-        The values that it differs by from the problem's own scene, in words; empty for that one.
-    values
-        The same as keys of a scene.
-    quantities
-        What is measured on its answers, where it is another question than that of the problem's own scene.
-    """
-
-    label: str
-    values: Mapping[str, Any] = field(default_factory=dict)
-    quantities: Callable[[Scene], tuple[JudgedNumber, ...]] | None = None
+def within(
+    name: str, unit: str, exact: float, scale: float, reason: str, measure: Measure, **others: Any
+) -> JudgedNumber:
+    """Return a number whose band reaches to both sides of its exact value by one per cent of a scale."""
+    half = UNKNOWN * scale
+    return JudgedNumber(name, unit, exact, exact - half, exact + half, scale, reason, measure, **others)
 
 
-@dataclass(frozen=True)
-class PlaneProblem:
-    """A problem of blocks in the plane.
+def at_most(name: str, unit: str, scale: float, reason: str, measure: Measure) -> JudgedNumber:
+    """Return a number that is exactly zero, and never negative, to one per cent of a scale."""
+    return JudgedNumber(name, unit, 0.0, 0.0, UNKNOWN * scale, scale, reason, measure)
 
-    Attributes
-    ----------
-    name
-        Of the problem; its scene is `PREFIX` + name.
-    quantities
-        Function of a scene that returns what is measured on its answers.
-    variants
-        The cases beside the problem's own scene.
-    forces
-        Whether forces are asked for where a program reports them.
-    changeable
-        Keys of `[plane]` that may be others than in the problem's scene, so that the same numbers answer the question.
-    """
 
-    name: str
-    quantities: Callable[[Scene], tuple[JudgedNumber, ...]]
-    variants: tuple[PlaneCase, ...] = ()
-    forces: bool = False
-    changeable: tuple[str, ...] = ()
+def decided(name: str, is_so: bool, reason: str, measure: Callable[[History], bool]) -> JudgedNumber:
+    """Return whether something happens, as 1 or 0."""
+    exact = float(is_so)
+    return JudgedNumber(name, "1", exact, exact, exact, 1.0, reason, lambda history: float(measure(history)))
 
-    @property
-    def cases(self) -> tuple[PlaneCase, ...]:
-        """All cases, the problem's own scene first."""
-        return (PlaneCase(""), *self.variants)
+
+def varied(
+    name: str, unit: str, value: Callable[[float], float], datum: str, measure: Measure, **others: Any
+) -> JudgedNumber:
+    """Return a number whose band is what a factor of one per cent on a datum makes of its value."""
+    exact, *changed = (value(factor) for factor in (1.0, *EITHER_WAY))
+    return around(
+        name, unit, exact, changed, f"one per cent of {datum} changes it by as much", measure=measure, **others
+    )
+
+
+class PlaneCase(NamedTuple):
+    """A case of a problem."""
+
+    label: str  # the values that it differs by from the problem's own scene, in words; empty for that one
+    values: Mapping[str, Any] = {}  # the same as keys of a scene
+    quantities: Numbers | None = None  # where they answer another question than those of the problem's own scene
+
+
+class PlaneProblem(NamedTuple):
+    """A problem of blocks in the plane."""
+
+    name: str  # its scene is `PREFIX` + name
+    asks: str
+    quantities: Numbers
+    cases: tuple[PlaneCase, ...]  # the problem's own scene first
+    forces: bool  # whether forces are asked for where a program reports them
+    changeable: tuple[str, ...]  # keys of `[plane]` that may be others than in the problem's scene
 
     def scene(self, case: PlaneCase | None = None) -> Scene:
         """Return the scene of a case; the problem's own by default."""
-        stated = own_scene(self.name)
-        if case is None or not case.label:
-            return self._with_forces(stated)
-        changed = stated.with_values(dict(case.values))
-        return self._with_forces(changed).model_copy(update={"name": f"{PREFIX}{self.name}[{case.label}]"})
-
-    def _with_forces(self, scene: Scene) -> Scene:
-        if not self.forces:
-            return scene
-        return scene.with_values({"run.columns": list(boxes_of(scene).columns)})
+        label, values, _ = case or PlaneCase("")
+        scene = own_scene(self.name).with_values(dict(values))
+        if self.forces:
+            scene = scene.with_values({"run.columns": list(boxes_of(scene).columns)})
+        return scene.model_copy(update={"name": f"{PREFIX}{self.name}{f'[{label}]' if label else ''}"})
 
 
 @functools.cache
 def own_scene(name: str) -> Scene:
     """Return the scene of a problem."""
     return load_scene(PREFIX + name)
+
+
+def problems_of(
+    group: str, numbers: Mapping[str, Numbers], more: Mapping[str, Iterable[PlaneCase]]
+) -> dict[str, PlaneProblem]:
+    """Return the problems of a group of `problems.toml` by name.
+
+    Parameters
+    ----------
+    numbers
+        The functions by name that say what is measured.
+    more
+        Cases of problems beside those of the table.
+    """
+    problems = {}
+    for name, stated in TABLE[group].items():
+        cases = [PlaneCase(label, values) for label, values in stated.get("cases", {}).items()]
+        problems[name] = PlaneProblem(
+            name,
+            stated["asks"],
+            numbers[stated.get("numbers", name)],
+            (PlaneCase(""), *cases, *more.get(name, ())),
+            stated.get("forces", False),
+            stated.get("changeable", ()),
+        )
+    return problems

@@ -18,12 +18,23 @@ import numpy as np
 from validation.diagnosis.numbers import Values
 from validation.errors import InputError
 from validation.models.plane import measures
-from validation.models.plane.blocks import centroid
 from validation.models.plane.boxes import BoxesOnGround, boxes_of
-from validation.models.plane.canon import CANON_ASKS, canon_problems
-from validation.models.plane.posed import EITHER_WAY, PREFIX, PlaneCase, PlaneProblem, own_scene
+from validation.models.plane.canon import CANON_NUMBERS
+from validation.models.plane.posed import (
+    EITHER_WAY,
+    FRICTION,
+    PREFIX,
+    PlaneCase,
+    PlaneProblem,
+    at_most,
+    decided,
+    own_scene,
+    problems_of,
+    varied,
+    within,
+)
 from validation.models.plane.tables import PlaneSection
-from validation.problems.numbered import UNKNOWN, JudgedNumber, around
+from validation.problems.numbered import JudgedNumber, around
 from validation.problems.problem import Problem, ProblemHooks
 from validation.runs.columns import unit_of
 from validation.runs.history import Array, History
@@ -52,42 +63,19 @@ def standing(scene: Scene) -> tuple[JudgedNumber, ...]:
     ground = boxes_of(scene)
     box = ground.boxes[0]
     if ground.friction > ground.slope:
-        allowed = 1e3 * UNKNOWN * box.width / MINUTE
-        return (
-            JudgedNumber(
-                "creep",
-                "mm/s",
-                exact=0.0,
-                low=0.0,
-                high=allowed,
-                scale=allowed / UNKNOWN,
-                reason="it stands exactly; the place of a block is known to one per cent of its width, and a creep "
-                "that moves it further in a minute changes the answer",
-                measure=lambda history: 1e3 * measures.creep(history, box),
-            ),
+        scale = 1e3 * box.width / MINUTE
+        reason = (
+            "it stands exactly; the place of a block is known to one per cent of its width, and a creep that moves it "
+            "further in a minute changes the answer"
         )
-    duration = scene.time.duration
-    distances = []
-    for factor in (1.0, *EITHER_WAY):
+        return (at_most("creep", "mm/s", scale, reason, lambda history: 1e3 * measures.creep(history, box)),)
+
+    def distance(factor: float) -> float:
         friction = math.degrees(math.atan(factor * ground.friction_coefficient))
-        distances.append(sliding_acceleration(ground.slope, friction, ground.gravity) * duration**2 / 2)
-    return (
-        around(
-            "distance slid",
-            "m",
-            distances[0],
-            distances[1:],
-            "one per cent of tan(phi), which is not known better, moves it as far",
-            measure=lambda history: float(measures.column(history, box, "x")[-1] - box.x),
-        ),
-    )
+        return sliding_acceleration(ground.slope, friction, ground.gravity) * scene.time.duration**2 / 2
 
-
-FRICTIONS = (19.0, 19.8, 20.2, 20.5, 21.0, 25.0, 30.0)  # deg, on a slope of 20; 1 % of tan(phi) is 0.18 deg there
-STANDING_CASES = tuple(
-    PlaneCase(f"friction {friction:g} deg", {"plane.contact.friction": friction, "time.steps": 40})
-    for friction in FRICTIONS
-)
+    slid = "distance slid"
+    return (varied(slid, "m", distance, FRICTION, lambda h: float(measures.column(h, box, "x")[-1] - box.x)),)
 
 
 # ---- bounces --------------------------------------------------------------------------------------------------------
@@ -98,18 +86,17 @@ def restitution(scene: Scene) -> tuple[JudgedNumber, ...]:
     ground = boxes_of(scene)
     box = ground.boxes[0]
     speed = -box.velocity[1]
-    landing = box.lift / speed
-    rebound = ground.rebound
+    after = box.lift / speed + SETTLED
+    reason = "one per cent of the speed of landing: no rebound is known better"
+
     return (
-        JudgedNumber(
+        within(
             "restitution",
             "1",
-            exact=rebound,
-            low=rebound - UNKNOWN,
-            high=rebound + UNKNOWN,
-            scale=1.0,
-            reason="one per cent of the speed of landing: no rebound is known better",
-            measure=lambda history: measures.speed_between(history, box, "y", landing + SETTLED) / speed,
+            ground.rebound,
+            1.0,
+            reason,
+            lambda history: measures.speed_between(history, box, "y", after) / speed,
         ),
     )
 
@@ -119,49 +106,26 @@ SPEEDS = (0.1, 1.0, 5.0)  # m/s; programs leave restitution away below a thresho
 LANDING = 0.2625  # s after t = 0: in the middle of a row and of the steps of the curves' first runs
 
 
-def _restitution_cases() -> tuple[PlaneCase, ...]:
-    cases = []
+def _restitution_cases() -> Iterator[PlaneCase]:
     half_height = boxes_of(own_scene("restitution")).boxes[0].height / 2
     for e in RESTITUTIONS:
         for speed in SPEEDS:
-            if (e, speed) == (0.5, 1.0):  # the problem's own scene
-                continue
-            thrown = {f"{BOX}.at": [0.0, half_height + LANDING * speed], f"{BOX}.velocity": [0.0, -speed]}
-            cases.append(PlaneCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown}))
-    return tuple(cases)
-
-
-def _energy(scene: Scene) -> tuple[JudgedNumber, JudgedNumber]:
-    ground = boxes_of(scene)
-    first = measures.first_energy(ground)
-    reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
-    return (
-        JudgedNumber(
-            "energy in the end over that at the start",
-            "1",
-            exact=1.0,
-            low=1.0 - UNKNOWN,
-            high=1.0 + UNKNOWN,
-            scale=1.0,
-            reason=reason,
-            measure=lambda history: measures.last_energy(history, ground) / first,
-        ),
-        JudgedNumber(
-            "largest gain of energy",
-            "1",
-            exact=0.0,
-            low=0.0,
-            high=UNKNOWN,
-            scale=1.0,
-            reason=reason,
-            measure=lambda history: measures.largest_gain(history, ground),
-        ),
-    )
+            if (e, speed) != (0.5, 1.0):  # the problem's own scene
+                thrown = {f"{BOX}.at": [0.0, half_height + LANDING * speed], f"{BOX}.velocity": [0.0, -speed]}
+                yield PlaneCase(f"e = {e:g}, {speed:g} m/s", {"plane.contact.restitution": e, **thrown})
 
 
 def bouncing(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return the energy of a box that bounces without loss."""
-    return _energy(scene)
+    ground = boxes_of(scene)
+    first = measures.first_energy(ground)
+    reason = "one per cent of the height of the drop, which is not known better, changes the energy by as much"
+
+    kept = "energy in the end over that at the start"
+    return (
+        within(kept, "1", 1.0, 1.0, reason, lambda history: measures.last_energy(history, ground) / first),
+        at_most("largest gain of energy", "1", 1.0, reason, lambda history: measures.largest_gain(history, ground)),
+    )
 
 
 def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
@@ -171,23 +135,17 @@ def tumbling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """
     ground = boxes_of(scene)
     box = ground.boxes[0]
-    landing_speed = math.sqrt(2 * ground.gravity * box.lift)
-    return (
-        *_energy(scene),
-        JudgedNumber(
-            "change of the speed along the ground",
-            "m/s",
-            exact=0.0,
-            low=0.0,
-            high=UNKNOWN * landing_speed,
-            scale=landing_speed,
-            reason="without friction nothing acts along the ground; one per cent of the speed of landing is what a "
-            "coefficient of friction of 0.01 takes in one impact",
-            measure=lambda history: abs(
-                measures.speed_between(history, box, "x", scene.time.duration - measures.LATE) - box.velocity[0]
-            ),
-        ),
+    landing = math.sqrt(2 * ground.gravity * box.lift)
+    reason = (
+        "without friction nothing acts along the ground; one per cent of the speed of landing is what a coefficient of "
+        "friction of 0.01 takes in one impact"
     )
+
+    def change(history: History) -> float:
+        late = measures.speed_between(history, box, "x", scene.time.duration - measures.LATE)
+        return abs(late - box.velocity[0])
+
+    return (*bouncing(scene), at_most("change of the speed along the ground", "m/s", landing, reason, change))
 
 
 # ---- piles ----------------------------------------------------------------------------------------------------------
@@ -197,93 +155,66 @@ def pile(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far the uppermost of some boxes at rest moves, and the force below the lowest."""
     ground = boxes_of(scene)
     top = ground.boxes[-1]
-    height = top.y + top.reach
-    width = min(box.width for box in ground.boxes)
+    width = 1e3 * min(box.width for box in ground.boxes)
+    height = 1e3 * (top.y + top.reach)
     weight = sum(box.mass for box in ground.boxes) * ground.gravity
-    drift = 1e3 * UNKNOWN * width
-    sinking = 1e3 * UNKNOWN * height
+    place = "it stands exactly; the place of a block is known to one per cent of its width"
+    rigid = "rigid boxes do not sink; the height of what is piled up is known to one per cent"
+    mean = "the weight above it, which one per cent of the density changes by as much; mean of the last tenth"
 
     def force(history: History) -> float | None:
         values = history.columns.get(ground.force_columns[0])
         if values is None or not np.isfinite(values).all():
             return None
-        late = -max(1, len(values) // 10)
-        return float(np.mean(values[late:]))
+        return float(np.mean(values[-max(1, len(values) // 10) :]))
 
     return (
-        JudgedNumber(
+        at_most(
             "drift of the top",
             "mm",
-            exact=0.0,
-            low=0.0,
-            high=drift,
-            scale=drift / UNKNOWN,
-            reason="it stands exactly; the place of a block is known to one per cent of its width",
-            measure=lambda history: 1e3 * float(np.max(np.abs(measures.column(history, top, "x") - top.x))),
+            width,
+            place,
+            lambda history: 1e3 * float(np.max(np.abs(measures.column(history, top, "x") - top.x))),
         ),
-        JudgedNumber(
+        within(
             "sinking of the top",
             "mm",
-            exact=0.0,
-            low=-sinking,
-            high=sinking,
-            scale=sinking / UNKNOWN,
-            reason="rigid boxes do not sink; the height of what is piled up is known to one per cent",
-            measure=lambda history: 1e3 * float(top.y - measures.column(history, top, "y")[-1]),
+            0.0,
+            height,
+            rigid,
+            lambda history: 1e3 * float(top.y - measures.column(history, top, "y")[-1]),
         ),
-        JudgedNumber(
-            "force below the lowest box",
-            "N",
-            exact=weight,
-            low=(1 - UNKNOWN) * weight,
-            high=(1 + UNKNOWN) * weight,
-            scale=weight,
-            reason="the weight above it, which one per cent of the density changes by as much; mean of the last tenth",
-            measure=force,
-            optional=True,
-        ),
+        within("force below the lowest box", "N", weight, weight, mean, force, optional=True),
     )
-
-
-LIGHT = 10.0  # kg/m3, of the lower box
-RATIOS = (1, 10, 1000)  # of the mass of the upper box to that of the lower one; 100 is the problem's own
-
-
-def _heavy_top_cases() -> tuple[PlaneCase, ...]:
-    return tuple(PlaneCase(f"mass ratio {ratio}", {"plane.block.2.density": LIGHT * ratio}) for ratio in RATIOS)
 
 
 # ---- toppling -------------------------------------------------------------------------------------------------------
 
 
-def rectangle_of(ground: BoxesOnGround) -> Rectangle:
-    """Return the lowest box."""
+def rectangle_of(ground: BoxesOnGround, factor: float = 1.0) -> Rectangle:
+    """Return the lowest box, its width multiplied by a factor."""
     box = ground.boxes[0]
-    return Rectangle(box.width, box.height, ground.gravity)
+    return Rectangle(factor * box.width, box.height, ground.gravity)
 
 
-def _rotation(ground: BoxesOnGround) -> Callable[[History], float]:
+def _rotation(history: History, ground: BoxesOnGround) -> float:
     box = ground.boxes[0]
-    return lambda history: measures.peak(np.abs(measures.column(history, box, "angle") - box.angle))
+    return measures.peak(np.abs(measures.column(history, box, "angle") - box.angle))
 
 
 def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
     ground = boxes_of(scene)
-    box = rectangle_of(ground)
     spin = abs(ground.boxes[0].spin)
-    widths = [Rectangle(factor * box.width, box.height, box.gravity) for factor in EITHER_WAY]
-    if spin >= min(critical_spin(changed_box) for changed_box in widths):
+    if spin >= min(critical_spin(rectangle_of(ground, factor)) for factor in EITHER_WAY):
         return overturning(scene)
-    rotation = _rotation(ground)
     return (
-        around(
+        varied(
             "greatest rotation",
             "deg",
-            math.degrees(greatest_rotation(box, spin)),
-            [math.degrees(greatest_rotation(changed_box, spin)) for changed_box in widths],
-            "one per cent of the width changes it by as much",
-            measure=lambda history: math.degrees(rotation(history)),
+            lambda factor: math.degrees(greatest_rotation(rectangle_of(ground, factor), spin)),
+            "the width",
+            lambda history: math.degrees(_rotation(history, ground)),
         ),
     )
 
@@ -292,35 +223,22 @@ def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return whether a box overturns."""
     ground = boxes_of(scene)
     box = rectangle_of(ground)
-    rotation = _rotation(ground)
-    exact = float(abs(ground.boxes[0].spin) > critical_spin(box))
-    return (
-        JudgedNumber(
-            "overturns",
-            "1",
-            exact=exact,
-            low=exact,
-            high=exact,
-            scale=1.0,
-            reason="1 where the centre passes above the corner, by the energy at the start",
-            measure=lambda history: float(rotation(history) > box.alpha),
-        ),
-    )
+    overturns = abs(ground.boxes[0].spin) > critical_spin(box)
+    reason = "1 where the centre passes above the corner, by the energy at the start"
+    return (decided("overturns", overturns, reason, lambda history: _rotation(history, ground) > box.alpha),)
 
 
 SPINS = (0.95, 0.98, 0.99, 1.01, 1.02, 1.05)  # of the one that just overturns
 DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has done so
 
 
-def _toppling_cases() -> tuple[PlaneCase, ...]:
+def _toppling_cases() -> Iterator[PlaneCase]:
     box = rectangle_of(boxes_of(own_scene("toppling")))
-    cases = []
     for factor in SPINS:
         spin = factor * critical_spin(box)
         velocity = [-spin * box.height / 2, spin * box.width / 2]
         started = {f"{BOX}.velocity": velocity, f"{BOX}.spin": spin, "time.steps": DECIDED}
-        cases.append(PlaneCase(f"spin {factor:g} of critical", started, overturning))
-    return tuple(cases)
+        yield PlaneCase(f"spin {factor:g} of critical", started, overturning)
 
 
 # ---- shaken ---------------------------------------------------------------------------------------------------------
@@ -337,35 +255,23 @@ def shaken(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box slips on shaken ground."""
     box = boxes_of(scene).boxes[0]
     time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
-    exact = shaken_box(scene).slip(time)
-    changed = [shaken_box(scene, factor).slip(time) for factor in EITHER_WAY]
     base = shaken_box(scene).ground(time)
-    why = "one per cent of tan(phi), which is not known better, changes it by as much"
-    width = {"scale": 1e3 * float(np.max(np.abs(exact)))}
+
+    @functools.cache
+    def exact(factor: float) -> Array:
+        return 1e3 * shaken_box(scene, factor).slip(time)
 
     def slip(history: History) -> Array:
-        moved: Array = measures.column(history, box, "x") - box.x - base
-        return moved
+        return np.asarray(1e3 * (measures.column(history, box, "x") - box.x - base))
 
+    def greatest(slips: Array) -> float:
+        return float(np.max(np.abs(slips)))
+
+    scale = greatest(exact(1.0))
+    end = "slip in the end"
     return (
-        around(
-            "slip in the end",
-            "mm",
-            1e3 * float(exact[-1]),
-            [1e3 * float(changed_slip[-1]) for changed_slip in changed],
-            why,
-            measure=lambda history: 1e3 * float(slip(history)[-1]),
-            **width,
-        ),
-        around(
-            "largest slip",
-            "mm",
-            1e3 * float(np.max(np.abs(exact))),
-            [1e3 * float(np.max(np.abs(changed_slip))) for changed_slip in changed],
-            why,
-            measure=lambda history: 1e3 * float(np.max(np.abs(slip(history)))),
-            **width,
-        ),
+        varied(end, "mm", lambda f: float(exact(f)[-1]), FRICTION, lambda h: float(slip(h)[-1]), scale=scale),
+        varied("largest slip", "mm", lambda f: greatest(exact(f)), FRICTION, lambda h: greatest(slip(h)), scale=scale),
     )
 
 
@@ -394,105 +300,62 @@ def impact(scene: Scene) -> tuple[JudgedNumber, ...]:
     ground = boxes_of(scene)
     box = ground.boxes[0]
     exact = impact_of(scene)
-    factors = [(factor, 1.0) for factor in EITHER_WAY] + [(1.0, factor) for factor in EITHER_WAY]
-    changed = [impact_of(scene, *pair) for pair in factors]
+    changed = [impact_of(scene, stiffness=factor) for factor in EITHER_WAY]
+    changed += [impact_of(scene, mass=factor) for factor in EITHER_WAY]
     why = "one per cent of stiffness or density, which are not known better, changes it by as much"
+    landing = "without loss it is the speed of landing, which is not known to better than one per cent"
+    lands = (exact.speed + box.velocity[1]) / ground.gravity
+    peaks = 1e-3 * exact.peak_force, [1e-3 * one.peak_force for one in changed]
+    durations = 1e3 * exact.duration, [1e3 * one.duration for one in changed]
 
     def gap(history: History) -> Array:
-        lifted: Array = measures.column(history, box, "y") - box.reach
-        return lifted
+        return np.asarray(measures.column(history, box, "y") - box.reach)
 
     def reported(history: History) -> float | None:
         values = history.columns.get(ground.force_columns[0])
-        return None if values is None else measures.peak(values)
+        return None if values is None else 1e-3 * measures.peak(values)
+
+    def duration(history: History) -> float | None:
+        time = measures.contact_time(history, gap(history))
+        return None if time is None else 1e3 * time
 
     def rebound(history: History) -> float | None:
         flying = measures.in_flight(history, ground)
         flying &= history.time > lands + exact.duration
         if not flying.any():
             return None
-        energy = float(np.median(measures.energies(history, ground)[flying])) + ground.gravity * (
-            measures.lowest_centre(box) - box.reach
-        )
+        energy = float(np.median(measures.energies(history, ground)[flying]))
+        energy += ground.gravity * (measures.lowest_centre(box) - box.reach)
         return math.sqrt(max(0.0, 2 * energy))
 
-    lands = (exact.speed + box.velocity[1]) / ground.gravity
-    force = [1e-3 * changed_impact.peak_force for changed_impact in changed]
     return (
         around(
             "peak force by the sinking",
             "kN",
-            1e-3 * exact.peak_force,
-            force,
+            *peaks,
             why,
             measure=lambda history: 1e-3 * exact.stiffness * max(0.0, measures.peak(-gap(history))),
         ),
-        around(
-            "peak force as reported",
-            "kN",
-            1e-3 * exact.peak_force,
-            force,
-            why,
-            measure=lambda history: None if reported(history) is None else 1e-3 * float(reported(history) or 0.0),
-            optional=True,
-        ),
-        around(
-            "time of contact",
-            "ms",
-            1e3 * exact.duration,
-            [1e3 * changed_impact.duration for changed_impact in changed],
-            why,
-            measure=lambda history: _times(1e3, measures.contact_time(history, gap(history))),
-        ),
-        around(
-            "speed of the rebound",
-            "m/s",
-            exact.speed,
-            [factor * exact.speed for factor in EITHER_WAY],
-            "without loss it is the speed of landing, which is not known to better than one per cent",
-            measure=rebound,
-        ),
+        around("peak force as reported", "kN", *peaks, why, measure=reported, optional=True),
+        around("time of contact", "ms", *durations, why, measure=duration),
+        within("speed of the rebound", "m/s", exact.speed, exact.speed, landing, rebound),
     )
 
 
-def _times(factor: float, value: float | None) -> float | None:
-    return None if value is None else factor * value
+BOX_NUMBERS = (standing, restitution, bouncing, tumbling, pile, toppling, shaken, impact)
 
 
 @functools.cache
 def box_problems() -> Mapping[str, PlaneProblem]:
     """Return the problems of boxes by name."""
-    problems = (
-        PlaneProblem("standing", standing, STANDING_CASES, changeable=("contact.friction", "gravity")),
-        PlaneProblem("restitution", restitution, _restitution_cases(), changeable=("contact.restitution",)),
-        PlaneProblem("bouncing", bouncing),
-        PlaneProblem("tumbling", tumbling),
-        PlaneProblem("pile", pile, forces=True),
-        PlaneProblem("heavy-top", pile, _heavy_top_cases(), forces=True),
-        PlaneProblem("toppling", toppling, _toppling_cases()),
-        PlaneProblem("shaken", shaken),
-        PlaneProblem("impact", impact, forces=True),
-    )
-    return {box_problem.name: box_problem for box_problem in problems}
+    more = {"restitution": _restitution_cases(), "toppling": _toppling_cases()}
+    return problems_of("boxes", {numbers.__name__: numbers for numbers in BOX_NUMBERS}, more)
 
 
 @functools.cache
-def plane_problems() -> Mapping[str, PlaneProblem]:
-    """Return all problems of blocks in the plane by name."""
-    return {**box_problems(), **{problem.name: problem for problem in canon_problems()}}
-
-
-ASKS = {
-    "standing": "A box on a slope that friction holds: does it stand for a minute, and from which friction on?",
-    "restitution": "A box thrown flat at the ground: what is asked of its rebound, and what comes back?",
-    "bouncing": "A box that bounces without loss for a minute: does its energy stay?",
-    "tumbling": "A tilted box that tumbles without friction or loss: do energy and momentum stay?",
-    "pile": "Ten equal boxes on each other at rest: do they stay, and what is the force below?",
-    "heavy-top": "A heavy box on a light one: do both stay, up to which mass ratio?",
-    "toppling": "A slender box started about its corner: how far it turns, and from which spin on it overturns.",
-    "shaken": "A box on ground that shakes more than friction can pass on: how far it slips.",
-    "impact": "A box that falls on a spring of given stiffness: peak force, time of contact, rebound.",
-}
+def canon_problems() -> Mapping[str, PlaneProblem]:
+    """Return the problems of several blocks by name."""
+    return problems_of("canon", {numbers.__name__: numbers for numbers in CANON_NUMBERS}, {})
 
 
 def problem_posed(scene: Scene) -> PlaneProblem:
@@ -503,11 +366,12 @@ def problem_posed(scene: Scene) -> PlaneProblem:
     InputError
         It is none of them; what is measured on any other scene of blocks, and against what, nobody has said.
     """
+    problems = {**box_problems(), **canon_problems()}
     name = scene.name.removeprefix(PREFIX).partition("[")[0]
-    if name not in plane_problems() or not scene.name.startswith(PREFIX):
-        rule = f"must be one of {', '.join(plane_problems())}: blocks that move are judged by the numbers of a problem"
+    if name not in problems or not scene.name.startswith(PREFIX):
+        rule = f"must be one of {', '.join(problems)}: blocks that move are judged by the numbers of a problem"
         raise InputError(rule, source=scene.name, field="plane", advice="name the problem, and use --set")
-    problem = plane_problems()[name]
+    problem = problems[name]
     as_posed = problem.scene()
     stated = _flat(scene)
     for field_name, value in _flat(as_posed).items():
@@ -515,8 +379,7 @@ def problem_posed(scene: Scene) -> PlaneProblem:
             free = " and ".join(f"plane.{key}" for key in problem.changeable) or "nothing"
             rule = f"must be that of the problem {name}, whose numbers are judged; {free} may be another"
             raise InputError(rule, source=scene.name, field=f"plane.{field_name}")
-    same_time = (scene.time.step, scene.time.steps) == (as_posed.time.step, as_posed.time.steps)
-    if not same_time:
+    if (scene.time.step, scene.time.steps) != (as_posed.time.step, as_posed.time.steps):
         raise InputError(f"must be that of the problem {name}", source=scene.name, field="time")
     return problem
 
@@ -531,8 +394,7 @@ def _flat(scene: Scene) -> dict[str, Any]:
 def _problem(name: str, posed: PlaneProblem, case: PlaneCase) -> Problem:
     scene = posed.scene(case)
     title = ": ".join(part for part in (scene.title, case.label) if part)
-    asks = (ASKS | CANON_ASKS)[posed.name]
-    return Problem(name, asks, title, scene, None, (case.quantities or posed.quantities)(scene))
+    return Problem(name, posed.asks, title, scene, None, (case.quantities or posed.quantities)(scene))
 
 
 class HOOKS(ProblemHooks):
@@ -540,10 +402,10 @@ class HOOKS(ProblemHooks):
 
     def problems(self) -> Iterator[tuple[str, Callable[[], Problem]]]:
         """Yield the cases of all problems; a case has its values in the name."""
-        for posed in plane_problems().values():
+        for posed in (*box_problems().values(), *canon_problems().values()):
             for case in posed.cases:
                 label = re.sub(r"[^a-z0-9.]+", "-", case.label.lower()).strip("-")
-                name = "-".join(part for part in (posed.name, label) if part)
+                name = f"{posed.name}-{label}" if label else posed.name
                 yield name, functools.partial(_problem, name, posed, case)
 
     def answer_columns(self, scene: Scene) -> tuple[str, ...]:
@@ -561,13 +423,13 @@ class HOOKS(ProblemHooks):
 
     def other_units(self, scene: Scene, history: History) -> Iterator[tuple[str, str]]:
         """Yield heights that begin in another unit."""
-        blocks = scene.table(PlaneSection).assembly.blocks
-        starts = {f"{block.name}.y": centroid(block.vertices)[1] for block in blocks if not block.held}
-        for column, start in starts.items():
-            values = history.columns.get(column, np.array([start]))
-            if abs(start) < FIRST_ROW:  # m: no height that a unit would show in
-                continue
+        for block in scene.table(PlaneSection).assembly.blocks:
+            column = f"{block.name}.y"
+            start = block.centroid[1]
+            if block.held or abs(start) < FIRST_ROW or column not in history.columns:
+                continue  # m: no height that a unit would show in
+            first = history.columns[column][0]
             for ratio, other_unit in ratios(unit_of(column, scene.kind.columns)).items():
-                if abs(values[0] / start / ratio - 1) < FIRST_ROW:
+                if abs(first / start / ratio - 1) < FIRST_ROW:
                     rule = f"wrong units: it begins with {ratio:g} times what is expected in SI, {other_unit}?"
                     yield column, rule

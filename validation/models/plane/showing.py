@@ -58,8 +58,7 @@ class HOOKS(ShowingHooks):
 
 def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
     """Return the outline of blocks in the plane with what they are beside it."""
-    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-    wide, high = np.ptp(corners, axis=0)
+    wide, high = np.ptp(np.vstack(plane.polygons), axis=0)
     slenderness = wide / high
     across = body_width(slenderness)
     cut = TEXTS.text("stated-blocks" if plane.subdivide is None else "cut", plane, len(plane.polygons))
@@ -82,14 +81,13 @@ def _segment(edge: Segment) -> str:
 def moving_rows(plane: PlaneSection) -> tuple[int, Rows]:
     """Return how many characters the drawing is wide, and its lines with words beside them."""
     assembly = plane.assembly
-    art = _raster(assembly)
-    rows = itertools.zip_longest(art, _words(plane, assembly), fillvalue="")
+    rows = itertools.zip_longest(_raster(assembly), _words(plane, assembly), fillvalue="")
     return ACROSS, [(f"  {line}", text) for line, text in rows]
 
 
 def _raster(assembly: Assembly) -> list[str]:
     """Return lines in which each character is a block: that at the middle of its cell."""
-    corners = np.vstack([np.array(block.vertices) for block in assembly.blocks])
+    corners = np.vstack([block.vertices for block in assembly.blocks])
     low, size = corners.min(axis=0), np.ptp(corners, axis=0)
     cell = max(size[0] / ACROSS, size[1] / (2 * MOST_ROWS))
     columns, lines = max(1, round(size[0] / cell)), max(1, round(size[1] / (2 * cell)))
@@ -109,7 +107,7 @@ def letters(assembly: Assembly) -> list[str]:
 
 def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
     """Return what the blocks are, what joins them and what drives them, a line each."""
-    moving = [block for block in assembly.blocks if not block.held]
+    moving = assembly.moving
     legend = zip(assembly.blocks, letters(assembly), strict=True)
     names = ", ".join(f"{letter} {block.name}" for block, letter in legend) if len(moving) <= MOST_ROWS // 2 else ""
     material = "rigid" if math.isinf(plane.young) else TEXTS.text("elastic", plane)
@@ -139,8 +137,7 @@ def _words(plane: PlaneSection, assembly: Assembly) -> list[str]:
 
 def glued_numbers(plane: PlaneSection) -> Iterator[Number]:
     """Yield the numbers of glued blocks."""
-    corners = np.vstack([np.array(polygon) for polygon in plane.polygons])
-    size = float(np.max(np.ptp(corners, axis=0)))
+    size = float(np.max(np.ptp(np.vstack(plane.polygons), axis=0)))
     speed = math.sqrt(plane.young / plane.density)
     yield Number("blocks", len(plane.polygons), "", "blocks of one strain")
     yield Number("m", plane.density * sum(map(area, plane.polygons)), "kg", "mass of all blocks")
@@ -151,11 +148,11 @@ def glued_numbers(plane: PlaneSection) -> Iterator[Number]:
 def moving_numbers(plane: PlaneSection, step: float) -> Iterator[Number]:
     """Yield the numbers of moving blocks: a corner of the lightest one on the stiffest spring is the fastest motion."""
     assembly = plane.assembly
-    moving = [block for block in assembly.blocks if not block.held]
-    masses = [block.density * area(block.vertices) for block in moving]
+    moving = assembly.moving
+    masses = [block.mass for block in moving]
     yield Number("blocks", len(moving), "", "blocks that move")
     yield Number("m", sum(masses), "kg", "mass of all that move")
-    springs = [*assembly.springs_of_pairs.values(), *([assembly.springs] if assembly.springs else [])]
+    springs = assembly.all_springs
     if not springs or not masses:
         return
     stiffest = max(contact.stiffness for contact in springs)

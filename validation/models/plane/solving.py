@@ -46,7 +46,7 @@ class HOOKS(SolvingHooks):
     def time_limit(self, scene: Scene) -> float | None:
         """Return the time that a user's function may take [s], of blocks that move."""
         plane = scene.table(PlaneSection)
-        moving = sum(not block.held for block in plane.assembly.blocks) if plane.moves else 0
+        moving = len(plane.assembly.moving) if plane.moves else 0
         return TIME_LIMIT + TIME_FACTOR * scene.time.duration * moving if moving else None
 
     def request(self, scene: Scene) -> dict[str, Any]:

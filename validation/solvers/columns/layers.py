@@ -49,10 +49,10 @@ class ExactColumn(Prepared):
     def amplitudes(self, frequencies: Array, exact: bool) -> Mapping[str, Complex]:
         """Return the frequency response, exact in space and time; at rest it is that of next to nothing."""
         from fem_reference.exact.layers import amplitudes
-        from fem_reference.scheme.harmonic import squares
+        from fem_reference.scheme.harmonic import answering
 
         f = np.maximum(np.atleast_1d(np.asarray(frequencies, float)), STILL)
-        W2 = squares(f, self.scheme, exact=True)
+        ((W2, _),) = answering(f, self.scheme, exact=True)
         w = 2 * np.pi * f
         names = (DISPLACEMENT, PRESSURE)
         under_base_motion, under_pressure = amplitudes(self.ground, w, names, squared=W2)

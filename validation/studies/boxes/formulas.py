@@ -13,7 +13,6 @@ import numpy as np
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Metrics
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 
@@ -21,7 +20,7 @@ from validation.suite.bands import Band
 def masses(case: Scene) -> list[float]:
     """Return the masses of the boxes, from the lowest up [kg]."""
     blocks = case.table(PlaneSection).assembly.blocks
-    return [block.density * area(block.vertices) for block in blocks if not block.fixed]
+    return [block.mass for block in blocks if not block.fixed]
 
 
 def slide(case: Scene, own: History, exact: History) -> Metrics:

@@ -112,7 +112,7 @@ def first_correction(case: Scene) -> float:
     """Return W/(p l): all weight on one corner spring over the thinnest block that moves."""
     plane = case.table(PlaneSection)
     moving = [block for block in plane.assembly.blocks if not block.fixed]
-    weight = sum(block.density * area(block.vertices) for block in moving) * math.hypot(*plane.gravity)
+    weight = sum(block.mass for block in moving) * math.hypot(*plane.gravity)
     stiffness = plane.contact.stiffness if plane.contact else math.inf
     return weight / (stiffness * plane.assembly.thinnest)
 

@@ -12,7 +12,6 @@ from validation.models.plane.tables import PlaneSection
 from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
-from validation.scenes.outline import area
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, Bands, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
@@ -117,7 +116,7 @@ def weight_over_stiffness(scene: Scene) -> float:
     """Return W/p [m]."""
     plane = scene.table(PlaneSection)
     (block,) = moving_blocks(scene)
-    weight = block.density * area(block.vertices) * -plane.gravity[1]
+    weight = block.mass * -plane.gravity[1]
     return weight / plane.contact.stiffness if plane.contact else 0.0
 
 

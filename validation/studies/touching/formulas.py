@@ -89,7 +89,7 @@ def turned_in_a_step(case: Scene) -> Band | None:
     speed = sum(math.hypot(*body.velocity) for body in bodies)
     plane = case.table(PlaneSection)
     stiffness = plane.contact.stiffness if plane.contact else 0.0
-    lightest = plane.density * min(area(block.vertices) for block in plane.assembly.blocks)
+    lightest = plane.density * min(block.area for block in plane.assembly.blocks)
     starts = speed * step * min(1.0, step**2 * stiffness / lightest * 4)
     return 0.0, 2 * step * sum(abs(body.spin) for body in bodies) + starts
 

@@ -1,0 +1,83 @@
+"""How near the programs of blocks and columns come to exact motions, with the settings that were chosen: one table."""
+
+import tomllib
+from importlib.util import find_spec
+from pathlib import Path
+
+import numpy as np
+import pytest
+from peers import calculix, mujoco, opensees, siconos, yade
+
+from validation.problems.problem import problem_of
+from validation.problems.truth import exact
+from validation.scenes.scene import load_scene, parse_scene
+
+TABLE = tomllib.loads(Path(__file__).with_name("exact_motions.toml").read_text(encoding="utf-8"))
+
+
+class Quick(calculix.CalculiX):
+    """CalculiX's chosen settings with fewer increments."""
+
+    def increments(self, scene):
+        return 8 if scene.column is None else 4
+
+
+PROGRAMS = {
+    "mujoco": mujoco.MuJoCo,
+    "siconos": siconos.Siconos,
+    "yade": yade.Yade,
+    "calculix": Quick,
+    "opensees": opensees.OpenSees,
+}
+
+
+def scene_of(row, directory):
+    """Return the scene of a row; a record of its base is written to a directory."""
+    if row["problem"] == "layers":
+        layers = TABLE["layers"]
+        return parse_scene(layers | {"column": layers["column"] | row.get("column", {})}, "layers")
+    values = dict(row.get("set", {}))
+    if row.get("all"):
+        values["run.columns"] = ["displacement", "contact_pressure", "horizontal_displacement", "rotation"]
+    if row.get("record"):
+        t = np.arange(0, 0.05, 0.005)
+        path = directory / "base.csv"
+        motion = np.column_stack([t, 0.3 + 0.02 * np.sin(60 * t), 0.002 * np.sin(80 * t)])
+        np.savetxt(path, motion, delimiter=",", header="time,x,y", comments="")
+        values["load.base_motion"] = str(path)
+    return load_scene(f"field-{row['problem']}").with_values(values)
+
+
+@pytest.mark.parametrize(
+    "row",
+    [
+        pytest.param(
+            row, id=f"{row['program']}-{row['problem']}-{number}", marks=[] if row.get("short") else [pytest.mark.long]
+        )
+        for number, row in enumerate(TABLE["row"])
+    ],
+)
+def test_a_program_comes_near_to_the_exact_motion(row, tmp_path):
+    scene = scene_of(row, tmp_path)
+    try:
+        answer = PROGRAMS[row["program"]]().solve(scene)
+    except NotImplementedError as error:
+        if "not installed" not in str(error):
+            raise
+        pytest.skip(f"NOT RUN: {error}")
+    truth = exact(scene, problem_of(scene).truth).columns
+    reported = [name for name in scene.run.columns if name in answer]
+    assert reported
+    for name in reported:
+        expected = truth[name]
+        difference = np.linalg.norm(answer[name][: len(expected)] - expected)
+        assert difference < row["within"] * np.linalg.norm(expected), name
+
+
+@pytest.mark.skipif(not find_spec("mujoco"), reason="NOT RUN: mujoco is not installed")
+def test_mujoco_as_it_comes_diverges_at_the_step_of_the_problem_and_leaves_no_file(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = mujoco.AsItComes().solve(load_scene("field-locked"))["displacement"]
+    assert np.isfinite(found[0])
+    assert np.isnan(found[-1])
+    assert not list(tmp_path.iterdir())
