@@ -142,14 +142,14 @@ class StudyTable:
         return tuple(names or sorted(path.stem for path in (self.folder / "scenes").glob("*.toml")))
 
     def gates(self) -> tuple[Gate, ...]:
-        """Return the gates: those of the table in its order, and those of the function that it names."""
+        """Return the gates: those of the function that the table names, and those of the table in its order."""
         declared = []
         for entry in self.entries.get("gate", ()):
             pairs = entry.pop("pairs")
             judged = self._printed(entry) if "numbers" in entry else self._banded(entry)
             for fields in judged:
                 declared += [Gate(pair=tuple(pair), **(entry | fields)) for pair in pairs]
-        return (*declared, *self._further("gates"))
+        return (*self._further("gates"), *declared)
 
     def derived(self) -> DerivedRows:
         """Return the derived rows: those of the table, and those of the function that it names."""

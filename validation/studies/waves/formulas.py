@@ -49,7 +49,7 @@ def derived() -> DerivedRows:
 
 def gates() -> tuple[Gate, ...]:
     """Return the gates on waves that are measured."""
-    return (*rows.travelling_gates(), *rows.joint_gates(), *rows.base_gates())
+    return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates())
 
 
 def fem_too() -> tuple[NamePair, ...]:

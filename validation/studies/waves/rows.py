@@ -173,6 +173,12 @@ def averaged() -> list[Wave]:
     return [w for w in jointed() if w.solver == "dda" and w.scene.time.delta == 0.5]
 
 
+def order_gate() -> Gate:
+    """Return the gate on the order."""
+    why = "blocks are linear elements and the scheme is of second order: 2; a tenth for the next order"
+    return gate(averaged()[-1].scene, "order", "joint.order", (1.9, 2.1), why)
+
+
 # ---- transmitting base ----------------------------------------------------------------------------------------------
 
 
