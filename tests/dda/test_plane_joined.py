@@ -31,6 +31,8 @@ def test_a_block_that_is_dropped_comes_to_rest_on_its_springs(equations):
     weight = 5400.0 * GRAVITY
     assert result.outcome == "completed" and len(result.contacts) == 2
     assert {contact[2:] for contact in result.contacts} == {(0, 2)}
+    for gap, first in zip(result.gap.T, np.argmax(result.state != 0, axis=0), strict=True):
+        assert first > 3 and np.all(np.isnan(gap[:first])) and gap[first] < 0  # told of from the first touch on
     size = weight * 0.05
     assert np.abs(result.energy["balance"]).max() <= 1e-10 * size
     assert result.normal[-1].sum() == pytest.approx(weight, rel=0.02)
