@@ -21,7 +21,6 @@ from validation.advice.limits import Limit, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency
 from validation.errors import InputError
-from validation.runs.aliases import Fields, NamedNumbers, NumberPair, Words
 from validation.runs.modes import Mode
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -55,7 +54,7 @@ class Offer:
     """A scheme at a step that has the wanted damping ratio."""
 
     name: str
-    settings: Fields  # for Scene.with_values
+    settings: dict[str, Any]  # for Scene.with_values
     step: float  # dt [s]
     gg: float  # per step
     damping: float  # xi at the requested frequency [-]
@@ -65,11 +64,11 @@ class Offer:
     contact_mode: float | None  # xi of its highest mode, the contact's where p is large
     contact_radius: float  # and the share of its amplitude that a step keeps
     cost: float | None  # linear solves a second over those of the scene; None where that has none
-    rebound: NamedNumbers  # of its contact at this step, without the discount: mean, least, most [-]
+    rebound: dict[str, float]  # of its contact at this step, without the discount: mean, least, most [-]
     greatest_rebound: float  # at any step [-]
     gains: bool  # whether an impact at this step may give back more than it had
     start_rise: float | None  # energy that the first step adds from a consistent start, over what the loads give [-]
-    fears: Words
+    fears: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class SchemeAdvice(PlainAnswer):
     frequency: float  # at which it is wanted [Hz]
     no_gain: bool  # whether impacts must not gain energy
     offers: tuple[Offer, ...]
-    unreachable: NamedNumbers  # scheme -> the largest xi that it has there
+    unreachable: dict[str, float]  # scheme -> the largest xi that it has there
     sentence: str
 
 
@@ -149,7 +148,7 @@ def advise_across(
 # ---- candidates -----------------------------------------------------------------------------------------------------
 
 
-def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], NamedNumbers]:
+def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Stepping], dict[str, float]]:
     """Return the steps that have the target, and by name the largest xi of the schemes that have it nowhere."""
     present = Stepping.of(scene)
     weights = [CONSTANT, (present.alpha, present.delta)] if present.scheme == "newmark" else [CONSTANT]
@@ -157,7 +156,7 @@ def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Steppin
     for scheme, radii in LADDER.items():
         units += [Stepping.named(scheme, rho_inf=radius) for radius in radii]
     steppings: list[Stepping | None] = []
-    unreachable: NamedNumbers = {}
+    unreachable: dict[str, float] = {}
     for unit in units:
         ratios = _ratios(unit)
         if not np.any(ratios >= target):
@@ -189,7 +188,9 @@ def _of_radius(scheme: str, step: float, radius: float) -> Stepping:
     return Stepping.named(scheme, step, rho_inf=radius)
 
 
-def _member(family: Callable[[float], Stepping], target: float, omega: float, ends: NumberPair) -> Stepping | None:
+def _member(
+    family: Callable[[float], Stepping], target: float, omega: float, ends: tuple[float, float]
+) -> Stepping | None:
     """Return the scheme of a family that has the target at a frequency; None where the ends do not bracket it."""
     number = _root(lambda value: family(value).damping_ratio(omega * family(value).step), target, *ends)
     return None if number is None else family(number)
@@ -229,7 +230,7 @@ def _offer(
     """Return a scheme at its step with all that follows from it."""
     dt = stepping.step
     present = Stepping.of(scene)
-    settings: Fields = {"time.step": dt, "time.gg": stepping.gg}
+    settings: dict[str, Any] = {"time.step": dt, "time.gg": stepping.gg}
     if stepping.scheme != "newmark":
         settings |= {"time.scheme": stepping.scheme, "time.rho_inf": stepping.rho_inf}
     else:

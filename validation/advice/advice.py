@@ -30,7 +30,6 @@ from validation.advice.spectra import (
     steps_to,
 )
 from validation.metrics.columns import settling_step
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -61,7 +60,7 @@ class Solution:
     step: float  # dt [s]
     gg: float  # per step
     gg_rate: float | None  # c = -ln(gg) / dt [1/s]
-    settings: NamedNumbers  # for Scene.with_values
+    settings: dict[str, float]  # for Scene.with_values
     contact: ModeDamping | None
 
 

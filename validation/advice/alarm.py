@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from validation.runs.aliases import NamedTexts, NumbersByName
 from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 from validation.runs.records import AlarmRecord
@@ -13,7 +13,7 @@ from validation.runs.row import Row, RowsBySolver
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
-SENTENCES: NamedTexts = table_beside(__file__, "alarms.toml")
+SENTENCES: dict[str, str] = table_beside(__file__, "alarms.toml")
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class Alarm:
     kind: str
     scene: str
     sentence: str
-    values: NumbersByName = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
 
     def record(self) -> AlarmRecord:
         """Return plain data, numbers rounded well above the last bits."""
@@ -31,7 +31,7 @@ class Alarm:
         return {"kind": self.kind, "scene": self.scene, "sentence": self.sentence, "values": rounded}
 
 
-def alarm(kind: str, scene: str, values: NumbersByName | None = None, **words: object) -> Alarm:
+def alarm(kind: str, scene: str, values: Mapping[str, float] | None = None, **words: object) -> Alarm:
     """Return an alarm with the sentence of its kind, made of its numbers and of further words."""
     numbers = dict(values or {})
     finite = {name: value for name, value in numbers.items() if math.isfinite(value)}

@@ -18,7 +18,6 @@ from validation.advice.alarm import alarm, first_row, number
 from validation.advice.coarse import coarse_alarms
 from validation.advice.hooks import AdviceHooks
 from validation.metrics.catalogue import pair as pair_metric
-from validation.runs.aliases import NamePair
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
 from validation.runs.numbers import share_text
@@ -36,7 +35,7 @@ class Cases(Protocol):
     """What alarms are raised from: rows and histories of finished cases."""
 
     @property
-    def rows(self) -> dict[NamePair, Row]:
+    def rows(self) -> dict[tuple[str, str], Row]:
         """Rows by (scene, solver)."""
 
     def history(self, scene: str, solver: str) -> History | None:

@@ -18,7 +18,6 @@ from validation.advice.contact_alarms import contact_alarms
 from validation.advice.friction import friction_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.spectra import FLIPPING, steps_to
-from validation.runs.aliases import NamedNumbers
 from validation.runs.row import RowsBySolver
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
@@ -31,7 +30,7 @@ RINGING = "contact ringing"
 def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     """Yield the alarms of a block from its finished rows by solver."""
     # One alarm for the solvers whose contact carries tension; runs that repeat another are not listed.
-    values: NamedNumbers = {}
+    values: dict[str, float] = {}
     parts = []
     for solver, row in rows.items():
         minimum = number(row, "pressure.minimum")

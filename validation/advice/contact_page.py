@@ -6,13 +6,13 @@ import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
+from typing import Any
 
 from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
-from validation.runs.aliases import Data, Fields
 from validation.runs.beside import table_beside
 from validation.runs.numbers import number_text, share_text
 from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
@@ -32,7 +32,7 @@ MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
 NONE = "-"  # in place of a number that a run has not
 
-LINES: dict[str, list[Fields]] = table_beside(__file__)
+LINES: dict[str, list[dict[str, Any]]] = table_beside(__file__)
 ALARMS = (contact_alarms, overshoot_alarms, friction.friction_alarms)
 
 
@@ -84,7 +84,7 @@ def answer(
     rows: RowsBySolver,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
-) -> Fields:
+) -> dict[str, Any]:
     """Return everything as plain data.
 
     Parameters
@@ -139,7 +139,7 @@ def landing_speed(scene: Scene, rows: RowsBySolver) -> float:
     return math.sqrt(scene.block.velocity**2 + max(0.0, fallen))
 
 
-def page(scene: Scene, data: Data, absent: Mapping[str, str]) -> Iterator[str]:
+def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
     springs = f"p = {scene.contact.stiffness:.4g} N/m"
     yield from _heading(scene, "contact that opens", springs, f": w_c dt = {data['omega']:.3g}")
@@ -230,7 +230,7 @@ def _hops(slides: friction.Sliding, runs: Mapping[str, Metrics]) -> Iterator[str
     )
 
 
-def _needed(scene: Scene, data: Data) -> Iterator[str]:
+def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
     need = data["needed"]
     depth = data["asked"]["penetration"]
     load = abs(opened.resultant_load(scene))
@@ -256,7 +256,7 @@ def _needed(scene: Scene, data: Data) -> Iterator[str]:
         yield f"  gg = {scene.time.discount:g} acts per step: {loses}; {left}"
 
 
-def _depth(need: Data, penetration: float) -> str:
+def _depth(need: Mapping[str, Any], penetration: float) -> str:
     if need["depth"] is None:
         return ", for the load at rest and one unloaded landing"
     reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
@@ -273,7 +273,7 @@ def column_scenes(scene: Scene) -> dict[str, Scene]:
     return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
 
 
-def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> Fields:
+def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> dict[str, Any]:
     """Return everything as plain data."""
     return {
         "scene": scene.name,
@@ -283,7 +283,9 @@ def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits)
     }
 
 
-def column_page(scene: Scene, bound: columns.ColumnLimits, data: Data, absent: Mapping[str, str]) -> Iterator[str]:
+def column_page(
+    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
+) -> Iterator[str]:
     """Yield the lines of one page of text; a line of the table that no run has a number for is left out."""
     yield from _heading(scene, "a column whose contacts open or slip", f"{bound.contacts} contacts")
     lines = [*measured_lines("column", data["runs"]), *measured_lines("repeatable", data["runs"])]

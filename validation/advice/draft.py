@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from validation.advice.limits import Limit, check_choice
 from validation.errors import InputError
-from validation.runs.aliases import Data, Fields, NamedNumbers, NumbersByName
 from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 
-TABLES: Fields = table_beside(__file__)
-ROCKS: dict[str, NamedNumbers] = TABLES["rock"]
+TABLES: dict[str, Any] = table_beside(__file__)
+ROCKS: dict[str, dict[str, float]] = TABLES["rock"]
 KINDS = tuple(TABLES["text"])
 MOVING = tuple(TABLES["moving"]["title"])  # kinds of blocks in the plane that move
 GLUED_BODIES = ("plate", "disc")  # of glued triangles, by one table each
@@ -34,7 +33,7 @@ LIMITS = {  # of the numbers that may be no arbitrary positive ones
 }
 
 
-def draft(options: Data, ask: Callable[[str, float], float]) -> str:
+def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str:
     """Return the text of a scene file.
 
     Parameters
@@ -58,7 +57,7 @@ def draft(options: Data, ask: Callable[[str, float], float]) -> str:
         if name not in ("kind", "rock", *questions):
             listed = ", ".join(f"--{question}" for question in questions)
             raise InputError(f"does not go with --kind {kind}, which takes {listed}", field=f"--{name}")
-    numbers: Fields = {}
+    numbers: dict[str, Any] = {}
     for name, (question, default) in questions.items():
         numbers[name] = float(options[name]) if name in options else ask(question, default)
         LIMITS.get(name, Limit(f"--{name}")).check(numbers[name])
@@ -75,7 +74,7 @@ def draft(options: Data, ask: Callable[[str, float], float]) -> str:
     return text.lstrip().format(rock=rock, **words)
 
 
-def _derived(kind: str, numbers: NumbersByName, material: NumbersByName) -> Fields:
+def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, float]) -> dict[str, Any]:
     """Return what follows of size and material: springs, blocks and steps."""
     young = material["young"]
     if kind in GLUED_BODIES:
@@ -98,7 +97,7 @@ def _derived(kind: str, numbers: NumbersByName, material: NumbersByName) -> Fiel
     return {"stiffness": significant(stiffness, 2), "step": significant(FIRST_OMEGA_DT / first, 2)}
 
 
-def _of_moving_blocks(kind: str, numbers: Data, material: NumbersByName) -> Fields:
+def _of_moving_blocks(kind: str, numbers: Mapping[str, Any], material: Mapping[str, float]) -> dict[str, Any]:
     """Return what follows for blocks in the plane that move: places, springs by their weight, and steps."""
     width = numbers["width"]
     height = numbers.get("height", width)

@@ -21,9 +21,10 @@ import itertools
 import math
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -39,7 +40,6 @@ from validation.metrics.columns import settling_step
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import as_number
 from validation.runs import extras
-from validation.runs.aliases import Data, Fields, NumberPair, Words
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
@@ -80,7 +80,7 @@ class Recommendation(PlainAnswer):
 
     goal: str
     condition: str  # under which the numbers hold, in words
-    settings: Fields  # for Scene.with_values
+    settings: dict[str, Any]  # for Scene.with_values
     is_reached: bool  # whether both errors are within the requested one
     displacement_error: float  # against the reference [-]
     force_error: float | None  # of the contact pressure, or of an impact of the restitution [-]; None if not compared
@@ -95,7 +95,7 @@ class Recommendation(PlainAnswer):
 class Candidate:
     """Settings that were run."""
 
-    settings: Fields
+    settings: dict[str, Any]
     steps: int
     displacement_error: float
     force_error: float | None
@@ -169,7 +169,7 @@ def recommend(
     InputError
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
-    values: Fields = {}
+    values: dict[str, Any] = {}
     if not keep_springs or math.isinf(scene.contact.stiffness):  # a rigid stop has none to keep
         values = {"contact.stiffness": springs(scene, error)}
     values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
@@ -254,7 +254,7 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     return recommendation(scene, "static", condition, best, error, reference, duration)
 
 
-def slide_errors(scene: Scene) -> NumberPair | None:
+def slide_errors(scene: Scene) -> tuple[float, float] | None:
     """Return how far `dda` is from a rigid block that slides: of the distance, and of the mean contact pressure [-].
 
     Undamped stiff springs may let the exact block hop, which then slides farther; a rigid block stays on its slope.
@@ -271,7 +271,7 @@ def slide_errors(scene: Scene) -> NumberPair | None:
 # ---- wave and quake -------------------------------------------------------------------------------------------------
 
 
-def _driven(block: Scene, goal: str, error: float, frequency: float, axes: Words) -> Recommendation:
+def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple[str, ...]) -> Recommendation:
     duration = DURATION / frequency
     finest = 1 / (frequency * COARSEST * 2 ** (REFINEMENTS - 1))
     with tempfile.TemporaryDirectory() as folder:
@@ -303,7 +303,7 @@ def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Can
         good = []
         for scheme in (AVERAGE, CONSTANT):
 
-            def run(every: int, scheme: Data = scheme, pieces: int = pieces) -> Candidate:
+            def run(every: int, scheme: Mapping[str, Any] = scheme, pieces: int = pieces) -> Candidate:
                 steps = len(exact.time) // every
                 settings = {**scheme, **_cut(driven, pieces), "time.step": every * finest}
                 history = _history(driven, own(), settings | {"time.steps": steps})
@@ -371,7 +371,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
         if method is CONSERVING and block.block.poisson != 0:
             continue  # its base slides, which the rule does not take with springs of shear
 
-        def run(every: int, method: Data = method) -> Candidate:
+        def run(every: int, method: Mapping[str, Any] = method) -> Candidate:
             settings = {**method, "time.step": every * finest}
             errors = [_landing_errors(falling, settings, flight, every, phase, speed) for phase in PHASES]
             return Candidate(settings, steps // every, *np.max(errors, axis=0).tolist())
@@ -382,8 +382,8 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
 
 
 def _landing_errors(
-    falling: Scene, settings: Data, flight: Array, every: int, phase: float, speed: float
-) -> NumberPair:
+    falling: Scene, settings: Mapping[str, Any], flight: Array, every: int, phase: float, speed: float
+) -> tuple[float, float]:
     """Return the errors of displacement and restitution of a block that lands at a phase of its first step.
 
     `flight` is the exact displacement at every `every`-th part of a step from the landing on.
@@ -409,7 +409,7 @@ def _pieces(scene: Scene) -> list[int]:
     return [1, 2, 4] if scene.block.rectangle is not None else [1]
 
 
-def _cut(scene: Scene, pieces: int) -> Fields:
+def _cut(scene: Scene, pieces: int) -> dict[str, Any]:
     """Return the settings that cut each present block upwards, and sideways where it strains sideways."""
     if pieces == 1:
         return {}
@@ -418,7 +418,7 @@ def _cut(scene: Scene, pieces: int) -> Fields:
     return {"block.subdivide": [across * sideways, upwards * pieces]}
 
 
-def _history(scene: Scene, solver: str, values: Data) -> History | None:
+def _history(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:
     """Return the history of a run with some values; None where it did not complete."""
     run = solve(scene.with_values(dict(values)), solver)
     return run.history if run.outcome.value == "completed" else None

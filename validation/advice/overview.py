@@ -22,9 +22,9 @@ from validation.advice.plain import Line, PlainAnswer, in_columns
 from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
 from validation.errors import InputError
 from validation.runs import extras
-from validation.runs.aliases import NamedTexts, Progress, Words
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import share_text
+from validation.runs.progress import Progress
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import Role
@@ -70,12 +70,12 @@ class Overview(PlainAnswer):
     facts: tuple[Fact, ...]
     present: PresentError | None
     recommendations: tuple[Recommendation, ...]
-    refused: NamedTexts  # goal -> why there is nothing to take for it
+    refused: dict[str, str]  # goal -> why there is nothing to take for it
 
 
 def overview(
     scene: Scene,
-    chosen: Words = goals.GOALS,
+    chosen: tuple[str, ...] = goals.GOALS,
     error: float = 0.05,
     frequency: float | None = None,
     progress: Progress = lambda *_: None,
@@ -109,7 +109,7 @@ def overview(
     present = _present_error(scene)
     facts = tuple(_facts(scene))
     recommendations: list[Recommendation] = []
-    refused: NamedTexts = {}
+    refused: dict[str, str] = {}
     for number, goal in enumerate(chosen, 1):
         progress(number, len(chosen) + 1, goal)
         try:

@@ -9,7 +9,7 @@ from typing import Any
 from validation.advice.goals import GOALS, Recommendation
 from validation.advice.overview import Overview, recommended
 from validation.errors import InputError
-from validation.runs.aliases import Progress, Words
+from validation.runs.progress import Progress
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
@@ -23,7 +23,7 @@ class Question:
     source: str  # the words of the scene on a command line
     error: float  # of displacement and contact force, that is allowed [-]
     stated: str = ""  # the options that all goals are asked for with, as one goal takes them
-    goals: Words = GOALS
+    goals: tuple[str, ...] = GOALS
     frequency: float | None = None  # of the wave or the quake [Hz]
     keep_springs: bool = False  # whether the springs are those of a real joint, and stay
     progress: Progress = lambda *_: None  # is told what has been done, of how much, what is next

@@ -9,8 +9,6 @@ import textwrap
 from collections.abc import Collection, Sequence
 from typing import Any
 
-from validation.runs.aliases import Fields
-
 Line = tuple[str, ...]
 NARROW = 34  # characters: a last column with less room stands below its line
 
@@ -18,7 +16,7 @@ NARROW = 34  # characters: a last column with less room stands below its line
 class PlainAnswer:
     """An answer, a dataclass, that ``--json`` prints field by field."""
 
-    def as_dict(self) -> Fields:
+    def as_dict(self) -> dict[str, Any]:
         """Return plain data for JSON."""
         return dataclasses.asdict(self)  # type: ignore[call-overload, no-any-return]
 

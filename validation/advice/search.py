@@ -9,7 +9,6 @@ from functools import cached_property
 
 import numpy as np
 
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array, ArrayPair
 
 FLAT = 1e-12  # relative; smaller turns of a function are rounding, not extrema
@@ -23,7 +22,7 @@ class Search:
     grid: Array  # coordinates, increasing
     xi: Callable[[Array], Array]  # damping ratios [1], NaN where a root is not positive
     value: Callable[[float], float]  # dt [s], gg [1] or delta [1] at a coordinate
-    settings: Callable[[float], NamedNumbers]  # for Scene.with_values
+    settings: Callable[[float], dict[str, float]]  # for Scene.with_values
     flat: float = FLAT  # relative size of turns that are rounding
 
     @cached_property

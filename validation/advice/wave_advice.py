@@ -22,7 +22,6 @@ from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
 from validation.errors import InputError
 from validation.models.column.tables import NEAR
-from validation.runs.aliases import NumberPair
 from validation.runs.history import ArrayPair, Complex
 from validation.runs.numbers import share_text
 from validation.scenes import features
@@ -228,7 +227,7 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
     """Return the largest step with which the wave arrives, and what limits it."""
     is_stable = _stability(scene, path)
 
-    def passed(step: float) -> NumberPair:
+    def passed(step: float) -> tuple[float, float]:
         lost, delay = path.passed(Stepping.of(scene).at(step).squared_frequency([path.omega]))
         return float(lost[0]), float(abs(delay[0]))
 

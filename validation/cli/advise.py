@@ -12,7 +12,6 @@ import typer
 
 from validation.cli.app import JsonOption, SceneArgument, SetOption, _progress, one_case, parts
 from validation.cli.printing.output import broken, columns, echo_answer
-from validation.runs.aliases import NamePair
 from validation.runs.numbers import number_text, share_text
 
 if TYPE_CHECKING:
@@ -223,7 +222,7 @@ def _damping_lines(analysis: Damping) -> Iterator[str]:
         yield f"\n{broken(alias_note)}"
 
 
-def _facts(solution: Solution) -> Iterator[NamePair]:
+def _facts(solution: Solution) -> Iterator[tuple[str, str]]:
     from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 from typer.core import TyperGroup
 
-from validation.runs.aliases import Progress as ProgressReport
+from validation.runs.progress import Progress as ProgressReport
 
 if TYPE_CHECKING:
     from validation.runs.row import Row

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from validation.cli.app import JsonOption, SetOption, _progress, app, one_case, writable_pdf
 from validation.cli.printing.output import echo_answer
-from validation.runs.aliases import Fields
 
 if TYPE_CHECKING:
     from validation.diagnosis.answer import Answer
@@ -81,7 +80,7 @@ def compare(
         raise typer.Exit(1)
 
 
-def _listed(alternative: Fields) -> str:
+def _listed(alternative: dict[str, Any]) -> str:
     """Return causes with their numbers."""
     values = alternative["values"]
     return " and ".join(f"{name} {values[name]:.5g}" if name in values else name for name in alternative["causes"])

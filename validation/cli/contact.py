@@ -20,7 +20,7 @@ from validation.cli.app import (
     refuse_bad_input,
 )
 from validation.cli.printing.output import broken, echo_answer
-from validation.runs.aliases import NamedTexts, Progress
+from validation.runs.progress import Progress
 
 if TYPE_CHECKING:
     from validation.runs.row import Row
@@ -83,7 +83,7 @@ def _probe(scene: Scene, progress: Progress, before: int) -> Callable[[float], f
     return depth
 
 
-def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], NamedTexts]:
+def _rows(scenes: dict[str, Scene], progress: Progress) -> tuple[dict[str, Row], dict[str, str]]:
     """Return the rows of the runs that completed, and why the others have none.
 
     Raises

@@ -11,7 +11,6 @@ import typer
 
 from validation.cli.app import SceneArgument, SetOption, one_case, parts
 from validation.cli.printing.output import columns, echo
-from validation.runs.aliases import NamePair, Words
 
 if TYPE_CHECKING:
     from validation.advice.response import Peak, Response
@@ -113,7 +112,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     unit = "/m" if exact_response.base else ""
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
-    rows: list[Words] = [heads]
+    rows: list[tuple[str, ...]] = [heads]
     has_unbounded = False
     left_out = 0
     for name, answer in answers.items():
@@ -121,7 +120,7 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         if name != EXACT and all(np.array_equal(answer.columns[c], exact_response.columns[c]) for c in answer.columns):
             continue  # of a solver that takes no steps
         highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
-        peak_cells: list[list[NamePair]] = []
+        peak_cells: list[list[tuple[str, str]]] = []
         for column in (DISPLACEMENT, PRESSURE):
             visible = [peak for peak in answer.peaks(column) if peak.frequency <= highest]
             left_out = max(left_out, len(visible) - PEAKS)

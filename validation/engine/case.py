@@ -9,9 +9,9 @@ import json
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 from validation.errors import InputError
-from validation.runs.aliases import Fields, NamedTexts, Words
 from validation.scenes.kinds import MODELS
 from validation.scenes.scene import Scene, named_files
 from validation.solvers.contract import Solver
@@ -37,7 +37,7 @@ class Case:
     solver: str
     without_savings: bool = False
     ranks: int = 1  # of the solvers that can be distributed
-    measures: Words = MEASURES  # of "history", "modes", "stability", "energy", "limit"
+    measures: tuple[str, ...] = MEASURES  # of "history", "modes", "stability", "energy", "limit"
     repeats: int = 0  # of a timed case, after two runs, one of which counts lines and one warms up
     only: frozenset[str] | None = None  # the metrics that are measured, all that `measures` name where None
 
@@ -67,11 +67,11 @@ class Case:
         }
         return hashlib.sha256(json.dumps(state, sort_keys=True).encode()).hexdigest()[:24]
 
-    def _read(self, solver: Solver) -> Fields:
+    def _read(self, solver: Solver) -> dict[str, Any]:
         """Return the part of the scene that the solver reads, files by their content."""
         data = self.scene.model_dump(mode="json", by_alias=True)
         names = (*solver.sections, *self.scene.kind.tables)
-        table_data: Fields = {name: dict(data[name]) for name in names if data[name] is not None}
+        table_data: dict[str, Any] = {name: dict(data[name]) for name in names if data[name] is not None}
         for section, _, key in (name.partition(".") for name in solver.unread):
             table_data.get(section, {}).pop(key, None)
         table_data["run"] = dict(data["run"], columns=sorted(self.scene.run.columns))
@@ -108,7 +108,7 @@ def source_digest(module: str) -> str:
 
 
 @functools.cache
-def library_versions() -> NamedTexts:
+def library_versions() -> dict[str, str]:
     """Return the versions of the libraries that rows are computed with."""
     versions = {}
     for name in LIBRARIES:

@@ -6,7 +6,6 @@ import itertools
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from validation.runs.aliases import NamePair, Words
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Metrics, Row
@@ -39,9 +38,9 @@ class Derived:
 
     scene: str
     name: str
-    needs: tuple[NamePair, ...]
+    needs: tuple[tuple[str, str], ...]
     compute: Callable[[Finished], Metrics]
-    reads: Words = ()
+    reads: tuple[str, ...] = ()
     linear: bool = False
 
 
@@ -52,10 +51,10 @@ DerivedRows = tuple[Derived, ...]
 class Finished:
     """The finished cases of a study: rows and histories by (scene, solver), and what is derived from them."""
 
-    rows: dict[NamePair, Row]
+    rows: dict[tuple[str, str], Row]
     results: Results
-    derived: Mapping[NamePair, Derived] = field(default_factory=dict)
-    _computed: dict[NamePair, Row] = field(default_factory=dict, init=False, repr=False, compare=False)
+    derived: Mapping[tuple[str, str], Derived] = field(default_factory=dict)
+    _computed: dict[tuple[str, str], Row] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     def row(self, scene: str, name: str) -> Row | None:
         """Return the row of a case, or the derived row of that name, which is computed once: many gates may ask."""

@@ -11,7 +11,6 @@ from validation.engine.finished import Derived, Finished
 from validation.gates.gate import Gate, Status, Verdict, judge, rounded
 from validation.metrics.catalogue import CATALOGUE, PAIRS, pair
 from validation.metrics.values import UNDEFINED, finite, ratio
-from validation.runs.aliases import NamePair
 from validation.runs.history import History
 from validation.runs.records import ComparisonRecord
 from validation.runs.row import Metrics, Row, Value
@@ -24,7 +23,7 @@ HORIZON = "horizon.time"  # up to which histories are compared
 ABSENT = (Outcome.NOT_RUN, Outcome.NOT_APPLICABLE)
 
 
-def compare(finished: Finished, pairs: Sequence[NamePair] | None = None) -> Iterator[ComparisonRecord]:
+def compare(finished: Finished, pairs: Sequence[tuple[str, str]] | None = None) -> Iterator[ComparisonRecord]:
     """Yield the pair metrics of the solvers of each scene.
 
     Parameters
@@ -93,7 +92,7 @@ def _linear_only(gate: Gate, finished: Finished) -> bool:
     return any(derived) or (gate.metric in CATALOGUE and CATALOGUE[gate.metric].linear)
 
 
-def reads(gate: Gate, derived: Mapping[NamePair, Derived]) -> Iterator[tuple[NamePair, str]]:
+def reads(gate: Gate, derived: Mapping[tuple[str, str], Derived]) -> Iterator[tuple[tuple[str, str], str]]:
     """Yield what `evaluate` reads of rows: a case and solver with a metric, those behind derived rows included."""
     for name in gate.cases:
         recipe = derived.get(name)
@@ -139,14 +138,14 @@ def _judged_anyway(gate: Gate, row: Row) -> bool:
     return gate.metric.startswith("stability.") and row.outcome in (Outcome.UNSTABLE, Outcome.OVERFLOW)
 
 
-def compared_until(gate: Gate, names: list[NamePair], finished: Finished) -> float | None:
+def compared_until(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> float | None:
     """Return the time up to which two histories are compared [s]: the gate's, or the horizon of either if earlier."""
     horizons = [row.metrics.get(HORIZON) for row in map(finished.rows.get, names) if row is not None]
     limits = [gate.until, *(value for value in horizons if isinstance(value, float))]
     return min((limit for limit in limits if limit is not None), default=None)
 
 
-def _shortened(gate: Gate, names: list[NamePair], finished: Finished) -> str:
+def _shortened(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> str:
     """Say up to when two histories were compared, where that is less than the gate asks for."""
     until = compared_until(gate, names, finished) if gate.metric in PAIRS else None
     if until is None:
@@ -157,7 +156,7 @@ def _shortened(gate: Gate, names: list[NamePair], finished: Finished) -> str:
     return f"compared up to {until:.4g} s, where the switches of the contact have amplified rounding to 1e-6"
 
 
-def _value(gate: Gate, names: list[NamePair], finished: Finished) -> Value:
+def _value(gate: Gate, names: list[tuple[str, str]], finished: Finished) -> Value:
     if gate.metric in PAIRS:
         histories = list(itertools.starmap(finished.history, names))
         if len(histories) < 2 or histories[0] is None or histories[1] is None:

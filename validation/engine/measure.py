@@ -6,7 +6,7 @@ import gc
 import math
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from types import FrameType
@@ -20,7 +20,6 @@ from validation.engine.cluster import worker_memory
 from validation.errors import InputError
 from validation.metrics.catalogue import CONTACT, DIAGNOSTICS, MODES, STATIC, SWITCHES, measured_by, solo
 from validation.metrics.measurable import Measurable
-from validation.runs.aliases import NumberPair, NumbersByName, Words
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import WITH_HISTORY
@@ -133,7 +132,7 @@ def _requested_columns(history: History, scene: Scene) -> History:
     return History(history.time, {name: x for name, x in history.columns.items() if name in scene.run.columns})
 
 
-def columns_of(case: Case) -> Words:
+def columns_of(case: Case) -> tuple[str, ...]:
     """Return the columns that the history of a completed case holds."""
     return tuple(_narrowed(case.make_solver(), case.scene)[0].run.columns)
 
@@ -146,7 +145,7 @@ def timed(run: Run, solver: Solver, case: Case) -> tuple[Run, float]:
     is repeated more often than the case asks for.
     """
     lines = lines_of(lambda: solver.solve(case.scene, case.full))
-    timings: list[NumberPair] = []  # seconds of the processor, and the share of the stepping
+    timings: list[tuple[float, float]] = []  # seconds of the processor, and the share of the stepping
     while len(timings) < case.repeats or sum(total for total, _ in timings) < LEAST_TOTAL:
         began = time.perf_counter()
         start = time.process_time()
@@ -274,11 +273,11 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
     if not features.linear(case.scene):  # statics, modes and diagnostics are of linear models
         needs -= {STATIC, MODES, DIAGNOSTICS}
     static = _reported("static", prepared.static, None, failed) if STATIC in needs else None
-    assumed_static: NumbersByName = static or {}
+    assumed_static: Mapping[str, float] = static or {}
     if static is None and STATIC in needs:
         assumed_static = prepared.assumed_static()
     modes: tuple[Mode, ...] = _reported("modes", prepared.modes, (), failed) if MODES in needs else ()
-    diagnostics: NumbersByName = {}
+    diagnostics: Mapping[str, float] = {}
     if DIAGNOSTICS in needs:
         diagnostics = _reported("diagnostics", prepared.diagnostics, {}, failed)
     switches = _reported("switches", prepared.switches, None, failed) if SWITCHES in needs else None

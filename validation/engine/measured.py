@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from validation.engine.study import Study
 from validation.gates.gate import Status, Verdict
-from validation.runs.aliases import NamePair
 from validation.runs.run import Outcome
 from validation.solvers.registry import FULL, is_solver
 
@@ -21,10 +20,10 @@ class JudgedStudy:
 
     study: Study
     verdicts: Sequence[Verdict]
-    outcomes: Mapping[NamePair, Outcome]
+    outcomes: Mapping[tuple[str, str], Outcome]
 
     @property
-    def failed(self) -> list[NamePair]:
+    def failed(self) -> list[tuple[str, str]]:
         """Cases that ended in a way that the study does not expect; a refusal is bad input and told as such."""
         fine = {*MEASURED, *NEUTRAL, Outcome.REFUSED, *self.study.expects}
         return [case for case, outcome in self.outcomes.items() if outcome not in fine]

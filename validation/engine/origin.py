@@ -9,7 +9,6 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from validation.engine.case import library_versions
-from validation.runs.aliases import Data, Fields
 from validation.runs.provenance import provenance
 from validation.runs.row import Row
 from validation.solvers.contract import Solver
@@ -20,14 +19,14 @@ UNKNOWN = "unknown"
 _here = functools.cache(provenance)  # it asks git, once a process
 
 
-def of_row(solver: Solver) -> Fields:
+def of_row(solver: Solver) -> dict[str, Any]:
     """Return where a row of a solver comes from that is made here and now."""
     here = _here()
     packages = {name: release for name, release in here["packages"].items() if name not in PRINTERS}
     return {**here, "packages": {**packages, **library_versions(), **solver.versions()}}
 
 
-def of_rows(rows: Iterable[Row]) -> Fields:
+def of_rows(rows: Iterable[Row]) -> dict[str, Any]:
     """Return where the rows of a study come from, an item a line; what differs between rows with their number."""
     origins = [row.provenance for row in rows]
     items = dict.fromkeys(itertools.chain.from_iterable(origins))
@@ -43,7 +42,7 @@ def of_rows(rows: Iterable[Row]) -> Fields:
     return summary | {"packages": {package: _counted(values) for package, values in releases.items()}}
 
 
-def _mapping(value: object) -> Data:
+def _mapping(value: object) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 
 

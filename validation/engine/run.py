@@ -19,9 +19,9 @@ from validation.engine.measured import JudgedStudy
 from validation.engine.origin import of_rows
 from validation.engine.study import Study
 from validation.gates.gate import Verdict
-from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.history import History
+from validation.runs.progress import Progress
 from validation.runs.records import (
     AlarmRecord,
     Annotations,
@@ -226,7 +226,7 @@ def _is_valid(row: Row, case: Case, results: Results) -> bool:
 @np.errstate(divide="raise", invalid="raise")
 def _annotated(study: Study, scenes: Sequence[Scene], finished: Finished) -> Annotations:
     """Return alarms and budgets; a scene whose numbers they cannot take is named by an alarm of its own."""
-    failed: NamedTexts = {}
+    failed: dict[str, str] = {}
     try:
         return study.annotate(scenes, finished)
     except Exception:  # which scene it was is found one by one

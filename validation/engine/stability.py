@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from validation.metrics.growth import AGREED, DEVELOPED, ROUNDING, first_column, growth
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
-from validation.runs.aliases import NumbersByName
 from validation.runs.row import Value
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import Scene
@@ -18,7 +18,7 @@ from validation.solvers.contract import NotReported, Prepared, Solver
 BISECTIONS = 40
 
 
-def _diagnostics(prepared: Prepared) -> NumbersByName:
+def _diagnostics(prepared: Prepared) -> Mapping[str, float]:
     try:
         with np.errstate(all="ignore"):
             return prepared.diagnostics()

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
+from typing import Any
 
 from validation.engine.case import MEASURES, Case
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
-from validation.runs.aliases import Data, NamePair, Words
 from validation.runs.records import Annotations
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -58,15 +58,15 @@ class Study:
     title: str
     purpose: str
     scenes: Sequence[str | Scene]
-    solvers: Words | None = None
+    solvers: tuple[str, ...] | None = None
     _: KW_ONLY
-    extra: tuple[NamePair, ...] = ()
+    extra: tuple[tuple[str, str], ...] = ()
     gates: Callable[[], tuple[Gate, ...]] = tuple
     timed: bool = False
     derived: Callable[[], DerivedRows] = tuple
-    data: Callable[[], Data] = dict
-    measures: Words = MEASURES
-    pairs: tuple[NamePair, ...] | None = None
+    data: Callable[[], Mapping[str, Any]] = dict
+    measures: tuple[str, ...] = MEASURES
+    pairs: tuple[tuple[str, str], ...] | None = None
     annotate: Callable[[Sequence[Scene], Finished], Annotations] = _nothing_to_say
     expects: tuple[Outcome, ...] = ()
     long: bool = False
@@ -84,14 +84,14 @@ class Study:
         repeats = REPEATS if self.timed else 0
         return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 
-    def recipes(self) -> dict[NamePair, Derived]:
+    def recipes(self) -> dict[tuple[str, str], Derived]:
         """Return the derived rows by the names that gates address them with."""
         return {(row.scene, row.name): row for row in self.derived()}
 
-    def needs(self, gate: Gate) -> list[NamePair]:
+    def needs(self, gate: Gate) -> list[tuple[str, str]]:
         """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
         recipes = self.recipes()
-        needs: list[NamePair] = []
+        needs: list[tuple[str, str]] = []
         for name in gate.cases:
             needs += recipes[name].needs if name in recipes else (name,)
         return needs

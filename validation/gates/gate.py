@@ -7,7 +7,6 @@ import math
 import sys
 from dataclasses import dataclass
 
-from validation.runs.aliases import NamePair, Words
 from validation.runs.numbers import ROUNDING, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -60,7 +59,7 @@ class Gate:
     """
 
     scene: str
-    pair: Words
+    pair: tuple[str, ...]
     metric: str
     low: float
     high: float
@@ -85,7 +84,7 @@ class Gate:
             raise ValueError(f"{self.id}: reason must be given, got nothing")
 
     @property
-    def cases(self) -> list[NamePair]:
+    def cases(self) -> list[tuple[str, str]]:
         """Case and solver (or name of a derived row) of each side of the pair."""
         names = [(self.scene, self.pair[0])]
         return [*names, (self.against or self.scene, self.pair[1])] if len(self.pair) == 2 else names

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -10,7 +10,6 @@ import numpy as np
 
 from validation.metrics.poles import Pole, poles
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
-from validation.runs.aliases import NumbersByName
 from validation.runs.contact import ContactRecord
 from validation.runs.history import DISPLACEMENT, Array, History
 from validation.runs.modes import Mode, Switch
@@ -24,10 +23,10 @@ class Measurable:
 
     history: History
     step: float  # dt [s]
-    static: NumbersByName = field(default_factory=dict)  # column to value at rest
+    static: Mapping[str, float] = field(default_factory=dict)  # column to value at rest
     modes: tuple[Mode, ...] = ()
     static_reported: bool = True  # otherwise `static` is another solver's, and settling is measured from that
-    diagnostics: NumbersByName = field(default_factory=dict)
+    diagnostics: Mapping[str, float] = field(default_factory=dict)
     outcome: Outcome = Outcome.COMPLETED
     switches: tuple[Switch, ...] | None = None  # of a unilateral contact
     contact: ContactRecord | None = None  # of a unilateral contact

@@ -8,8 +8,6 @@ from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
-from validation.runs.aliases import Fields, NamePair, Words
-
 if TYPE_CHECKING:
     from validation.runs.records import Manifest
     from validation.runs.results import Results
@@ -55,9 +53,9 @@ class Table:
     """
 
     columns: tuple[TableColumn, ...]
-    rows: tuple[Words, ...]
+    rows: tuple[tuple[str, ...], ...]
     caption: str = ""
-    notes: Words = ()
+    notes: tuple[str, ...] = ()
     ruled: bool = True
     dense: bool = False
 
@@ -87,7 +85,7 @@ def table(
     >>> table(("Case", ("Order", "v", "p")), [("a", "1.98", "–")]).columns[1].kind
     'decimal'
     """
-    titles: list[NamePair | TableColumn] = []  # of a column and of its group
+    titles: list[tuple[str, str] | TableColumn] = []  # of a column and of its group
     for head in heads:
         if isinstance(head, TableColumn):
             titles.append(head)
@@ -139,7 +137,7 @@ class PageBreak:
 class Points:
     """Numbered points, each opened by its own words in bold."""
 
-    items: tuple[NamePair, ...]
+    items: tuple[tuple[str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -198,9 +196,9 @@ def figures_of(blocks: Iterable[Block]) -> list[FigureBlock]:
     return figures + beside
 
 
-def as_data(block: Block, text: Callable[[str], str]) -> Fields:
+def as_data(block: Block, text: Callable[[str], str]) -> dict[str, Any]:
     """Return a block as plain data with the name of its kind, those within it as well, every text changed."""
-    data: Fields = _changed(block, text)
+    data: dict[str, Any] = _changed(block, text)
     return data
 
 

@@ -14,7 +14,6 @@ from validation.report.chapters.scene import slide_figure
 from validation.report.figures.response import save_as
 from validation.report.names import Readable, page_name, unescaped
 from validation.report.render.pdf import png_of, write_document
-from validation.runs.aliases import NamedTexts
 from validation.runs.results import Results
 from validation.runs.text import error_text
 from validation.scenes.scene import parse_scene
@@ -41,7 +40,7 @@ def ordered_studies(results: Results, chosen: Sequence[str] | None = None) -> li
     return [study for study in studies if study in names] if names else studies
 
 
-def unread_studies(results: Results, studies: Sequence[str]) -> NamedTexts:
+def unread_studies(results: Results, studies: Sequence[str]) -> dict[str, str]:
     """Return the studies whose results this version cannot read, and why.
 
     Raises

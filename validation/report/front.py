@@ -6,8 +6,9 @@ of the scenes of all studies, whose ``first`` is set before what did not pass, a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from validation.report.blocks import Blocks, Heading, PageBreak, Paragraph
 from validation.report.chapters.data import Groups, Verdicts
@@ -17,7 +18,6 @@ from validation.report.chapters.queries import StudyTable
 from validation.report.chapters.summary import overview
 from validation.report.chapters.written import WrittenChapter
 from validation.report.references import PAPER, identity
-from validation.runs.aliases import Data
 from validation.runs.results import Results
 from validation.suite.folders import folder_of
 
@@ -39,7 +39,7 @@ def front_chapter(results: Results, studies: Sequence[str], directory: Path) -> 
 
 
 def front_pages(
-    front: WrittenChapter | None, groups: Groups, verdicts: Verdicts, provenances: Sequence[Data] = ()
+    front: WrittenChapter | None, groups: Groups, verdicts: Verdicts, provenances: Sequence[Mapping[str, Any]] = ()
 ) -> Blocks:
     """Return the pages that are read first; where no study has any, what the results are and their verdicts."""
     model = "" if front is None else f"The model is that of {PAPER}. "

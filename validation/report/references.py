@@ -11,8 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, metadata
 from pathlib import Path
-
-from validation.runs.aliases import Data, NamedTexts
+from typing import Any
 
 BIBLIOGRAPHY = Path(__file__).with_name("references.bib")
 ENTRY = re.compile(r"^@(\w+)\{(\w+),\n(.*?)^\}", re.M | re.S)
@@ -25,7 +24,7 @@ PAPER = (
 )
 
 
-def references() -> dict[str, NamedTexts]:
+def references() -> dict[str, dict[str, str]]:
     """Return the fields of the sources by their keys, in the order of the file."""
     entries = {}
     for kind, key, body in ENTRY.findall(BIBLIOGRAPHY.read_text("utf-8")):
@@ -56,7 +55,7 @@ def named(text: str, form: Callable[[str, str], str] = lambda name, key: name) -
     return re.sub(rf"{_key().pattern}(\w+)", name, text)
 
 
-def identity(provenances: Iterable[Data]) -> str:
+def identity(provenances: Iterable[Mapping[str, Any]]) -> str:
     """Return who made the suite and which version, date and commit the results are of, as far as the runs know."""
     values: dict[str, dict[str, None]] = {"version": {}, "run on": {}, "commit": {}}
     for provenance in provenances:

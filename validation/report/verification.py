@@ -16,7 +16,6 @@ from validation.report.chapters.gates import band_cell, value_cell
 from validation.report.chapters.text import some
 from validation.report.references import named
 from validation.report.texts import Texts
-from validation.runs.aliases import Words
 from validation.runs.numbers import DASH, decimal, power, short, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -112,7 +111,7 @@ def _tally(passed: Mapping[str, Sequence[int]]) -> str:
 
 def matrix_table(listed: Standings) -> Table:
     """Return what decides each phenomenon: two remarks, its name and its sources, then a row a reason."""
-    rows: list[Words] = []
+    rows: list[tuple[str, ...]] = []
     for shown, stands in listed:
         rows += [(shown.name,), (TEXTS.text("remark", study=shown.study, sources=shown.sources),)]
         rows += [_row(gates, stands) for gates in shown.lines()[:LINES] if decisive(gates).id in stands.values]
@@ -120,7 +119,7 @@ def matrix_table(listed: Standings) -> Table:
     return table((measured, truth, "Band", "Value", "Margin"), rows, TEXTS.text("caption"), dense=True)
 
 
-def _row(gates: Sequence[Gate], stands: Standing) -> Words:
+def _row(gates: Sequence[Gate], stands: Standing) -> tuple[str, ...]:
     gate = decisive(gates)
     value, margin = stands.values[gate.id]
     metrics = some((words_of(one.metric) for one in gates), NAMES)
@@ -189,7 +188,7 @@ def verdict_blocks(shown: Phenomenon, verdicts: Sequence[Verdict], every: bool) 
     return [Listing(head), table(heads, rows, ruled=False), Paragraph(counted)]
 
 
-def _verdict_row(verdict: Verdict) -> Words:
+def _verdict_row(verdict: Verdict) -> tuple[str, ...]:
     gate = verdict.gate
     margin = gate.margin(verdict.value) if isinstance(verdict.value, float) else None
     until = "" if gate.until is None else f" up to {gate.until:g} s"

@@ -10,7 +10,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from validation.runs.aliases import NamePair
 from validation.runs.history import DISPLACEMENT, PRESSURE
 
 
@@ -57,7 +56,7 @@ OwnColumns = Mapping[str, ColumnKind]
 NO_OWN: OwnColumns = MappingProxyType({})
 
 
-def split(column: str) -> NamePair:
+def split(column: str) -> tuple[str, str]:
     """Return the name of a column without its number, and the number or nothing."""
     plain, _, number = column.rpartition("_")
     return (plain, number) if number.isdigit() else (column, "")
@@ -77,7 +76,7 @@ def unit_of(column: str, own: OwnColumns = NO_OWN) -> str:
     return "" if kind is None else kind.unit
 
 
-def axis_of(column: str, own: OwnColumns = NO_OWN) -> NamePair:
+def axis_of(column: str, own: OwnColumns = NO_OWN) -> tuple[str, str]:
     """Return what a column is, in words, and its unit."""
     kind = kind_of(column, own)
     if kind is not None and kind.words:

@@ -9,14 +9,13 @@ import subprocess
 import tomllib
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-
-from validation.runs.aliases import Fields
+from typing import Any
 
 PACKAGES = ("dda-validation", "numpy", "scipy", "scikit-fem", "meshio", "pydantic", "matplotlib", "typst")
 ROOM = Path(__file__).parent
 
 
-def provenance() -> Fields:
+def provenance() -> dict[str, Any]:
     """Return versions, commit, processor, cores, seeds and date of this run."""
     return {
         "python": platform.python_version(),

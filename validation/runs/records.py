@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, NotRequired
+from typing import Annotated, Any, NotRequired
 
 from pydantic import AfterValidator, Field
 from typing_extensions import TypedDict
 
-from validation.runs.aliases import Fields, NamedNumbers
 from validation.runs.row import NewMetrics, Value
 
 
@@ -18,7 +17,7 @@ class CaseRecord(TypedDict):
     title: str
     solver: str
     key: str
-    definition: Fields  # the scene as a file would state it
+    definition: dict[str, Any]  # the scene as a file would state it
 
 
 class ComparisonRecord(TypedDict):
@@ -45,7 +44,7 @@ class AlarmRecord(TypedDict):
     kind: str
     scene: str
     sentence: str
-    values: NotRequired[NamedNumbers]
+    values: NotRequired[dict[str, float]]
 
 
 class BudgetRecord(TypedDict):
@@ -80,10 +79,10 @@ class Manifest(_Study, total=False):
     cases: list[CaseRecord]
     comparisons: list[ComparisonRecord]
     derived: list[DerivedRecord]
-    data: Fields  # what the study's own chapter draws
+    data: dict[str, Any]  # what the study's own chapter draws
     alarms: list[AlarmRecord]
     budgets: list[BudgetRecord]
-    provenance: Fields
+    provenance: dict[str, Any]
 
 
 class Named(TypedDict):

@@ -22,7 +22,6 @@ import numpy as np
 
 from validation.errors import InputError
 from validation.runs import strict
-from validation.runs.aliases import NamedTexts
 from validation.runs.files import write_atomically
 from validation.runs.history import Array, History
 from validation.runs.records import Manifest, Named, VerdictRecord, Verdicts
@@ -234,7 +233,7 @@ class Results:
         records = self.read_json("verdicts.json", [], Verdicts)
         return [v for v in records if study is None or v["study"] == study]
 
-    def unread_verdicts(self) -> NamedTexts:
+    def unread_verdicts(self) -> dict[str, str]:
         """Return the studies with verdicts that are not as this version writes them, and what is wrong with the first.
 
         Raises

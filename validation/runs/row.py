@@ -6,8 +6,8 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
+from typing import Any
 
-from validation.runs.aliases import Data, Words
 from validation.runs.run import Outcome
 
 Value = float | str | None  # a number, or "undefined", or "not reported"
@@ -31,11 +31,11 @@ class Row:
     metrics: Metrics
     work: Mapping[str, int] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
-    notes: Words = ()
+    notes: tuple[str, ...] = ()
     estimate: float | None = None
     steps: int = 0
-    columns: Words = ()
-    provenance: Data = field(default_factory=dict)
+    columns: tuple[str, ...] = ()
+    provenance: Mapping[str, Any] = field(default_factory=dict)
 
     def line(self) -> str:
         """Return the row as one line of JSON, with a digest of what it says."""
@@ -66,5 +66,5 @@ RowsBySolver = Mapping[str, Row]
 FIELDS = frozenset(field.name for field in fields(Row))
 
 
-def _digest(data: Data) -> str:
+def _digest(data: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(data, sort_keys=True).encode()).hexdigest()[:16]

@@ -7,7 +7,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
-from validation.runs.aliases import Words
 from validation.runs.history import Array, History
 
 
@@ -94,7 +93,7 @@ class Run:
     history: History | None = None
     work: Mapping[str, int] = field(default_factory=dict)
     seconds: Mapping[str, float] = field(default_factory=dict)
-    notes: Words = ()
+    notes: tuple[str, ...] = ()
     estimate: float | None = None  # estimated relative error of the run's own numerics [1]
 
     def _finished(self) -> History:

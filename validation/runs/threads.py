@@ -15,8 +15,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from validation.runs.aliases import NamedTexts
-
 if TYPE_CHECKING:
     from threadpoolctl import ThreadpoolController
 
@@ -37,7 +35,7 @@ def user_decides() -> bool:
     return any(os.environ.get(name) for name in VARIABLES)
 
 
-def environment() -> NamedTexts:
+def environment() -> dict[str, str]:
     """Return the environment of a process that we start."""
     return dict(os.environ) if user_decides() else {**os.environ, **ONE_THREAD}
 

@@ -8,10 +8,9 @@ from collections.abc import Callable, Collection, Mapping
 from typing import TypeVar
 
 from validation.errors import InputError
-from validation.runs.aliases import NamedTexts, NumbersByName
 
 # SI unit to others, and one of each in SI
-OTHERS: Mapping[str, NumbersByName] = {
+OTHERS: Mapping[str, Mapping[str, float]] = {
     "s": {"ms": 1e-3, "us": 1e-6},
     "m": {"mm": 1e-3, "cm": 1e-2, "um": 1e-6, "km": 1e3},
     "Pa": {"kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "bar": 1e5},
@@ -63,7 +62,7 @@ def ratios(unit: str) -> dict[float, str]:
     return {1 / factor: WORDS.get(symbol, symbol) for symbol, factor in OTHERS.get(unit, {}).items()}
 
 
-def theirs_of(text: str | None, ours: Collection[str]) -> NamedTexts:
+def theirs_of(text: str | None, ours: Collection[str]) -> dict[str, str]:
     """Return what a file calls columns, of ``time=t,displacement=uy``: our column to theirs.
 
     Raises

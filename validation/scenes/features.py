@@ -10,7 +10,6 @@ import json
 from dataclasses import dataclass
 
 from validation.errors import InputError
-from validation.runs.aliases import Words
 from validation.scenes.keys import is_fulfilled, keys_of
 from validation.scenes.kinds import kinds
 from validation.scenes.scene import Scene
@@ -94,7 +93,7 @@ def _present(scene: Scene) -> tuple[Feature, ...]:
     return tuple(feature for feature in FEATURES if is_fulfilled(feature.when, "", tables))
 
 
-def of(scene: Scene) -> Words:
+def of(scene: Scene) -> tuple[str, ...]:
     """Return the names of the features that a scene has."""
     return tuple(feature.name for feature in _present(scene))
 

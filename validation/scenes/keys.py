@@ -15,7 +15,6 @@ from typing import Any, Literal, get_args, get_origin
 from pydantic import BaseModel, ConfigDict
 from pydantic.fields import FieldInfo
 
-from validation.runs.aliases import Words
 from validation.runs.numbers import stated_text
 
 _REQUIREMENT = re.compile(r'([a-z_.]+)(?: = ("[\w -]+"(?: or "[\w -]+")*))?$')
@@ -28,7 +27,7 @@ class Key:
     unit: str  # "" of numbers without one, and of words
     text: str  # what it is, in words
     symbol: str | None = None  # that of the text and the figures; "" where the value says enough, None: its name
-    needs: Words = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
+    needs: tuple[str, ...] = ()  # what it goes with: `key` not at its default, or `key = "word"`; `table.key` elsewhere
     feature: str = ""  # of a key of the loads: what a scene has where it is not at its default
 
 
@@ -124,7 +123,7 @@ def is_fulfilled(requirement: str, place: str, tables: Mapping[str, Section]) ->
 
 
 @functools.cache
-def _parsed(requirement: str) -> tuple[str, str, Words]:
+def _parsed(requirement: str) -> tuple[str, str, tuple[str, ...]]:
     """Return table, key and words of a requirement."""
     parts = _REQUIREMENT.match(requirement)
     if parts is None:

@@ -15,7 +15,6 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 from typing import Any, ClassVar, Protocol, Self
 
-from validation.runs.aliases import Fields
 from validation.runs.columns import NO_OWN, OwnColumns
 from validation.scenes.keys import Section
 
@@ -74,7 +73,7 @@ class Kind:
     refuses: Collection[str] = ()  # common tables that do not go with it
     fem_keys: Collection[str] | None = None  # keys of `fem` that go with it; None: all
 
-    def run(self, table: Any) -> Fields:
+    def run(self, table: Any) -> dict[str, Any]:
         """Return keys of `run`, such as solvers and columns, for a scene that does not state them.
 
         Parameters

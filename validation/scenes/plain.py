@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any, ClassVar
 
 from validation.errors import InputError
-from validation.runs.aliases import Fields, NamePair, Words
 from validation.runs.units import named
 from validation.scenes.keys import Section, keys_of, stated, stated_value
 from validation.scenes.kinds import Hooks, kinds
@@ -21,10 +20,10 @@ class PlainHooks(Hooks):
     tables: ClassVar[Mapping[str, type[Section]]] = {}  # place in the data to the table whose keys stand there
     # Keys of these that the motion does not depend on: how a solver of this suite steps or cuts, and what another says.
     unstated: ClassVar[Mapping[type[Section], frozenset[str]]] = {}
-    also: Words = ()  # tables whose unstated keys a program is told of where they are not at their defaults
-    implied: Words = ()  # of these keys, what the data say in other words
+    also: tuple[str, ...] = ()  # tables whose unstated keys a program is told of where they are not at their defaults
+    implied: tuple[str, ...] = ()  # of these keys, what the data say in other words
 
-    def data(self, scene: Scene) -> Fields:
+    def data(self, scene: Scene) -> dict[str, Any]:
         """Return what a scene states of a problem, table by table.
 
         Raises
@@ -35,7 +34,7 @@ class PlainHooks(Hooks):
         kinds_in_words = "must be a block, a column or blocks in the plane"
         raise InputError(kinds_in_words, source=scene.name, value=scene.kind_in_words)
 
-    def table(self, section: Section, *without: str) -> Fields:
+    def table(self, section: Section, *without: str) -> dict[str, Any]:
         """Return the keys of a table with their units in the names; a key that is absent is null."""
         unstated = self.unstated.get(type(section), frozenset()) | {*without}
         data = {}
@@ -45,7 +44,7 @@ class PlainHooks(Hooks):
         return data
 
 
-def scene_data(scene: Scene) -> Fields:
+def scene_data(scene: Scene) -> dict[str, Any]:
     """Return what a scene states of a problem, table by table: what the motion depends on, and not how it is solved.
 
     Raises
@@ -56,7 +55,7 @@ def scene_data(scene: Scene) -> Fields:
     return PlainHooks.of(scene).data(scene)
 
 
-def words() -> Iterator[NamePair]:
+def words() -> Iterator[tuple[str, str]]:
     """Yield the names of the data of problems and what they mean, as the keys of scenes say it."""
     for kind in kinds():
         hooks = PlainHooks.of_kind(kind)

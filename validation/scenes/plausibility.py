@@ -10,15 +10,15 @@ import math
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 from validation.errors import PlausibilityWarning
-from validation.runs.aliases import Fields, NamedNumbers, NamedTexts, NamePair
 from validation.runs.beside import table_beside
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
-TABLE: Fields = table_beside(__file__)
-KINDS: NamedTexts = TABLE.pop("kinds")
+TABLE: dict[str, Any] = table_beside(__file__)
+KINDS: dict[str, str] = TABLE.pop("kinds")
 LEAST_PRESSURE, LEAST_STRESS_RATIO = 100.0, 1e-6  # Pa, and of the modulus: a pressure below both is looked at
 EXPLAIN_A_SINK = ("gravity", "pressure", "density", "modulus", "size", "strain")
 SLOWEST, FASTEST = 100.0, 1e4  # m/s: waves in rock and soil, to which another unit of the modulus would lead
@@ -88,8 +88,8 @@ def implausible_values(scene: Scene) -> list[Implausible]:
 def plausibility_warnings(scene: Scene) -> list[str]:
     """Return a sentence for each value that was probably not meant; of a sweep with the number of its cases."""
     cases = scene.expand()
-    sentences: dict[NamePair, str] = {}
-    counts: dict[NamePair, int] = {}
+    sentences: dict[tuple[str, str], str] = {}
+    counts: dict[tuple[str, str], int] = {}
     for case in cases:
         for value in implausible_values(case):
             key = value.field, value.kind
@@ -107,13 +107,15 @@ def warn_implausible(scene: Scene) -> None:
             warnings.warn_explicit(sentence, PlausibilityWarning, scene.name, 0)
 
 
-_WARNED: set[NamePair] = set()  # Python's own record of warnings is cleared by every `catch_warnings`
+_WARNED: set[tuple[str, str]] = set()  # Python's own record of warnings is cleared by every `catch_warnings`
 
 
 # ---- what kinds share ------------------------------------------------------------------------------------------------
 
 
-def material(place: str, density: float, young: float, speed: float, strains: NamedNumbers) -> Iterator[Implausible]:
+def material(
+    place: str, density: float, young: float, speed: float, strains: dict[str, float]
+) -> Iterator[Implausible]:
     """Yield what a body's density and modulus say; else its wave and its strain, which follow from both.
 
     Parameters

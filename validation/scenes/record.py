@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.aliases import NumberPair
 from validation.runs.files import read_table
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
@@ -64,7 +63,7 @@ def read_record(path: Path) -> Record:
     return Record(time, columns.get("x", still), columns.get("y", still))
 
 
-def direction(record: Record) -> NumberPair:
+def direction(record: Record) -> tuple[float, float]:
     """Return the unit vector of the straight line that the base moves along, towards +x, or +y where it is steeper.
 
     Raises
@@ -86,7 +85,7 @@ def direction(record: Record) -> NumberPair:
     return x + 0.0, y + 0.0
 
 
-def base_direction(scene: Scene) -> NumberPair | None:
+def base_direction(scene: Scene) -> tuple[float, float] | None:
     """Return the direction that a scene's base moves along, or None where it is fixed."""
     record = base_record(scene)
     return None if record is None else direction(record)

@@ -20,7 +20,6 @@ from typing import Any, Self, get_args
 from pydantic import Field, ValidationError, model_validator
 
 from validation.errors import InputError as InputError
-from validation.runs.aliases import Data, Fields, NamedTexts, NamePair, Words
 from validation.runs.regular import regular
 from validation.scenes.keys import Section, check_needs, key_of_any_entry
 from validation.scenes.kinds import kinds
@@ -41,7 +40,7 @@ class Scene(SceneTables):
 
     time: TimeSection
     run: RunSection = RunSection()
-    sweep: Fields = Field(default_factory=dict)
+    sweep: dict[str, Any] = Field(default_factory=dict)
     gate: tuple[GateSection, ...] = ()
 
     @model_validator(mode="after")
@@ -115,7 +114,7 @@ class Scene(SceneTables):
             names.add(case.name)
             yield case
 
-    def with_values(self, values: Fields, label: bool = False) -> Scene:
+    def with_values(self, values: dict[str, Any], label: bool = False) -> Scene:
         """Return a copy with dotted keys replaced.
 
         A key that is set leaves the sweep, and so does a key that it excludes.
@@ -149,13 +148,13 @@ class Scene(SceneTables):
             data["name"] = f"{self.name}[{inside}]"
         return parse_scene(data, self.name)
 
-    def definition(self) -> Fields:
+    def definition(self) -> dict[str, Any]:
         """Return the scene as plain data (what a file would state)."""
-        data: Fields = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
+        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
         return data
 
 
-def _table_of(data: Fields, field: str) -> tuple[Fields, str]:
+def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
     """Return the table that a dotted key stands in, made where it is absent, and what of the key is left there.
 
     ``plane.block.1.at`` stands in the second entry of a list of tables, ``plane.block.top.at`` in that of this name.
@@ -188,7 +187,7 @@ def _short(value: object) -> str:
     return f"{value:g}" if float(f"{value:g}") == value else repr(value)
 
 
-def _excluded(field: str, value: object) -> Words:
+def _excluded(field: str, value: object) -> tuple[str, ...]:
     """Return the keys of the same table that a key with this value excludes."""
     if field == "time.scheme":
         # What the new scheme has no number for goes; rho_inf of one scheme is rho_inf of the next.
@@ -238,7 +237,7 @@ _EXCLUSIVE = {
 }
 
 
-def parse_scene(data: Fields, source: str) -> Scene:
+def parse_scene(data: dict[str, Any], source: str) -> Scene:
     """Check plain data and return the scene.
 
     Raises
@@ -293,7 +292,7 @@ def _number_meant(value: object) -> str | None:
     return f"write {float(number[:-1]) / 100:.12g}" if number.endswith("%") else f"write {number}, with a point"
 
 
-def rule_and_value(error: Data) -> NamePair:
+def rule_and_value(error: Mapping[str, Any]) -> tuple[str, str]:
     """Return the rule that an error of pydantic names, in our words, and the value where the message has it."""
     message = error["msg"]
     for theirs, ours in OUR_WORDS.items():
@@ -338,7 +337,7 @@ def load_scene(source: str | Path) -> Scene:
     return parse_scene({"name": path.stem} | data, path.name)
 
 
-def _beside(directory: Path, data: Fields) -> None:
+def _beside(directory: Path, data: dict[str, Any]) -> None:
     """Let the files that a scene names, in a table or in the sweep, stand beside the scene's own file."""
 
     def beside(value: object) -> object:
@@ -355,7 +354,7 @@ def _beside(directory: Path, data: Fields) -> None:
 
 
 @functools.cache
-def _files() -> NamedTexts:
+def _files() -> dict[str, str]:
     """Return the keys that name files, those of kinds too, and what these are."""
     files = dict(FILES)
     for kind in kinds().values():
@@ -363,7 +362,7 @@ def _files() -> NamedTexts:
     return files
 
 
-def named_files(tables: Data) -> Iterator[tuple[str, str, Any, str]]:
+def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]]:
     """Yield where tables name a file: the place, what the file is, the table and the key that has its name.
 
     A table of a list, as ``[[plane.block]]``, has a place for each of its entries.
@@ -388,7 +387,7 @@ def _value(table: Any, key: str) -> Any:
     return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
-def _read_toml(path: Path) -> Fields:
+def _read_toml(path: Path) -> dict[str, Any]:
     try:
         regular(path, LARGEST_FILE)
         return tomllib.loads(path.read_bytes().decode("utf-8-sig"))

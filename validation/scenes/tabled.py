@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Self, TypeVar
 from pydantic import Field, ValidationError, create_model, model_validator
 
 from validation.errors import InputError
-from validation.runs.aliases import Fields
 from validation.scenes.keys import Section, stated_value
 from validation.scenes.kinds import Kind, kinds
 from validation.scenes.tables import BlockSection, ContactSection, DampingSection, FemSection, LoadSection
@@ -25,7 +24,7 @@ Table = TypeVar("Table", bound=Section)
 TYPED = ("block", "contact", "load")  # tables that have a property of their name
 
 
-def _fields_of_kinds() -> Fields:
+def _fields_of_kinds() -> dict[str, Any]:
     """Return a field for each table of each kind: ``column`` of the kind's own table, else ``stated_input``."""
     fields = {}
     for kind in kinds().values():

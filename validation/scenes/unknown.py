@@ -8,7 +8,6 @@ from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from validation.errors import InputError
-from validation.runs.aliases import Data, NamedTexts
 from validation.runs.beside import table_beside
 from validation.scenes.keys import Section, key_of_any_entry, keys_of
 from validation.scenes.kinds import kinds
@@ -20,7 +19,7 @@ CLOSE = 0.6  # similarity of two names from which on one may be meant for the ot
 NAMED = 30  # unknown keys that are named in full
 
 
-def refuse_unknown_keys(data: Data, tables: Mapping[str, type[Section]], source: str) -> None:
+def refuse_unknown_keys(data: Mapping[str, Any], tables: Mapping[str, type[Section]], source: str) -> None:
     """Refuse all keys that are none, in one error.
 
     Parameters
@@ -84,7 +83,7 @@ def _names_of(table: type[Section], is_scene: bool) -> tuple[str, ...]:
 
 
 def _unknown_keys(
-    data: Data, place: str, stated_at: str, tables: Mapping[str, type[Section]]
+    data: Mapping[str, Any], place: str, stated_at: str, tables: Mapping[str, type[Section]]
 ) -> Iterator[tuple[str, str, str, Any]]:
     """Yield table, its place in the file, name and value of the unknown keys of a table and of those in it."""
     names = _names(place, tables)
@@ -130,7 +129,7 @@ def _meant(place: str, name: str, tables: Mapping[str, type[Section]], elsewhere
     return None
 
 
-def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> NamedTexts:
+def _fields_by_name(fields: list[str], tables: Mapping[str, type[Section]]) -> dict[str, str]:
     """Return fields by all that they are called, plainly: their names, symbols, and other programs' names."""
     by_name = {_plain(field.rpartition(".")[2]): field for field in reversed(fields)}
     for field in reversed(fields):

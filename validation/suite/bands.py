@@ -13,7 +13,6 @@ from numpy.typing import ArrayLike
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import pair
 from validation.metrics.values import or_nan
-from validation.runs.aliases import Words
 from validation.runs.history import History
 from validation.runs.numbers import significant
 from validation.runs.row import Metrics
@@ -61,7 +60,9 @@ def short(values: ArrayLike, digits: int = 5) -> list[float]:
 
 
 def convergence(
-    runs: Sequence[tuple[Scene, History, History]], key: str = "time.step", quantities: Words = ("displacement",)
+    runs: Sequence[tuple[Scene, History, History]],
+    key: str = "time.step",
+    quantities: tuple[str, ...] = ("displacement",),
 ) -> Metrics:
     """Return the order of one solver's error against another, of cases that are refined.
 
@@ -92,7 +93,7 @@ def half_unit(printed: str | float) -> float:
 
 def gate(
     case: Scene | str,
-    solvers: str | Words,
+    solvers: str | tuple[str, ...],
     metric: str,
     band: Band,
     reason: str,

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import enum
 import tomllib
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import starmap
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,7 +23,6 @@ from validation.gates.gate import Gate
 from validation.metrics.catalogue import SOLO
 from validation.metrics.columns import settling_step
 from validation.metrics.values import QUANTITIES
-from validation.runs.aliases import Data, Fields, NumbersByName
 from validation.runs.history import Array
 from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
@@ -54,7 +54,7 @@ class Band:
     low: float
     high: float
 
-    def holds(self, numbers: NumbersByName) -> bool:
+    def holds(self, numbers: Mapping[str, float]) -> bool:
         """Whether the number was measured and lies inside."""
         return self.low <= numbers.get(self.number, np.nan) <= self.high
 
@@ -125,7 +125,7 @@ class Claim:
     numbers: tuple[tuple[str, float, float], ...] = ()
     misprint: bool = False
 
-    def finding(self, numbers: NumbersByName) -> Finding:
+    def finding(self, numbers: Mapping[str, float]) -> Finding:
         """Return the verdict on measured numbers."""
         if all(band.holds(numbers) for band in self.printed):
             return Finding.CONFIRMED
@@ -208,7 +208,7 @@ class Register:
         """Return the rows of the register."""
         return tuple(claim.row() for claim in self.claims)
 
-    def words(self) -> Fields:
+    def words(self) -> dict[str, Any]:
         """Return what each claim says, why it has its verdict and on which condition, and which are misprints."""
         return {
             "statement": {claim.id: f"{claim.says} ({claim.place})" for claim in self.claims},
@@ -220,7 +220,7 @@ class Register:
         }
 
 
-def entries(register: Register, rows: Iterable[Data]) -> list[Fields]:
+def entries(register: Register, rows: Iterable[Mapping[str, Any]]) -> list[dict[str, Any]]:
     """Return the claims with their verdicts and measured numbers as plain data."""
     measured = {row["name"]: row["metrics"] for row in rows}
     listed = []
@@ -239,7 +239,7 @@ def entries(register: Register, rows: Iterable[Data]) -> list[Fields]:
     return listed
 
 
-def page(register: Register, rows: Iterable[Data]) -> str:
+def page(register: Register, rows: Iterable[Mapping[str, Any]]) -> str:
     """Return a register as a Markdown page, from the derived rows of its study."""
     parts = [f"# {register.title}", register.introduction]
     for entry in entries(register, rows):

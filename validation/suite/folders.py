@@ -24,7 +24,6 @@ from typing import Any, TypeVar
 
 from validation.errors import InputError
 from validation.gates.gate import Gate
-from validation.runs.aliases import Data, Fields
 from validation.runs.case_name import scene_of
 from validation.scenes import features
 from validation.scenes.places import STUDIES, study_directories
@@ -56,10 +55,10 @@ class StudyFolder:
     form: str = "study"
 
     @property
-    def fields(self) -> Fields:
+    def fields(self) -> dict[str, Any]:
         """The fields of the study as its table has them."""
         table = _table(self.path / "study.toml")
-        fields: Fields = table.get("study", {}) | table.get(self.form, {})
+        fields: dict[str, Any] = table.get("study", {}) | table.get(self.form, {})
         return fields
 
     def module(self, name: str) -> Any:
@@ -69,7 +68,7 @@ class StudyFolder:
 
 
 @functools.cache
-def _table(path: Path) -> Fields:
+def _table(path: Path) -> dict[str, Any]:
     try:
         return tomllib.loads(path.read_text(encoding="utf-8"))
     except tomllib.TOMLDecodeError as error:
@@ -129,7 +128,7 @@ def folder_of(name: str) -> StudyFolder | None:
     return folders.get(name) or folders.get(name.partition(OF_SCENE)[0])
 
 
-def study_of_scene(name: str, source: str, assignments: Data | None = None) -> Study:
+def study_of_scene(name: str, source: str, assignments: Mapping[str, Any] | None = None) -> Study:
     """Return a study with a user's scene, built-in or a file, in place of its own ones.
 
     Raises
@@ -167,7 +166,7 @@ def judged_studies() -> list[str]:
     return [name for name in study_names() if not get_study(name).long]
 
 
-def scene_study(source: str, assignments: Data | None = None) -> Study:
+def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:
     """Return the study of one scene, built-in or a file, with the gates that belong to it.
 
     Raises
@@ -206,7 +205,7 @@ def _of_suite(scene: Scene, part_of: Callable[[Study], Iterable[T]], case_of: Ca
     return tuple(items)
 
 
-def resolve(targets: Sequence[str], assignments: Data | None = None) -> list[Study]:
+def resolve(targets: Sequence[str], assignments: Mapping[str, Any] | None = None) -> list[Study]:
     """Return the studies that the command line names: studies (`all` of them), scenes or scene files.
 
     Raises
@@ -232,7 +231,7 @@ def _meant(target: str) -> str:
     return f" did you mean {', '.join(near)}?" if near else ""
 
 
-def _resolved(target: str, assignments: Data | None) -> Study:
+def _resolved(target: str, assignments: Mapping[str, Any] | None) -> Study:
     if target in study_folders() and not assignments:
         return get_study(target)
     if target in study_folders():

@@ -15,9 +15,9 @@ from validation.problems.bands import Standard, standard
 from validation.problems.cause import Cause, cause
 from validation.problems.judge import Judgement, judge
 from validation.problems.problem import Problem
-from validation.runs.aliases import Progress, Words
 from validation.runs.history import History
 from validation.runs.numbers import error_percent
+from validation.runs.progress import Progress
 from validation.runs.run import Outcome, Run
 from validation.solvers.contract import Solver
 from validation.solvers.files import Outside
@@ -44,7 +44,7 @@ class JudgedAnswer:
     standard: Standard | None  # None of numbers, which no exact motion is needed for
     judgement: Judgement
     cause: Cause | None  # of a failure
-    warnings: Words = ()  # what makes the verdict worth less, in sentences
+    warnings: tuple[str, ...] = ()  # what makes the verdict worth less, in sentences
 
 
 @dataclass(frozen=True, eq=False)

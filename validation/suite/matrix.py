@@ -22,8 +22,8 @@ from validation.engine.run import finish
 from validation.errors import InputError
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
-from validation.runs.aliases import NamePair, Progress, Words
 from validation.runs.case_name import scene_of
+from validation.runs.progress import Progress
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.solvers.contract import Solver
@@ -57,13 +57,13 @@ class Phenomenon:
     study: str
     sources: str
     gates: tuple[Gate, ...] = field(repr=False)
-    problems: Words = ()
+    problems: tuple[str, ...] = ()
 
     def asked_by(self, problem: str) -> bool:
         """Whether a problem of the pack, or a case of it, asks for it."""
         return any(problem == name or problem.startswith(f"{name}-") for name in self.problems)
 
-    def needs(self, gate: Gate) -> Iterator[NamePair]:
+    def needs(self, gate: Gate) -> Iterator[tuple[str, str]]:
         """Yield the cases that a gate needs, by scene and solver, those behind derived rows included."""
         recipes = _recipes(self.study)
         for name in gate.cases:
@@ -83,7 +83,7 @@ class Phenomenon:
 
 
 @functools.cache
-def _recipes(study: str) -> Mapping[NamePair, Derived]:
+def _recipes(study: str) -> Mapping[tuple[str, str], Derived]:
     return get_study(study).recipes()
 
 
@@ -115,7 +115,7 @@ def _is_shown(gate: Gate, patterns: Iterable[str]) -> bool:
 
 def unstated() -> Iterator[tuple[str, Gate]]:
     """Yield the gates that nobody could look up, with what they lack: one phenomenon, or sources of their study."""
-    by_gate: dict[NamePair, list[Phenomenon]] = {}
+    by_gate: dict[tuple[str, str], list[Phenomenon]] = {}
     for shown in phenomena():
         for gate in shown.gates:
             by_gate.setdefault((shown.study, gate.id), []).append(shown)

@@ -23,15 +23,15 @@ import csv
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from validation.runs.aliases import Fields, NamedTexts
 from validation.scenes.scene import Scene
 
 
 def printed_numbers(
-    path: Path, entry: Fields, cases_of: Callable[[str], Sequence[Scene]]
+    path: Path, entry: dict[str, Any], cases_of: Callable[[str], Sequence[Scene]]
 ) -> Mapping[str, Mapping[str, str]]:
     """Return the numbers of a table as their texts, by case and metric.
 
@@ -53,7 +53,7 @@ def printed_numbers(
     keys = entry.pop("by", ())
     metrics = entry.pop("metrics", ())
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line and not line.startswith("#")]
-    numbers: dict[str, NamedTexts] = {}
+    numbers: dict[str, dict[str, str]] = {}
     for line in csv.DictReader(lines, skipinitialspace=True):
         words = {column: text.strip() for column, text in line.items() if text and text.strip()}
         name = pattern.format(**words)

@@ -44,7 +44,7 @@ these; of ``owners`` it is one without a case.
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -53,7 +53,6 @@ from typing import Any
 from validation.engine.finished import DerivedRows, derived_row
 from validation.errors import InputError
 from validation.gates.gate import Gate
-from validation.runs.aliases import Data, Fields
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
@@ -65,7 +64,7 @@ NOT_OF_A_STUDY = ("order", "phenomenon", "problems", "register", "sources", "of_
 FUNCTIONS = ("extra", "data", "annotate", "expects")  # that a field may name beside those of gates, rows and scenes
 
 
-def declare(folder: Path, fields: Data, formulas: Any = None) -> Study:
+def declare(folder: Path, fields: Mapping[str, Any], formulas: Any = None) -> Study:
     """Return the study of a folder.
 
     Parameters
@@ -95,8 +94,8 @@ class StudyTable:
     """
 
     folder: Path
-    fields: Data
-    formulas: Data
+    fields: Mapping[str, Any]
+    formulas: Mapping[str, Any]
 
     def function(self, name: str) -> Any:
         """Return what ``formulas.py`` calls so.
@@ -111,7 +110,7 @@ class StudyTable:
         return self.formulas[name]
 
     @property
-    def entries(self) -> Fields:
+    def entries(self) -> dict[str, Any]:
         """The whole table, read anew: its entries are taken apart."""
         return tomllib.loads((self.folder / "study.toml").read_text(encoding="utf-8"))
 
@@ -169,7 +168,7 @@ class StudyTable:
         function = self.function(self.fields[field]) if field in self.fields else tuple
         return function()
 
-    def _printed(self, entry: Fields) -> Iterator[Fields]:
+    def _printed(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the fields of the gates on printed numbers; keys that are no field of a gate are taken out."""
         numbers = entry.pop("numbers")
         given_half = entry.pop("half", None)
@@ -195,7 +194,7 @@ class StudyTable:
         (case,) = named_cases([scene])
         return float(self.function(term)(case))
 
-    def _banded(self, entry: Fields) -> Iterator[Fields]:
+    def _banded(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield the fields of the gates whose band is a formula or given."""
         band = entry.pop("band")
         metrics = entry.pop("metrics", ())
@@ -214,7 +213,7 @@ class StudyTable:
                 low, high = by_metric[metric]
                 yield {"scene": scene, "metric": metric, "low": low, "high": high, "reason": reason}
 
-    def declared_cases(self, entry: Fields) -> list[Scene]:
+    def declared_cases(self, entry: dict[str, Any]) -> list[Scene]:
         """Return the cases that an entry names, and take them out of it."""
         if "cases" in entry:
             return list(self.function(entry.pop("cases"))())

@@ -19,7 +19,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from validation.models.column.tables import NEAR, ColumnSection
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 from validation.theory.stepping import Stepping
 
@@ -93,7 +92,7 @@ def first_frequency(column: ColumnSection) -> float | None:
     return float(brentq(lambda w: float(_top_stress(column, np.array(w))), grid[max(first - 1, 0)], grid[first]))
 
 
-def _springs(column: ColumnSection) -> list[NumberPair]:
+def _springs(column: ColumnSection) -> list[tuple[float, float]]:
     """Return height [m] and stiffness [Pa/m] of each spring across a column, from the base upwards."""
     springs = [(joint.height, joint.stiffness) for joint in column.springs]
     between = column.glue if column.law == "bonded" else column.stiffness

@@ -20,7 +20,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 
 SAMPLES = 2000  # of a free flight, between which the lowest corner meets the plane
@@ -34,9 +33,9 @@ class FallingRectangle:
     width: float  # m
     height: float  # m
     mass: float  # kg
-    place: NumberPair  # of the centroid [m]
+    place: tuple[float, float]  # of the centroid [m]
     angle: float  # rad
-    velocity: NumberPair  # m/s
+    velocity: tuple[float, float]  # m/s
     spin: float  # rad/s
     gravity: float = 9.81
 
@@ -86,7 +85,7 @@ class Rebound:
 
     time: float  # at which the corner leaves [s]
     state: tuple[float, ...]  # x, y, angle, and their rates then
-    impulse: NumberPair  # along the plane and across it [N s]
+    impulse: tuple[float, float]  # along the plane and across it [N s]
 
 
 def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, until: float) -> Rebound:
@@ -151,7 +150,7 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
     return Rebound(float(time), tuple(state_there), (along, across))
 
 
-def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> NumberPair:
+def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[float, float]:
     """Return the impulses along and across the plane of a rigid corner with Coulomb friction, no normal work lost.
 
     The corner's velocity changes by A J with the inverse masses A of the corner, piece by piece along J_n.

@@ -13,7 +13,6 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 
 SAMPLES = 4000  # of the time that is looked at: gaps are smooth, and change their sign once between two
@@ -25,8 +24,8 @@ class MovingPolygon:
     """A rigid polygon that moves uniformly and turns about its centroid."""
 
     corners: Array  # (n, 2) from the centroid, at t = 0 [m]
-    centroid: NumberPair  # at t = 0 [m]
-    velocity: NumberPair  # m/s
+    centroid: tuple[float, float]  # at t = 0 [m]
+    velocity: tuple[float, float]  # m/s
     spin: float  # rad/s
 
     def at(self, times: Array) -> Array:
@@ -90,7 +89,7 @@ def _touch(
     return None
 
 
-def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> NumberPair:
+def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> tuple[float, float]:
     """Return the least and the greatest direction that a force on the first polygon may have [rad].
 
     A corner inside an edge has the edge's normal; a corner on a corner any direction that is a normal of both.
@@ -106,7 +105,7 @@ def normals(first: MovingPolygon, second: MovingPolygon, touch: FirstTouch) -> N
     return max(low, own_low + shift) + turned, min(high, own_high + shift) + turned
 
 
-def _cone(polygon: MovingPolygon, corner: int, time: float) -> NumberPair:
+def _cone(polygon: MovingPolygon, corner: int, time: float) -> tuple[float, float]:
     """Return the normals of the two edges that meet in a corner, counter-clockwise [rad]."""
     corners = polygon.at(np.array([time]))[0]
     before, here, after = (corners[(corner + k) % len(corners)] for k in (-1, 0, 1))

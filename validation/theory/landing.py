@@ -25,7 +25,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array, ArrayPair
 from validation.scenes.scene import Scene
 from validation.theory import spectra, statics
@@ -163,7 +162,7 @@ def _after_flight(position: Array, velocity: Array) -> ArrayPair | None:
     return None if math.isinf(fall) else (flight.position(np.array([fall]))[0], flight.velocity(fall))
 
 
-def _end(motion: _Motion, longest: float, opens: bool) -> NumberPair:
+def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
     """Return when a stretch ends, infinite where it does not, and its greatest penetration on the way."""
     sample = 2 * math.pi / float(motion.frequencies.max()) / SAMPLES
     depth = 0.0

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from validation.runs.aliases import Fields
+from typing import Any
+
 from validation.runs.beside import table_beside
 
-CARDS: dict[str, Fields] = table_beside(__file__)
+CARDS: dict[str, dict[str, Any]] = table_beside(__file__)
 """Parameters, order, solves, good, bad and aliases of each scheme, as the table beside this module has them."""

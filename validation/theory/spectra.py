@@ -11,7 +11,6 @@ import math
 
 import numpy as np
 
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory.statics import height, moduli, size
@@ -150,7 +149,7 @@ def bar_response(scene: Scene, omega: Array) -> Array:
     return 1 + x
 
 
-def mesh_error(scene: Scene) -> NamedNumbers:
+def mesh_error(scene: Scene) -> dict[str, float]:
     """Relative L2 errors of quadratic elements against the bar, by quantity, predicted from their dispersion alone.
 
     Each mode's frequency is high by (b/n)^4 / 1440 (with the first factor of `mesh_frequency_error`), its share is

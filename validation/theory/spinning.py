@@ -32,7 +32,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 
 TOLERANCE = 1e-13
@@ -121,7 +120,7 @@ class Slide:
         return self.speed**2 / (2 * self.friction * self.gravity) if self.friction else math.inf
 
     @property
-    def tips(self) -> NumberPair | None:
+    def tips(self) -> tuple[float, float] | None:
         """When it tips [s] and how fast it is then [m/s]; None where it stops before."""
         way = -self.friction * self.height / 2 - self.start
         if way >= self.stopping_distance:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
 
-def moduli(scene: Scene) -> NumberPair:
+def moduli(scene: Scene) -> tuple[float, float]:
     """Return (E', mu') that turn the plane-stress formulas into the scene's hypothesis."""
     return plane_moduli(scene.block.young, scene.block.poisson, scene.block.hypothesis)
 
 
-def plane_moduli(young: float, poisson: float, hypothesis: str) -> NumberPair:
+def plane_moduli(young: float, poisson: float, hypothesis: str) -> tuple[float, float]:
     """Return (E', mu') of a material; plane strain: E' = E / (1 - mu^2), mu' = mu / (1 - mu)."""
     if hypothesis == "plane stress":
         return young, poisson
@@ -26,7 +25,7 @@ def elasticity(young: float, poisson: float) -> Array:
     return young / (1 - poisson**2) * np.array([[1, poisson, 0], [poisson, 1, 0], [0, 0, (1 - poisson) / 2]])
 
 
-def size(scene: Scene) -> NumberPair:
+def size(scene: Scene) -> tuple[float, float]:
     """Width and height of the rectangle [m]."""
     (x0, y0), (x1, _), (_, y2), _ = scene.block.outline
     return x1 - x0, y2 - y0

@@ -40,7 +40,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from validation.errors import InputError
-from validation.runs.aliases import NumberPair
 from validation.scenes.scene import Scene
 from validation.theory import stages
 from validation.theory.stages import Stage, Stages
@@ -356,7 +355,7 @@ class Stepping:
             return kinetic + (self.delta - 0.5) / 2 * omega_dt
         return kinetic + (numbers.af - numbers.am) * (1 - numbers.am - numbers.af) ** 2 * omega_dt**3 / 8
 
-    def rayleigh(self) -> NumberPair:
+    def rayleigh(self) -> tuple[float, float]:
         """Return (a0 [1/s], a1 [s]) of the Rayleigh damping that the step hides, in the limit w dt -> 0.
 
         a0 = 2 (1 - gg) / ((1 + gg) dt) is the kinetic part, -Im W2 / w there; a1 = (delta - 1/2) dt is Newmark's

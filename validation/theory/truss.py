@@ -19,7 +19,6 @@ import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import Array
 
 
@@ -31,7 +30,7 @@ class HalfTruss:
     height: float  # h [m]
     mass: float  # kg
     turned: float  # at t = 0 [rad]
-    place: NumberPair  # of A at t = 0, from where it touches without force [m]
+    place: tuple[float, float]  # of A at t = 0, from where it touches without force [m]
     span: float  # S [m]
     abutment: float  # p at A, across and along [N/m]
     crown: float  # c at C [N/m]
@@ -48,12 +47,12 @@ class HalfTruss:
         return 1 / (1 / self.abutment + 1 / self.crown)
 
     @property
-    def limit(self) -> NumberPair:
+    def limit(self) -> tuple[float, float]:
         """Inclination at the limit [rad], and the load on the crown there, W left out [N]."""
         u = math.acos((self.span / self.diagonal) ** (1 / 3))
         return u, 2 * self.series * self.diagonal * math.sin(u) ** 3 - self.mass * self.gravity
 
-    def rest(self, load: float) -> NamedNumbers | None:
+    def rest(self, load: float) -> dict[str, float] | None:
         """Return turn [rad] and forces [N] at rest under a load on the whole crown, None where there is no rest."""
         limit, most = self.limit
         if load > most:

@@ -16,20 +16,18 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NamedNumbers, NumberPair
-
 
 @dataclass(frozen=True)
 class Wedges:
     """Two wedges, the active one first."""
 
-    masses: NumberPair  # kg
-    dips: NumberPair  # of the planes they slide on [rad]
+    masses: tuple[float, float]  # kg
+    dips: tuple[float, float]  # of the planes they slide on [rad]
     below: float  # tan(phi)
     between: float  # tan(delta)
     gravity: float = 9.81
 
-    def motion(self) -> NamedNumbers:
+    def motion(self) -> dict[str, float]:
         """Return accelerations down the planes [m/s2] and normal forces [N] of wedges that slide."""
         (m1, m2), (a1, a2), g = self.masses, self.dips, self.gravity
         p = math.atan(self.below)

@@ -7,6 +7,7 @@ import shlex
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 from validation.cli.app import RESULTS
 from validation.engine.measured import JudgedStudy, unjudged
@@ -14,7 +15,6 @@ from validation.gates.changes import Change
 from validation.gates.gate import Status, Verdict
 from validation.report.blocks import TableColumn, table
 from validation.report.render.terminal import StyledLine, table_lines, wrapped
-from validation.runs.aliases import Fields, NamePair
 from validation.runs.numbers import measured_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
@@ -120,7 +120,7 @@ def badly_ended(answer: RunAnswer) -> Iterator[str]:
                 yield how_it_ended(case["scene"], case["solver"], row.outcome, row.notes)
 
 
-def _bad_cases(run: JudgedStudy) -> set[NamePair]:
+def _bad_cases(run: JudgedStudy) -> set[tuple[str, str]]:
     """Return the cases that ended in a way their study does not expect, refused ones among them."""
     bad = set(run.failed)
     if run.refused:
@@ -237,7 +237,7 @@ def next_commands(answer: RunAnswer) -> list[str]:
 # ---- for machines --------------------------------------------------------------------------------------------------
 
 
-def as_data(answer: RunAnswer) -> Fields:
+def as_data(answer: RunAnswer) -> dict[str, Any]:
     """Return the answer as plain data; verdicts as they stand in ``verdicts.json``."""
     return {
         "status": answer.status,
@@ -261,7 +261,7 @@ def as_data(answer: RunAnswer) -> Fields:
     }
 
 
-def _change(change: Change) -> Fields:
+def _change(change: Change) -> dict[str, Any]:
     return {
         "change": change.kind,
         "study": change.study,

@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any
 import typer
 
 from validation.advice.plain import Line, PlainAnswer, in_columns, plain
-from validation.runs.aliases import Fields
 from validation.runs.text import visible
 
 if TYPE_CHECKING:
@@ -46,7 +45,7 @@ def echo_json(data: Any) -> None:
     echo(json.dumps(data, indent=1, allow_nan=False))
 
 
-def echo_answer(answer: PlainAnswer | Fields, lines: Iterable[str], as_json: bool) -> None:
+def echo_answer(answer: PlainAnswer | dict[str, Any], lines: Iterable[str], as_json: bool) -> None:
     """Print an answer as plain data, or its lines."""
     if as_json:
         echo_json(plain(answer.as_dict() if isinstance(answer, PlainAnswer) else answer))

@@ -14,7 +14,6 @@ from validation.cli.printing.output import broken, echo
 from validation.gates.gate import Verdict
 from validation.report.blocks import Blocks, Listing, Paragraph, Table, TableColumn, table
 from validation.report.scene.differences import DIFFERENCES, difference_table
-from validation.runs.aliases import NamePair, Words
 from validation.runs.case_name import CaseName
 from validation.runs.numbers import band_text, measured_text
 from validation.runs.records import AlarmRecord, BaselineVerdict, ComparisonRecord, VerdictRecord
@@ -86,7 +85,7 @@ def difference_blocks(results: Results, study: str, writable: bool) -> Blocks:
     return [replace(differences, notes=note), Listing(proposal)]
 
 
-def _without_comparison(ended: Mapping[NamePair, Outcome]) -> str:
+def _without_comparison(ended: Mapping[tuple[str, str], Outcome]) -> str:
     """Return what to do with a scene whose solvers cannot be compared."""
     if len({solver for _, solver in ended}) < 2:
         return 'next: name two solvers or more that apply to the scene, such as solvers = ["dda", "bar"] under [run]'
@@ -136,7 +135,7 @@ def _agrees(value: object) -> bool:
     return not isinstance(value, float | int) or value < LARGEST_AGREEMENT
 
 
-def outcomes(results: Results, study: str) -> dict[NamePair, Outcome]:
+def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
     """Return how the cases of a study ended, by (scene, solver)."""
     rows = results.rows()
     return {(c["scene"], c["solver"]): rows[c["key"]].outcome for c in results.whole(study)["cases"]}
@@ -145,7 +144,7 @@ def outcomes(results: Results, study: str) -> dict[NamePair, Outcome]:
 def print_ends(results: Results, studies: list[str]) -> None:
     """Name the cases that did not complete, and how they ended; what a solver says of several ones it says once."""
     rows = results.rows()
-    scenes: dict[tuple[str, Outcome, Words], list[str]] = {}
+    scenes: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for study in studies:
         for case in results.manifest(study)["cases"]:
             row = rows[case["key"]]

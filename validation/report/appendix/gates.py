@@ -6,7 +6,6 @@ from validation.report.blocks import Blocks, Heading, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.gates import measured
 from validation.report.chapters.text import some
-from validation.runs.aliases import Words
 from validation.runs.case_name import scene_of
 from validation.runs.records import VerdictRecord
 
@@ -20,7 +19,7 @@ def gate_table(verdicts: Verdicts) -> Blocks:
         if v["verdict"] == "PASS":
             passed_by_reason = passed_by_study.setdefault(v["study"], {})
             passed_by_reason.setdefault(f"{v['reason']} [{v['reference_kind']}]", []).append(v)
-    rows: list[Words] = []
+    rows: list[tuple[str, ...]] = []
     for study, passed_by_reason in passed_by_study.items():
         rows.append((f"{study}: {sum(map(len, passed_by_reason.values()))} passed",))
         for reason, passed in passed_by_reason.items():

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from validation.report.blocks import Blocks, Heading, Table, TableColumn, table
 from validation.report.chapters.data import CaseGroup, Groups, varied_fields
 from validation.report.chapters.text import parameter_items, some
-from validation.runs.aliases import NamePair
 from validation.runs.numbers import plain
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -39,7 +38,7 @@ def parameter_table(groups: Groups) -> Blocks:
 def provenance(results: Results, studies: Sequence[str]) -> Blocks:
     """Return where the numbers come from and what they cost; what all studies share is said once."""
     manifests = [results.manifest(study) for study in studies]
-    studies_by_item: dict[NamePair, list[str]] = {}
+    studies_by_item: dict[tuple[str, str], list[str]] = {}
     for manifest in manifests:
         for name, value in manifest.get("provenance", {}).items():
             studies_by_item.setdefault((name, _item_text(value)), []).append(manifest["study"])

@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from importlib import metadata
+from typing import Any
 
 from validation.gates.gate import Status
 from validation.problems.data import PACK
 from validation.problems.problem import names, problem
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.judged import as_data
-from validation.runs.aliases import Fields, NamedTexts, NamePair
 from validation.runs.numbers import DASH, error_percent, short, significant
 from validation.suite.judging import JudgedAnswer, JudgedSet
 
@@ -104,7 +104,7 @@ def headline(judged: JudgedSet) -> str:
 # ---- plain data -----------------------------------------------------------------------------------------------------
 
 
-def verdicts(sets: Sequence[JudgedSet]) -> Fields:
+def verdicts(sets: Sequence[JudgedSet]) -> dict[str, Any]:
     """Return the verdicts on all answers as plain data."""
     return {
         "format": FORMAT,
@@ -114,7 +114,7 @@ def verdicts(sets: Sequence[JudgedSet]) -> Fields:
     }
 
 
-def _rows(judged: JudgedSet) -> list[Fields]:
+def _rows(judged: JudgedSet) -> list[dict[str, Any]]:
     data = judged.answers.data
     rows = []
     for answer in judged.answers.answers:
@@ -184,7 +184,7 @@ def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:
     """Return why answers fail or are not judged, those of one program with one reason in a line."""
     rows = []
     for judged in with_answers(sets):
-        problems_by_reason: dict[NamePair, list[str]] = {}
+        problems_by_reason: dict[tuple[str, str], list[str]] = {}
         for cell in cells(judged):
             if cell.reason:
                 reason = "; ".join(filter(None, (cell.column, cell.reason)))
@@ -205,7 +205,7 @@ def stated_table(sets: Sequence[JudgedSet]) -> Table:
     return table(("", *(TableColumn(judged.answers.title, "fill") for judged in sets)), rows)
 
 
-def asks_of(sets: Sequence[JudgedSet]) -> NamedTexts:
+def asks_of(sets: Sequence[JudgedSet]) -> dict[str, str]:
     """Return the problems that some program was asked, and what they ask."""
     asked = {cell.problem for judged in sets for cell in answered(judged)}
     own = {answer.name: answer.problem for judged in sets for answer in judged.answers.answers}

@@ -8,7 +8,6 @@ from validation.report.blocks import Table, table
 from validation.report.chapters.data import CaseGroup, CaseResults
 from validation.report.chapters.described import Description
 from validation.report.chapters.text import load_size, word_notes
-from validation.runs.aliases import Words
 from validation.runs.numbers import DASH
 from validation.runs.row import Value
 from validation.scenes.scene import Scene
@@ -30,7 +29,7 @@ def damping_table(group: CaseGroup) -> Table:
     rows = []
     measured = []
     for case in group.cases:
-        solvers_by_cells: dict[Words, list[str]] = {}
+        solvers_by_cells: dict[tuple[str, ...], list[str]] = {}
         for solver in _finished(case):
             metrics = case.rows[solver].metrics
             values = [_significant(column.of, metrics.get(column.of), case.scene) for column in columns]

@@ -6,9 +6,9 @@ import itertools
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from validation.report.chapters.text import case_labels
-from validation.runs.aliases import Data, NamedTexts
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.history import History
 from validation.runs.records import AlarmRecord, BudgetRecord, CaseRecord, ComparisonRecord, Manifest, VerdictRecord
@@ -72,7 +72,7 @@ class CaseGroup:
         values = [case.number(solver, metric) for case in self.cases]
         return [value for value in values if value is not None]
 
-    def compared(self, case: CaseResults, solver: str, reference: str) -> Data | None:
+    def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any] | None:
         """Return the metrics of a pair over the longest window, in either order, or None."""
         pair = {solver, reference}
         of_pair = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
@@ -126,7 +126,7 @@ def groups_of_studies(results: Results, manifests: Iterable[Manifest], drawn: bo
     return groups
 
 
-def labels_of(groups: Iterable[CaseGroup]) -> NamedTexts:
+def labels_of(groups: Iterable[CaseGroup]) -> dict[str, str]:
     """Return the labels of all cases, by their names."""
     return {case.name: case.label for group in groups for case in group.cases}
 

@@ -26,7 +26,6 @@ from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.texts import FILLED, Texts
-from validation.runs.aliases import Fields
 from validation.runs.numbers import FORMS, decimal
 from validation.runs.row import Metrics, Value
 
@@ -72,14 +71,14 @@ class Description(Texts):
         """Whether something of a kind (``text``, ``number``, ``table``) goes by a name."""
         return name in self._data.get(kind, {})
 
-    def described(self, kind: str, name: str) -> Fields:
+    def described(self, kind: str, name: str) -> dict[str, Any]:
         """Return what the description says of a thing of a kind."""
-        described: Fields = self._data[kind][name]
+        described: dict[str, Any] = self._data[kind][name]
         return described
 
-    def entries(self, name: str) -> list[Fields]:
+    def entries(self, name: str) -> list[dict[str, Any]]:
         """Return the entries of a list."""
-        entries: list[Fields] = self._data[name]
+        entries: list[dict[str, Any]] = self._data[name]
         return entries
 
     def columns(self, name: str) -> list[CaseColumn]:

@@ -8,7 +8,6 @@ from validation.metrics.catalogue import in_words, is_count, words_of
 from validation.report.blocks import Blocks, Callout, Heading, Table, TableColumn, table
 from validation.report.chapters.data import Verdicts
 from validation.report.chapters.text import capital, cell
-from validation.runs.aliases import Words
 from validation.runs.numbers import bounded, short
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
@@ -86,7 +85,7 @@ def gate_list(verdicts: Verdicts) -> Blocks:
 
 def gate_table(verdicts: Verdicts) -> Table:
     """Return gates with value and band, those of one reason above it."""
-    rows_by_reason: dict[str, list[Words]] = {}
+    rows_by_reason: dict[str, list[tuple[str, ...]]] = {}
     for v in verdicts:
         subject = f"{v['scene']}, {' against '.join(v['pair'])}: {measured(v)}"
         row = (v["verdict"], subject, value_cell(v["value"], v["metric"]), band_cell(*v["band"]))

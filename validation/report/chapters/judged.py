@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,6 @@ from validation.problems.cause import Cause
 from validation.problems.quantities import COUNTED, Quantity
 from validation.report.blocks import Blocks, Callout, FigureBlock, Paragraph, Table, TableColumn, table
 from validation.report.figures.curves import EXACT, HistoryPanel
-from validation.runs.aliases import Fields
 from validation.runs.columns import split
 from validation.runs.history import History
 from validation.runs.numbers import DASH, bounded, error_percent, plain, short, significant
@@ -65,7 +65,7 @@ def reached(answer: JudgedAnswer) -> str:
     return f"Its error is within what is allowed up to {short(within)} s of {short(until)} s."
 
 
-def as_data(judged: JudgedAnswer) -> Fields:
+def as_data(judged: JudgedAnswer) -> dict[str, Any]:
     """Return a judgement as plain data, its numbers without the last digits, which differ between processors."""
     named = judged.problem.named
     criteria = []
@@ -112,8 +112,8 @@ def rounded(value: float | None) -> float | None:
     return significant(math.copysign(max(abs(value), LEAST_ERROR), value), DIGITS)
 
 
-def _cause_data(cause: Cause) -> Fields:
-    statement: Fields = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
+def _cause_data(cause: Cause) -> dict[str, Any]:
+    statement: dict[str, Any] = {"sentence": cause.sentence, "ids": list(cause.ids), "values": cause.values}
     if cause.passing_step is not None:
         statement["passing_step_s"] = cause.passing_step
     return statement | ({"would_tell": cause.would_tell} if cause.would_tell else {})

@@ -16,7 +16,6 @@ from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HAIR
 from validation.report.figures.histories import Margins
-from validation.runs.aliases import NamePair
 from validation.runs.numbers import percent
 from validation.scenes import features
 
@@ -46,7 +45,7 @@ LINE = 3.1  # mm, height of a case
 MARGINS = Margins(left=50.0, right=4.0)
 
 
-def parts_of(case: CaseResults) -> Mapping[str, NamePair]:
+def parts_of(case: CaseResults) -> Mapping[str, tuple[str, str]]:
     """Return the parts of the ledger, each the solver and its reference."""
     return PARTS if features.linear(case.scene) else OPENING_PARTS
 
@@ -57,7 +56,7 @@ def entry(group: CaseGroup, case: CaseResults, part: str) -> Values:
     return displacement, pressure
 
 
-def with_entries(groups: CaseGroups, parts: Mapping[str, NamePair]) -> list[CaseGroup]:
+def with_entries(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> list[CaseGroup]:
     """Return the groups with the cases of these parts that some of them applies to."""
     compared_groups = []
     for group in groups:
@@ -115,7 +114,7 @@ def _shares(groups: CaseGroups, model_form: float) -> str:
     return f"; of the displacement's difference {sentence}{remainder}"
 
 
-def ledger_lines(groups: CaseGroups, parts: Mapping[str, NamePair]) -> LedgerLines:
+def ledger_lines(groups: CaseGroups, parts: Mapping[str, tuple[str, str]]) -> LedgerLines:
     """Return the ledger as lines of a figure."""
     lines = []
     for group in groups:

@@ -38,7 +38,6 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from validation.report.chapters.data import CaseGroup, CaseResults, groups_of_studies
-from validation.runs.aliases import Data, NamePair
 from validation.runs.case_name import scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
@@ -79,9 +78,11 @@ class StudyTable:
         self.manifest = manifests[0]
         self.groups = groups_of_studies(results, manifests, drawn)
         rows = itertools.chain.from_iterable(manifest.get("derived", []) for manifest in reversed(manifests))
-        self.derived: Mapping[NamePair, Data] = {(row["scene"], row["name"]): row["metrics"] for row in rows}
+        self.derived: Mapping[tuple[str, str], Mapping[str, Any]] = {
+            (row["scene"], row["name"]): row["metrics"] for row in rows
+        }
         self.verdicts = results.verdicts(self.manifest["study"])
-        self.data: Data = self.manifest.get("data") or {}
+        self.data: Mapping[str, Any] = self.manifest.get("data") or {}
         self.cases = {case.name: (group, case) for group in self.groups.values() for case in group.cases}
 
     def lines(self, query: Query) -> list[Line]:
@@ -199,7 +200,7 @@ class StudyTable:
         best = (max if pick == "most" else min)(numbered, key=operator.itemgetter(0))
         return self.value(best[1], expression)
 
-    def _meets(self, line: Line, where: Data) -> bool:
+    def _meets(self, line: Line, where: Mapping[str, Any]) -> bool:
         for expression, wanted in where.items():
             if isinstance(wanted, dict):
                 wanted = self.data.get(wanted["data"], [])

@@ -24,7 +24,6 @@ from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
-from validation.runs.aliases import NamedNumbers, Words
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import bounded, percent, plain, power, short
@@ -170,7 +169,7 @@ def gate_count(verdicts: Verdicts) -> str:
 
 def _tension(group: CaseGroup) -> str:
     """Say where a locked contact hides tension."""
-    tensions: NamedNumbers = {}
+    tensions: dict[str, float] = {}
     for solver in group.solvers:
         minimum = min(group.numbers(solver, "pressure.minimum"), default=0.0)
         if minimum < -1e-6 * load_size(group.cases[0].scene):
@@ -202,7 +201,7 @@ def _damped_agreement(group: CaseGroup) -> str:
 
 def outcomes(group: CaseGroup) -> Blocks:
     """Name every outcome other than completed, with its sentence; cases that share it share a line."""
-    labels_by_outcome: dict[tuple[str, Outcome, Words], list[str]] = {}
+    labels_by_outcome: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
     for case in group.cases:
         for solver, row in case.rows.items():
             if row.outcome is not Outcome.COMPLETED:

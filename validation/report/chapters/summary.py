@@ -22,7 +22,6 @@ from validation.report.chapters.text import AS_STATED, parameters, range_of, spa
 from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.hooks import SCHEMES, ShowingHooks
-from validation.runs.aliases import NamedNumbers, NamePair
 from validation.runs.numbers import DASH, bounded, percent, plain, short
 from validation.runs.row import NewMetrics, Row, Value
 from validation.runs.run import Outcome
@@ -90,7 +89,7 @@ def _table(name: str, lines: Lines, **values: str) -> Table:
 # ---- choices --------------------------------------------------------------------------------------------------------
 
 
-def choices(group: CaseGroup) -> Iterator[NamePair]:
+def choices(group: CaseGroup) -> Iterator[tuple[str, str]]:
     """Yield time step, springs and discount of the cases, and what they do."""
     scenes = [case.scene for case in group.cases]
     hooks = ShowingHooks.of(scenes[0])
@@ -143,7 +142,7 @@ def reference_of(group: CaseGroup, case: CaseResults) -> str | None:
     return None
 
 
-def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> NamedNumbers:
+def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> dict[str, float]:
     """Return the relative L2 differences of a solver from a reference that have a number."""
     values = {} if reference is None else group.compared(case, solver, reference) or {}
     return {metric: float(values[metric]) for metric in ERRORS if isinstance(values.get(metric), int | float)}

@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from validation.report.scene.hooks import ShowingHooks
-from validation.runs.aliases import NamePair, Words
 from validation.runs.case_name import CaseName
 from validation.runs.numbers import DASH, percent, plain, short
 from validation.runs.row import Value
@@ -66,7 +65,7 @@ def cell(value: Value) -> str:
     return _WORDS.get(value, value) if isinstance(value, str) else plain(value)
 
 
-def word_notes(values: Iterable[Value]) -> Words:
+def word_notes(values: Iterable[Value]) -> tuple[str, ...]:
     """Return what the short words in a table's cells stand for."""
     words = set(values)
     return tuple(f"{short_word}: {meaning}" for word, short_word, meaning in _MEANINGS if word in words)
@@ -95,7 +94,7 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     return ", ".join(parts) or AS_STATED
 
 
-def _symbol(field: str) -> NamePair:
+def _symbol(field: str) -> tuple[str, str]:
     """Return the symbol of a key and its unit, as they stand beside a number."""
     tables = tables_of_scenes()
     place, _, name = key_of_any_entry(field, tables).rpartition(".")
@@ -108,7 +107,7 @@ def _symbol(field: str) -> NamePair:
     return name.replace("_", " "), ""
 
 
-def _pressure(text: str) -> NamePair:
+def _pressure(text: str) -> tuple[str, str]:
     """Return a pressure, or the components of a stress, in MPa where they are large; a zero needs no unit."""
     values = [float(part) for part in text.split("x")]
     largest = max(map(abs, values))

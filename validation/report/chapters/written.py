@@ -56,7 +56,6 @@ from validation.report.figures.drawing import FigureHooks, scenes_figure
 from validation.report.figures.histories import saved
 from validation.report.figures.maps import MapScale, NumberMap, map_figure
 from validation.report.figures.model import model_figure
-from validation.runs.aliases import Fields, NamedNumbers
 from validation.runs.history import Array
 from validation.runs.numbers import DASH
 from validation.runs.records import Manifest
@@ -276,9 +275,9 @@ class WrittenChapter:
         scene = described.get("scene", "")
         return [self.page.figure(name, panels, self.directory, scene, whole_caption=caption, file=file)]
 
-    def _marks(self, marks: Query) -> NamedNumbers:
+    def _marks(self, marks: Query) -> dict[str, float]:
         """Return marks, at a number or where a number of the chapter stands, which may stand in their words as well."""
-        places: NamedNumbers = {}
+        places: dict[str, float] = {}
         for words, place in marks.items():
             if isinstance(place, str):
                 number = self.page.described("number", place)
@@ -300,7 +299,7 @@ class WrittenChapter:
                 drawn += self._lines(line | own)
             level = panel["level_factor"] * (self.table.number(case, panel["level_of"]) or 0.0)
             settled = self.table.number(case, panel["mark_of"]) if "mark_of" in panel else None
-            parts: Fields = {
+            parts: dict[str, Any] = {
                 "title": self.table.value(case, "label"),
                 "x_range": (0.0, float(described["last"])),
                 "x_ticks": described["x_ticks"],

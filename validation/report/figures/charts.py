@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -29,7 +29,6 @@ from validation.report.figures.histories import (
     share_left,
     size_of,
 )
-from validation.runs.aliases import Fields, NumberPair, NumbersByName, Words
 from validation.runs.history import Array, ArrayPair
 from validation.runs.numbers import tick_text
 
@@ -51,7 +50,7 @@ class ChartLine:
     width: float = 1.2  # pt; 0: its dots alone
     dots: float = 0.0  # pt, size of the dots at its points; 0: none
     hollow: bool = False  # whether the dots are
-    notes: Words = ()  # words beside each point
+    notes: tuple[str, ...] = ()  # words beside each point
     note: str = ""  # what follows the name
     shaded: ArrayPair | None = None  # least and greatest value about the line
 
@@ -60,7 +59,7 @@ class ChartLine:
         """The colour."""
         return self.color or style_of(self.name).color
 
-    def look(self) -> Fields:
+    def look(self) -> dict[str, Any]:
         """Return how matplotlib draws the line."""
         if self.color:
             return {"color": self.color, "lw": self.width, "ls": dash_style(self.dash), "zorder": 4}
@@ -76,11 +75,11 @@ class ChartPanel:
     x_label: str
     y_label: str
     lines: Sequence[ChartLine]
-    x_range: NumberPair | None = None  # of all points by default, from 0 where the axis is linear
+    x_range: tuple[float, float] | None = None  # of all points by default, from 0 where the axis is linear
     y_range: tuple[float | None, float | None] | None = None
     logarithmic: tuple[bool, bool] = (False, False)
-    marks: NumbersByName = field(default_factory=dict)  # words at an x, above the axes where there is room
-    levels: NumbersByName = field(default_factory=dict)  # words at a y
+    marks: Mapping[str, float] = field(default_factory=dict)  # words at an x, above the axes where there is room
+    levels: Mapping[str, float] = field(default_factory=dict)  # words at a y
     x_ticks: Mapping[float, str] | int = 0  # or how many parts an axis from 0 has at most
     y_ticks: Mapping[float, str] | int = 0
     names: Names = "ends"
@@ -88,7 +87,7 @@ class ChartPanel:
 
 def chart_figure(
     panels: Sequence[ChartPanel | None],
-    height: float | Sequence[NumberPair] = 48.0,
+    height: float | Sequence[tuple[float, float]] = 48.0,
     margins: Margins | None = None,
     shared: bool = False,
     width: float = WIDTH,
@@ -180,7 +179,7 @@ def draw_chart_line(axes: Axes, line: ChartLine) -> None:
     if line.shaded is not None:
         axes.fill_between(line.x, *line.shaded, color=line.shade, alpha=0.2, lw=0)
     x, y = (line.x, line.y) if line.dots else thin(line.x, line.y)
-    marker: Fields = {}
+    marker: dict[str, Any] = {}
     if line.dots:
         face = "white" if line.hollow else line.shade
         edge = 0.6 if line.hollow else 1.0
@@ -213,13 +212,13 @@ def _number_axis(axes: Axes, axis: Axis, logarithmic: bool, ticks: Mapping[float
 
 
 def _draw_hairlines(axes: Axes, panel: ChartPanel, has_marked_top: bool) -> None:
-    look: Fields = {"color": GREY, "lw": HAIR, "zorder": 1, "ls": (0, (3, 2))}
+    look: dict[str, Any] = {"color": GREY, "lw": HAIR, "zorder": 1, "ls": (0, (3, 2))}
     low, high = axes.get_xlim()
     for words, x in panel.marks.items():
         if not low <= x <= high:
             continue
         axes.axvline(x, **look)
-        at: Fields = {"xycoords": axes.get_xaxis_transform(), "color": GREY, "fontsize": 6}
+        at: dict[str, Any] = {"xycoords": axes.get_xaxis_transform(), "color": GREY, "fontsize": 6}
         if has_marked_top:
             axes.annotate(words, (x, 1.01), ha="center", va="bottom", **at)
         else:  # inside, on the side of the hairline where there is more room

@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from validation.runs.aliases import NumberPair, NumbersByName
 from validation.runs.columns import OwnColumns, kind_of
 from validation.runs.history import Array, ArrayPair, History
 from validation.solvers.contract import LineStyle
@@ -96,7 +95,7 @@ class HistoryPanel:
 
     title: str
     histories: Mapping[str, History]
-    static: NumbersByName  # static values by column, in its unit
+    static: Mapping[str, float]  # static values by column, in its unit
     reference: str | None  # the solver that differences are taken from
     base: History | None = None  # of the reference, where its own line is not drawn
     like_base: str | None = None  # the drawn line that the reference lies on
@@ -112,7 +111,7 @@ class HistoryPanel:
 HistoryPanels = Sequence[HistoryPanel]
 
 
-def common_range(panels: HistoryPanels, column: str) -> NumberPair:
+def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
     """Return the common range of a column; histories that blow up are cut at six static values."""
     kinds = [kind for panel in panels if (kind := kind_of(column, panel.own))]
     from_zero = all(kind.from_zero for kind in kinds)

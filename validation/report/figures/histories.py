@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -17,7 +18,6 @@ from validation.report.figures.curves import (
     HAIR,
     nudge,
 )
-from validation.runs.aliases import Fields, NumberPair
 from validation.runs.files import write_atomically
 
 HOUSE_STYLE = mpl.rc_params_from_file(str(Path(__file__).with_name("house.mplstyle")), use_default_template=False)
@@ -64,7 +64,7 @@ class Margins:
 
 
 def axes_grid(
-    rows: Sequence[NumberPair], columns: int, margins: Margins, width: float = WIDTH
+    rows: Sequence[tuple[float, float]], columns: int, margins: Margins, width: float = WIDTH
 ) -> tuple[Figure, list[list[Axes]]]:
     """Return a figure with axes placed in millimetres: each row has its height and the gap below it."""
     height = margins.top + sum(map(sum, rows)) - rows[-1][1] + margins.bottom
@@ -80,7 +80,7 @@ def axes_grid(
     return figure, grid
 
 
-def size_of(axes: Axes) -> NumberPair:
+def size_of(axes: Axes) -> tuple[float, float]:
     """Return width and height of the axes [mm]."""
     figure = axes.get_figure()
     if not isinstance(figure, Figure):
@@ -103,7 +103,7 @@ def label_ends(axes: Axes, labels: Sequence[EndLabel], below: float = 1.0) -> No
     heights = [float(np.clip(point[1], 0, 1)) for point in points]
     places = nudge(heights, LABEL_GAP / height, -below / height, 1 + 1.0 / height)
     for (_, name, color), start, place in zip(labels, heights, places, strict=True):
-        where: Fields = {"transform": axes.transAxes, "color": color}
+        where: dict[str, Any] = {"transform": axes.transAxes, "color": color}
         axes.plot([1, 1 + 2.5 / width], [start, place], lw=HAIR, clip_on=False, **where)
         axes.text(1 + 3.1 / width, place, name, va="center_baseline", ha="left", **where)
 

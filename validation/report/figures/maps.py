@@ -10,7 +10,6 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from validation.report.figures.histories import Margins, axes_grid, house_style
-from validation.runs.aliases import NamePair
 from validation.runs.history import Array
 
 GAP = 6.0  # mm between two maps, and above each line for its titles
@@ -41,7 +40,7 @@ def map_figure(
     maps: Sequence[Sequence[NumberMap]],
     rows: Sequence[str],
     columns: Sequence[str],
-    labels: NamePair,
+    labels: tuple[str, str],
     scale: MapScale,
 ) -> Figure:
     """Draw lines of maps; rows are labelled at the left, columns below the last line, as both axes are by `labels`."""

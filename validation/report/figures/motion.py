@@ -18,7 +18,6 @@ from matplotlib.figure import Figure
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HistoryPanel, HistoryPanels, common_range, differences, engineering
 from validation.report.figures.histories import LETTER, SLIDE, TITLE_LETTER, TITLE_LINE, WIDTH, Margins, size_of
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.columns import NO_OWN, axis_of
 from validation.runs.history import Array, History
 from validation.solvers.contract import Role
@@ -102,7 +101,7 @@ def twins(panels: HistoryPanels, columns: Sequence[str]) -> Twins:
 
     One that repeats another by other arithmetic, such as the printed recursion, is named only where it departs.
     """
-    lines: dict[str, NamedNumbers] = {}
+    lines: dict[str, dict[str, float]] = {}
     for name in dict.fromkeys(itertools.chain.from_iterable(panel.histories for panel in panels)):
         for line, others in lines.items():
             off = _apart(panels, columns, line, name)
@@ -254,5 +253,5 @@ def _difference_row(band: HistoryPanels, column: str, notes: Mapping[str, str]) 
     return _with_all_names(charts)
 
 
-def _span(panel: HistoryPanel) -> NumberPair:
+def _span(panel: HistoryPanel) -> tuple[float, float]:
     return 0.0, max((float(history.time[-1]) for history in panel.histories.values()), default=1.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -12,7 +13,6 @@ from matplotlib.figure import Figure
 from validation.report.figures.charts import ChartLine, ChartPanel, Names, chart_figure
 from validation.report.figures.curves import engineering, style_of
 from validation.report.figures.histories import Margins, house_style, save
-from validation.runs.aliases import Fields
 from validation.runs.columns import axis_of
 from validation.runs.files import write_atomically
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, ArrayPair
@@ -37,7 +37,7 @@ class ResponseCurve:
 
 def response_figure(curves: Sequence[ResponseCurve], logarithmic: bool, per_metre: bool = False) -> Figure:
     """Draw amplitudes on a logarithmic axis above phases, displacement beside contact pressure."""
-    axes: Fields = {"x_range": (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))}
+    axes: dict[str, Any] = {"x_range": (min(c.frequency[0] for c in curves), max(c.frequency[-1] for c in curves))}
     panels = []
     for column in (DISPLACEMENT, PRESSURE):
         name, unit = axis_of(column)

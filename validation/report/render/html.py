@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from validation.report.blocks import Block, as_data
 from validation.report.names import unescaped
 from validation.report.references import CITED, marked, references
-from validation.runs.aliases import NamedTexts
 from validation.runs.text import shown, visible
 
 if TYPE_CHECKING:
@@ -83,7 +82,7 @@ def anchor(heading: str) -> str:
     return re.sub(r"\W+", "-", heading).strip("-").lower()
 
 
-def _spans(columns: Sequence[NamedTexts]) -> list[tuple[str, int]]:
+def _spans(columns: Sequence[dict[str, str]]) -> list[tuple[str, int]]:
     """Return the titles that neighbouring columns share, and how many do; nothing where none does."""
     if not any(column["group"] for column in columns):
         return []

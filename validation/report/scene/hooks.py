@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from validation.advice.plain import Line
-from validation.runs.aliases import NumbersByName
 from validation.scenes.keys import described, stated
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
@@ -81,6 +80,6 @@ class ShowingHooks(Hooks):
         """Yield the derived numbers of one case."""
         yield from ()
 
-    def remarks(self, scene: Scene, values: NumbersByName) -> Iterator[str]:
+    def remarks(self, scene: Scene, values: Mapping[str, float]) -> Iterator[str]:
         """Yield in words the limits that a case lies beyond, by its numbers."""
         yield from ()

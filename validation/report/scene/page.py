@@ -6,13 +6,13 @@ from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from validation.advice.plain import Line
 from validation.report.blocks import Blocks, Callout, Listing, TableColumn, table
 from validation.report.scene import numbers
 from validation.report.scene.drawing import drawing
 from validation.report.scene.hooks import Number, ShowingHooks
-from validation.runs.aliases import Fields
 from validation.runs.numbers import stated_text
 from validation.scenes import features
 from validation.scenes.keys import described, stated
@@ -116,7 +116,7 @@ def _other_keys(scene: Scene) -> Iterator[str]:
                     yield described(name, value, key)
 
 
-def as_data(scene: Scene) -> Fields:
+def as_data(scene: Scene) -> dict[str, Any]:
     """Return the scene as a file states it, and each number's range, as plain data."""
     description = SceneDescription.of(scene)
     return {

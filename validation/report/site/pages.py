@@ -22,9 +22,9 @@ from validation.report.references import PAPER, identity
 from validation.report.render import html
 from validation.report.site.places import check_place, write
 from validation.report.verification import matrix
-from validation.runs.aliases import NamedTexts, Progress
 from validation.runs.case_name import scene_of
 from validation.runs.files import atomic_directory
+from validation.runs.progress import Progress
 from validation.runs.results import Results
 
 NAME = "DDA validation"
@@ -204,7 +204,7 @@ def picture_of(page: str, blocks: Blocks) -> str:
     return f"{page.removesuffix('.html')}/{figures[0].file}" if figures else ""
 
 
-def page_names(kind: str, names: Sequence[str]) -> NamedTexts:
+def page_names(kind: str, names: Sequence[str]) -> dict[str, str]:
     """Return a file for each name: safe characters, and no file twice, whatever the letters' case."""
     pages = {}
     used = set()

@@ -27,8 +27,8 @@ from validation.report.chapters.answers import (
 from validation.report.chapters.judged import page
 from validation.report.render import html
 from validation.report.site.places import check_place, write
-from validation.runs.aliases import Progress, Words
 from validation.runs.files import atomic_directory
+from validation.runs.progress import Progress
 from validation.runs.text import visible
 from validation.suite.judging import JudgedSet
 
@@ -79,7 +79,7 @@ def write_site(sets: Sequence[JudgedSet], out: Path, progress: Progress) -> Path
     return out / "index.html"
 
 
-def _by_address(judged: JudgedSet) -> Words:
+def _by_address(judged: JudgedSet) -> tuple[str, ...]:
     return judged.answers.address
 
 

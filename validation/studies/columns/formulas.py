@@ -10,10 +10,10 @@ from __future__ import annotations
 import functools
 import math
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
-from validation.runs.aliases import Fields
 from validation.runs.beside import table_beside
 from validation.runs.history import History
 from validation.runs.row import Metrics
@@ -61,9 +61,9 @@ def samples(scene: Scene, history: History) -> Metrics:
 
 
 @functools.cache
-def printed(row: str) -> dict[str, Fields]:
+def printed(row: str) -> dict[str, dict[str, Any]]:
     """Return the printed numbers of a row, by case and metric."""
-    numbers: dict[str, Fields] = {}
+    numbers: dict[str, dict[str, Any]] = {}
     for entry in table_beside(__file__, "study.toml")["gate"]:
         if entry["pairs"] == [[row]] and isinstance(entry.get("numbers"), dict):
             numbers |= entry["numbers"]

@@ -13,14 +13,13 @@ from __future__ import annotations
 
 import cmath
 import functools
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, Finished
 from validation.metrics.values import or_nan
-from validation.runs.aliases import Data
 from validation.runs.history import Array
 from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
@@ -142,12 +141,12 @@ def _held(step: float, _: Finished) -> Metrics:
 # ---- curves ---------------------------------------------------------------------------------------------------------
 
 
-def curves() -> Data:
+def curves() -> Mapping[str, Any]:
     """Return the damping ratio over the time step, and what springs add and keep over p/E."""
     return {"over_steps": [*_over_steps()], "over_springs": [*_over_springs()]}
 
 
-def _over_steps() -> Iterator[Data]:
+def _over_steps() -> Iterator[Mapping[str, Any]]:
     """Yield the curves of three charts: of the paper's block, of its springs, of discounts."""
     grid = np.geomspace(1e-5, 2e-2, 240)
     yield _curve("first", "DDA", np.geomspace(5e-5, 2e-2, 200), paper())
@@ -159,12 +158,12 @@ def _over_steps() -> Iterator[Data]:
     yield {**_curve("discount", f"gg = exp(−{held.time.gg_rate:.3g} dt)", grid, held), "setting": "rate"}
 
 
-def _curve(chart: str, name: str, steps: Array, scene: Scene) -> Data:
+def _curve(chart: str, name: str, steps: Array, scene: Scene) -> Mapping[str, Any]:
     damping = closed.over_steps(scene, steps)
     return {"chart": chart, "name": name, "setting": name, "x": _listed(steps), "y": _listed(damping)}
 
 
-def _over_springs() -> Iterator[Data]:
+def _over_springs() -> Iterator[Mapping[str, Any]]:
     ratios = np.geomspace(0.1, 1e5, 240)
     base = closed.constant(paper(), step=2e-3)
     scenes = [closed.stiffer(base, float(ratio)) for ratio in ratios]

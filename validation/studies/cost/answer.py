@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from validation.report.blocks import Blocks, Paragraph, TableColumn, table
-from validation.runs.aliases import Data
 from validation.runs.numbers import DASH, short
 from validation.runs.records import Manifest
 from validation.studies.cost.measures import ANY, ELEMENTS, OWN, REFERENCE
@@ -18,7 +20,7 @@ def answer(manifest: Manifest) -> Blocks:
     rows = []
     measured = ""
     for derived in manifest["derived"]:
-        metrics: Data = derived["metrics"]
+        metrics: Mapping[str, Any] = derived["metrics"]
         if derived["name"] == REFERENCE and metrics:
             measured = (
                 f"Relative L2 error over {1e3 * metrics['window']:.3g} ms, of means of means over "
@@ -33,7 +35,7 @@ def answer(manifest: Manifest) -> Blocks:
     return [table([*COLUMNS, *(TableColumn(title, "decimal") for title in NUMBERS)], rows), Paragraph(measured)]
 
 
-def _uncertainty(metrics: Data) -> str:
+def _uncertainty(metrics: Mapping[str, Any]) -> str:
     """Say how far the reference itself may be off, where it is not exact."""
     values = []
     for key, value in metrics.items():

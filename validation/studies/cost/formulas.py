@@ -10,12 +10,12 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Sequence
+from typing import Any
 
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.errors import InputError
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
-from validation.runs.aliases import Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.records import Annotations
 from validation.runs.row import Metrics, NewMetrics
@@ -50,7 +50,7 @@ def ladder_of(name: str) -> Ladder:
     return Ladder.of(load_scene(f"cost-{name}"))
 
 
-def of_scene(base: Scene) -> Fields:
+def of_scene(base: Scene) -> dict[str, Any]:
     """Return the fields of the study of a user's block: the same methods, and no gates.
 
     Raises

@@ -33,11 +33,11 @@ import functools
 import math
 import operator
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from validation.errors import InputError
-from validation.runs.aliases import Fields, NamedNumbers
 from validation.runs.beside import table_beside
 from validation.runs.history import ArrayPair
 from validation.scenes import features
@@ -78,12 +78,12 @@ class Method:
     id: str
     label: str
     solver: str
-    time: Fields
+    time: dict[str, Any]
     levels: tuple[int, ...]
-    fem: Fields = field(default_factory=dict)
+    fem: dict[str, Any] = field(default_factory=dict)
     per_element: int = 0
     cut: str = ""
-    scaled: NamedNumbers = field(default_factory=dict)
+    scaled: dict[str, float] = field(default_factory=dict)
     is_choice: bool = False
 
 

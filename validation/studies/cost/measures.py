@@ -15,7 +15,6 @@ import numpy as np
 from validation.engine.finished import Derived, Finished
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan, ratio
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.row import Metrics, NewMetrics, Row
 from validation.runs.run import Outcome
@@ -58,7 +57,7 @@ def running_mean(values: Array, count: int) -> Array:
     return np.asarray((integral - before) / count)
 
 
-def errors(ladder: Ladder, history: History, reference: History) -> NamedNumbers:
+def errors(ladder: Ladder, history: History, reference: History) -> dict[str, float]:
     """Return the relative L2 errors of the running means of running means, by quantity."""
     grid = np.append(0.0, reference.time)
     count = max(1, round(ladder.mean / float(reference.time[0])))

@@ -8,12 +8,12 @@ stop; friction that lags by a pass, and dead bands, let it go on, the faster the
 from __future__ import annotations
 
 import functools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows, Finished
-from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
@@ -32,7 +32,7 @@ DIGIT = 5e-5  # m: half a unit of its last digit
 SHUFFLED = 0.2  # of the way: rounding, or 0.2 % on the springs, changes the order of stick and slip at the finest step
 
 
-def slid(columns: Data) -> np.ndarray:
+def slid(columns: Mapping[str, Any]) -> np.ndarray:
     """Return the mean slide of the two corners [m]."""
     return np.asarray((columns["slide_m"] + columns["slide_n"]) / 2)
 

@@ -22,7 +22,6 @@ import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
@@ -97,8 +96,8 @@ def differences(case: Scene, special: Scene, finished: Finished) -> Metrics:
     over the largest of the special body.
     """
     plane, other = (finished.needed_history(each.name, "dda") for each in (case, special))
-    largest: NamedNumbers = {}
-    apart: NamedNumbers = {}
+    largest: dict[str, float] = {}
+    apart: dict[str, float] = {}
     for column, values in other.columns.items():
         ours = in_plane(plane, column)
         if "force" in column or "pressure" in column:

@@ -16,7 +16,6 @@ import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import or_nan
-from validation.runs.aliases import Data, Fields, NamePair, NumberPair
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import significant
@@ -64,7 +63,9 @@ FRICTIONAL = tuple(scheme for scheme in IMPLICIT if scheme.id != "conserving")  
 # ---- scenes ---------------------------------------------------------------------------------------------------------
 
 
-def varied(scheme: Method, base: str, name: str, title: str, values: Data, **lists: Sequence[float]) -> Scene:
+def varied(
+    scheme: Method, base: str, name: str, title: str, values: Mapping[str, Any], **lists: Sequence[float]
+) -> Scene:
     """Return a built-in scene under a method, whose lists of values are varied together; a key is ``time_step``."""
     scene = scheme.scene(load_scene(base), {"run.solvers": ["dda"], **values})
     sweep = {"mode": "zip"} | {key.replace("_", ".", 1): list(row) for key, row in lists.items()}
@@ -73,7 +74,7 @@ def varied(scheme: Method, base: str, name: str, title: str, values: Data, **lis
     )
 
 
-def over_springs(rows: Sequence[NumberPair], duration: float) -> dict[str, list[float]]:
+def over_springs(rows: Sequence[tuple[float, float]], duration: float) -> dict[str, list[float]]:
     """Return the lists of p/E and dt [s] on the paper's block."""
     young = load_scene("figures-3-4").block.young
     return {
@@ -144,7 +145,7 @@ def sliding(scheme: Method) -> Scene:
     return varied(scheme, "slope-sliding", "sliding", "A block that slides", values, time_step=[SLIDING_STEP])
 
 
-STOPS: Mapping[str, tuple[str, Fields]] = {  # what turns a block back at a rigid stop: id -> words, values
+STOPS: Mapping[str, tuple[str, dict[str, Any]]] = {  # what turns a block back at a rigid stop: id -> words, values
     "displacements": ("a rigid stop in displacements under (1/2, 1)", {"time.alpha": 0.5, "time.delta": 1.0}),
     "impulses": (
         "Moreau and Jean, e = 0, theta = 1/2",
@@ -169,7 +170,7 @@ def rigid(stop: str) -> Scene:
     return base.with_values({**rigid_stop, **values}).model_copy(update=update)
 
 
-def exact(base: str, case: NamePair, title: str, step: float, duration: float, **values: Any) -> Scene:
+def exact(base: str, case: tuple[str, str], title: str, step: float, duration: float, **values: Any) -> Scene:
     """Return a built-in scene, exact in time."""
     name, solver = case
     steps = {"time.step": step, "time.steps": round(duration / step)}
@@ -235,7 +236,7 @@ def opened_exactly() -> dict[str, Scene]:
     return {"1E": opened()["(1/4, 1/2), p = 1E"], "100E": opened()["(1/4, 1/2), p = 100E"]}
 
 
-def exact_cases() -> tuple[NamePair, ...]:
+def exact_cases() -> tuple[tuple[str, str], ...]:
     """Return the cases whose exact motion is run, beside the solvers of their scenes."""
     return tuple((case.name, "block-events") for case in opened_exactly().values())
 
@@ -413,12 +414,12 @@ MAP_PHASES = 40
 
 
 @functools.cache
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return curves of the theory for the figures: damping ratios over w dt, restitutions over w_c dt; and labels."""
     damping = []
     landings = []
     for scheme in map(method, CURVES):
-        named: Fields = {"method": scheme.id, "label": scheme.label}
+        named: dict[str, Any] = {"method": scheme.id, "label": scheme.label}
         ratios = [scheme.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
         damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
         if scheme.id in MAP_CURVES:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
-from validation.runs.aliases import Data, Fields
 from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
 from validation.theory.stepping import Stepping
@@ -16,11 +17,11 @@ class Method:
 
     id: str  # of scenes and gates
     label: str  # of tables and figures
-    values: Data  # of a scene; the start is consistent
+    values: Mapping[str, Any]  # of a scene; the start is consistent
     group: str  # "Newmark", "generalised-alpha", "composite", "explicit" or "contact"
     gains: bool  # whether contact that opens and closes can give energy
 
-    def scene(self, base: Scene, values: Data) -> Scene:
+    def scene(self, base: Scene, values: Mapping[str, Any]) -> Scene:
         """Return a scene with this method and other values; its sweep is left out."""
         still = base.model_copy(update={"sweep": {}})
         return still.with_values({"time.start": "consistent", **values, **self.values})
@@ -53,11 +54,11 @@ class Method:
         return Stepping.named(scheme, rho_inf=self.values.get("time.rho_inf"), split=self.values.get("time.split"))
 
 
-def _named(scheme: str, **numbers: float) -> Fields:
+def _named(scheme: str, **numbers: float) -> dict[str, Any]:
     return {"time.scheme": scheme} | {f"time.{name}": value for name, value in numbers.items()}
 
 
-def _newmark(alpha: float, delta: float) -> Fields:
+def _newmark(alpha: float, delta: float) -> dict[str, Any]:
     return {"time.scheme": "newmark", "time.alpha": alpha, "time.delta": delta}
 
 

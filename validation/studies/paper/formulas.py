@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +13,6 @@ from dda.scheme.spectral import spectral_radius
 from validation.engine.finished import DerivedRows
 from validation.gates.gate import Gate
 from validation.metrics.values import as_number, or_nan
-from validation.runs.aliases import Data
 from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.studies.paper import open_close, register, slips
@@ -42,7 +43,7 @@ SCHEMES = {  # of Figure 1: name -> alpha, delta
 }
 
 
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return the words of the claims, and Figure 1: spectral radius over w dt, and the root of 1 + h that is printed.
 
     What is printed departs from the radius where the roots are real; only that part is kept.

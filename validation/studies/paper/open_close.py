@@ -10,7 +10,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from validation.runs.aliases import NamedNumbers
 from validation.scenes.scene import Scene
 from validation.studies.paper.slips import CORNER_M, CORNER_N, SHEAR_M, SHEAR_N, model
 from validation.suite.claims import Evidence, Tests, named, whole
@@ -81,7 +80,7 @@ def bonded_corners(case: str, alpha: float, step: float) -> BondedCorners:
     return BondedCorners(int((fitting == 0).sum()), int((fitting > 1).sum()), int((~converged).sum()))
 
 
-def guaranteed(e: Evidence) -> NamedNumbers:
+def guaranteed(e: Evidence) -> dict[str, float]:
     """Return the most solves with and without algorithmic damping, the cuts without, and the counterexample."""
     case = DAMPED[COARSE]
     by_step = {step: bonded_corners(case, 0.5, step) for step in (1e-2, 2e-3, 1e-3, 1e-4)}
@@ -105,7 +104,7 @@ def guaranteed(e: Evidence) -> NamedNumbers:
     }
 
 
-def vibrating(e: Evidence) -> NamedNumbers:
+def vibrating(e: Evidence) -> dict[str, float]:
     """Return switches at the smallest step, and how the solves change towards it."""
     solves = [e.number(case, "contact.mean_solves") for case in UNDAMPED]
     of_twenty = mean_solves(e, LOOSE)
@@ -125,7 +124,7 @@ def mean_solves(e: Evidence, cases: list[str]) -> list[float]:
     return [e.number(case, "contact.mean_solves") for case in cases]
 
 
-def essence(e: Evidence) -> NamedNumbers:
+def essence(e: Evidence) -> dict[str, float]:
     """Return how the most solves and the switches under (1/2, 1) change with the step."""
     most = [most_solves(e, [case]) for case in DAMPED]
     switches = [whole(e.number(case, "switches.count")) for case in DAMPED]

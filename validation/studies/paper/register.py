@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from validation.runs.aliases import NamedNumbers
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.suite.claims import Evidence, Tests, named, whole
@@ -31,7 +30,7 @@ def cell(p: float, step: float) -> str:
     )
 
 
-def steps_of(evidence: Evidence, case: str) -> NamedNumbers:
+def steps_of(evidence: Evidence, case: str) -> dict[str, float]:
     """Return the settling steps at 1 %."""
     return {
         "displacement, steps": evidence.settles(case, "displacement"),
@@ -39,7 +38,7 @@ def steps_of(evidence: Evidence, case: str) -> NamedNumbers:
     }
 
 
-def equilibrium(e: Evidence) -> NamedNumbers:
+def equilibrium(e: Evidence) -> dict[str, float]:
     """Return the largest distance of the last pressure from q, over q, and the least remaining."""
     distances = [abs(e.scaled(case, "pressure")[-1] - 1) for case in (*A34, *A56)]
     return {"final distance from q, largest of six runs": max(distances)}
@@ -58,7 +57,7 @@ def settling_tolerance(e: Evidence, case: str, quantity: str, count: int) -> flo
     return float(greatest) if least < greatest else whole(0.0)
 
 
-def force_first(e: Evidence) -> NamedNumbers:
+def force_first(e: Evidence) -> dict[str, float]:
     """Return the settling steps, the tolerances that give the paper's, and the least steps that the force is later."""
     tolerances = np.geomspace(*TOLERANCES, 200)
     late = [e.settles(COARSE, "pressure", t) - e.settles(COARSE, "displacement", t) for t in tolerances]
@@ -69,7 +68,7 @@ def force_first(e: Evidence) -> NamedNumbers:
     }
 
 
-def two_answers(e: Evidence) -> NamedNumbers:
+def two_answers(e: Evidence) -> dict[str, float]:
     """Return the settling steps of Figures 3 to 6 at dt = 0.002 s, and the tolerances that give the paper's."""
     return steps_of(e, MIDDLE) | {
         "greatest tolerance of 34 steps, displacement (0: none)": settling_tolerance(e, MIDDLE, "displacement", 34),
@@ -79,7 +78,7 @@ def two_answers(e: Evidence) -> NamedNumbers:
     }
 
 
-def stiff_steps(e: Evidence) -> NamedNumbers:
+def stiff_steps(e: Evidence) -> dict[str, float]:
     """Return the settling steps at p = 10E, and the tolerances that give the paper's."""
     return steps_of(e, STIFF) | {
         "greatest tolerance of 20 steps, displacement (0: none)": settling_tolerance(e, STIFF, "displacement", 20),
@@ -87,7 +86,7 @@ def stiff_steps(e: Evidence) -> NamedNumbers:
     }
 
 
-def stiff_alike(e: Evidence) -> NamedNumbers:
+def stiff_alike(e: Evidence) -> dict[str, float]:
     """Return the difference of settling steps between p = 10E and 100E, at 1 % and at 1e-4."""
     differences = {}
     for tolerance, name in ((0.01, "1 %"), (1e-4, "0.01 %")):
@@ -97,7 +96,7 @@ def stiff_alike(e: Evidence) -> NamedNumbers:
     return differences | {"contact root at 100E": e.number(STIFFEST, "contact.least_root")}
 
 
-def over_steps(e: Evidence) -> NamedNumbers:
+def over_steps(e: Evidence) -> dict[str, float]:
     """Return how xi of the first mode rises with dt at p = 1E below and above Omega = 3.27."""
     pairs = []
     for name, s in MAP.items():
@@ -114,7 +113,7 @@ def over_steps(e: Evidence) -> NamedNumbers:
     }
 
 
-def over_stiffness(e: Evidence) -> NamedNumbers:
+def over_stiffness(e: Evidence) -> dict[str, float]:
     """Return how damping changes with p: first mode below and above dt = 6.2 ms, and contact mode."""
     ladder = (1.0, 10.0, 100.0)
     rises = []
@@ -137,9 +136,9 @@ def peaks(displacement: Array) -> Array:
     return middle[is_peak]
 
 
-def small_step(e: Evidence) -> NamedNumbers:
+def small_step(e: Evidence) -> dict[str, float]:
     """Return first and last peak over static, xi, and what a few periods take, for the stiffnesses of Figure 7."""
-    values: NamedNumbers = {}
+    values: dict[str, float] = {}
     falls = []
     lost = []
     for case, p in zip(A7, ("1E", "10E", "100E"), strict=True):
@@ -155,13 +154,13 @@ def small_step(e: Evidence) -> NamedNumbers:
     }
 
 
-def stiffness_of_small_steps(e: Evidence) -> NamedNumbers:
+def stiffness_of_small_steps(e: Evidence) -> dict[str, float]:
     """Return xi of the first mode for the three stiffnesses of Figure 7."""
     xi = [e.number(case, "mode1.damping") for case in A7]
     return {"xi at 10E over 1E": xi[1] / xi[0], "xi at 100E over 1E": xi[2] / xi[0]}
 
 
-def sensitivity(e: Evidence) -> NamedNumbers:
+def sensitivity(e: Evidence) -> dict[str, float]:
     """Return the exponents of dt and p in xi of the first mode at small steps, from neighbours in the damping map."""
     xi = {(p, step): e.number(cell(p, step), "mode1.damping") for p in (1.0, 10.0, 100.0) for step in (1e-4, 5e-4)}
     exponents = {f"of p, {p:g}E to {10 * p:g}E": math.log10(xi[10 * p, 1e-4] / xi[p, 1e-4]) for p in (1.0, 10.0)}
@@ -171,7 +170,7 @@ def sensitivity(e: Evidence) -> NamedNumbers:
     return exponents | {"least of dt over greatest of p": least / greatest}
 
 
-def quasi_static(e: Evidence) -> NamedNumbers:
+def quasi_static(e: Evidence) -> dict[str, float]:
     """Return the settling steps of Figure 8's two schemes, of average acceleration whether it settles at all."""
     undamped, damped = A8
     distance = np.abs(e.scaled(undamped, "displacement") - 1)
@@ -182,7 +181,7 @@ def quasi_static(e: Evidence) -> NamedNumbers:
     }
 
 
-def discounted_amplitudes(e: Evidence) -> NamedNumbers:
+def discounted_amplitudes(e: Evidence) -> dict[str, float]:
     """Return what a step leaves of the first mode of Figure 9, by discount."""
     radii = [e.number(case, "mode1.spectral_radius") for case in A9]
     left = {f"|lambda| at gg = {s.time.discount:g}": radius for s, radius in zip(FIGURE_9, radii, strict=True)}
@@ -193,7 +192,7 @@ def discounted_amplitudes(e: Evidence) -> NamedNumbers:
     }
 
 
-def dominance(e: Evidence) -> NamedNumbers:
+def dominance(e: Evidence) -> dict[str, float]:
     """Return the diagonal dominance of (31), the same block in metres and in centimetres, and of a longer block.
 
     The least over the rows of (diagonal - sum of the others) / diagonal; a row mixes displacements, in the unit of
@@ -230,7 +229,7 @@ def dominance_margin(scene: Scene, side: float, step: float, units_in_a_metre: f
     return float(((diagonal - others) / diagonal).min())
 
 
-def conditionally_stable(e: Evidence) -> NamedNumbers:
+def conditionally_stable(e: Evidence) -> dict[str, float]:
     """Return |lambda| of the contact mode 1 % below and above its limit, under linear acceleration and differences."""
     values = {}
     for name, scene in CONDITIONAL.items():
@@ -240,7 +239,7 @@ def conditionally_stable(e: Evidence) -> NamedNumbers:
     return values
 
 
-def average(e: Evidence) -> NamedNumbers:
+def average(e: Evidence) -> dict[str, float]:
     """Return what average acceleration damps: both modes' |lambda| - 1, and the ratio measured on the history."""
     return {
         f"|lambda| - 1, {mode} mode": e.number(A8[0], f"{key}.spectral_radius") - 1
@@ -248,7 +247,7 @@ def average(e: Evidence) -> NamedNumbers:
     } | {"measured xi": e.number(A8[0], "mode1.measured_damping")}
 
 
-def high_frequencies(e: Evidence) -> NamedNumbers:
+def high_frequencies(e: Evidence) -> dict[str, float]:
     """Return |lambda| over w dt, from both modes of the map."""
     pairs = []
     for name, s in MAP.items():
@@ -267,7 +266,7 @@ def high_frequencies(e: Evidence) -> NamedNumbers:
     }
 
 
-def boundary(e: Evidence) -> NamedNumbers:
+def boundary(e: Evidence) -> dict[str, float]:
     """Return alpha - (1/2 + delta)^2 / 4 of both schemes, and how far a stiff contact's roots are from real."""
     margins = [s.time.alpha - (0.5 + s.time.delta) ** 2 / 4 for s in named("figure-8").values()]
     root, radius = (e.number(STIFFEST, f"contact.{part}") for part in ("least_root", "spectral_radius"))
@@ -278,7 +277,7 @@ def boundary(e: Evidence) -> NamedNumbers:
     }
 
 
-def discount_alone(e: Evidence) -> NamedNumbers:
+def discount_alone(e: Evidence) -> dict[str, float]:
     """Return |lambda|^2 / gg and xi at one discount over dt."""
     ratios = {}
     squares = []
@@ -293,7 +292,7 @@ def discount_alone(e: Evidence) -> NamedNumbers:
     }
 
 
-def last_discount(e: Evidence) -> NamedNumbers:
+def last_discount(e: Evidence) -> dict[str, float]:
     """Return the share of the velocity that each of Figure 9's steps takes away, from |lambda|^2 = gg."""
     shares = [1 - e.number(case, "mode1.spectral_radius") ** 2 for case in A9]
     return {f"discount {i + 1}": share for i, share in enumerate(shares)}

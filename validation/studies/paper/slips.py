@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 
-from validation.runs.aliases import NamedNumbers
 from validation.runs.case_name import scene_of
 from validation.studies.paper.register import MAP, SOFT
 from validation.suite.claims import Evidence, Tests, named
@@ -29,7 +28,7 @@ def model(case: str, **values: float) -> Any:
     return model_of(named(scene_of(case))[case].with_values(dict(values)))
 
 
-def radius(e: Evidence) -> NamedNumbers:
+def radius(e: Evidence) -> dict[str, float]:
     """Return |lambda| over sqrt(1 + h) on both sides of w dt = 4."""
     pairs = []
     for name, s in MAP.items():
@@ -44,7 +43,7 @@ def radius(e: Evidence) -> NamedNumbers:
     }
 
 
-def inertia(e: Evidence) -> NamedNumbers:
+def inertia(e: Evidence) -> dict[str, float]:
     """Return entries (3, 6) and (6, 6) of a 1 m x 2 m block's inertia over rho, and (1, 1) over the area."""
     block_model = model(SOFT, **OBLONG)
     mass = block_model.mass / block_model.block.material.density
@@ -55,7 +54,7 @@ def inertia(e: Evidence) -> NamedNumbers:
     }
 
 
-def energy(e: Evidence) -> NamedNumbers:
+def energy(e: Evidence) -> dict[str, float]:
     """Return the strain energy of ey = 1 over s/2 times the area integral of E."""
     block_model = model(SOFT)
     elastic = block_model.block.elastic()[4, 4]
@@ -64,12 +63,12 @@ def energy(e: Evidence) -> NamedNumbers:
     return {"strain energy over that of (20)": elastic / 2 / (area / 2 * young * area)}
 
 
-def modulus(e: Evidence) -> NamedNumbers:
+def modulus(e: Evidence) -> dict[str, float]:
     """Return entry (4, 4) of the elastic submatrix over the area [Pa], at mu = 0.3."""
     return {"entry (4, 4) over area, Pa": model(LATERAL).block.elastic()[3, 3] / 4.0}
 
 
-def load(e: Evidence) -> NamedNumbers:
+def load(e: Evidence) -> dict[str, float]:
     """Return the load on v over a q, and the static displacement that it causes."""
     block_model = model(SOFT)
     return {
@@ -78,7 +77,7 @@ def load(e: Evidence) -> NamedNumbers:
     }
 
 
-def lateral(e: Evidence) -> NamedNumbers:
+def lateral(e: Evidence) -> dict[str, float]:
     """Return statics at mu = 0.3, p = 1E: ours, and without the shear springs' stretch, where sigma_x = 0."""
     s = named("poisson-statics")[LATERAL]
     a = s.block.base_length
@@ -90,7 +89,7 @@ def lateral(e: Evidence) -> NamedNumbers:
     }
 
 
-def shear_load(e: Evidence) -> NamedNumbers:
+def shear_load(e: Evidence) -> dict[str, float]:
     """Return the sideways force of the springs at rest, where they hold no shear, and that of (25) and (28) over a q.
 
     As printed the load of a shear spring is -(p s0 / l) e_r with the s0 of (23), and s0 / l is the normal gap.

@@ -11,7 +11,6 @@ from __future__ import annotations
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NumberPair
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 from validation.theory.spectra import EPS
@@ -67,7 +66,7 @@ def _elastic(case: Scene) -> float:
     return length * (s_xx - ratio * s_yy) / modulus
 
 
-def _joints(plane: PlaneSection) -> list[tuple[NumberPair, NumberPair]]:
+def _joints(plane: PlaneSection) -> list[tuple[tuple[float, float], tuple[float, float]]]:
     """Return the shared edges that do not lie level, each from below."""
     edges = set()
     joints = []

@@ -17,8 +17,6 @@ import math
 
 import numpy as np
 
-from validation.runs.aliases import NumberPair
-
 TERMS = 20_000  # of the disc's series on its rim, which falls as 1/n^2 and alternates
 
 
@@ -44,7 +42,7 @@ def disc_widening(pressure: float, half_angle: float, young: float, poisson: flo
     return whole / (2 * shear)
 
 
-def disc_centre(pressure: float, half_angle: float) -> NumberPair:
+def disc_centre(pressure: float, half_angle: float) -> tuple[float, float]:
     """Return the stresses across and along the load in the middle of a disc [Pa]."""
     first = 2 * pressure / math.pi * math.sin(2 * half_angle)
     second = 2 * pressure / math.pi * half_angle

@@ -20,7 +20,6 @@ from validation.metrics.values import or_nan
 from validation.models.plane.blocks import Vertices
 from validation.models.plane.glued import Loads, PlateSection
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene
@@ -60,7 +59,7 @@ def exact(case: Scene) -> float:
     return 2 * hole_displacement(plate.hole, 0.0, plate.tension, plane.young, plane.poisson)
 
 
-def exact_stress(case: Scene) -> NumberPair:
+def exact_stress(case: Scene) -> tuple[float, float]:
     """Return s_xx and s_yy where the stress is looked at, in closed form [Pa]."""
     plane = case.table(PlaneSection)
     if disc := plane.disc:
@@ -76,7 +75,7 @@ def _plate(case: Scene) -> PlateSection:
     return plate
 
 
-def linear(case: Scene, firm: bool = False) -> NumberPair:
+def linear(case: Scene, firm: bool = False) -> tuple[float, float]:
     """Return what linear elements on its triangles have, joined by springs if glued softly and not asked for firm glue.
 
     By how much the points part [m], and the mean s_xx of the triangles with a corner where stress is looked at [Pa].
@@ -91,7 +90,7 @@ def linear(case: Scene, firm: bool = False) -> NumberPair:
 @functools.cache
 def _linear(
     polygons: tuple[Vertices, ...], tractions: Loads, young: float, poisson: float, spring: float, observed: Vertices
-) -> NumberPair:
+) -> tuple[float, float]:
     *apart, stressed = observed
     triangles = [triangle for triangle in polygons if stressed in triangle]
     places = [*apart, *(corner for triangle in triangles for corner in triangle)]
@@ -115,7 +114,7 @@ def cells_of(case: Scene) -> int:
 # ---- rows and bands -------------------------------------------------------------------------------------------------
 
 
-def parts(case: Scene, dda: Row, fem: Row | None = None) -> NamedNumbers:
+def parts(case: Scene, dda: Row, fem: Row | None = None) -> dict[str, float]:
     """Return what outline, strain and glue make wrong of a displacement, and all three."""
     blocks = or_nan(dda.metrics[STATIC])
     values = {
@@ -144,7 +143,7 @@ def parts(case: Scene, dda: Row, fem: Row | None = None) -> NamedNumbers:
 def orders(levels: Levels) -> Metrics:
     """Return the order of the error by the two cases of most cells."""
     coarse, fine = starmap(parts, levels[-2:])
-    values: NamedNumbers = {}
+    values: dict[str, float] = {}
     for name in ("whole", "stress", "stress along"):
         if name in fine:
             errors = abs(coarse[name] / fine[name])

@@ -18,8 +18,6 @@ from dataclasses import dataclass, replace
 
 from scipy.optimize import brentq
 
-from validation.runs.aliases import NumberPair
-
 SAMPLES = 64  # of a piece's span, between which an event is looked for: a quarter of a period has 16 at least
 LONGEST = 0.05  # s, of a span without an oscillation
 
@@ -28,22 +26,22 @@ LONGEST = 0.05  # s, of a span without an oscillation
 class Pushing:
     """Two blocks on a slope, the upper one first."""
 
-    masses: NumberPair  # kg
-    friction: NumberPair  # tan(phi) on the slope
+    masses: tuple[float, float]  # kg
+    friction: tuple[float, float]  # tan(phi) on the slope
     slope: float  # b [rad]
     stiffness: float  # of the spring between them [N/m]
     gap: float = 0.0  # m, at t = 0
-    speeds: NumberPair = (0.0, 0.0)  # at t = 0, down the slope [m/s]
+    speeds: tuple[float, float] = (0.0, 0.0)  # at t = 0, down the slope [m/s]
     gravity: float = 9.81
 
     @property
-    def drive(self) -> NumberPair:
+    def drive(self) -> tuple[float, float]:
         """Weight along the slope [N]."""
         first, second = (m * self.gravity * math.sin(self.slope) for m in self.masses)
         return first, second
 
     @property
-    def resistance(self) -> NumberPair:
+    def resistance(self) -> tuple[float, float]:
         """Friction of a block that slides [N]."""
         cosine = math.cos(self.slope)
         first, second = (mu * m * self.gravity * cosine for mu, m in zip(self.friction, self.masses, strict=True))
@@ -55,8 +53,8 @@ class Moment:
     """The state at the start of a piece."""
 
     time: float  # s
-    ways: NumberPair  # s1, s2 [m]
-    speeds: NumberPair  # m/s
+    ways: tuple[float, float]  # s1, s2 [m]
+    speeds: tuple[float, float]  # m/s
     signs: tuple[int, int]  # of the slides; 0: at rest
     closed: bool
 

@@ -14,7 +14,6 @@ import numpy as np
 
 from validation.models.plane.canon import ACTIVE, PASSIVE, wedges_of
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NumberPair
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics
 from validation.scenes.outline import area
@@ -57,7 +56,7 @@ def down(history: History, block: str, angle: float) -> Array:
     return way
 
 
-def errors_at_end(scene: Scene, history: History) -> NumberPair:
+def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
     """Return how far both blocks are from the exact motion at the end [m]."""
     problem = problem_of(scene)
     start, end = at(problem, float(history.time[0])), at(problem, float(history.time[-1]))
@@ -82,7 +81,7 @@ def against_exact(scene: Scene, history: History) -> Metrics:
     }
 
 
-def push_at_end(scene: Scene, history: History) -> NumberPair:
+def push_at_end(scene: Scene, history: History) -> tuple[float, float]:
     """Return the push that is left at the end, and that of the exact motion [N]."""
     problem = problem_of(scene)
     upper, lower, _, _ = at(problem, float(history.time[-1]))

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.metrics.values import finite, or_nan
-from validation.runs.aliases import Data, NamePair, NumberPair
 from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.solvers.rigid.impacts import impact_restitution, impact_statistics
@@ -65,7 +65,7 @@ def derived() -> DerivedRows:
     return (*statistics, *own)
 
 
-def label(scheme: NumberPair) -> str:
+def label(scheme: tuple[float, float]) -> str:
     """Return a scheme's name."""
     return f"({scheme[0]:.4g}, {scheme[1]:.4g})"
 
@@ -76,7 +76,7 @@ def compared(impacts: Sequence[tuple[Scene, Row]]) -> Metrics:
     return {"largest difference": finite(float(np.max(differences)))}
 
 
-def stiff(scheme: NumberPair, finished: Finished) -> Metrics:
+def stiff(scheme: tuple[float, float], finished: Finished) -> Metrics:
     """Return the statistics of the map on a rigid contact."""
     return dict(zip(PARTS, impact_statistics(*scheme, 1.0, math.inf), strict=True))
 
@@ -112,7 +112,7 @@ def finest() -> list[Scene]:
 
 
 @functools.cache
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return the restitution map for its figure: mean, least and greatest e over Omega, by kind."""
     grid = np.geomspace(0.05, 1500.0, 61)
     curves = {}
@@ -124,7 +124,7 @@ def data() -> Data:
     return {"schemes": curves}
 
 
-def exact_cases() -> tuple[NamePair, ...]:
+def exact_cases() -> tuple[tuple[str, str], ...]:
     """Return the cases of which the exact motion is run too."""
     return tuple((case.name, "block-events") for case in finest())
 

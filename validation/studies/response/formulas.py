@@ -19,7 +19,6 @@ import numpy as np
 from validation.advice.response import Response, polar, response
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
-from validation.runs.aliases import Data, Fields
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.record import read_record
@@ -137,7 +136,7 @@ def mesh_gates() -> Iterator[Gate]:
                 yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
-def amplitudes() -> Iterator[Fields]:
+def amplitudes() -> Iterator[dict[str, Any]]:
     """Yield the closed forms of block and bar, a row a frequency, as the reference pack has them."""
     for answer in answers():
         t = answer.scene.time
@@ -307,7 +306,7 @@ def gates() -> tuple[Gate, ...]:
     return (*loaded_gates(), *mesh_gates(), *stepped_gates(), *damping_gates())
 
 
-def curves() -> Data:
+def curves() -> Mapping[str, Any]:
     """Return amplitude and phase over frequency: DDA as stepped, DDA exact in time, the continuum."""
     exact, stepped, _ = answers()
     responses = {

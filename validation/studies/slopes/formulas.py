@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
 from validation.metrics.values import or_nan
-from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
@@ -219,7 +220,7 @@ def beside_rigid(case: Scene) -> Metrics:
     return {"slide": (low + high) / 2, "allowed": (high - low) / 2}
 
 
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return the closed forms that are drawn: displacements over time, and what a drag leaves after a second."""
     free = []
     for case in (*tuple(cases(SLIDING))[-1:], *cases(DRAG)):

@@ -9,7 +9,6 @@ import numpy as np
 
 from validation.models.plane.canon import moving_blocks, slide_of, spinning_of, stiffness_of
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
@@ -22,7 +21,7 @@ STRAINS = ("ex", "ey", "gxy")
 # ---- blocks that spin -----------------------------------------------------------------------------------------------
 
 
-def errors_of(scene: Scene, history: History) -> NamedNumbers:
+def errors_of(scene: Scene, history: History) -> dict[str, float]:
     """Return the largest error of the angle [rad] and of each strain."""
     exact = spinning_of(scene).at(history.time)
     return {name: float(np.max(np.abs(history.columns[f"block.{name}"] - values))) for name, values in exact.items()}
@@ -165,7 +164,7 @@ def distance(case: Scene) -> Band:
 # ---- blocks on a ledge ----------------------------------------------------------------------------------------------
 
 
-def turn_at_end(scene: Scene, history: History) -> NumberPair:
+def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:
     """Return the turn, clockwise, and that of the rigid block, at the end [rad]."""
     return -float(history.columns["block.angle"][-1]), slide_of(scene).turn(float(history.time[-1]))
 

@@ -7,12 +7,11 @@ discount; beside it every other datum is driven to its extremes alone.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from validation.gates.gate import Gate
 from validation.metrics.growth import Stability
-from validation.runs.aliases import Data
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import gate
 from validation.theory import spectra
@@ -42,7 +41,7 @@ def conditional(alpha: float, delta: float) -> bool:
     return not 2 * alpha >= delta >= 0.5
 
 
-def scheme_scene(alpha: float, delta: float, start: str, sweep: Data) -> Scene:
+def scheme_scene(alpha: float, delta: float, start: str, sweep: Mapping[str, Any]) -> Scene:
     """Return the base scene under a scheme, swept."""
     limited = conditional(alpha, delta)
     values = {"time.alpha": alpha, "time.delta": delta, "time.start": start}
@@ -138,6 +137,6 @@ def gates_of_corners() -> Iterator[Gate]:
     return gates_of(corners())
 
 
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return what the ends of runs are, in words."""
     return {"kinds": [f"{kind}: {kind.sentence}" for kind in Stability]}

@@ -28,7 +28,6 @@ from validation.models.plane.limits import (
     stepped_friction,
 )
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene
@@ -73,7 +72,7 @@ def _heights(plane: PlaneSection) -> list[float]:
     return [float(np.ptp(outline[:, 1])) for outline in outlines.values()]
 
 
-def _keyed(plane: PlaneSection) -> NumberPair:
+def _keyed(plane: PlaneSection) -> tuple[float, float]:
     heights = _heights(plane)
     limit = keyed_dip(heights[-1], len(heights), 1.0)
     return math.degrees(limit), _dip(plane) / limit - 1
@@ -84,13 +83,13 @@ def _dip(plane: PlaneSection) -> float:
     return math.atan2(plane.gravity[0], -plane.gravity[1])
 
 
-def _stepped(plane: PlaneSection) -> NumberPair:
+def _stepped(plane: PlaneSection) -> tuple[float, float]:
     columns = plane.columns[0]
     limit = stepped_dip(columns.heights, columns.width, columns.rise, friction_of(plane))
     return math.degrees(limit), math.radians(columns.dip) / limit - 1
 
 
-def _arch(plane: PlaneSection) -> NumberPair:
+def _arch(plane: PlaneSection) -> tuple[float, float]:
     """Least thickness by the linear program, and what springs ask for besides: 1.5 rho g R / p of the radius R.
 
     That is what an independent program found of 24 voussoirs; 1/p is so small here that a third of it would not show.
@@ -124,7 +123,7 @@ def bracket_of(plane: PlaneSection) -> Bracket:
     return Bracket(recursion, program, height / recursion, height / program)
 
 
-def _bracket(plane: PlaneSection) -> NumberPair:
+def _bracket(plane: PlaneSection) -> tuple[float, float]:
     bounds = bracket_of(plane)
     return bounds.program, bounds.over_program - 1
 
@@ -142,20 +141,20 @@ def settings(scene: Scene, history: History) -> Metrics:
     }
 
 
-def _overhang(plane: PlaneSection) -> NumberPair:
+def _overhang(plane: PlaneSection) -> tuple[float, float]:
     pile = plane.stack[0]
     limit = harmonic(pile.count, pile.rectangle[0])
     return limit, (sum(pile.offsets) + pile.rectangle[0] / 2) / limit - 1
 
 
-def _leaning(plane: PlaneSection) -> NumberPair:
+def _leaning(plane: PlaneSection) -> tuple[float, float]:
     block = plane.block[0]
     length, thickness = block.rectangle or (math.nan, math.nan)
     limit = leaning_friction(math.radians(block.turned), length / thickness)
     return limit, 1 - friction_of(plane) / limit
 
 
-def _keystone(plane: PlaneSection) -> NumberPair:
+def _keystone(plane: PlaneSection) -> tuple[float, float]:
     """A stone that is wider below has no rest on springs without prestress; its lean over the friction's angle."""
     outline = np.array(plane.block[0].vertices)
     first, second = (float(np.ptp(outline[k : k + 2, 0])) for k in (0, 2))
@@ -163,7 +162,7 @@ def _keystone(plane: PlaneSection) -> NumberPair:
     return 0.0, math.copysign(narrowing / math.atan(friction_of(plane)), -narrowing * plane.gravity[1])
 
 
-LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], NumberPair]]] = {
+LIMITS: Mapping[str, tuple[str, Callable[[PlaneSection], tuple[float, float]]]] = {
     "standing-keyed": ("dip [°]", _keyed),
     "standing-stepped": ("dip [°]", _stepped),
     "standing-flat": ("height [m]", _bracket),
@@ -311,7 +310,7 @@ def snaps(case: Scene) -> Band:
     return (-math.inf, 0.0) if half_truss(case).rest(0.0) else (0.0, math.inf)
 
 
-def motion_errors(scene: Scene, history: History) -> NamedNumbers:
+def motion_errors(scene: Scene, history: History) -> dict[str, float]:
     """Return the errors at the end of the way of the centre [m] and of the turn [rad]."""
     exact = half_truss(scene).motion(np.array([history.time[-1]]))[0]
     names = ("half.x", "half.y", "half.angle")

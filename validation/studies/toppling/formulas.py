@@ -7,12 +7,13 @@ the friction that it needs, and as a tower whose centroid stands beyond its lowe
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from validation.metrics.rotation import crossing, increments
-from validation.runs.aliases import Data
 from validation.runs.history import History
 from validation.runs.row import Metrics
 from validation.scenes.scene import Scene
@@ -128,7 +129,7 @@ def growth(scene: Scene) -> float:
     return scene.time.step * rectangle(scene).squared_rate(beyond(scene), scene.time.duration)
 
 
-def data() -> Data:
+def data() -> Mapping[str, Any]:
     """Return the fall of the rigid tower that is released on its corner, over the time that is run."""
     (case,) = cases("toppling-fall")
     block = rectangle(case)

@@ -14,7 +14,6 @@ from scipy.integrate import solve_ivp
 from validation.metrics.values import or_nan
 from validation.models.plane.canon import TOGETHER, falling, polygons
 from validation.models.plane.tables import PlaneSection
-from validation.runs.aliases import NamedNumbers, NumberPair
 from validation.runs.history import History
 from validation.runs.row import Metrics, Row
 from validation.scenes.outline import area
@@ -125,7 +124,7 @@ def landing(scene: Scene, history: History) -> Metrics:
     }
 
 
-def two_corners(arms: NumberPair, radius_squared: float) -> NumberPair:
+def two_corners(arms: tuple[float, float], radius_squared: float) -> tuple[float, float]:
     """Return the velocity and the spin over the speed at which a body leaves two springs it lands on flat.
 
     In times of sqrt(m/p): y'' = sum f, theta'' = sum a f/r^2, f = -(y + a theta) while that is positive.
@@ -193,7 +192,7 @@ def against_springs(scene: Scene, history: History) -> Metrics:
     }
 
 
-def rigid(scene: Scene) -> NamedNumbers:
+def rigid(scene: Scene) -> dict[str, float]:
     """Return the impulses of the rigid limit, of the same friction, whose springs along the plane are far stiffer."""
     contact = scene.table(PlaneSection).contact
     along, across = rigid_impulse(falling(scene), (contact.friction_coefficient if contact else None) or 0.0, 1.0)

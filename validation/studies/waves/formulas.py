@@ -10,7 +10,6 @@ import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
-from validation.runs.aliases import NamePair
 from validation.runs.history import History
 from validation.runs.row import Metrics, NewMetrics
 from validation.scenes.scene import Scene, load_scene
@@ -52,7 +51,7 @@ def gates() -> tuple[Gate, ...]:
     return (*rows.travelling_gates(), *rows.joint_gates(), rows.order_gate(), *rows.base_gates())
 
 
-def fem_too() -> tuple[NamePair, ...]:
+def fem_too() -> tuple[tuple[str, str], ...]:
     """Return the cases that line elements run beside the blocks."""
     return tuple(
         dict.fromkeys((w.scene.name, w.solver) for w in (*rows.travelling(), *rows.jointed()) if w.solver == "fem")

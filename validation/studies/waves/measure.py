@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from validation.metrics.transform import spectrum
-from validation.runs.aliases import NumberPair
 from validation.runs.history import History
 from validation.scenes.scene import Scene
 from validation.solvers.columns.names import column_of
@@ -48,7 +47,7 @@ class Guide:
         """Wavenumber of the closed form [rad/m]."""
         return complex(self.column.wavenumber(self.stepping.squared_frequency(self.omega)))
 
-    def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> NumberPair:
+    def speed_error_and_share(self, k: complex, wavelengths: float = 10.0) -> tuple[float, float]:
         """Return the error of the phase speed of a wavenumber, and the share left after some wavelengths."""
         distance = wavelengths * 2 * np.pi * self.speed / self.omega
         return self.omega / k.real / self.speed - 1, float(np.exp(-abs(k.imag) * distance))
