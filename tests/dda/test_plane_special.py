@@ -1,7 +1,6 @@
 """One model by two bodies: a block in the plane that does not turn, or hardly strains, is the block on a base."""
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -28,7 +27,7 @@ WIDTH, HEIGHT = 2.0, 1.5
 CONSTANT, DISCOUNTED = Scheme(0.5, 1.0, 1.0, 1e-3), Scheme(0.5, 1.0, 0.98, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
 STIFF = {"stiffness": 1e11, "shear": 1e9, "friction": 0.5}
-CASES: list[tuple[Scheme, int, dict[str, Any]]] = [  # each opens or closes but the first two, which are pressed
+CASES = [  # each opens or closes but the first two, which are pressed
     (CONSTANT, 200, {"pressure": 5e6}),
     (DISCOUNTED, 200, {"pressure": 5e6, "poisson": 0.2, "shear": 4e8}),
     (AVERAGE, 200, {"gap": 0.01, "gravity": 9.81}),

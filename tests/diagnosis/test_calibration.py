@@ -9,7 +9,7 @@ from oracles import calibration
 
 
 @pytest.mark.long
-def test_a_named_cause_is_right_and_most_are_named() -> None:
+def test_a_named_cause_is_right_and_most_are_named():
     """99 of 100 by the table: of the forty or so named here one may be wrong, and two in one run of eight hundred."""
     sixty = calibration.judge(60, first=5000)  # others than those of the table
     wrong = [one for one in sixty if calibration.verdict(one) == "wrong"]
@@ -19,7 +19,7 @@ def test_a_named_cause_is_right_and_most_are_named() -> None:
     assert len(named) > len(sixty) / 2  # silence alone would never be wrong
 
 
-def test_the_counts_of_the_documentation_say_that_99_of_100_are_right() -> None:
+def test_the_counts_of_the_documentation_say_that_99_of_100_are_right():
     page = calibration.PAGE.read_text()
     text = " ".join(page[page.index(calibration.BEGIN) : page.index(calibration.END)].split())
     heads, shares = text.partition("Of ")[2].split(". Named right")
@@ -33,7 +33,7 @@ def test_the_counts_of_the_documentation_say_that_99_of_100_are_right() -> None:
     assert wrong <= 0.01 * (right - due + wrong)
 
 
-def test_the_generators_agree_where_they_make_the_same_history() -> None:
+def test_the_generators_agree_where_they_make_the_same_history():
     """The modes stepped one by one are the plain code's increments."""
     for seed in (3, 7, 11):
         base = calibration._scene(calibration.np.random.default_rng(seed))

@@ -5,14 +5,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.column_histories import ALIKE, RIGHT, SILENT, WRONG, history, random_scene, trial, written
 
 from validation.diagnosis import columns
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.columns import BONDED, ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
@@ -20,12 +18,12 @@ from validation.diagnosis.numbers import numbers_of_column, places
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading
 from validation.errors import InputError
-from validation.scenes.scene import Scene, parse_scene
+from validation.scenes.scene import parse_scene
 
 DIGITS = 8
 
 
-def scene_of(column: dict[str, Any], layer: dict[str, Any], time: dict[str, Any], **tables: Any) -> Scene:
+def scene_of(column, layer, time, **tables):
     data = {
         "column": {"layer": [{"thickness": 3.0, "density": 2500.0, "young": 1e9, "blocks": 3} | layer], **column},
         "time": {"alpha": 0.25, "delta": 0.5, "start": "consistent"} | time,
@@ -52,7 +50,7 @@ SHEARED = scene_of(
 SOFT_BASE = {"height": 0.0, "stiffness": 7e8, "gap": 2e-3}
 
 
-def judged(scene: Scene, digits: int = DIGITS, pressure: bool = True, **values: Any) -> Answer:
+def judged(scene, digits=DIGITS, pressure=True, **values):
     foreign = history(scene, {key.replace("__", "."): value for key, value in values.items()}, digits)
     return compare(scene, foreign if pressure else replace(foreign, pressure=None))
 
@@ -61,7 +59,7 @@ def judged(scene: Scene, digits: int = DIGITS, pressure: bool = True, **values: 
 
 
 @pytest.mark.parametrize("scene", [DROPPED, SHEARED])
-def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
+def test_the_scene_s_own_history_is_the_scene_s(scene):
     answer = judged(scene)
     assert answer.causes == []
     assert not answer.departs
@@ -92,9 +90,7 @@ def test_the_scene_s_own_history_is_the_scene_s(scene: Scene) -> None:
         ),
     ],
 )
-def test_one_thing_changed_is_named_with_its_number(
-    scene: Scene, values: dict[str, Any], cause: str, number: float | None
-) -> None:
+def test_one_thing_changed_is_named_with_its_number(scene, values, cause, number):
     answer = judged(scene, **values)
     assert answer.causes == [cause]
     assert answer.departs
@@ -113,7 +109,7 @@ def test_one_thing_changed_is_named_with_its_number(
         (SHEARED, {"column.stiffness": math.inf, BONDED: True}, "contact-welded"),
     ],
 )
-def test_contacts_that_hold_are_named(scene: Scene, change: dict[str, Any], cause: str) -> None:
+def test_contacts_that_hold_are_named(scene, change, cause):
     run = beside(scene, history(scene, {}, DIGITS)).run(change, scene.time.steps)
     assert run is not None
     time = scene.time.step * np.arange(1, scene.time.steps + 1)
@@ -121,7 +117,7 @@ def test_contacts_that_hold_are_named(scene: Scene, change: dict[str, Any], caus
     assert answer.causes == [cause]  # a strength that is never reached has no number
 
 
-def beside(scene: Scene, foreign: Foreign) -> ColumnSearch:
+def beside(scene, foreign):
     reading = Reading(steppings(foreign, scene.time.step)[0], np.array([foreign.displacement, foreign.pressure]))
     return ColumnSearch(reading.scene_of(scene), reading)
 
@@ -130,7 +126,7 @@ def beside(scene: Scene, foreign: Foreign) -> ColumnSearch:
 
 
 @pytest.mark.long
-def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told() -> None:
+def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told():
     answer = judged(DROPPED, column__gap=6e-4, column__stiffness=0.9e9)
     assert answer.causes == ["unexplained"]
     assert answer.values == {}
@@ -142,7 +138,7 @@ def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told()
 
 
 @pytest.mark.long
-def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
+def test_what_gives_the_same_rows_is_listed_and_none_is_named():
     """Displacements of rigid blocks depend on stiffness over density alone."""
     joint = {"height": 0.0, "stiffness": 0.8e9, "gap": 2e-3}
     answer = judged(DROPPED, pressure=False, column__stiffness=0.8e9, column__joint=[joint])
@@ -152,13 +148,13 @@ def test_what_gives_the_same_rows_is_listed_and_none_is_named() -> None:
 
 
 @pytest.mark.long
-def test_a_reversed_input_in_shear_has_the_rows_of_a_reversed_sign() -> None:
+def test_a_reversed_input_in_shear_has_the_rows_of_a_reversed_sign():
     answer = judged(SHEARED, input__velocity=-0.2)
     assert answer.causes == ["unexplained"]
     assert sorted(one["causes"][0] for one in answer.alike) == ["load-factor", "sign"]
 
 
-def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rows_behind_the_horizon_are_not_judged(monkeypatch):
     """With a shift of 1e-4 for 1e-12 the horizon lies inside the run; what comes behind it may be anything."""
     monkeypatch.setattr(columns, "SHIFT", 1e-4)
     foreign = history(DROPPED, {}, DIGITS)
@@ -176,14 +172,14 @@ def test_rows_behind_the_horizon_are_not_judged(monkeypatch: pytest.MonkeyPatch)
 
 
 @pytest.mark.parametrize("every", [1, 5])
-def test_a_program_s_own_steps_and_rows_for_some_steps_are_taken(every: int) -> None:
+def test_a_program_s_own_steps_and_rows_for_some_steps_are_taken(every):
     finer = {"time.step": DROPPED.time.step / 2, "time.steps": 400}
     answer = compare(DROPPED, history(DROPPED, finer if every == 1 else {}, DIGITS, every))
     assert answer.causes == []
     assert len(answer.notes) == 1
 
 
-def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so() -> None:
+def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so():
     """Six rigid blocks that touch, thrown on their base, need seven solves in the step of the impact."""
     thrown = scene_of(
         {"motion": "pressure", "law": "unilateral", "stiffness": 1e9}
@@ -198,7 +194,7 @@ def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so(
     assert compare(thrown, history(thrown, {"time.steps": 15}, DIGITS)).notes == ()
 
 
-def test_times_that_are_not_uniform_are_refused() -> None:
+def test_times_that_are_not_uniform_are_refused():
     foreign = history(DROPPED, {}, DIGITS)
     with pytest.raises(InputError, match="not uniform"):
         compare(DROPPED, replace(foreign, time=foreign.time**1.01))
@@ -208,7 +204,7 @@ def test_times_that_are_not_uniform_are_refused() -> None:
 
 
 @pytest.mark.parametrize("kind", ["dropped", "weight", "spall", "shaken", "slips", "site"])
-def test_every_candidate_is_in_the_catalogue_and_runs(kind: str) -> None:
+def test_every_candidate_is_in_the_catalogue_and_runs(kind):
     scene = random_scene(kind, np.random.default_rng(0)).with_values({"time.steps": 10})
     candidates = list(of_scene(scene))
     assert {candidate.id for candidate in candidates} <= set(CAUSES)
@@ -218,7 +214,7 @@ def test_every_candidate_is_in_the_catalogue_and_runs(kind: str) -> None:
         assert record.run(candidate.changed(start), 10) is not None, candidate.id
 
 
-def test_numbers_of_contacts_are_those_that_are_stated() -> None:
+def test_numbers_of_contacts_are_those_that_are_stated():
     assert places(DROPPED, "stiffness") == {
         "everywhere": "all contacts",
         "without a joint": "the contacts without a joint",
@@ -237,7 +233,7 @@ def test_numbers_of_contacts_are_those_that_are_stated() -> None:
 
 
 @pytest.mark.long
-def test_no_verdict_on_random_columns_is_wrong() -> None:
+def test_no_verdict_on_random_columns_is_wrong():
     trials = [one for one in map(trial, range(198, 234, 5)) if one is not None]
     counts = Counter(one.verdict for one in trials)
     assert counts[WRONG] == 0, [(one.seed, one.what, one.answer.sentence) for one in trials if one.verdict == WRONG]

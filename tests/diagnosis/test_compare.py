@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -24,13 +23,12 @@ from validation.diagnosis.readings import Reading
 from validation.diagnosis.sentences import span
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Variant, rectangle_of
-from validation.scenes.scene import Scene
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda"
-YIELDS: dict[str, Any] = {"opens": True, "updated": True, "base": (5.0, 2e12)}  # as a block of 50 GPa on points
+YIELDS = {"opens": True, "updated": True, "base": (5.0, 2e12)}  # as a block of 50 GPa on points
 
 
-def scene(**changes: object) -> Scene:
+def scene(**changes):
     base = {"time.step": 0.002, "time.steps": 60}
     return load_scene("figures-3-4").with_values(base | {k.replace("__", "."): v for k, v in changes.items()})
 
@@ -47,7 +45,7 @@ def scene(**changes: object) -> Scene:
         {"time__alpha": 0.0, "time__delta": 0.5, "time__step": 0.0005, "block__density": 1800.0},
     ],
 )
-def test_a_locked_variant_is_the_suites_own_dda(changes: dict[str, object]) -> None:
+def test_a_locked_variant_is_the_suites_own_dda(changes):
     s = scene(**changes)
     t, column = s.time, rectangle_of(s)
     own = Variant(t.alpha, t.delta, t.discount, t.start)
@@ -61,7 +59,7 @@ def test_a_locked_variant_is_the_suites_own_dda(changes: dict[str, object]) -> N
     assert column.static == pytest.approx(_static(s), rel=1e-12)
 
 
-def _static(s: Scene) -> float:
+def _static(s):
     from validation.solvers.registry import get_solver
 
     return float(get_solver("dda").static(s)["displacement"])
@@ -70,7 +68,7 @@ def _static(s: Scene) -> float:
 @pytest.mark.parametrize(
     "changes", [{}, {"opens": True}, {"updated": True}, {"opens": True, "updated": True, "gg": 0.97}]
 )
-def test_every_variant_is_that_of_the_other_program(changes: dict[str, object]) -> None:
+def test_every_variant_is_that_of_the_other_program(changes):
     program = Plain(**({"dt": 4e-4, "steps": 60, "g": 9.81} | changes))
     column = rectangle_of(scene())
     assert column is not None
@@ -85,7 +83,7 @@ def test_every_variant_is_that_of_the_other_program(changes: dict[str, object]) 
 # ---- fits ---------------------------------------------------------------------------------------------------------
 
 
-def test_a_fit_finds_the_scheme_and_its_interval_holds_it() -> None:
+def test_a_fit_finds_the_scheme_and_its_interval_holds_it():
     column = rectangle_of(scene())
     assert column is not None
     steps, rng = np.full(80, 0.001), np.random.default_rng(3)
@@ -101,7 +99,7 @@ def test_a_fit_finds_the_scheme_and_its_interval_holds_it() -> None:
     assert untold(found) == []
 
 
-def test_what_one_settled_row_cannot_tell_is_said() -> None:
+def test_what_one_settled_row_cannot_tell_is_said():
     column = rectangle_of(scene())
     assert column is not None
     steps = np.full(140, 0.01)
@@ -116,9 +114,7 @@ def test_what_one_settled_row_cannot_tell_is_said() -> None:
 @pytest.mark.parametrize(
     ("step", "gg", "opened"), [(5e-4, 0.99, (1, 6)), (4e-4, 0.99, (1, 7)), (4e-4, 1.0, (1, 47)), (1e-3, 0.99, (1, 2))]
 )
-def test_a_base_that_gives_way_is_no_fault_of_the_integrator(
-    step: float, gg: float, opened: tuple[int, int], tmp_path: Path
-) -> None:
+def test_a_base_that_gives_way_is_no_fault_of_the_integrator(step, gg, opened, tmp_path):
     """A heavy base that adds 1 % to the static displacement, and swings at 1.4 krad/s.
 
     A dead band brings a base without mass nearer to these histories, and has no effect once the base has its mass.
@@ -133,7 +129,7 @@ def test_a_base_that_gives_way_is_no_fault_of_the_integrator(
     assert answer.opened == opened == made.opened
 
 
-def test_steps_are_written_as_runs() -> None:
+def test_steps_are_written_as_runs():
     assert span([1, 2, 3, 7, 9, 10]) == "1-3, 7, 9-10"
 
 
@@ -141,7 +137,7 @@ def test_steps_are_written_as_runs() -> None:
 
 
 @pytest.mark.long
-def test_the_example_of_ntdda() -> None:
+def test_the_example_of_ntdda():
     done = typed("compare", EXAMPLE / "scene.toml", EXAMPLE / "ntdda-p1E-dt2ms_meas.m", "--json")
     assert done.returncode == 1, done.stderr  # what surrounds the scheme is no fault, and not what the scene gives
     example = json.loads(done.stdout)
@@ -167,14 +163,14 @@ def test_the_example_of_ntdda() -> None:
     assert example["model"] == ""
 
 
-def example_target() -> Target:
+def example_target():
     foreign, s = read(EXAMPLE / "ntdda-p1E-dt2ms_meas.m"), load_scene(EXAMPLE / "scene.toml")
     column = rectangle_of(s)
     assert column is not None
     return Target(column, np.full(200, 0.002), np.arange(200), foreign.displacement[None])
 
 
-def test_numbers_of_the_examples_readme() -> None:
+def test_numbers_of_the_examples_readme():
     plain = Variant(0.5, 1.0, 1.0)
     moving = replace(plain, updated=True)
     found = fit(
@@ -195,7 +191,7 @@ def test_numbers_of_the_examples_readme() -> None:
         (Plain(dt=2e-4, p=5e8, steps=100, g=9.81, **YIELDS), None),
     ],
 )
-def test_a_program_of_another_make(program: Plain, opened: tuple[int, int] | None, tmp_path: Path) -> None:
+def test_a_program_of_another_make(program, opened, tmp_path):
     """Base that yields, moving geometry, weight, opening: the scheme is named and the steps are found."""
     made = history(program)
     assert opened is None or made.opened == opened
@@ -214,7 +210,7 @@ def test_a_program_of_another_make(program: Plain, opened: tuple[int, int] | Non
 
 
 @pytest.mark.long
-def test_a_history_of_finite_elements_is_named_so() -> None:
+def test_a_history_of_finite_elements_is_named_so():
     s = scene(time__steps=80)
     run_ = solve(s.with_values({"fem.elements": 16}), "fem")
     answer = compare(s, Foreign(run_.time, run_.displacement, run_.contact_pressure))
@@ -224,7 +220,7 @@ def test_a_history_of_finite_elements_is_named_so() -> None:
 
 
 @pytest.mark.long
-def test_a_polygon_is_compared_with_the_linear_models() -> None:
+def test_a_polygon_is_compared_with_the_linear_models():
     corners = [[0.0, 0.0], [2.0, 0.0], [1.7, 1.5], [0.2, 1.5]]
     s = load_scene("figures-3-4").with_values(
         {"block.vertices": corners, "time.step": 0.002, "time.steps": 60, "fem.elements": 4}
@@ -242,7 +238,7 @@ def test_a_polygon_is_compared_with_the_linear_models() -> None:
 # ---- the command line -----------------------------------------------------------------------------------------------
 
 
-def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) -> None:
+def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path):
     exact = solve(scene(time__steps=30), "dda")
     table = np.column_stack([1e3 * exact.time, -1e3 * exact.displacement])
     path = tmp_path / "theirs.csv"
@@ -266,7 +262,7 @@ def test_the_first_line_is_the_answer_and_the_report_one_page(tmp_path: Path) ->
     assert typed(*arguments, *answer["remedy"].split()).returncode == 0
 
 
-def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch):
     """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
     s = scene(time__steps=20).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
     run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")

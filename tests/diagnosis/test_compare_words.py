@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
-from matplotlib.figure import Figure
 from oracles.made_cases import line_in
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
@@ -49,7 +46,7 @@ OWN = Variant(0.5, 1.0, 1.0)
 BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
 
 
-def softened(solver: str, times: float, **changes: Any) -> Answer:
+def softened(solver, times, **changes):
     """Judge a history of the scene whose normal springs are so many times as stiff as they should be."""
     scene = SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()})
     c = scene.contact
@@ -62,13 +59,13 @@ def softened(solver: str, times: float, **changes: Any) -> Answer:
 
 
 @pytest.fixture(scope="module")
-def answer() -> Answer:
+def answer():
     """At p = E half of the 10 mm is the springs': half as stiff, they add 50 % to the static displacement."""
     return softened("dda", 0.5)
 
 
 @pytest.mark.long
-def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> None:
+def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer):
     assert answer.causes == ["springs-factor"]
     assert answer.departure is not None and answer.departure.kind == "offset"
     assert answer.sentence.startswith("Same scheme: constant acceleration")  # and not "same model"
@@ -76,7 +73,7 @@ def test_springs_half_as_stiff_are_a_fault_and_never_benign(answer: Answer) -> N
 
 
 @pytest.mark.long
-def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
+def test_a_base_that_adds_two_per_cent_is_benign_and_said_so():
     answer = softened("dda", 1 / 1.04)
     assert (answer.causes, answer.departure) == (["base-compliance"], None)
     # the rows alone do not tell a base from softer springs, or from a wider block: the exit status says that it departs
@@ -90,7 +87,7 @@ def test_a_base_that_adds_two_per_cent_is_benign_and_said_so() -> None:
 
 
 @pytest.mark.parametrize("times", [0.5, *(pytest.param(f, marks=pytest.mark.long) for f in (0.2, 1.1, 2.0))])
-def test_springs_by_a_round_factor_are_never_a_base_however_stiff_they_are(times: float) -> None:
+def test_springs_by_a_round_factor_are_never_a_base_however_stiff_they_are(times):
     """At p = 100E springs half as stiff add 1 % to the static displacement, springs twice as stiff take 0.5 % off."""
     answer = softened("dda", times, contact__stiffness=1e11)
     assert answer.causes == ["springs-factor"] and answer.departs
@@ -101,12 +98,12 @@ def test_springs_by_a_round_factor_are_never_a_base_however_stiff_they_are(times
     ("factor", "error", "is_round"),
     [(0.5, 1e-4, True), (0.8, 0.0, True), (1 / 1.1, 1e-5, True), (1 / 1.04, 0.0, False), (0.5, 0.01, False)],
 )
-def test_a_round_factor_has_two_digits_that_are_known(factor: float, error: float, is_round: bool) -> None:
+def test_a_round_factor_has_two_digits_that_are_known(factor, error, is_round):
     assert round_factor(factor, error) is is_round
 
 
 @pytest.mark.long
-def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
+def test_a_base_that_explains_nothing_buys_no_tolerance():
     """Viscous damping is near to a discount: a compliance of 2e-6 beside it does not make it one."""
     displacement, pressure = run(Plain(steps=60, p=2e10, viscous=10.0))
     scene = scene_of(Plain(steps=60, p=2e10))
@@ -114,13 +111,13 @@ def test_a_base_that_explains_nothing_buys_no_tolerance() -> None:
     assert "gg" not in answer.causes
 
 
-def target(**changes: Any) -> Target:
+def target(**changes):
     column = rectangle_of(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}))
     assert column is not None
     return Target(column, np.full(4, 0.002), np.arange(4), -np.ones((1, 4)))
 
 
-def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own() -> None:
+def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own():
     """At p = E springs and block give half each; at p = 10E the springs give a twelfth of 5.5 mm, 0.5 mm."""
     soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
     assert compliance(target().column, soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
@@ -140,9 +137,7 @@ def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own
         (0.5, 10.0, False),
     ],
 )
-def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
-    added: float, mass: float, benign: bool
-) -> None:
+def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(added, mass, benign):
     assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
     v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
     assert benign_springs(target().column, v) is benign
@@ -151,7 +146,7 @@ def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(
 # ---- other faults -------------------------------------------------------------------------------------------------
 
 
-def judged(change: Any, **values: Any) -> Answer:
+def judged(change, **values):
     """Judge a history of DDA with other values against the scene at gg = 0.98, its columns changed."""
     scene = SCENE.with_values({"time.gg": 0.98})
     run = solve(scene.with_values({key.replace("__", "."): value for key, value in values.items()}), "dda")
@@ -162,8 +157,8 @@ def judged(change: Any, **values: Any) -> Answer:
     ("late", "words"),
     [(1, "the rows are 1 step late"), pytest.param(-1, "the rows are 1 step early", marks=pytest.mark.long)],
 )
-def test_rows_that_are_shifted_by_a_step_are_said_so(late: int, words: str) -> None:
-    def shifted(values: np.ndarray) -> np.ndarray:
+def test_rows_that_are_shifted_by_a_step_are_said_so(late, words):
+    def shifted(values):
         return np.append(0.0, values[:-1]) if late > 0 else np.append(values[1:], values[-1])
 
     answer = judged(lambda v, p: (shifted(v), shifted(p)))
@@ -177,7 +172,7 @@ NUMBERS = {"springs-factor": 0.25, "load-factor": 1.25, "density-factor": 0.5, "
            "reported-point": 1.0, "pressure-factor": 0.5, "side-factor": 1.1, "poisson": 0.3}  # fmt: skip
 
 
-def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
+def said(causes, soft=0.0, **fields):
     variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
     scene = Variant(0.25, 0.5, 0.99, "consistent")
     gone = Departure(7, "phase")
@@ -188,7 +183,7 @@ def said(causes: list[str], soft: float = 0.0, **fields: Any) -> str:
 
 
 @pytest.mark.parametrize("cause", sorted(name for name, cause in CAUSES.items() if not cause.benign))
-def test_each_fault_is_told_with_its_number(cause: str) -> None:
+def test_each_fault_is_told_with_its_number(cause):
     """Whatever a sentence of the catalogue holds is filled in."""
     text = said([cause])
     assert cause not in NUMBERS or f"{NUMBERS[cause]:.5g}" in text
@@ -210,11 +205,11 @@ def test_each_fault_is_told_with_its_number(cause: str) -> None:
         ("contact-opened", {"opens": True}, "in steps 3-5, 9"),
     ],
 )
-def test_numbers_that_have_words_are_told_by_them(cause: str, fields: dict[str, Any], words: str) -> None:
+def test_numbers_that_have_words_are_told_by_them(cause, fields, words):
     assert words in said([cause], **fields)
 
 
-def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
+def test_the_answer_by_another_solver_is_told_with_its_numbers():
     scheme = "constant acceleration (alpha = 0.5, delta = 1, gg = 0.97)"
     bar = "bar (the exact bar, which fine finite elements converge to)"
     where = Departure(7, "phase")
@@ -226,7 +221,7 @@ def test_the_answer_by_another_solver_is_told_with_its_numbers() -> None:
     assert wording.sentence(replace(fault, words={})).startswith(f"Same model as {bar}, same scheme: {scheme}; ")
 
 
-def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong() -> None:
+def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong():
     about = wording.Subject("", {}, Departure(7, "phase"), "")
     near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
     assert wording.not_explained(about, near, 0.034, STAGES) == (
@@ -254,7 +249,7 @@ WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
         ("phase", -1 + np.exp(-2 * T) * np.cos(40.4 * T)),
     ],
 )
-def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
+def test_the_manner_of_a_departure(kind, given):
     assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
 
 
@@ -267,7 +262,7 @@ def test_the_manner_of_a_departure(kind: str, given: np.ndarray) -> None:
         (np.arange(200), 0.003, 150),  # four standard deviations hide one per cent
     ],
 )
-def test_the_first_step_of_a_departure_is_counted_from_one(rows: np.ndarray, noise: float, step: int) -> None:
+def test_the_first_step_of_a_departure_is_counted_from_one(rows, noise, step):
     given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
     assert evidence.measured(WANTED, given, rows, noise).step == step
 
@@ -293,7 +288,7 @@ ANSWER = Answer(
 )  # fmt: skip
 
 
-def test_the_command_prints_stages_and_what_the_rows_determine() -> None:
+def test_the_command_prints_stages_and_what_the_rows_determine():
     lines = "\n".join(cli_compare._lines(ANSWER)).splitlines()
     assert lines[0] == "It departs."
     assert "the contact opened: first step 3, last 41" in lines
@@ -310,8 +305,8 @@ def test_the_command_prints_stages_and_what_the_rows_determine() -> None:
     assert wording.remaining(5e-14) == "the remaining difference is below 1e-10 %"
 
 
-def test_the_page_shows_the_same_and_the_curves_in_millimetres(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    caught: list[Figure] = []
+def test_the_page_shows_the_same_and_the_curves_in_millimetres(tmp_path, monkeypatch):
+    caught = []
     monkeypatch.setattr(figures, "save", lambda figure, path: caught.append(figure))
     nearest = {"causes": ["gg"]}
     blocks = chapters_compare.page(
@@ -335,7 +330,7 @@ def test_the_page_shows_the_same_and_the_curves_in_millimetres(tmp_path: Path, m
 
 
 @pytest.mark.long
-def test_the_exact_continuum_is_not_the_same_scheme() -> None:
+def test_the_exact_continuum_is_not_the_same_scheme():
     """In space and in time it is another model than the scene's own run by DDA, which the status says."""
     scene = SCENE.with_values({"time.step": 5e-4})
     run = solve(scene, "continuum")
@@ -348,7 +343,7 @@ def test_the_exact_continuum_is_not_the_same_scheme() -> None:
 
 
 @pytest.mark.long
-def test_what_surrounds_a_block_leaves_no_wrong_stage() -> None:
+def test_what_surrounds_a_block_leaves_no_wrong_stage():
     run = solve(SCENE.with_values({"load.gravity": 9.81}), "dda")
     answer = compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
     assert answer.causes == ["own-weight"] and answer.sentence.startswith("Same model, same scheme")
@@ -372,7 +367,7 @@ READINGS = {
 }
 
 
-def test_a_wrong_pressure_dates_the_departure_and_a_remedy_takes_the_place_of_what_was_typed() -> None:
+def test_a_wrong_pressure_dates_the_departure_and_a_remedy_takes_the_place_of_what_was_typed():
     answer = judged(lambda v, p: (v, 0.5 * p))
     assert answer.causes == ["pressure-factor"]
     assert answer.departure is not None and answer.departure.step == 1
@@ -387,7 +382,7 @@ def test_a_wrong_pressure_dates_the_departure_and_a_remedy_takes_the_place_of_wh
 
 
 @pytest.mark.parametrize("name", READINGS)
-def test_a_history_that_is_read_wrongly_is_told_what_to_type(name: str) -> None:
+def test_a_history_that_is_read_wrongly_is_told_what_to_type(name):
     change, causes, remedy = READINGS[name]
     answer = judged(change)
     assert answer.causes == causes
@@ -397,7 +392,7 @@ def test_a_history_that_is_read_wrongly_is_told_what_to_type(name: str) -> None:
     assert answer.misfit < 1e-6
 
 
-def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answer) -> None:
+def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer):
     runs = {name: solve(SCENE.with_values({"contact.stiffness": p, "contact.shear_stiffness": 1e9}), "dda")
             for name, p in (("the file", 5e8), ("dda", 1e9), ("best", 5e8))}  # fmt: skip
     assert list(answer.curves) == list(runs)
@@ -406,7 +401,7 @@ def test_the_curves_are_the_file_the_scene_and_the_best_explanation(answer: Answ
 
 
 @pytest.mark.long
-def test_damping_of_mass_and_stiffness_together_is_named() -> None:
+def test_damping_of_mass_and_stiffness_together_is_named():
     data = Plain(steps=60, p=3e9, viscous=10.0, structural=1e-4)
     v, p = run(data)
     answer = compare(scene_of(data), Foreign(data.dt * np.arange(1, 61), v, p))
@@ -415,7 +410,7 @@ def test_damping_of_mass_and_stiffness_together_is_named() -> None:
 
 
 @pytest.mark.parametrize("with_pressure", [True, False])
-def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction(with_pressure: bool) -> None:
+def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction(with_pressure):
     weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
     own = solve(weighty, "dda")
     answer = compare(weighty, Foreign(own.time, -own.displacement, -own.contact_pressure if with_pressure else None))
@@ -430,7 +425,7 @@ def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direc
     assert compare(weighty, Foreign(own.time, -own.displacement, own.contact_pressure)).causes == ["sign"]
 
 
-def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity() -> None:
+def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity():
     weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
     time = 0.002 * np.arange(1, 31)
     answer = compare(weighty, Foreign(time, np.zeros(30), np.zeros(30)))

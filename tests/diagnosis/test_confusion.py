@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import pytest
 from conftest import thinned
 from faults import seams
 from oracles import confusion
 from oracles.pages import page_with
 
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import CAUSES
 
 pytestmark = pytest.mark.xdist_group("confusion")  # the fifty are made once
@@ -21,13 +18,13 @@ def fifty():
     return confusion.judge()
 
 
-def hidden(one: confusion.Known, answer: Answer) -> bool:
+def hidden(one, answer):
     """Whether nothing is named where noise may hide what tells one scheme from a strange integrator."""
     return one.cause == "scheme" and one.noise > 0 and answer.causes == ["unexplained"]
 
 
 @pytest.mark.long
-def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fifty) -> None:
+def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fifty):
     assert len(fifty) == 50
     wrong = []
     for i, (one, answer, history) in enumerate(fifty):
@@ -50,17 +47,17 @@ def test_every_history_is_given_its_own_cause_scheme_open_steps_and_departure(fi
 
 
 @pytest.mark.long
-def test_the_counts_of_the_documentation_are_these(fifty) -> None:
+def test_the_counts_of_the_documentation_are_these(fifty):
     page = confusion.PAGE.read_text()
     found = page_with(confusion.table(fifty), page, confusion.BEGIN, confusion.END)
     assert found == page, "write it by PYTHONPATH=.:tests python tests/oracles/confusion.py"
 
 
-def first(cause: str) -> tuple[int, confusion.Known]:
+def first(cause):
     return next((i, one) for i, one in enumerate(confusion.known()) if one.cause == cause)
 
 
-def without(*unwanted: str) -> Callable[..., Callable[..., object]]:
+def without(*unwanted):
     """Take some causes out of the catalogue."""
     return lambda sound: lambda *given: [move for move in sound(*given) if move.id not in unwanted]
 
@@ -76,7 +73,7 @@ FAULTS = {
 
 @pytest.mark.parametrize("name", thinned(FAULTS, 4))
 @pytest.mark.long
-def test_the_gate_is_bitten(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_gate_is_bitten(name, monkeypatch):
     seam, wrap, cause = FAULTS[name]
     seam.wrap(monkeypatch, wrap)
     seed, one = first(cause)

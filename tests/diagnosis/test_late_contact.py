@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -26,7 +25,7 @@ OPENS = Plain(steps=80, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True,
     ],
     ids=str,
 )
-def test_what_switches_a_contact_is_named(slip: dict[str, Any], cause: str) -> None:
+def test_what_switches_a_contact_is_named(slip, cause):
     displacement, pressure = run(replace(OPENS, **slip))
     assert np.any(pressure == 0)
     time = OPENS.dt * np.arange(1, OPENS.steps + 1)

@@ -15,13 +15,13 @@ from validation.errors import InputError
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "ntdda-p1E-dt2ms_meas.m"
 
 
-def written(tmp_path: Path, text: str) -> Path:
+def written(tmp_path, text):
     path = tmp_path / "h.csv"
     path.write_text(text)
     return path
 
 
-def test_the_measured_point_of_ntdda() -> None:
+def test_the_measured_point_of_ntdda():
     found = read(EXAMPLE)
     assert len(found.time) == 200
     assert found.displacement[0] == -1.839377e-03
@@ -29,7 +29,7 @@ def test_the_measured_point_of_ntdda() -> None:
     np.testing.assert_allclose(found.steps, 0.002)
 
 
-def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path: Path) -> None:
+def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path):
     program = Plain(dt=5e-4, steps=60, q=-5e6, p=2e9, updated=True)
     made = history(program)
     assert made.displacement.min() >= 0 or made.displacement.max() > 0
@@ -38,14 +38,14 @@ def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path: Path) ->
     np.testing.assert_allclose(found.displacement, made.displacement, rtol=1e-6)
 
 
-def test_an_interrupted_measured_point_file(tmp_path: Path) -> None:
+def test_an_interrupted_measured_point_file(tmp_path):
     text = EXAMPLE.read_text()
     cut = tmp_path / "cut.m"
     cut.write_text(text[: len(text) // 2])
     assert 90 < len(read(cut).time) < 110
 
 
-def test_a_point_is_picked_by_name(tmp_path: Path) -> None:
+def test_a_point_is_picked_by_name(tmp_path):
     text = EXAMPLE.read_text()
     both = tmp_path / "both.m"
     both.write_text(text + text.replace("measpoint1", "measpoint2").replace("1.839377e-03", "1.839900e-03"))
@@ -55,7 +55,7 @@ def test_a_point_is_picked_by_name(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t", " "])
-def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str) -> None:
+def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     rows = [("t", "uy", "sig"), (0, 0, 0), (2, 1.5, 0.5), (4, 2.5, 1), (6, 3, 2), (8, 3.5, 2.5)]
     text = "# made elsewhere\n" + "\n".join(separator.join(map(str, row)) for row in rows)
     columns = parse_columns("time=T,displacement=uy,contact_pressure=3")
@@ -84,7 +84,7 @@ def test_a_table_with_other_names_units_and_sign(tmp_path: Path, separator: str)
         ("measpoint1=[\n1 2 3\n4 5 6\n];", "must hold rows of 9 numbers"),
     ],
 )
-def test_a_file_that_is_no_history(tmp_path: Path, text: str, said: str) -> None:
+def test_a_file_that_is_no_history(tmp_path, text, said):
     with pytest.raises(InputError, match=r"h\.csv") as error:
         read(written(tmp_path, text))
     assert said in str(error.value)
@@ -92,16 +92,16 @@ def test_a_file_that_is_no_history(tmp_path: Path, text: str, said: str) -> None
 
 
 @pytest.mark.parametrize("text", ["uy", "displacement=", "force=f", "displacement=nan", "displacement=0"])
-def test_options_that_say_nothing(text: str) -> None:
+def test_options_that_say_nothing(text):
     with pytest.raises(InputError, match="--"):
         (parse_scale if "=n" in text or "=0" in text else parse_columns)(text)
 
 
-def history_at(times: list[float] | np.ndarray) -> Foreign:
+def history_at(times):
     return Foreign(np.asarray(times, dtype=float), np.ones(len(times)))
 
 
-def test_times_name_the_steps() -> None:
+def test_times_name_the_steps():
     step = 0.002
     every = steppings(history_at(step * np.arange(1, 9)), step)
     assert [(len(s.steps), s.note) for s in every] == [(8, "")]
@@ -120,7 +120,7 @@ def test_times_name_the_steps() -> None:
     assert "each row is taken as one step" in free.note
 
 
-def test_times_in_milliseconds_are_a_slip_of_units() -> None:
+def test_times_in_milliseconds_are_a_slip_of_units():
     found = steppings(history_at(2.0 * np.arange(1, 9)), 0.002)[0]
     assert found.factor == 1000
     np.testing.assert_allclose(found.steps, 0.002)
@@ -131,11 +131,11 @@ def test_times_in_milliseconds_are_a_slip_of_units() -> None:
 STEP = 0.002  # s
 
 
-def at_steps(*numbers: float) -> Foreign:
+def at_steps(*numbers):
     return Foreign(STEP * np.array(numbers), -np.ones(len(numbers)))
 
 
-def written_rows(path: Path, rows: int) -> Path:
+def written_rows(path, rows):
     with path.open("w") as stream:
         stream.write("time,displacement\n")
         stream.writelines(f"{STEP * i!r},-0.001\n" for i in range(rows + 1))
@@ -153,23 +153,23 @@ FAR = {
 
 
 @pytest.mark.parametrize("name", FAR)
-def test_rows_too_many_steps_apart_are_refused(name: str) -> None:
+def test_rows_too_many_steps_apart_are_refused(name):
     with pytest.raises(InputError, match=r"must end within 10000 steps of (0.002|7e-05) s, got step \d+$") as caught:
         steppings(FAR[name], 7e-5 if name == "late" else STEP)
     assert caught.value.field == "time"
 
 
-def test_as_many_steps_as_are_allowed_are_taken() -> None:
+def test_as_many_steps_as_are_allowed_are_taken():
     assert steppings(at_steps(1, 2, 3, 4, MOST_STEPS), STEP)[0].rows[-1] == MOST_STEPS - 1
 
 
-def test_uniform_rows_far_apart_are_the_program_s_own_steps() -> None:
+def test_uniform_rows_far_apart_are_the_program_s_own_steps():
     """A scene with a tiny step, a program with a large one: two hundred steps, not two million."""
     found = steppings(Foreign(0.02 * np.arange(1, 201), -np.ones(200)), 1e-6)
     assert [len(s.steps) for s in found] == [200]
 
 
-def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path, monkeypatch):
     read(written_rows(tmp_path / "most.csv", MOST_STEPS))
     path = written_rows(tmp_path / "more.csv", 3 * MOST_STEPS)
     parsed = []
@@ -179,7 +179,7 @@ def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path: Path, monkey
     assert not parsed
 
 
-def test_a_measured_point_of_so_many_rows_is_refused_too(tmp_path: Path) -> None:
+def test_a_measured_point_of_so_many_rows_is_refused_too(tmp_path):
     path = tmp_path / "long.m"
     rows = "\n".join(f"{i} {STEP * i} {STEP} 0 1 0.001 0 -0.5 0.5" for i in range(1, 2 * MOST_STEPS))
     path.write_text(f"measpoint1 = [\n{rows}\n];\n")
@@ -187,7 +187,7 @@ def test_a_measured_point_of_so_many_rows_is_refused_too(tmp_path: Path) -> None
         read(path)
 
 
-def test_decimal_commas_beside_semicolons_are_read(tmp_path: Path) -> None:
+def test_decimal_commas_beside_semicolons_are_read(tmp_path):
     path = tmp_path / "comma.csv"
     path.write_text("time;displacement\n0,1;-1,5e-3\n0,2;-2e-3\n0,3;-2,5e-3\n0,4;-3e-3\n")
     assert np.array_equal(read(path).displacement, [-1.5e-3, -2e-3, -2.5e-3, -3e-3])

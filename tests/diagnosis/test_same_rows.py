@@ -14,7 +14,6 @@ from oracles.column_histories import history
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
@@ -28,36 +27,36 @@ from validation.scenes.scene import parse_scene
 PLAIN = Plain(steps=60)
 
 
-def judged(base: Plain, columns: tuple[np.ndarray, np.ndarray]) -> Answer:
+def judged(base, columns):
     time = base.dt * np.arange(1, len(columns[0]) + 1)
     return compare(scene_of(base).with_values({"time.steps": len(columns[0])}), Foreign(time, *columns))
 
 
-def means(base: Plain) -> tuple[np.ndarray, np.ndarray]:
+def means(base):
     """Return rows that are means of a step and the one before."""
     displacement, pressure = ((x + np.concatenate([[0.0], x[:-1]])) / 2 for x in run(base))
     return displacement, pressure
 
 
-def test_means_of_two_steps_are_not_called_a_ramp_alone() -> None:
+def test_means_of_two_steps_are_not_called_a_ramp_alone():
     answer = judged(PLAIN, means(PLAIN))
     assert answer.causes != ["load-ramp"] or answer.alike
 
 
 @pytest.mark.parametrize("discount", [1.0, 0.98])
-def test_stiffness_damping_and_a_scheme_are_told_as_two(discount: float) -> None:
+def test_stiffness_damping_and_a_scheme_are_told_as_two(discount):
     base = replace(PLAIN, gg=discount)
     answer = judged(base, run(replace(base, structural=1e-4)))
     assert answer.causes == ["unexplained"]
     assert {one["causes"][0] for one in answer.alike} == {"stiffness-damping", "scheme"}
 
 
-def test_another_height_is_named() -> None:
+def test_another_height_is_named():
     assert judged(PLAIN, run(replace(PLAIN, height=2.54))).causes == ["height-factor"]
 
 
 @pytest.mark.parametrize(("factor", "determined"), [(1e5, False), (1.3, True)])
-def test_a_factor_that_may_as_well_be_ten_times_as_large_is_no_number(factor: float, determined: bool) -> None:
+def test_a_factor_that_may_as_well_be_ten_times_as_large_is_no_number(factor, determined):
     """Five digits of a block that is a hundred thousand times as stiff do not tell it from a rigid one."""
     rectangle = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
     own = Variant(0.5, 1.0, 1.0)
@@ -72,7 +71,7 @@ def test_a_factor_that_may_as_well_be_ten_times_as_large_is_no_number(factor: fl
 
 
 @pytest.mark.long
-def test_springs_beside_a_missing_coupling_are_no_block_ten_million_times_as_stiff() -> None:
+def test_springs_beside_a_missing_coupling_are_no_block_ten_million_times_as_stiff():
     """Springs 1.8e-5 stiffer make up for a block that is 1e6 times as stiff; every other row, six digits."""
     base = Plain(dt=0.026, steps=90, side=3.8, rho=6520.0, E=1.34e8, p=1.84e9, q=93300.0, consistent=True)
     displacement, _ = run(replace(base, p=1.39 * base.p, coupling=0.0))
@@ -83,7 +82,7 @@ def test_springs_beside_a_missing_coupling_are_no_block_ten_million_times_as_sti
     assert answer.values["springs-factor"] == pytest.approx(1.39, rel=1e-5)
 
 
-def test_a_contact_that_is_never_reached_has_no_number() -> None:
+def test_a_contact_that_is_never_reached_has_no_number():
     column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 5e-4, "gravity": 9.81}
     layer = {"thickness": 3.0, "density": 2500.0, "young": math.inf, "blocks": 3, "velocity": -1.0}
     time = {"alpha": 0.25, "delta": 0.5, "start": "consistent", "step": 8e-5, "steps": 200}

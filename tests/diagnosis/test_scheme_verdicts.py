@@ -6,8 +6,6 @@ import math
 import re
 from collections import Counter
 from dataclasses import replace
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -18,20 +16,18 @@ from oracles.compared_schemes import Case, dashpot_of, made, scene_of, verdict
 from oracles.scheme_histories import Body, Run
 
 from validation import load_scene, solve
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.schemes import companion_split
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
-from validation.scenes.scene import Scene
 from validation.theory.stages import equal_split
 
 ROUNDINGS = 1e-12  # relative, that two formulations of one recursion over 60 steps differ by
 
 # a run, and the same as a candidate change
-STEPPED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
+STEPPED = [
     ("chung-hulbert", {"r": 0.8}, {"family": "chung-hulbert", "spectral": 0.8}),
     ("chung-hulbert", {"r": 0.3, "zero": True}, {"family": "chung-hulbert", "spectral": 0.3, "start": "zero"}),
     ("hht", {"e": 0.12}, {"family": "hht", "spectral": 0.12}),
@@ -46,7 +42,7 @@ STEPPED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
     ("contact-split", {"law": "conserving"}, {"alpha": 0.25, "delta": 0.5, "contact": "energy-conserving"}),
     ("dashpot", {"c": 0.2}, {"alpha": 0.25, "delta": 0.5, "contact": "dashpot", "dashpot": 0.2}),
 ]
-OPENED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
+OPENED = [
     *STEPPED,
     ("dashpot", {"c": 0.4, "clipped": False}, {**STEPPED[-1][2], "dashpot": 0.4, "clipped": False}),
     (
@@ -64,7 +60,7 @@ OPENED: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize("opens", [False, True])
-def test_candidates_step_as_the_recursions_of_the_papers(opens: bool) -> None:
+def test_candidates_step_as_the_recursions_of_the_papers(opens):
     body = Body(p=1e10)
     dt, steps, gg = 2e-4, 60, 0.98
     variants = []
@@ -82,7 +78,7 @@ def test_candidates_step_as_the_recursions_of_the_papers(opens: bool) -> None:
 
 # ---- scenes of another scheme ---------------------------------------------------------------------------------------
 
-OTHER_SCHEMES: list[dict[str, Any]] = [
+OTHER_SCHEMES = [
     {"time.scheme": "chung-hulbert", "time.rho_inf": 0.7},
     {"time.scheme": "hht", "time.rho_inf": 0.6, "time.start": "consistent"},
     {"time.scheme": "wbz", "time.rho_inf": 0.3},
@@ -91,14 +87,14 @@ OTHER_SCHEMES: list[dict[str, Any]] = [
 ]
 
 
-def other_scene(law: str, **changes: Any) -> Scene:
+def other_scene(law, **changes):
     base = {"time.step": 5e-4, "time.steps": 60, "contact.law": law, "run.solvers": ["dda"], "load.gravity": 9.81}
     return load_scene("figures-3-4").with_values(base | changes)
 
 
 @pytest.mark.parametrize("law", ["locked", "unilateral"])
 @pytest.mark.parametrize("scheme", OTHER_SCHEMES)
-def test_a_scene_of_another_scheme_is_stepped_as_dda_steps_it(law: str, scheme: dict[str, Any]) -> None:
+def test_a_scene_of_another_scheme_is_stepped_as_dda_steps_it(law, scheme):
     scene = other_scene(law, **scheme, **{"time.gg": 0.98})
     run = solve(scene, "dda")
     rectangle = rectangle_of(scene)
@@ -109,7 +105,7 @@ def test_a_scene_of_another_scheme_is_stepped_as_dda_steps_it(law: str, scheme: 
     assert answer.causes == [] and answer.misfit < 1e-9
 
 
-def test_dda_s_own_scheme_beside_a_scene_of_another_one_is_named() -> None:
+def test_dda_s_own_scheme_beside_a_scene_of_another_one_is_named():
     run = solve(other_scene("locked"), "dda")
     scene = other_scene("locked", **OTHER_SCHEMES[0])
     answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
@@ -126,7 +122,7 @@ def test_dda_s_own_scheme_beside_a_scene_of_another_one_is_named() -> None:
         {"contact.law": "unilateral", "block.poisson": 0.2},
     ],
 )
-def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes: dict[str, Any]) -> None:
+def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes):
     scene = other_scene("locked", **OTHER_SCHEMES[0]).with_values(changes)
     with pytest.raises(InputError) as refusal:
         compare(scene, Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
@@ -138,13 +134,13 @@ def test_what_is_stepped_by_newmark_s_scheme_only_is_refused_by_name(changes: di
 LOCKED, OPENING = {"dt": 2e-3}, {"dt": 5e-4, "opens": True}
 
 
-def judged(method: str, numbers: dict[str, Any], digits: int = 6, **of_run: Any) -> tuple[Case, Answer]:
+def judged(method, numbers, digits=6, **of_run):
     run = Run(method, numbers, **of_run)
     case = Case(run, scene_of(run), digits)
     return case, case.judged()
 
 
-NAMED: list[tuple[str, dict[str, Any], dict[str, Any], list[str]]] = [
+NAMED = [
     ("chung-hulbert", {"r": 0.63}, LOCKED, ["generalised-alpha"]),
     ("composite", {"split": 0.45, "r": 0.2}, LOCKED, ["composite"]),
     ("hht", {"e": 0.07, "form": "state"}, OPENING, ["hht"]),
@@ -162,16 +158,14 @@ NAMED: list[tuple[str, dict[str, Any], dict[str, Any], list[str]]] = [
 
 @pytest.mark.long
 @pytest.mark.parametrize(("method", "numbers", "of_run", "causes"), thinned(NAMED, 4))
-def test_a_method_is_named_by_six_digits(
-    method: str, numbers: dict[str, Any], of_run: dict[str, Any], causes: list[str]
-) -> None:
+def test_a_method_is_named_by_six_digits(method, numbers, of_run, causes):
     case, answer = judged(method, numbers, **of_run)
     assert answer.causes == causes
     assert verdict(case, answer) == "right"
 
 
 @pytest.mark.long
-def test_leapfrog_is_no_hht_and_is_told_by_both_names() -> None:
+def test_leapfrog_is_no_hht_and_is_told_by_both_names():
     """Hilber, Hughes and Taylor's formulas at alpha_f = 1, far beyond 1/3, have its rows."""
     _, answer = judged("leapfrog", {}, dt=5e-4)
     assert answer.causes == ["leapfrog"]
@@ -180,7 +174,7 @@ def test_leapfrog_is_no_hht_and_is_told_by_both_names() -> None:
 
 
 @pytest.mark.long
-def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha() -> None:
+def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha():
     _, answer = judged("midpoint", {}, **LOCKED)
     assert answer.causes == ["scheme", "start"]
     assert answer.scheme == {"alpha": 0.25, "delta": 0.5, "gg": 1.0}
@@ -191,14 +185,14 @@ def test_average_acceleration_from_the_consistent_start_is_no_generalised_alpha(
     ("method", "numbers", "other"),
     [("hht", {"e": 1 / 3}, "hht"), ("wbz", {"r": 0.0}, "wbz")],
 )
-def test_one_scheme_by_two_names_is_told_by_both(method: str, numbers: dict[str, Any], other: str) -> None:
+def test_one_scheme_by_two_names_is_told_by_both(method, numbers, other):
     _, answer = judged(method, numbers, **LOCKED)
     assert answer.causes == ["generalised-alpha"]
     assert [one["causes"] for one in answer.alike] == [[other]]
     assert answer.values["generalised-alpha"] == (0.5 if method == "hht" else 0.0)
 
 
-def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact() -> None:
+def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact():
     """The roots of a step have 1 - q2 z and 1 - split z / 2 below: a split of 2 q2 exchanges them."""
     variant = Variant(0.25, 0.5, 1.0, "consistent", family="composite", split=0.7, spectral=0.3)
     other = companion_split(variant)
@@ -213,7 +207,7 @@ def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact() -> None:
 
 
 @pytest.mark.long
-def test_a_discount_beside_another_scheme_is_named_with_it() -> None:
+def test_a_discount_beside_another_scheme_is_named_with_it():
     run = Run("chung-hulbert", {"r": 0.8}, gg=0.97)
     answer = Case(run, scene_of(replace(run, gg=1.0)), 7).judged()
     assert answer.causes == ["gg", "generalised-alpha"]
@@ -221,7 +215,7 @@ def test_a_discount_beside_another_scheme_is_named_with_it() -> None:
 
 
 @pytest.mark.long
-def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number() -> None:
+def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number():
     """Short steps, nine digits: Chung and Hulbert's at rho_inf = 0.368 comes within 2e-7, and is not it."""
     run = Run("weights", {"am": -0.2, "af": 0.2, "zero": False, "form": "force"}, Body(p=5e9), 5.2e-5, 25)
     case = Case(run, scene_of(run), 9, with_pressure=False)
@@ -229,7 +223,7 @@ def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number
 
 
 @pytest.mark.long
-def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
+def test_the_remedy_gives_the_scene_the_scheme(tmp_path):
     run = Run("hht", {"e": 0.07}, steps=40)
     foreign = Case(run, scene_of(run), 7).foreign
     path = tmp_path / "theirs.csv"
@@ -247,7 +241,7 @@ def test_the_remedy_gives_the_scene_the_scheme(tmp_path: Path) -> None:
 
 
 @pytest.mark.long
-def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch):
     """Without it average acceleration, printed with six digits, is several schemes at once."""
     seams.DECISION_CANONICAL.put(monkeypatch, lambda target, best, close: (best, {best.ids: best}))
     seams.DECISION_DETERMINED.put(monkeypatch, lambda *_: True)
@@ -255,21 +249,21 @@ def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch: pytest.MonkeyPat
     assert answer.causes != ["scheme", "start"]
 
 
-def test_a_solver_that_parts_before_the_first_row_explains_nothing() -> None:
+def test_a_solver_that_parts_before_the_first_row_explains_nothing():
     """The horizon of `bar` beside this history is its first row."""
     case = made(108)
     assert verdict(case, case.judged()) != "wrong"
 
 
 @pytest.mark.long
-def test_no_made_history_is_given_a_wrong_cause_and_most_are_named() -> None:
+def test_no_made_history_is_given_a_wrong_cause_and_most_are_named():
     cases = [(case, case.judged()) for case in map(made, range(80, 140))]
     counts = Counter(verdict(case, answer) for case, answer in cases)
     assert counts["wrong"] == 0, [case.seed for case, answer in cases if verdict(case, answer) == "wrong"]
     assert counts["right"] > len(cases) / 2
 
 
-def test_the_counts_of_the_documentation_have_nothing_wrong() -> None:
+def test_the_counts_of_the_documentation_have_nothing_wrong():
     page = compared_schemes.PAGE.read_text()
     text = page[page.index(compared_schemes.BEGIN) : page.index(compared_schemes.END)]
     total, *counts = (int(number) for number in re.findall(r"\d+", text.partition(". Named")[0].partition("Of ")[2]))

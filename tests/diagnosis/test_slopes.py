@@ -9,14 +9,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.sliding_block import SLIDER, History, history
+from oracles.sliding_block import SLIDER, history
 
 from validation import load_scene
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign, read
 from validation.errors import InputError
-from validation.scenes.scene import Scene
 
 EXAMPLE = Path(__file__).parents[2] / "docs" / "examples" / "ntdda"
 FILE = EXAMPLE / "ntdda-phi22-slope20-dt2ms_meas.m"
@@ -25,33 +23,33 @@ SOFT = 3e-3  # of the normal springs: the base of such a program
 BANDS = {"band": 1e-3, "opening_band": 1e-6}  # m
 
 
-def scene(**changes: object) -> Scene:
+def scene(**changes):
     return load_scene(EXAMPLE / "slope.toml").with_values({k.replace("__", "."): v for k, v in changes.items()})
 
 
-def foreign(found: History) -> Foreign:
+def foreign(found):
     return Foreign(found.time, found.displacement, sideways=found.sideways)
 
 
-def program(**changes: object) -> History:
+def program(**changes):
     """A program that adds the block's weight, straight down, on a base that yields a little."""
     force = (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE) - WEIGHT)
-    data: dict[str, object] = {"phi": 22.0, "dt": 2e-3, "steps": 300, "force": force, "p": 1e9 * (1 - SOFT)}
+    data = {"phi": 22.0, "dt": 2e-3, "steps": 300, "force": force, "p": 1e9 * (1 - SOFT)}
     return history(replace(SLIDER, **(data | changes)))
 
 
-def sound(**changes: object) -> History:
+def sound(**changes):
     """A program without weight on a base that does not yield: the scene's own model."""
-    plain: dict[str, object] = {"steps": 500, "force": (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE)), "p": 1e9}
+    plain = {"steps": 500, "force": (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE)), "p": 1e9}
     return program(**(plain | changes))
 
 
-def judged(found: History, **changes: object) -> Answer:
+def judged(found, **changes):
     return compare(scene(**changes), foreign(found))
 
 
 @pytest.mark.long
-def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight() -> None:
+def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight():
     answer = compare(scene(), read(FILE))
     assert answer.causes == ["lagged-friction", "base-compliance", "own-weight"]
     assert answer.values["own-weight"] == pytest.approx(1, abs=0.01)
@@ -66,7 +64,7 @@ CASES = [(1e-2, 30), (2e-3, 22), (2e-3, 15), (2e-4, 22), (2e-4, 30), (1e-3, 30),
 
 
 @pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
-def test_creep_and_sliding_of_such_a_program_are_named(step: float, phi: float) -> None:
+def test_creep_and_sliding_of_such_a_program_are_named(step, phi):
     steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
     found = program(dt=step, phi=phi, steps=steps, lagged=True, **BANDS)
     answer = judged(found, time__step=step, contact__friction=phi)
@@ -80,7 +78,7 @@ def test_creep_and_sliding_of_such_a_program_are_named(step: float, phi: float) 
 
 @pytest.mark.long
 @pytest.mark.parametrize(("step", "phi"), CASES)
-def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step: float, phi: float) -> None:
+def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step, phi):
     """A base 18 times as heavy as the block that adds 0.2 % to the static displacement, as that of ntdda does."""
     steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
     found = program(dt=step, phi=phi, steps=steps, lagged=True, **BANDS, p=1e9, base=(18.0, 8e11))
@@ -91,7 +89,7 @@ def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step: float, phi: flo
 
 
 @pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
-def test_a_sound_program_is_the_same_model(step: float, phi: float) -> None:
+def test_a_sound_program_is_the_same_model(step, phi):
     found = sound(dt=step, phi=phi, steps=100 if step == 1e-2 else 500)
     answer = judged(found, time__step=step, contact__friction=phi)
     assert answer.causes == []
@@ -99,13 +97,13 @@ def test_a_sound_program_is_the_same_model(step: float, phi: float) -> None:
     assert answer.sentence.startswith("Same model, same scheme")
 
 
-AVERAGE: dict[str, object] = {"time__alpha": 0.25, "time__delta": 0.5}
+AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
 SWINGS = [(2e-3, True), (5e-3, False), (5e-3, True), (2e-3, False), (1e-3, False), (1e-3, True)]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize(("step", "consistent"), SWINGS)
-def test_a_sound_program_without_damping_is_the_same_model(step: float, consistent: bool) -> None:
+def test_a_sound_program_without_damping_is_the_same_model(step, consistent):
     """At 5 ms from a consistent start two programs fall apart after 200 steps by their rounding alone."""
     steps = 500 if step == 5e-3 else 250
     found = sound(dt=step, steps=steps, alpha=0.25, delta=0.5, consistent=consistent)
@@ -118,7 +116,7 @@ def test_a_sound_program_without_damping_is_the_same_model(step: float, consiste
 
 
 @pytest.mark.long
-def test_noise_hides_no_model() -> None:
+def test_noise_hides_no_model():
     found = sound(steps=300)
     noise = np.random.default_rng(1).standard_normal((2, 300)) * 1e-3 * np.max(np.abs(found.displacement))
     shaken = Foreign(found.time, found.displacement + noise[0], sideways=found.sideways + noise[1])
@@ -129,17 +127,17 @@ def test_noise_hides_no_model() -> None:
     assert wrong.values["friction-factor"] == pytest.approx(1.02567, rel=2e-3)
 
 
-LIGHT: dict[str, object] = {"force": (0.0, 0.0), "g": 9.81}
-LIGHT_SCENE: dict[str, object] = {"load__gravity": 9.81, "load__slope": 15.2, "contact__friction": 15.0}
+LIGHT = {"force": (0.0, 0.0), "g": 9.81}
+LIGHT_SCENE = {"load__gravity": 9.81, "load__slope": 15.2, "contact__friction": 15.0}
 
 
-def factor_on_friction(theirs: float, ours: float) -> float:
+def factor_on_friction(theirs, ours):
     """Return tan(phi) of a history over that of its scene, phi in degrees."""
     return math.tan(math.radians(theirs)) / math.tan(math.radians(ours))
 
 
 # what the history was made with, what its scene has, and the number that is wrong with its value
-BIASES: list[tuple[dict[str, object], dict[str, object], str, float]] = [
+BIASES = [
     ({"p": 1.01e9}, {}, "normal-springs-factor", 1.01),
     ({"p": 1.1e9}, {}, "normal-springs-factor", 1.1),
     ({"p": 0.95e9, "ps": 0.38e9}, {}, "springs-factor", 0.95),
@@ -161,9 +159,7 @@ BIASES: list[tuple[dict[str, object], dict[str, object], str, float]] = [
 
 @pytest.mark.long
 @pytest.mark.parametrize(("theirs", "ours", "cause", "value"), BIASES)
-def test_a_small_bias_adds_up_and_is_named(
-    theirs: dict[str, object], ours: dict[str, object], cause: str, value: float
-) -> None:
+def test_a_small_bias_adds_up_and_is_named(theirs, ours, cause, value):
     """Each leaves less than one per cent of the limit of friction at a step, and some per cent of the motion."""
     answer = judged(sound(**theirs), time__step=theirs.get("dt", 2e-3), **ours)
     assert answer.causes == [cause]
@@ -175,7 +171,7 @@ def test_a_small_bias_adds_up_and_is_named(
 
 
 @pytest.mark.long
-def test_springs_that_give_the_rows_of_a_base_are_told_beside_it() -> None:
+def test_springs_that_give_the_rows_of_a_base_are_told_beside_it():
     answer = judged(program())  # its springs are softer by a factor that nobody types
     assert answer.causes == ["base-compliance", "own-weight"]
     assert [one["causes"] for one in answer.alike] == [["normal-springs-factor"]]
@@ -183,7 +179,7 @@ def test_springs_that_give_the_rows_of_a_base_are_told_beside_it() -> None:
 
 
 @pytest.mark.long
-def test_what_surrounds_a_block_is_named_only_where_nothing_else_is_left() -> None:
+def test_what_surrounds_a_block_is_named_only_where_nothing_else_is_left():
     assert judged(program()).causes == ["base-compliance", "own-weight"]
     assert judged(program(phi=22.1)).causes == ["unexplained"]
     assert judged(program(p=1e9, base=(18.0, 8e11))).causes == ["base-compliance", "own-weight"]
@@ -191,21 +187,21 @@ def test_what_surrounds_a_block_is_named_only_where_nothing_else_is_left() -> No
 
 @pytest.mark.long
 @pytest.mark.parametrize("lagged", [True, False])
-def test_a_factor_on_springs_across_the_base_alone_is_no_factor_on_all(lagged: bool) -> None:
+def test_a_factor_on_springs_across_the_base_alone_is_no_factor_on_all(lagged):
     assert "springs-factor" not in judged(sound(p=1.1e9, lagged=lagged)).causes
     assert "springs-factor" not in judged(sound(p=2e9, ps=6e8, lagged=lagged)).causes
     assert "springs-factor" in judged(sound(p=1.1e9, ps=4.4e8, lagged=lagged)).causes
 
 
 @pytest.mark.long
-def test_a_lagged_program_is_what_a_lagged_scene_asks_for() -> None:
+def test_a_lagged_program_is_what_a_lagged_scene_asks_for():
     found = program(lagged=True, **BANDS, dt=2e-4, steps=600)
     changes = {"time__step": 2e-4, "contact__rules": "lagged", "contact__band": list(BANDS.values())}
     assert judged(found, **changes).causes == ["base-compliance", "own-weight"]
     assert judged(program(), contact__rules="lagged").causes == ["unexplained"]
 
 
-TRAPS: list[dict[str, object]] = [
+TRAPS = [
     {"phi": 24.2},
     {"gg": 0.99},
     {"force": (LOAD * math.sin(0.38), -LOAD * math.cos(0.38))},
@@ -219,7 +215,7 @@ TRAPS: list[dict[str, object]] = [
 @pytest.mark.long
 @pytest.mark.parametrize("lagged", [True, False])
 @pytest.mark.parametrize("trap", TRAPS)
-def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagged: bool) -> None:
+def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
     answer = judged(program(lagged=lagged, steps=200, **trap))
     assert answer.causes == ["unexplained"]
     assert answer.departs
@@ -228,7 +224,7 @@ def test_what_is_in_no_catalogue_is_not_explained(trap: dict[str, object], lagge
     assert "not explained" in answer.sentence
 
 
-def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
+def test_displacements_in_millimetres_are_a_unit_of_both_columns():
     found = sound(steps=200)
     answer = compare(scene(), Foreign(found.time, 1e3 * found.displacement, sideways=1e3 * found.sideways))
     assert answer.causes == ["unit"]
@@ -243,7 +239,7 @@ def test_displacements_in_millimetres_are_a_unit_of_both_columns() -> None:
 
 
 @pytest.mark.long
-def test_another_factor_on_all_springs_and_a_turned_sign_are_named() -> None:
+def test_another_factor_on_all_springs_and_a_turned_sign_are_named():
     found = program(p=2e9, ps=8e8, lagged=True)
     answer = judged(found)
     assert answer.causes == ["springs-factor", "lagged-friction", "own-weight"]
@@ -261,12 +257,12 @@ def test_another_factor_on_all_springs_and_a_turned_sign_are_named() -> None:
         ({"contact__gap": 1e-3}, "takes an upright rectangle at rest"),
     ],
 )
-def test_scenes_that_it_does_not_take_are_refused(changes: dict[str, object], said: str) -> None:
+def test_scenes_that_it_does_not_take_are_refused(changes, said):
     with pytest.raises(InputError, match=said):
         judged(program(steps=20), **changes)
 
 
-def test_a_history_needs_both_directions_and_every_step() -> None:
+def test_a_history_needs_both_directions_and_every_step():
     found = program(steps=40)
     with pytest.raises(InputError, match="horizontal_displacement"):
         compare(scene(), Foreign(found.time, found.displacement))

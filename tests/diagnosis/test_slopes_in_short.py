@@ -5,32 +5,29 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from oracles.sliding_block import SLIDER, History, history
+from oracles.sliding_block import SLIDER, history
 
 from validation import load_scene, solve
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign, Stepping
 from validation.diagnosis.readings import Reading
 from validation.diagnosis.slopes import SlopeSearch, habits_of, search_of
 from validation.errors import InputError
-from validation.scenes.scene import Scene
 
 SCENE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
 LOAD, WEIGHT, SLOPE = 1e6, 10800 * 9.81, math.radians(20)
 
 
-def program(weight: float = 0.0, **changes: Any) -> History:
+def program(weight=0.0, **changes):
     """A program of someone else's in which a share of the block's weight acts straight down."""
     force = (LOAD * math.sin(SLOPE), -LOAD * math.cos(SLOPE) - weight * WEIGHT)
     return history(replace(SLIDER, phi=22.0, dt=2e-3, steps=30, force=force, **changes))
 
 
-def judged(found: History, sign: float = 1.0) -> Answer:
+def judged(found, sign=1.0):
     return compare(SCENE, Foreign(found.time, found.displacement, sideways=sign * found.sideways))
 
 
@@ -48,7 +45,7 @@ SPRINGS = {"p": 2e9, "ps": 8e8}
         pytest.param({"weight": 0.5} | LAGS, 1, ["unexplained"], 1, marks=pytest.mark.long),
     ],
 )
-def test_few_steps_tell_the_law(theirs: dict[str, Any], sign: float, causes: list[str], first: int) -> None:
+def test_few_steps_tell_the_law(theirs, sign, causes, first):
     answer = judged(program(**theirs), sign)
     assert answer.causes == causes
     assert answer.values == ({"springs-factor": pytest.approx(2, rel=1e-6)} if "springs-factor" in causes else {})
@@ -57,7 +54,7 @@ def test_few_steps_tell_the_law(theirs: dict[str, Any], sign: float, causes: lis
 
 
 @pytest.mark.parametrize("digits", [3, 6])
-def test_few_digits_tell_the_law(digits: int) -> None:
+def test_few_digits_tell_the_law(digits):
     found = program(lagged=True)
     u = np.array([float(f"{x:.{digits}e}") for x in found.sideways])
     units = 10.0 ** (np.floor(np.log10(np.abs(u))) - digits)
@@ -68,19 +65,19 @@ def test_few_digits_tell_the_law(digits: int) -> None:
 # ---- the suite's own run --------------------------------------------------------------------------------------------
 
 
-def own(scene: Scene) -> np.ndarray:
+def own(scene):
     history = solve(scene.with_values({"run.columns": list(SlopeSearch.NAMES)}), "dda").history
     assert history is not None
     return np.array([history.columns[name] for name in SlopeSearch.NAMES])
 
 
-def beside(scene: Scene, place: np.ndarray) -> SlopeSearch:
+def beside(scene, place):
     steps = Stepping(np.full(scene.time.steps, scene.time.step), np.arange(scene.time.steps))
     return SlopeSearch(scene, Reading(steps, place, np.zeros(place.shape)))
 
 
 @pytest.mark.parametrize("steps", [120, 60])
-def test_noise_is_no_departure_and_a_shape_is_one(steps: int) -> None:
+def test_noise_is_no_departure_and_a_shape_is_one(steps):
     scene = SCENE.with_values({"time.steps": steps})
     place = own(scene)
     noise = np.random.default_rng(1).standard_normal(place.shape) * np.max(np.abs(place), axis=1, keepdims=True)
@@ -94,7 +91,7 @@ def test_noise_is_no_departure_and_a_shape_is_one(steps: int) -> None:
     assert not beside(scene, place * (1 + 1e-3)).is_scene()
 
 
-def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step() -> None:
+def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step():
     values = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent", "time.step": 1e-2, "time.steps": 80}
     scene = SCENE.with_values(values)
     place = own(scene.with_values({"contact.stiffness": scene.contact.stiffness * (1 + 2e-13)}))
@@ -106,7 +103,7 @@ def test_a_run_that_makes_much_of_rounding_tells_up_to_a_step() -> None:
 
 
 @pytest.mark.parametrize("along", [True, False])
-def test_weight_and_a_softer_base_are_run(along: bool) -> None:
+def test_weight_and_a_softer_base_are_run(along):
     """The springs along the base are softer as those across it, or the scene's."""
     found = program(1.0, p=0.997e9, ps=4e8 * (0.997 if along else 1.0))
     search = search_of(SCENE, Foreign(found.time, found.displacement, sideways=found.sideways))
@@ -117,7 +114,7 @@ def test_weight_and_a_softer_base_are_run(along: bool) -> None:
     assert 0 <= habits.error < 1e-6
 
 
-def test_a_scene_of_many_values_or_another_unit_of_time_is_refused() -> None:
+def test_a_scene_of_many_values_or_another_unit_of_time_is_refused():
     found = program()
     many = SCENE.model_copy(update={"sweep": load_scene("slope-sliding").sweep})
     with pytest.raises(InputError, match="one value must be picked"):

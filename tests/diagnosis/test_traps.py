@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -12,14 +11,13 @@ from faults import seams
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
 PLAIN = Plain(steps=50)  # figures-3-4 at 2 ms
 
 
-def judged(base: Plain = PLAIN, pressure: bool = True, **slip: Any) -> Answer:
+def judged(base=PLAIN, pressure=True, **slip):
     displacement, contact = run(replace(base, **slip))
     time = base.dt * np.arange(1, base.steps + 1)
     return compare(scene_of(base), Foreign(time, displacement, contact if pressure else None))
@@ -65,13 +63,13 @@ MORE = [
 @pytest.mark.parametrize(
     ("slip", "causes", "values"), [({}, [], {}), *(pytest.param(*m, marks=pytest.mark.long) for m in MORE)]
 )
-def test_a_slip_is_named_with_its_number(slip: dict[str, Any], causes: list[str], values: dict[str, float]) -> None:
+def test_a_slip_is_named_with_its_number(slip, causes, values):
     named(judged(**slip), causes, values)
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("consistent", [True, pytest.param(False, marks=pytest.mark.long)])
-def test_a_ramp_is_named_whichever_acceleration_it_starts_from(consistent: bool) -> None:
+def test_a_ramp_is_named_whichever_acceleration_it_starts_from(consistent):
     """The scene starts consistently; the program from the acceleration of the full load, or of none."""
     base = replace(PLAIN, alpha=0.25, delta=0.5, consistent=True)
     named(judged(base, ramp=0.01, consistent=consistent), ["load-ramp"], {"load-ramp": 0.01})
@@ -81,11 +79,11 @@ GIVEN = replace(PLAIN, q=2e5, g=9.81)  # a scene with gravity, which a program m
 
 
 @pytest.mark.parametrize("factor", [0.0, pytest.param(-1.0, marks=pytest.mark.long)])
-def test_gravity_that_is_missing_or_upwards_is_named(factor: float) -> None:
+def test_gravity_that_is_missing_or_upwards_is_named(factor):
     named(judged(GIVEN, g=9.81 * factor), ["gravity-factor"], {"gravity-factor": factor})
 
 
-def named(answer: Answer, causes: list[str], values: dict[str, float]) -> None:
+def named(answer, causes, values):
     """Causes and their numbers are these, and nothing is left."""
     assert answer.causes == causes
     assert answer.values == pytest.approx(values, rel=1e-5)
@@ -94,7 +92,7 @@ def named(answer: Answer, causes: list[str], values: dict[str, float]) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("opening", [pytest.param({}, marks=pytest.mark.long), {"band": 1e-3}])
-def test_opening_and_its_dead_band_are_told(opening: dict[str, float]) -> None:
+def test_opening_and_its_dead_band_are_told(opening):
     """At 0.2 ms the block leaves its base and comes down again, 50 steps long."""
     answer = judged(replace(PLAIN, dt=2e-4), opens=True, **opening)
     assert answer.causes == (["contact-opened", "dead-band"] if opening else ["contact-opened"])
@@ -103,7 +101,7 @@ def test_opening_and_its_dead_band_are_told(opening: dict[str, float]) -> None:
     assert answer.values.get("dead-band", 1e-3) == pytest.approx(1e-3, rel=0.2)
 
 
-def test_a_run_that_diverges_is_told_so_and_nothing_else() -> None:
+def test_a_run_that_diverges_is_told_so_and_nothing_else():
     answer = judged(replace(PLAIN, dt=0.01), alpha=0.05, delta=0.5)
     assert answer.causes == ["diverged"] and answer.departs
     assert answer.values["diverged"] > 1.5
@@ -121,7 +119,7 @@ UNKNOWN = [
 
 
 @pytest.mark.parametrize("slip", [SHAKEN, *(pytest.param(slip, marks=pytest.mark.long) for slip in UNKNOWN)])
-def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
+def test_what_is_in_no_catalogue_is_not_named(slip):
     answer = judged(**slip)
     assert answer.causes == ["unexplained"] and answer.departs
     assert answer.nearest is not None and answer.values == {}
@@ -129,14 +127,14 @@ def test_what_is_in_no_catalogue_is_not_named(slip: dict[str, float]) -> None:
 
 
 @pytest.mark.long
-def test_the_bar_of_what_may_be_left_is_bitten(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_bar_of_what_may_be_left_is_bitten(monkeypatch):
     """Where anything may be left, a history that nothing explains is given a cause."""
     seams.BAR_HOLDS.put(monkeypatch, lambda *bar: True)
     assert judged(**SHAKEN).causes != ["unexplained"]
 
 
 @pytest.mark.long
-def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells() -> None:
+def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells():
     half = judged(rho=1350.0)
     named(half, ["density-factor"], {"density-factor": 0.5})
     assert [one["causes"] for one in half.alike] == [["step-factor"], ["side-factor", "load-factor"]]
@@ -144,7 +142,7 @@ def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells() -> No
     assert "gravity" in half.alike[0]["further_scene"]
 
 
-def test_the_evidence_says_which_column_is_right_by_itself() -> None:
+def test_the_evidence_says_which_column_is_right_by_itself():
     late = judged(late=1)
     named(late, ["pressure-shift"], {"pressure-shift": 1.0})
     stages = {stage.name: stage for stage in late.evidence}
@@ -153,7 +151,7 @@ def test_the_evidence_says_which_column_is_right_by_itself() -> None:
 
 
 @pytest.mark.long
-def test_a_tolerance_decides_what_counts_as_the_same(tmp_path: Any) -> None:
+def test_a_tolerance_decides_what_counts_as_the_same(tmp_path):
     theirs = replace(PLAIN, rho=2725.0, steps=20)
     displacement, _ = run(theirs)
     path = tmp_path / "theirs.csv"

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 
 from validation import load_scene, solve
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.stepping import histories
@@ -21,7 +19,7 @@ SCENE = load_scene("figures-3-4").with_values(
 )
 
 
-def judged(**changes: Any) -> Answer:
+def judged(**changes):
     run = solve(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}), "dda")
     return compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
 
@@ -37,7 +35,7 @@ def judged(**changes: Any) -> Answer:
         pytest.param({"time__alpha": 0.25, "time__delta": 0.5}, ["scheme"], marks=pytest.mark.long),
     ],
 )
-def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]) -> None:
+def test_a_history_of_opening_contact(changes, causes):
     answer = judged(**changes)
     assert answer.causes == causes
     assert (answer.opened is None) == (causes == ["contact-locked"])
@@ -46,7 +44,7 @@ def test_a_history_of_opening_contact(changes: dict[str, Any], causes: list[str]
 
 
 @pytest.mark.long
-def test_a_dead_band_between_two_closings_is_named() -> None:
+def test_a_dead_band_between_two_closings_is_named():
     """Wider than what the springs carry at rest; from 0.93 to 1.07 mm the rows are the same."""
     stiff = {"contact.stiffness": 3e10, "block.young": 3e9, "block.density": 2900.0, "load.pressure": 6e6}
     plain = SCENE.with_values(stiff | {"time.step": 2e-4, "time.steps": 80})
@@ -58,7 +56,7 @@ def test_a_dead_band_between_two_closings_is_named() -> None:
 
 
 # another datum of the scene, and the same in a candidate change
-CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
+CHANGES = [
     ({}, {}),
     ({"time.gg": 0.98, "load.gravity": 9.81 / 2}, {"gg": 0.98, "weight": 0.5}),
     ({"contact.band": [1e-3, 1e-6]}, {"band": 1e-3, "reopening": 1e-3}),
@@ -68,9 +66,7 @@ CHANGES: list[tuple[dict[str, Any], dict[str, Any]]] = [
 
 @pytest.mark.parametrize(("values", "changes"), CHANGES)
 @pytest.mark.parametrize("poisson", [0.0, 0.3])  # with which a closed contact is sheared from where it touched
-def test_candidate_changes_step_as_the_suite_s_solver_of_opening_contact(
-    values: dict[str, Any], changes: dict[str, Any], poisson: float
-) -> None:
+def test_candidate_changes_step_as_the_suite_s_solver_of_opening_contact(values, changes, poisson):
     scene = SCENE.with_values({"time.steps": 80, "block.poisson": poisson})
     run = solve(scene.with_values(values), "dda")
     rectangle = rectangle_of(scene)
@@ -81,12 +77,12 @@ def test_candidate_changes_step_as_the_suite_s_solver_of_opening_contact(
     assert np.max(np.abs(stepped.pressure[:, 0] - run.contact_pressure)) < 1e-10 * np.max(run.contact_pressure)
 
 
-def test_a_scene_with_a_gap_is_refused_by_name() -> None:
+def test_a_scene_with_a_gap_is_refused_by_name():
     with pytest.raises(InputError, match="unilateral contact"):
         compare(SCENE.with_values({"contact.gap": 0.01}), Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
 
 
-def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight() -> None:
+def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight():
     scene = SCENE.with_values({"contact.gap": 1e-3, "load.gravity": 9.81})
     with pytest.raises(InputError, match=r"that rest on unilateral contact, got contact.gap = 0.001$"):
         compare(scene, Foreign(np.arange(1, 9) * 5e-4, -np.ones(8)))

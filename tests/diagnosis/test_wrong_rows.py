@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
-from validation.diagnosis.answer import Answer
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
 STIFF = Plain(steps=120, p=5e9, dt=0.001)
 
 
-def printed(values: np.ndarray, digits: int) -> np.ndarray:
+def printed(values, digits):
     return np.array([float(f"{v:.{digits - 1}e}") for v in values])
 
 
-def answer_of(base: Plain, columns: tuple[np.ndarray, np.ndarray]) -> Answer:
+def answer_of(base, columns):
     time = base.dt * np.arange(1, base.steps + 1)
     return compare(scene_of(base), Foreign(time, *columns))
 
@@ -30,7 +28,7 @@ def answer_of(base: Plain, columns: tuple[np.ndarray, np.ndarray]) -> Answer:
 @pytest.mark.parametrize(
     ("slip", "causes"), [({}, ["single-rows"]), ({"rho": 2970.0}, ["single-rows", "density-factor"])]
 )
-def test_a_row_printed_twice_is_told_by_its_step(digits: int, slip: dict[str, Any], causes: list[str]) -> None:
+def test_a_row_printed_twice_is_told_by_its_step(digits, slip, causes):
     displacement, pressure = (printed(values, digits) for values in run(replace(STIFF, **slip)))
     displacement[40] = displacement[39]
     pressure[40] = pressure[39]
@@ -41,7 +39,7 @@ def test_a_row_printed_twice_is_told_by_its_step(digits: int, slip: dict[str, An
 
 
 @pytest.mark.parametrize("error", [1e-2, 3e-6])
-def test_one_wrong_row_does_not_pass_however_small_it_is_in_the_mean(error: float) -> None:
+def test_one_wrong_row_does_not_pass_however_small_it_is_in_the_mean(error):
     displacement, pressure = (printed(values, 9) for values in run(replace(STIFF, steps=400)))
     displacement[200] = float(f"{displacement[200] * (1 + error):.8e}")
     answer = answer_of(replace(STIFF, steps=400), (displacement, pressure))
@@ -57,13 +55,13 @@ def test_one_wrong_row_does_not_pass_however_small_it_is_in_the_mean(error: floa
         (Plain(steps=60), 1e-3, 1),
     ],
 )
-def test_white_noise_on_a_right_history_is_noise(base: Plain, size: float, seed: int) -> None:
+def test_white_noise_on_a_right_history_is_noise(base, size, seed):
     noise = np.random.default_rng(seed).standard_normal((2, base.steps))
     columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
     assert answer_of(base, (columns[0], columns[1])).causes == []
 
 
-def test_noise_beside_few_digits_hides_no_discount() -> None:
+def test_noise_beside_few_digits_hides_no_discount():
     """Rows near zero have digits far below the noise, and are not weighed by these."""
     base = Plain(steps=60, alpha=0.25, delta=0.5, consistent=True)
     noise = np.random.default_rng(0).standard_normal((2, base.steps))
@@ -74,7 +72,7 @@ def test_noise_beside_few_digits_hides_no_discount() -> None:
     assert answer.values["gg"] == pytest.approx(0.97, abs=1e-5)
 
 
-def test_five_digits_in_millimetres_are_a_unit_not_a_load() -> None:
+def test_five_digits_in_millimetres_are_a_unit_not_a_load():
     displacement, _ = run(STIFF)
     time = STIFF.dt * np.arange(1, STIFF.steps + 1)
     answer = compare(scene_of(STIFF), Foreign(time, printed(1e3 * displacement, 5)))

@@ -9,7 +9,7 @@ import pytest
 from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
-from validation.gates.gate import Gate, Status
+from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.suite.folders import get_study
@@ -63,7 +63,7 @@ def check_kill_matrix(
     """
     sound = finish(cases, study, Results(finished_cases))
     assert not failed(sound, gates)
-    kills: dict[str, set[str]] = {}
+    kills = {}
     for number, fault in enumerate(faults):
         bitten = set().union(*kills.values())
         results = Overlay(directory / str(number), sound.results)
@@ -79,7 +79,7 @@ def check_kill_matrix(
 
 def groups(gates, bitten):
     """Group gates in the order of trial: all that are not bitten yet, then the others scene by scene."""
-    others: dict[str, list[Gate]] = {}
+    others = {}
     for gate in gates:
         if gate.id in bitten:
             others.setdefault(gate.scene, []).append(gate)

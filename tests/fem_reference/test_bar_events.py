@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.random_bars import random_problem
 
-from fem_reference.events.bar_events import BarMotion, solve
+from fem_reference.events.bar_events import solve
 from fem_reference.events.switches import TooManySwitchesError
 from fem_reference.problem.bar import BarProblem
 
@@ -15,7 +15,7 @@ PAPER = BarProblem(height=2.0, width=2.0, density=2700.0, young=1e9, base_stiffn
 OTHER = BarProblem(height=1.5, width=1.5, density=2400.0, young=3e9, base_stiffness=14e9, pressure=2e6)
 
 
-def switch_times(motion: BarMotion) -> list[float]:
+def switch_times(motion):
     return [switch.time for switch in motion.switches]
 
 
@@ -56,9 +56,7 @@ HISTORIES = [
 
 
 @pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), HISTORIES)
-def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(
-    problem: BarProblem, switches: list[float], displacement: list[float], pressure: list[float]
-) -> None:
+def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * problem.travel)
     assert motion.closed_at_start
     assert [s.kind for s in motion.switches[:2]] == ["opens", "closes"][: len(motion.switches)]
@@ -71,7 +69,7 @@ def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(
 
 
 @pytest.mark.parametrize("seed", thinned(range(10, 22), 6))
-def test_momentum_and_the_law_of_the_base_of_random_motions(seed: int) -> None:
+def test_momentum_and_the_law_of_the_base_of_random_motions(seed):
     problem = random_problem(seed)
     history = solve(problem, 15 * problem.travel).at(np.linspace(0, 15 * problem.travel, 80))
     change = history.mean_velocity - problem.velocity + problem.gravity * history.time
@@ -85,7 +83,7 @@ def test_momentum_and_the_law_of_the_base_of_random_motions(seed: int) -> None:
     )
 
 
-def test_resting_states() -> None:
+def test_resting_states():
     still = solve(replace(PAPER, pressure=0.0), 0.02)
     assert still.closed_at_start
     assert not still.switches
@@ -97,7 +95,7 @@ def test_resting_states() -> None:
     assert not hovering.switches
 
 
-def test_more_switches_than_are_allowed_end_the_motion() -> None:
+def test_more_switches_than_are_allowed_end_the_motion():
     count = len(solve(PAPER, 0.04).switches)
     assert len(solve(PAPER, 0.04, limit=count + 1).switches) == count == 3  # one of them is the first touch
     with pytest.raises(TooManySwitchesError):

@@ -10,7 +10,7 @@ import pytest
 from conftest import thinned
 
 from fem_reference.events import bars_events
-from fem_reference.events.bars_events import BarsMotion, least_terms, solve
+from fem_reference.events.bars_events import least_terms, solve
 from fem_reference.events.bars_model import (
     BONDED,
     Bar,
@@ -23,23 +23,23 @@ from fem_reference.events.switches import LostDigitsError, TooManySwitchesError,
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
 
 
-def bar(velocity: float = 0.0, length: float = 1.0, density: float = 1.0, modulus: float = 1.0) -> Bar:
+def bar(velocity=0.0, length=1.0, density=1.0, modulus=1.0):
     return Bar(length, density, modulus, velocity)
 
 
-def opens(stiffness: float = math.inf, gap: float = 0.0) -> BarJoint:
+def opens(stiffness=math.inf, gap=0.0):
     return BarJoint("unilateral", stiffness, gap)
 
 
-def slips(stiffness: float, strength: float) -> BarJoint:
+def slips(stiffness, strength):
     return BarJoint("frictional", stiffness, strength=strength)
 
 
-def names(motion: BarsMotion) -> list[str]:
+def names(motion):
     return [f"{switch.corner}{LETTERS[switch.kind]}" for switch in motion.switches]
 
 
-def times(motion: BarsMotion) -> list[float]:
+def times(motion):
     return [switch.time for switch in motion.switches]
 
 
@@ -130,7 +130,7 @@ NUMBERS = {
 
 
 @pytest.mark.parametrize("name", thinned(NUMBERS, 4))
-def test_the_bars_move_as_another_program_computed(name: str) -> None:
+def test_the_bars_move_as_another_program_computed(name):
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
     assert " ".join(names(motion)) == order
@@ -144,7 +144,7 @@ def test_the_bars_move_as_another_program_computed(name: str) -> None:
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
 
 
-def test_cut_bars_that_stay_bonded_move_as_one() -> None:
+def test_cut_bars_that_stay_bonded_move_as_one():
     whole = BarsProblem((bar(-1.0, 2.0),), (opens(10),), gravity=0.05)
     cut = BarsProblem((bar(-1.0, 0.75), bar(-1.0, 1.25)), (opens(10), BONDED), gravity=0.05)
     one, two = solve(whole, 8.0), solve(cut, 8.0)
@@ -157,7 +157,7 @@ def test_cut_bars_that_stay_bonded_move_as_one() -> None:
         assert getattr(above[0], field) == pytest.approx(getattr(above[1], field), rel=1e-14, abs=1e-15)
 
 
-def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None:
+def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes():
     weighed = replace(B11, gravity=9.81, settled=True)
     motion = solve(weighed, 0.012)
     state = motion.at([0.0, 0.009])
@@ -171,7 +171,7 @@ def test_bars_at_rest_under_their_weight_stay_so_until_the_pulse_comes() -> None
     assert top.stress[0] == pytest.approx(0.0, abs=1e-9)
 
 
-def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch):
     with pytest.raises(TooManySwitchesError):
         solve(B11, 0.04, limit=3)
     with monkeypatch.context() as context:  # two computations that never agree
@@ -182,7 +182,7 @@ def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch: pytest.Monk
     free = Work()
     solve(B6, 8.0, work=free)
     assert free.terms > least_terms(B6, 8.0) > 0
-    reached: list[float] = []
+    reached = []
     work = Work(free.terms / 2, reached.append)
     with pytest.raises(TooMuchWorkError) as error:
         solve(B6, 8.0, work=work)

@@ -9,7 +9,7 @@ import pytest
 from conftest import thinned
 from oracles.integrated import integrated_block, random_problem, slipping_problem
 
-from fem_reference.events.block_events import BlockMotion, solve
+from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.events.contacts import OPEN, RELEASED
 from fem_reference.events.switches import TooManySwitchesError
@@ -18,11 +18,11 @@ PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 OTHER = BlockProblem(1.5, 1.5, 2400.0, 3e9, 7e9, 2e6)
 
 
-def travel(problem: BlockProblem) -> float:
+def travel(problem):
     return problem.height * float(np.sqrt(problem.density / problem.young))
 
 
-def switch_times(motion: BlockMotion, corner: str = "M") -> list[float]:
+def switch_times(motion, corner="M"):
     return [switch.time for switch in motion.switches if switch.corner == corner]
 
 
@@ -63,9 +63,7 @@ HISTORIES = [
 
 
 @pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), HISTORIES)
-def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
-    problem: BlockProblem, switches: list[float], displacement: list[float], pressure: list[float]
-) -> None:
+def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * travel(problem))
     assert motion.closed_at_start == (False, False)
     assert switch_times(motion)[: len(switches)] == pytest.approx(switches, rel=2e-13)
@@ -75,7 +73,7 @@ def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(
     assert history.contact_pressure == pytest.approx(pressure, rel=5e-12)  # printed with twelve digits
 
 
-def dashpot(seed: int, zeta: float) -> BlockProblem:
+def dashpot(seed, zeta):
     """A random block with the dashpot of each corner for c = 2 zeta sqrt(k m) of both, k = 2p."""
     problem = replace(random_problem(seed), shear_stiffness=0.0)
     m = problem.density * problem.width * problem.height
@@ -91,7 +89,7 @@ INTEGRATED = [
 
 
 @pytest.mark.parametrize(("problem", "travels"), INTEGRATED)
-def test_an_independent_integration_with_events_agrees(problem: BlockProblem, travels: int) -> None:
+def test_an_independent_integration_with_events_agrees(problem, travels):
     end = travels * travel(problem)
     motion = solve(problem, end)
     # DOP853 at rtol 1e-13 is good to about 1e-11 here; every switch amplifies that, by up to ten in these problems
@@ -105,7 +103,7 @@ def test_an_independent_integration_with_events_agrees(problem: BlockProblem, tr
     assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
 
 
-def test_a_long_flight_keeps_its_digits() -> None:
+def test_a_long_flight_keeps_its_digits():
     """Pulled up for 1000 radians: v = -q t^2 / (2 rho b), ey = -(q / 2E) (1 - cos w t), w = sqrt(12) c / b."""
     problem = replace(OTHER, pressure=-2e6, gap=1.0)
     end = 1000 / np.sqrt(12) * travel(problem)
@@ -121,6 +119,6 @@ def test_a_long_flight_keeps_its_digits() -> None:
     assert history.displacement[4] == pytest.approx(2e6 / 6e9 * np.array(angle), abs=4e-14 * 2e6 / 3e9)
 
 
-def test_more_switches_than_are_allowed_end_the_motion() -> None:
+def test_more_switches_than_are_allowed_end_the_motion():
     with pytest.raises(TooManySwitchesError):
         solve(PAPER, 0.2, limit=3)

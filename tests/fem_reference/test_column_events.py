@@ -8,31 +8,31 @@ import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb
-from oracles.column_motions import COLUMNS, RIGID, KnownColumn, blocks, half_unit, kind_of
+from oracles.column_motions import COLUMNS, RIGID, blocks, half_unit, kind_of
 from oracles.integrated import integrated_column, random_column
 
 from fem_reference.events import column_drive as drives
 from fem_reference.events import column_events, contacts
-from fem_reference.events.column_events import ColumnMotion, solve
+from fem_reference.events.column_events import solve
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import precision
 from fem_reference.events.series import Start, column, expand, step_length
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
-MOTIONS: dict[str, ColumnMotion] = {}
+MOTIONS = {}
 
 
-def motion_of(name: str) -> ColumnMotion:
+def motion_of(name):
     if name not in MOTIONS:
         MOTIONS[name] = solve(COLUMNS[name].problem, COLUMNS[name].end)
     return MOTIONS[name]
 
 
-def labels(motion: ColumnMotion) -> list[str]:
+def labels(motion):
     return [f"{switch.joint}{kind_of(switch.kind, switch.sign)}" for switch in motion.switches]
 
 
-def misprinted(known: KnownColumn, motion: ColumnMotion) -> list[str]:
+def misprinted(known, motion):
     """Printed numbers that differ from the motion by more than half a unit of their last digit."""
     wrong = []
     first = known.switches.split(", ")
@@ -56,7 +56,7 @@ LONG = {"A3", "A5", "A6", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
-def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
+def test_the_printed_digits_of_known_columns_come_out(name):
     known, motion = COLUMNS[name], motion_of(name)
     assert misprinted(known, motion) == []
     assert len(motion.switches) == known.count
@@ -66,7 +66,7 @@ def test_the_printed_digits_of_known_columns_come_out(name: str) -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("seed", thinned(range(8), 8))
-def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_events(seed: int) -> None:
+def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_events(seed):
     problem, end = random_column(seed)
     motion = solve(problem, end)
     oracle = integrated_column(problem, end)
@@ -79,7 +79,7 @@ def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_event
     np.testing.assert_allclose(state.slip[:, 0], oracle.slip, rtol=0, atol=1e-8 * scale)
 
 
-def test_energy_is_conserved_with_what_friction_takes() -> None:
+def test_energy_is_conserved_with_what_friction_takes():
     for name in ("A1", "A8"):
         energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 60)).energy
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
@@ -91,7 +91,7 @@ def test_energy_is_conserved_with_what_friction_takes() -> None:
     assert state.friction[-1] > 0.5 * state.energy[0]
 
 
-def test_blocks_in_common_flight_touch_without_force() -> None:
+def test_blocks_in_common_flight_touch_without_force():
     problem = ColumnProblem(
         blocks(3, 2500, 1e9, -1.0), (ColumnJoint(1e9, 0.01), ColumnJoint(1e9), ColumnJoint(2e9)), gravity=9.81
     )
@@ -104,7 +104,7 @@ def test_blocks_in_common_flight_touch_without_force() -> None:
     assert motion.at([0.01, 0.012]).force[0].min() > 0
 
 
-def test_a_joint_without_strength_lets_its_block_coast() -> None:
+def test_a_joint_without_strength_lets_its_block_coast():
     problem = ColumnProblem(
         blocks(1, 2500, RIGID, 0.5),
         (ColumnJoint(1e8, strength=0.0),),
@@ -117,7 +117,7 @@ def test_a_joint_without_strength_lets_its_block_coast() -> None:
     assert motion.at([0.2]).velocity[0, 0] == pytest.approx(0.5, rel=1e-14)
 
 
-def test_a_welded_foot_passes_a_jump_of_the_base_on() -> None:
+def test_a_welded_foot_passes_a_jump_of_the_base_on():
     # a record that begins at once: the far face gets half of the jump, the wrong way, by the consistent mass
     record = drives.integrated(drives.recorded([0.001, 0.004], [1.0, 1.0]))
     problem = ColumnProblem(
@@ -130,7 +130,7 @@ def test_a_welded_foot_passes_a_jump_of_the_base_on() -> None:
     np.testing.assert_allclose(state.top_velocity[0], [0.0, -0.5], atol=1e-5)
 
 
-def test_welded_blocks_get_one_velocity_by_an_impulse_between_them() -> None:
+def test_welded_blocks_get_one_velocity_by_an_impulse_between_them():
     pair = (ColumnBlock(1.0, 2500, 1e9, 1.0), ColumnBlock(2.0, 2500, RIGID, -0.2), ColumnBlock(1.0, 2500, 1e9))
     problem = ColumnProblem(pair, (None, None, ColumnJoint(1e9, 1.0)), base="free")
     state = solve(problem, 1e-4).at([0.0])
@@ -146,7 +146,7 @@ def test_welded_blocks_get_one_velocity_by_an_impulse_between_them() -> None:
     np.testing.assert_allclose(state.top_velocity[0], -1.5, rtol=1e-14)
 
 
-def test_a_graze_is_named_and_not_guessed() -> None:
+def test_a_graze_is_named_and_not_guessed():
     # a rigid block thrown upwards under a lid that it reaches with its last velocity: both are free of forces
     height = 0.5**2 / 2 / 9.8125  # exact in floats: 0.25 / 19.625 is not, so that the miss is below 1e-17 m
     problem = ColumnProblem(
@@ -159,7 +159,7 @@ def test_a_graze_is_named_and_not_guessed() -> None:
     assert all(abs(time - 0.5 / 9.8125) < 1e-7 for time in near)
 
 
-def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
     monkeypatch.setattr(column_events, "MOST_DIGITS", 30)
     monkeypatch.setattr(column_events, "PROMISED", 1e-29)
     with pytest.raises(LostDigitsError) as error:
@@ -169,7 +169,7 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch: pytest.Monke
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
 
 
-def test_a_column_that_is_welded_throughout_is_the_bonded_one() -> None:
+def test_a_column_that_is_welded_throughout_is_the_bonded_one():
     """Without any contact it goes as the springs between its faces do, and no instant has a motion of no length."""
     drive = drives.integrated(drives.half_sine(0.1, 0.02))
     pair = blocks(2, 2500, 1e9)
@@ -181,7 +181,7 @@ def test_a_column_that_is_welded_throughout_is_the_bonded_one() -> None:
     assert welded.at([]).top.shape == (2, 0)
 
 
-def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
+def test_drives_are_their_series_and_their_integrals_derive_to_them():
     pairs = [
         (drives.half_sine(2.0, 0.7), drives.integrated(drives.half_sine(2.0, 0.7))),
         (drives.sine(1.5, 3.0), drives.integrated(drives.sine(1.5, 3.0))),
@@ -218,9 +218,7 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them() -> None:
         (drives.still, 0.0),
     ],
 )
-def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
-    drive: drives.Drive, size: float, stiffness: float, modulus: float
-) -> None:
+def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(drive, size, stiffness, modulus):
     pair = tuple(ColumnBlock(1.0, 2500.0, modulus, 0.1) for _ in range(2))
     problem = ColumnProblem(pair, (ColumnJoint(stiffness),) * 2, law="frictional", base_motion=drive)
     further = 40
@@ -246,7 +244,7 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(
 
 
 @pytest.mark.parametrize("seed", range(3))
-def test_the_norm_of_the_mass_bounds_unknowns_rows_and_rates(seed: int) -> None:
+def test_the_norm_of_the_mass_bounds_unknowns_rows_and_rates(seed):
     """Both sides of each bound, for a column above a half-space; the greatest ones are nearly reached."""
     blocks_of_two = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, 3e8))
     problem = ColumnProblem(blocks_of_two, (None, ColumnJoint(1e9)), base="transmitting", impedance=1e6)

@@ -17,7 +17,7 @@ ROUNDING = 5e-13  # of a sum over cells and trips, and of the transform
 
 
 @pytest.mark.parametrize(("a", "column"), thinned(product([0.003, 1.0], FIRST), 4))
-def test_the_damped_bar_right_beside_its_fronts(column: str, a: float) -> None:
+def test_the_damped_bar_right_beside_its_fronts(column, a):
     first, gap = FIRST[column]
     times = first + 3 * gap + np.array([-2e-3, -1e-4, 0.0, 2e-4, 2e-3])
     found = continuum.histories(times, STIFF, 2 * a, (column,))[0]
@@ -27,7 +27,7 @@ def test_the_damped_bar_right_beside_its_fronts(column: str, a: float) -> None:
 
 
 @pytest.mark.parametrize(("behind", "a", "column"), thinned(product([6e-5, 0.25, 0.4], [3.0, 3.3], FIRST), 5))
-def test_fronts_count_until_they_are_below_rounding(column: str, a: float, behind: float) -> None:
+def test_fronts_count_until_they_are_below_rounding(column, a, behind):
     """At a t = 21 to 25 a front of size exp(-a t), 1e-9 to 1e-11, is still alive, and so is what is between."""
     first, gap = FIRST[column]
     t = first + 3 * gap * (1 if column == "contact_pressure" else 2) + behind
@@ -37,7 +37,7 @@ def test_fronts_count_until_they_are_below_rounding(column: str, a: float, behin
 
 
 @pytest.mark.parametrize("a", [0.05, 1.0, 30.0])
-def test_the_kernel_keeps_what_does_not_move(a: float) -> None:
+def test_the_kernel_keeps_what_does_not_move(a):
     """A mode without a frequency keeps x = 1: exp(-a t) and the integral of the kernel are one together."""
     t = 3.7
     x, w = np.polynomial.legendre.leggauss(400)
@@ -45,7 +45,7 @@ def test_the_kernel_keeps_what_does_not_move(a: float) -> None:
     assert np.exp(-a * t) + damped.kernel(t, s, a) @ w * t / 2 == pytest.approx(1.0, abs=1e-13)
 
 
-def test_waves_that_are_too_many_are_refused() -> None:
+def test_waves_that_are_too_many_are_refused():
     late = np.array([2.0 * damped.LONGEST])
     with pytest.raises(ValueError, match=r"^steps: "):
         continuum.histories(late, 1.0, 1e-4, ("displacement",))

@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -16,41 +15,40 @@ from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
 from fem_reference.events.column_drive import sine
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
-from fem_reference.events.contacts import LEFT, OPEN, RELEASED, RIGHT, STICKS, Watch
+from fem_reference.events.contacts import LEFT, OPEN, RELEASED, RIGHT, STICKS
 from fem_reference.events.ellipsoid import FLOAT_ERROR, Ellipsoid
-from fem_reference.events.enclosure import Smooth, ball, bits_of, first_fall, precision
+from fem_reference.events.enclosure import ball, bits_of, first_fall, precision
 from fem_reference.events.enclosure import polynomial as smooth
-from fem_reference.events.march import March
-from fem_reference.events.series import Segment, Start, System, column, expand
+from fem_reference.events.series import Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError, Work
-from fem_reference.events.watching import Reach, Watched
+from fem_reference.events.watching import Watched
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
 STATES = [(OPEN, OPEN), (STICKS, STICKS), (STICKS, OPEN), (RIGHT, LEFT), (RIGHT, RIGHT), (LEFT, STICKS), (OPEN, RIGHT)]
 
 
-def polynomial(c: list[float | arb]) -> Smooth:
+def polynomial(c):
     return smooth([arb(x) for x in c], arb(1))
 
 
-def values(function: Smooth, at: arb) -> arb:
+def values(function, at):
     return function(at, arb(0)).value
 
 
-def state(seed: int, size: float = 1.0, unknowns: int = 6) -> Start:
+def state(seed, size=1.0, unknowns=6):
     """A state of random numbers, with references of a tenth."""
     x = np.random.default_rng(seed).normal(size=2 * unknowns) * size
     references = [arb(0.1 * size), arb(-0.3 * size)]
     return Start(arb(0), column(x[:unknowns].tolist()), column(x[unknowns:].tolist()), references)
 
 
-def vector(start: Start) -> arb_mat:
+def vector(start):
     """The state as (x, x', r, 1)."""
     return column([*start.u.entries(), *start.v.entries(), *start.references, arb(1)])
 
 
-def matrix(model: BlockModel, states: tuple[int, int]) -> arb_mat:
+def matrix(model, states):
     """The G of z' = G z."""
     motion = model.motion(states)
     G = arb_mat(15, 15)
@@ -63,11 +61,11 @@ def matrix(model: BlockModel, states: tuple[int, int]) -> arb_mat:
     return G
 
 
-def watched(model: System, states: tuple[int, int], start: Start) -> list[Watch]:
+def watched(model, states, start):
     return list(model.watches(states, start.references))
 
 
-def exactly(watch: Watch, model: BlockModel, start: Start) -> arb:
+def exactly(watch, model, start):
     """A watched function at a state."""
     rows = [model.values(start), (model.rows * start.v).entries()]
     value = arb(0) if watch.rates else watch.offset
@@ -77,18 +75,18 @@ def exactly(watch: Watch, model: BlockModel, start: Start) -> arb:
     return value
 
 
-def at(segment: Segment, share: float) -> Start:
+def at(segment, share):
     return Start(arb(0), *segment.state(arb(share)), [])
 
 
 @pytest.mark.parametrize("depth", ["1e-3", "1e-8", "1e-14", "1e-20"])
-def test_a_dip_of_any_depth_is_seen_and_one_that_stays_above_is_none(depth: str) -> None:
+def test_a_dip_of_any_depth_is_seen_and_one_that_stays_above_is_none(depth):
     """(z - 1/3)^2 (1 + z^3) less or more than a depth: floats cannot tell, balls can; the root is enclosed."""
     with precision(bits_of(50)):
         third = arb(1) / 3
         square = [third * third, -2 * third, arb(1)]
         for sign in (-1, 1):
-            touches: list[arb] = []
+            touches = []
             function = polynomial([square[0] + sign * arb(depth), *square[1:], *square])
             fall = first_fall(function, arb(1), touches)
             assert (fall is not None) == (sign < 0)
@@ -101,18 +99,18 @@ def test_a_dip_of_any_depth_is_seen_and_one_that_stays_above_is_none(depth: str)
                 assert fall.at < third
 
 
-def test_a_touch_is_named_and_counts_as_none() -> None:
+def test_a_touch_is_named_and_counts_as_none():
     with precision(bits_of(50)):
         third = arb(1) / 3
-        touches: list[arb] = []
+        touches = []
         touching = polynomial([third * third + ball(arb("1e-45")), -2 * third, arb(1)])
         assert first_fall(touching, arb(1), touches) is None
         assert touches
         assert all(abs(float(touch) - 1 / 3) < 1e-15 for touch in touches)
 
 
-def test_a_touch_is_told_by_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
-    def grazing(_function: Smooth, end: arb, touches: list[arb]) -> None:
+def test_a_touch_is_told_by_the_motion(monkeypatch):
+    def grazing(_function, end, touches):
         touches.append(end / 2)
 
     monkeypatch.setattr(watching, "first_fall", grazing)
@@ -125,9 +123,7 @@ def test_a_touch_is_told_by_the_motion(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
 @pytest.mark.parametrize("short", [False, True])
-def test_a_step_is_the_exponential_of_its_matrix(
-    states: tuple[int, int], short: bool, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_step_is_the_exponential_of_its_matrix(states, short, monkeypatch):
     """Also where so few terms are taken that what the series leaves out is no rounding, and must lie in the balls."""
     if short:
         monkeypatch.setattr(series, "term_count", lambda angle: math.ceil(2 * angle))
@@ -161,11 +157,11 @@ SYSTEMS = [
 ]
 
 
-def model_of(problem: BlockProblem | ColumnProblem) -> System:
+def model_of(problem):
     return BlockModel(problem) if isinstance(problem, BlockProblem) else ColumnModel(problem)
 
 
-def members(ellipsoid: Ellipsoid, count: int) -> np.ndarray:
+def members(ellipsoid, count):
     """Deviations on the border of the set, shape (count, entries)."""
     y = np.random.default_rng(1).normal(size=(count, len(ellipsoid.shape)))
     y /= np.linalg.norm(y, axis=1)[:, None]
@@ -173,7 +169,7 @@ def members(ellipsoid: Ellipsoid, count: int) -> np.ndarray:
 
 
 @pytest.mark.parametrize(("problem", "states"), thinned(SYSTEMS, 4))
-def test_floats_of_an_exponential_are_as_good_as_is_counted_on(problem: Any, states: tuple[int, int]) -> None:
+def test_floats_of_an_exponential_are_as_good_as_is_counted_on(problem, states):
     """So is the rate, which bounds the flow in the units of the set."""
     with precision(bits_of(50)):
         model = model_of(problem)
@@ -196,7 +192,7 @@ def test_floats_of_an_exponential_are_as_good_as_is_counted_on(problem: Any, sta
         assert np.linalg.norm(G[: 2 * n, : 2 * n] * scale[:, None] / scale, 2) <= rate * (1 + 1e-12)
 
 
-def test_a_box_that_is_added_lies_in_the_set() -> None:
+def test_a_box_that_is_added_lies_in_the_set():
     with precision(bits_of(50)):
         model = BlockModel(ROUGH)
         ellipsoid = Ellipsoid(model)
@@ -215,9 +211,7 @@ def test_a_box_that_is_added_lies_in_the_set() -> None:
 
 @pytest.mark.parametrize(("problem", "states"), thinned(SYSTEMS, 4))
 @pytest.mark.parametrize("offset", [0.0, 1e-9])
-def test_the_reach_of_a_function_bounds_what_its_terms_are_off(
-    problem: Any, states: tuple[int, int], offset: float
-) -> None:
+def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, offset):
     """Of any motion in the set, begun at any instant that the switch may be at; its first term comes near to it."""
     with precision(bits_of(50)):
         model = model_of(problem)
@@ -229,7 +223,7 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(
         ellipsoid.advance(states, arb(1.0 / model.rate(states)))
         length = 3.0 / model.rate(states)
         segment = expand(model, states, start, drives, length)
-        largest: dict[Watch, float] = {}
+        largest = {}
         for z in members(ellipsoid, 40):
             u, v, shifts = (column(part.tolist()) for part in (z[:n], z[n : 2 * n], z[2 * n :]))
             moved = [r + shift for r, shift in zip(start.references, shifts.entries(), strict=True)]
@@ -246,7 +240,7 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(
         assert all(share > 0.03 for share in largest.values()) or offset
 
 
-def followed(march: March, faster: float, unknown: int, kind: str) -> None:
+def followed(march, faster, unknown, kind):
     """Go on to the first switch of a kind, with a set of rates of an unknown that are as much faster."""
     march.take_drives(0.0)
     march.start, march.states = march.initial()
@@ -260,12 +254,12 @@ def followed(march: March, faster: float, unknown: int, kind: str) -> None:
 
 
 @pytest.mark.parametrize("shaken", [False, True])
-def test_the_set_follows_what_is_off_over_a_switch_at_which_a_force_jumps(shaken: bool) -> None:
+def test_the_set_follows_what_is_off_over_a_switch_at_which_a_force_jumps(shaken):
     """The deviation of a motion that begins a little faster lies in the set, which is as thin as one axis."""
     dropped = replace(PAPER, damping=3e6, eccentricity=0.3, velocity=-1.0, gap=1e-3)
     faster = 1e-24 if shaken else 1e-9
     with precision(bits_of(50)):
-        marches: list[March] = []
+        marches = []
         for change in (0.0, faster):
             if shaken:
                 pair = (PAIR[0], replace(PAIR[1], velocity=change))
@@ -292,7 +286,7 @@ def test_the_set_follows_what_is_off_over_a_switch_at_which_a_force_jumps(shaken
         assert lengths[0] < 10 * np.linalg.norm(off)
 
 
-def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> None:
+def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off():
     """A block in flight, a micrometre above the springs and on its way up: clear, but not if it may be lower."""
     with precision(bits_of(50)):
         model = BlockModel(replace(ROUGH, pressure=0.0))
@@ -303,9 +297,7 @@ def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> No
             transport.restart([arb(off if i == 1 else 0) for i in range(14)])
             segment = expand(model, states, start, (), 1e-3)
 
-            def reach(
-                watch: Watch, _at_switch: bool, transport: Ellipsoid = transport, segment: Segment = segment
-            ) -> Reach:
+            def reach(watch, _at_switch, transport=transport, segment=segment):
                 return transport.reach(watch, states, segment, 0.0)
 
             functions = watched(model, states, start)
@@ -314,7 +306,7 @@ def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off() -> No
 
 
 @pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 6))
-def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: bool) -> None:
+def test_the_balls_of_the_switches_hold_those_of_more_digits(seed, moved):
     problem = slipping_problem(seed, moved)
     end = 6 * problem.height * (problem.density / problem.young) ** 0.5
     motion, finer = solve(problem, end, digits=30), solve(problem, end, digits=60)  # of which forty are printed
@@ -332,20 +324,20 @@ def test_the_balls_of_the_switches_hold_those_of_more_digits(seed: int, moved: b
     assert np.all(one.displacement_radius >= np.finfo(float).eps / 2 * np.abs(one.displacement))  # floats round it
 
 
-def test_corners_that_switch_in_one_ball_are_named() -> None:
+def test_corners_that_switch_in_one_ball_are_named():
     centred = solve(PAPER, 0.05)
     assert len(centred.simultaneous) == len(centred.switches) / 2 > 3
     assert not solve(replace(ROUGH, eccentricity=0.3), 0.01).simultaneous
 
 
-def test_too_much_work_stops_at_a_horizon(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_too_much_work_stops_at_a_horizon(monkeypatch):
     monkeypatch.setattr(block_march, "STEPS", 50)
     with pytest.raises(TooMuchWorkError, match="50 steps") as caught:
         solve(replace(PAPER, stiffness=1e18, pressure=0.0, gravity=9.81), 1e-3)
     assert 0 < caught.value.time < 5e-5
 
 
-def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(monkeypatch):
     monkeypatch.setattr(block_march, "STEPS", 50)
     monkeypatch.setattr(block_march.BlockMarch, "step", None)
     with pytest.raises(TooMuchWorkError, match="would be needed") as caught:
@@ -353,7 +345,7 @@ def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(mo
     assert 0 < caught.value.time < 1.0
 
 
-def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch):
     stiff = replace(PAPER, stiffness=1e11)
     assert solve(stiff, 0.02, digits=30).digits == 30
     monkeypatch.setattr(block_events, "PROMISED", 1e-40)

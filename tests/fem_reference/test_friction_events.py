@@ -45,9 +45,7 @@ KNOWN = [
 
 
 @pytest.mark.parametrize(("problem", "switches", "values"), KNOWN)
-def test_the_motion_is_that_computed_elsewhere(
-    problem: BlockProblem, switches: str, values: dict[float, list[float]]
-) -> None:
+def test_the_motion_is_that_computed_elsewhere(problem, switches, values):
     motion = solve(problem, max(values))
     known = [one.split() for one in switches.split(", ")]
     found = motion.switches[: len(known)]
@@ -58,12 +56,12 @@ def test_the_motion_is_that_computed_elsewhere(
         assert motion.at([time]).displacement[:3, 0] == pytest.approx(expected, rel=5e-11)
 
 
-def limit(problem: BlockProblem, normal: np.ndarray) -> np.ndarray:
+def limit(problem, normal):
     return math.tan(math.radians(problem.friction or 0)) * normal + problem.cohesion * problem.width / 2
 
 
 @pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(20, 26) for moved in (False, True)], 7))
-def test_energy_law_and_the_digits_of_random_motions(seed: int, moved: bool) -> None:
+def test_energy_law_and_the_digits_of_random_motions(seed, moved):
     problem = slipping_problem(seed, moved)
     end = 4 * problem.height * math.sqrt(problem.density / problem.young)
     motion, finer = solve(problem, end), solve(problem, end, digits=70)

@@ -13,19 +13,19 @@ SPEED = (SOIL.modulus("shear") / SOIL.density) ** 0.5
 STEPS = fem_reference.Scheme(0.25, 0.5, 1.0, 2e-3, "zero")
 
 
-def ricker(time: np.ndarray, frequency: float = 6.0) -> np.ndarray:
+def ricker(time, frequency=6.0):
     """Return the displacement of a Ricker velocity."""
     late = time - 2 / frequency
     return late * np.exp(-((np.pi * frequency * late) ** 2))
 
 
-def drive(time: np.ndarray) -> Excitation:
+def drive(time):
     b = np.pi * 6.0 * (time - 2 / 6.0)
     return Excitation(ricker(time), (1 - 2 * b * b) * np.exp(-b * b), 0 * time, 0 * time)
 
 
 @pytest.mark.parametrize("ratio", [0.3, 1.0, 4.0])
-def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
+def test_echoes_in_one_layer_on_a_half_space(ratio):
     impedance = ratio * SOIL.density * SPEED
     found = layers.solve_layers(Ground((SOIL,), "shear", (), impedance), STEPS, 1000, drive, ("displacement",))
     transmitted, echo = 2 * ratio / (1 + ratio), (1 - ratio) / (1 + ratio)
@@ -36,7 +36,7 @@ def test_echoes_in_one_layer_on_a_half_space(ratio: float) -> None:
     assert found.estimate < 1e-6
 
 
-def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
+def drawn(rng):
     """Return a random column with joints anywhere, some where layers meet, and heights, some of them at joints."""
     strata = tuple(
         Stratum(round(rng.uniform(0.5, 6), 2), rng.uniform(1500, 2500), 10 ** rng.uniform(7, 9.5), rng.uniform(0, 0.45))
@@ -54,7 +54,7 @@ def drawn(rng: np.random.Generator) -> tuple[Ground, list[float]]:
 
 
 @pytest.mark.parametrize("seed", range(12))
-def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed: int) -> None:
+def test_transfer_matrices_are_dynamic_stiffnesses_assembled(seed):
     rng = np.random.default_rng(seed)
     ground, heights = drawn(rng)
     omega = rng.uniform(1, 300)

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -64,7 +62,7 @@ SLIDER = sliding_block.SlidingBlock(20.0, 30.0)
 STILL = sliding_block.moved([0.0], [0.0])
 ROCKER = rocking.RockingBlock(0.8, 2.0)
 
-VALUES: list[tuple[Any, dict[str, list[Any]]]] = [  # a sound thing, and what each of its fields may not be
+VALUES = [  # a sound thing, and what each of its fields may not be
     (WAVES, {"young": [-1e9]}),
     (BAR, {"height": [0.0], "base_stiffness": [-1.0], "gap": [-1e-3], "pressure": [INF]}),
     (BLOCK, {"width": [0.0], "young": [-1.0], "gap": [-1e-3], "poisson": [1.0], "hypothesis": ["plain"]}),
@@ -94,7 +92,7 @@ VALUES: list[tuple[Any, dict[str, list[Any]]]] = [  # a sound thing, and what ea
     (ALPHA, {"mass_damping": [1.0]}),
 ]  # fmt: skip
 
-TOGETHER: list[tuple[Any, str, dict[str, Any]]] = [  # what is refused, and what it does not go with
+TOGETHER = [  # what is refused, and what it does not go with
     (BLOCK, "damping", {"damping": 1e3, **RUBBING}),
     (BLOCK, "damping", {"damping": 1e3, "locked": True}),
     (BLOCK, "damping", {"damping": 1e3, **RIGID}),
@@ -118,19 +116,19 @@ TOGETHER: list[tuple[Any, str, dict[str, Any]]] = [  # what is refused, and what
 ]
 
 
-def rest(steps: int) -> Excitation:
+def rest(steps):
     return Excitation(*[np.zeros(steps + 1)] * 4)
 
 
-def scheme(name: str, **options: Any) -> Scheme:
+def scheme(name, **options):
     return named_scheme(name, **{"step": 1e-3} | options)
 
 
-def lines(step: Scheme = AVERAGE, column: ContactColumn = STANDING, columns: tuple[str, ...] = ()) -> object:
+def lines(step=AVERAGE, column=STANDING, columns=()):
     return solve_contacts(column, [1, 1], 1, step, rest(1), columns, [0.5])
 
 
-ASKS: dict[str, list[Callable[[], object]]] = {
+ASKS = {
     "alpha": [lambda: ContactScheme(0.0, 0.5)],
     "delta": [lambda: ContactScheme(0.25, 0.8)],
     "omega": [lambda: restitution(ContactScheme(0.5, 1.0), 0.0, 0.5)],
@@ -244,6 +242,6 @@ CASES += [(field, ask) for field, asks in ASKS.items() for ask in asks]
 
 
 @pytest.mark.parametrize(("field", "ask"), CASES, ids=[field for field, _ in CASES])
-def test_what_cannot_be_is_refused_by_its_field(field: str, ask: Callable[[], object]) -> None:
+def test_what_cannot_be_is_refused_by_its_field(field, ask):
     with pytest.raises(ValueError, match=rf"^{re.escape(field)}: \w"):
         ask()

@@ -17,9 +17,7 @@ from fem_reference.events.restitution import ContactScheme, statistics
         (0.3025, 0.6, 1.280, 0.254, 2.306, 1.989, 5e-4),
     ],
 )
-def test_the_table_of_rigid_contact(
-    alpha: float, delta: float, mean: float, low: float, high: float, square: float, digits: float
-) -> None:
+def test_the_table_of_rigid_contact(alpha, delta, mean, low, high, square, digits):
     found = statistics(ContactScheme(alpha, delta), math.inf)
     assert [found.mean, found.low, found.high, found.mean_square] == pytest.approx(
         [mean, low, high, square], abs=digits

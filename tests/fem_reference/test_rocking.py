@@ -15,7 +15,7 @@ from validation.solvers.rigid import rocking as adapter
 BLOCK = RockingBlock(0.8, 2.0)
 
 
-def quarter(block: RockingBlock, tilt: float) -> float:
+def quarter(block, tilt):
     """The time of the descent by quadrature in 30 digits of the energy integral, rotation = tilt (1 - x^2)."""
     with mpmath.workdps(30):
         alpha, p = mpmath.atan(mpmath.mpf(block.width) / block.height), mpmath.mpf(block.p)
@@ -31,19 +31,19 @@ def quarter(block: RockingBlock, tilt: float) -> float:
     ("share", "size"),
     thinned([(x, size) for x in (1e-6, 0.01, 0.5, 0.99) for size in ((1.0, 1.0), (0.8, 2.0), (0.05, 3.0))], 5),
 )
-def test_the_quarter_period_is_the_energy_integral(share: float, size: tuple[float, float]) -> None:
+def test_the_quarter_period_is_the_energy_integral(share, size):
     block = RockingBlock(*size)
     tilt = share * block.alpha
     assert block.quarter_period(tilt) == pytest.approx(quarter(block, tilt), rel=1e-11)
     assert adapter.quarter_period(*size, tilt) == block.quarter_period(tilt)
 
 
-def small_quarter(block: RockingBlock, tilt: float) -> float:
+def small_quarter(block, tilt):
     """The limit for a small tilt, under a constant moment m g a / 2."""
     return math.sqrt(2 * tilt / math.sin(block.alpha)) / block.p
 
 
-def test_limits_of_the_quarter_period() -> None:
+def test_limits_of_the_quarter_period():
     slowly = [small_quarter(RockingBlock(2.0, height), 1e-3) for height in (2.0, 4.0, 8.0)]
     assert slowly == pytest.approx([0.02332, 0.03687, 0.06798], abs=6e-6)
     slender = RockingBlock(0.002, 2.0)
@@ -57,12 +57,12 @@ def test_limits_of_the_quarter_period() -> None:
     assert BLOCK.quarter_period(0.0) == 0.0
 
 
-def energy(block: RockingBlock, angle: np.ndarray, rate: np.ndarray) -> np.ndarray:
+def energy(block, angle, rate):
     return rate**2 / 2 + block.p**2 * (np.cos(block.alpha - np.abs(angle)) - math.cos(block.alpha))
 
 
 @pytest.mark.parametrize("restitution", [None, 0.8])
-def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_between(restitution: float | None) -> None:
+def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_between(restitution):
     block = replace(BLOCK, restitution=restitution)
     tilt = 0.6 * block.alpha
     motion = solve(block, 4.0, tilt)
@@ -79,7 +79,7 @@ def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_betw
     assert not motion.overturned
 
 
-def test_rocking_in_plain_numbers() -> None:
+def test_rocking_in_plain_numbers():
     t = np.linspace(0.1, 2.0, 20)
     found = adapter.rocking(0.8, 2.0, 0.1, t)
     motion = solve(BLOCK, 2.0, 0.1)

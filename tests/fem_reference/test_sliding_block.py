@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from scipy.integrate import solve_ivp
 
-from fem_reference.exact.sliding_block import Segment, SlidingBlock, moved, recorded, solve
+from fem_reference.exact.sliding_block import SlidingBlock, moved, recorded, solve
 
 G = 9.81
 LEVEL = SlidingBlock(0.0, math.degrees(math.atan(0.1)))
@@ -15,7 +15,7 @@ SLOPE = SlidingBlock(20.0, 30.0)
 
 
 @pytest.mark.parametrize(("A", "length"), [(0.5, 0.3), (0.17, 1.1)])
-def test_a_rectangular_pulse_moves_the_block_as_newmark_found(A: float, length: float) -> None:
+def test_a_rectangular_pulse_moves_the_block_as_newmark_found(A, length):
     motion = solve(LEVEL, recorded([0, length, length], [A * G, A * G, 0]), 60.0)
     V, N = A * G * length, 0.1
     assert motion.slip == pytest.approx(V**2 / (2 * G * N) * (1 - N / A), rel=1e-13)
@@ -23,7 +23,7 @@ def test_a_rectangular_pulse_moves_the_block_as_newmark_found(A: float, length: 
     assert motion.switches == ((0.0, -1), (pytest.approx(V / (G * N)), 0))
 
 
-def integrated(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> float:
+def integrated(block, base, end):
     """The slide at the end by DOP853 with events, on the equation of motion alone."""
     slide = rate = 0.0
     for segment in base:
@@ -34,8 +34,8 @@ def integrated(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> fl
     return slide
 
 
-def swept(block: SlidingBlock, segment: Segment, start: tuple[float, float], t: float, last: float):
-    def pushed(now: float) -> float:
+def swept(block, segment, start, t, last):
+    def pushed(now):
         return float(segment.acceleration(now - segment.start))
 
     excess = block.driving - pushed(t + 1e-9)
@@ -54,14 +54,14 @@ def swept(block: SlidingBlock, segment: Segment, start: tuple[float, float], t: 
     return float(done.y[0, -1]), rate, float(done.t[-1])
 
 
-def random_base(seed: int) -> tuple[Segment, ...]:
+def random_base(seed):
     rng = np.random.default_rng(seed)
     t = np.concatenate([[0], np.cumsum(rng.uniform(0.05, 0.3, 8))])
     return recorded(t, rng.uniform(-8, 8, 9)) if seed % 2 else moved(t, np.cumsum(rng.normal(0, 0.03, 9)))
 
 
 @pytest.mark.parametrize("seed", thinned([1, 4, 2, 5], 2))
-def test_an_independent_integration_agrees(seed: int) -> None:
+def test_an_independent_integration_agrees(seed):
     base = random_base(seed)
     motion = solve(SLOPE, base, 2.0)
     assert motion.slip > 0
@@ -69,7 +69,7 @@ def test_an_independent_integration_agrees(seed: int) -> None:
         assert motion.at([end])[0] == pytest.approx(integrated(SLOPE, base, end), abs=1e-7)
 
 
-def test_a_slide_that_rounding_alone_would_begin_at_the_end_of_a_row_does_not_go_on_for_ever() -> None:
+def test_a_slide_that_rounding_alone_would_begin_at_the_end_of_a_row_does_not_go_on_for_ever():
     rng = np.random.default_rng(237)
     t = np.concatenate([[0], np.cumsum(rng.uniform(0.05, 0.3, 20))])
     t[5] = t[4]

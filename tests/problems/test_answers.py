@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +12,7 @@ from oracles.answers import QUICK, STATED, answered, stated
 from validation.errors import InputError
 from validation.models.plane.boxes import boxes_of
 from validation.problems import packs
-from validation.problems.answers import FILE, AnswerSet, folder_name, keep, read_sets, read_tables
+from validation.problems.answers import FILE, folder_name, keep, read_sets, read_tables
 from validation.problems.bands import standard
 from validation.problems.data import PACK
 from validation.problems.pack import ANSWERS_TEMPLATE, blank_table, table_of
@@ -26,21 +23,21 @@ from validation.scenes.scene import load_scene
 from validation.suite.judging import judged_sets
 
 
-def defects_of(root: Path, **options: Any) -> list[str]:
+def defects_of(root, **options):
     """Return the defects of a directory, by the path below it."""
     with pytest.raises(InputError) as caught:
         read_sets(root, **options)
     return [str(one).replace(f"{root}/", "") for one in DefectsError.of(caught.value).defects]
 
 
-def names_of(sets: list[AnswerSet]) -> list[tuple[str, tuple[str, ...]]]:
+def names_of(sets):
     return [(one.data.settings_name, tuple(answer.name for answer in one.answers)) for one in sets]
 
 
 # ---- what is read ---------------------------------------------------------------------------------------------------
 
 
-def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_pack(tmp_path: Path) -> None:
+def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_pack(tmp_path):
     answered(tmp_path / "coarse", settings_name="coarse", names=("column", "locked"))
     fine = answered(tmp_path / "fine", settings_name="fine", step_s={"rocking": 1e-3}, names=("rocking",))
     (fine / "locked.csv").write_text(blank_table(problem("locked")))  # as the pack has it: not answered
@@ -51,7 +48,7 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     assert sets[1].data.step_of("locked") is None
 
 
-def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path: Path) -> None:
+def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
     answered(tmp_path, names=("locked",))
     rows = [line.rsplit(",", 1)[0] for line in (tmp_path / "locked.csv").read_text().splitlines()]
     (tmp_path / "locked.csv").write_text("\n".join(rows))
@@ -62,9 +59,7 @@ def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path: Path) -> No
     assert list(answer.history.columns) == ["displacement"]
 
 
-def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_path, monkeypatch):
     now = packs.packs()[PACK]
     monkeypatch.setattr(packs, "packs", lambda: {"1.9": now | {"locked": "0" * 16}, PACK: now})
     monkeypatch.setattr("validation.problems.answers.packs", packs.packs)
@@ -78,16 +73,16 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
-def spoilt(place: Path, name: str, change: Callable[[str], str]) -> None:
+def spoilt(place, name, change):
     path = place / name
     path.write_text(change(path.read_text()))
 
 
-def by_lines(change: Callable[[list[str]], list[str]]) -> Callable[[str], str]:
+def by_lines(change):
     return lambda text: "\n".join(change(text.splitlines()))
 
 
-MISTAKES: dict[str, tuple[str, Callable[[str], str], str]] = {
+MISTAKES = {
     "not a number": (
         "locked.csv",
         by_lines(lambda lines: [*lines[:3], "0.006,nan,0", *lines[4:]]),
@@ -107,7 +102,7 @@ MISTAKES: dict[str, tuple[str, Callable[[str], str], str]] = {
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
-def test_a_mistake_is_named_with_line_and_character(mistake: str, tmp_path: Path) -> None:
+def test_a_mistake_is_named_with_line_and_character(mistake, tmp_path):
     file, change, said = MISTAKES[mistake]
     answered(tmp_path, names=("locked",))
     read_sets(tmp_path)
@@ -117,7 +112,7 @@ def test_a_mistake_is_named_with_line_and_character(mistake: str, tmp_path: Path
     assert all("\n" not in line for line in lines)
 
 
-def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
+def test_all_defects_of_all_files_are_listed_at_once(tmp_path):
     place = answered(tmp_path / "coarse", settings_name="coarse")
     other = answered(tmp_path / "fine", settings_name="fine", who=...)
     answered(tmp_path / "again", settings_name="coarse", names=("locked",))
@@ -133,7 +128,7 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path: Path) -> None:
     assert len(lines) == len(starts) + 1  # `again` is the same as `coarse` only where that can be read
 
 
-def test_a_layout_is_where_its_metadata_say(tmp_path: Path) -> None:
+def test_a_layout_is_where_its_metadata_say(tmp_path):
     answered(tmp_path / "bob-s-code-co/1.0/default", names=("locked",))
     assert len(read_sets(tmp_path, in_layout=True)) == 1
     answered(tmp_path / "bob-s-code-co/1.1/default", names=("locked",), version="1.2")
@@ -144,14 +139,14 @@ def test_a_layout_is_where_its_metadata_say(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "name"), [("My Code 2", "my-code-2"), ("../x", "x"), ("C++", "c++"), ("\u7a0b\u5e8f", ""), ("..", "")]
 )
-def test_names_of_folders_lead_nowhere_else(text: str, name: str) -> None:
+def test_names_of_folders_lead_nowhere_else(text, name):
     assert folder_name(text) == name
 
 
 # ---- what is kept ---------------------------------------------------------------------------------------------------
 
 
-def test_an_answer_is_kept_once_and_not_overwritten(tmp_path: Path) -> None:
+def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
     layout = tmp_path / "submissions"
     mine = answered(tmp_path / "mine", names=QUICK[:1])
     (mine / "judged.html").write_text("a page")
@@ -173,18 +168,18 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path: Path) -> None:
 Rows = list[list[str]]
 
 
-def rows_of(name: str = "locked") -> Rows:
+def rows_of(name="locked"):
     return list(csv.reader(table_of(problem(name), standard(problem(name)).exact).splitlines()))
 
 
-def text_of(rows: Rows, separator: str = ",") -> str:
+def text_of(rows, separator=","):
     return "\n".join(separator.join(row) for row in rows)
 
 
-def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
+def scaled(column, factor):
     """Return a change that multiplies a column by a factor."""
 
-    def change(rows: Rows) -> Rows:
+    def change(rows):
         numbers = [[repr(float(x) * factor) if i == column else x for i, x in enumerate(row)] for row in rows[1:]]
         return [rows[0], *numbers]
 
@@ -211,12 +206,12 @@ def scaled(column: int, factor: float) -> Callable[[Rows], Rows]:
         (scaled(1, -1.0), "1:8: displacement_m: wrong sign: it is the negative of what is expected"),
     ],
 )  # fmt: skip
-def test_a_wrong_table_is_named(change: Callable[[Rows], Rows], said: str, tmp_path: Path) -> None:
+def test_a_wrong_table_is_named(change, said, tmp_path):
     (stated(tmp_path) / "locked.csv").write_text(text_of(change(rows_of())))
     assert said in defects_of(tmp_path)[0]
 
 
-def in_other_units(rows: Rows) -> str:
+def in_other_units(rows):
     """Return the table in milliseconds, millimetres and kilopascals, with an index and a column of another program."""
     factors = (1e3, 1e3, 1e-3)
     header = ["", "Time [ms]", "displacement_mm", "contact_pressure (kPa)", "energy"]
@@ -224,20 +219,20 @@ def in_other_units(rows: Rows) -> str:
     return text_of([header, *body])
 
 
-def of_a_spreadsheet(rows: Rows) -> str:
+def of_a_spreadsheet(rows):
     """Return a table as spreadsheets write it: a mark in front, CR LF, empty cells and rows at the ends."""
     return "\ufeff" + "\r\n".join(",".join([*row, "", ""]) for row in [*rows, ["", "", ""]])
 
 
-def with_decimal_commas(rows: Rows) -> str:
+def with_decimal_commas(rows):
     return text_of([rows[0], *([cell.replace(".", ",") for cell in row] for row in rows[1:])], ";")
 
 
-def of_fortran(row: list[str]) -> list[str]:
+def of_fortran(row):
     return [f"{float(cell):.17E}".replace("E", "D") for cell in row]
 
 
-WRITTEN: dict[str, Callable[[Rows], str]] = {
+WRITTEN = {
     "of a spreadsheet": of_a_spreadsheet,
     "decimal commas": with_decimal_commas,
     "tabs": lambda rows: text_of(rows, "\t"),
@@ -254,7 +249,7 @@ WRITTEN: dict[str, Callable[[Rows], str]] = {
 
 
 @pytest.mark.parametrize("written", WRITTEN)
-def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None:
+def test_what_other_programs_write_is_read(written, tmp_path):
     exact = standard(problem("locked")).exact
     (stated(tmp_path) / "locked.csv").write_text(WRITTEN[written](rows_of()), encoding="utf-8", newline="")
     (tmp_path / "._locked.csv").write_bytes(b"\0")  # which a system lays beside a file
@@ -275,12 +270,12 @@ def test_what_other_programs_write_is_read(written: str, tmp_path: Path) -> None
         ({"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}}, "must leave a column to judge"),
     ],
 )  # fmt: skip
-def test_a_wrong_field_is_named(fields: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_a_wrong_field_is_named(fields, said, tmp_path):
     (line,) = defects_of(answered(tmp_path, names=("locked",), **fields))
     assert line.startswith(f"{FILE}:") and said in line
 
 
-def test_files_that_are_no_such_files(tmp_path: Path) -> None:
+def test_files_that_are_no_such_files(tmp_path):
     for content, said in (
         ("[1]", "must be an object, got list"),
         ("{", f"{FILE}:1:2: must be JSON: "),
@@ -290,7 +285,7 @@ def test_files_that_are_no_such_files(tmp_path: Path) -> None:
         assert any(said in line for line in defects_of(tmp_path))
 
 
-def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path: Path) -> None:
+def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
     scene = load_scene("field-locked").with_values({"contact.stiffness": 2e9}).model_copy(update={"name": "mine"})
     own = problem_of(scene)
     (tmp_path / "mine.csv").write_text(table_of(own, standard(own).exact))
@@ -309,7 +304,7 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path: Path) -> 
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
-def boxes_answered(place: Path, name: str, changed: dict[str, float] | None = None) -> None:
+def boxes_answered(place, name, changed=None):
     """Answer a problem of boxes with boxes that stay where they are, columns times factors."""
     asked = problem(name)
     boxes = boxes_of(asked.scene).boxes
@@ -318,7 +313,7 @@ def boxes_answered(place: Path, name: str, changed: dict[str, float] | None = No
     (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
-def test_positions_of_boxes_are_measured(tmp_path: Path) -> None:
+def test_positions_of_boxes_are_measured(tmp_path):
     place = answered(tmp_path, names=())
     for name in ("standing", "standing-friction-19-deg", "pile"):
         boxes_answered(place, name)

@@ -12,8 +12,6 @@ from validation.models.plane.canon import moved, moving_blocks
 from validation.models.plane.problems import canon_problems
 from validation.problems.judge import judge
 from validation.problems.problem import names, problem
-from validation.runs.history import History
-from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
 
 EXACT = {  # by programs that share nothing with this one
@@ -44,11 +42,11 @@ ALL = [name for name in names() if name.split("-")[0] in {one.name.split("-")[0]
 
 
 @pytest.mark.parametrize("name", EXACT)
-def test_exact_numbers_are_those_of_other_programs(name: str) -> None:
+def test_exact_numbers_are_those_of_other_programs(name):
     assert [number.exact for number in problem(name).numbers] == pytest.approx(EXACT[name], rel=1e-9)
 
 
-def mangled(scene: Scene, history: History) -> History:
+def mangled(scene, history):
     """Turn all ways by 0.05 rad, lengthen them and the turns by 15 %; what stands falls, and what falls stands."""
     columns = dict(history.columns)
     blocks = moving_blocks(scene)
@@ -67,7 +65,7 @@ def mangled(scene: Scene, history: History) -> History:
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.long) if n in LONG else n for n in ALL])
-def test_dda_passes_and_a_mangled_answer_fails(name: str) -> None:
+def test_dda_passes_and_a_mangled_answer_fails(name):
     posed = problem(name)
     history = get_solver("dda").solve(posed.scene).history
     assert history is not None

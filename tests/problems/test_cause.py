@@ -25,13 +25,13 @@ IDS = {
 }
 
 
-def datum(name: str, key: str) -> float:
+def datum(name, key):
     """Return a datum of a problem's scene."""
     section, _, entry = key.partition(".")
     return getattr(getattr(problem(name).scene, section), entry)
 
 
-def fine(name: str, values: dict, times: int = 32) -> History:
+def fine(name, values, times=32):
     """Return another scene's motion at the steps of a problem."""
     scene = problem(name).scene
     steps = {"time.step": scene.time.step / times, "time.steps": scene.time.steps * times}
@@ -39,7 +39,7 @@ def fine(name: str, values: dict, times: int = 32) -> History:
     return History(found.time[times - 1 :: times], {k: x[times - 1 :: times] for k, x in found.columns.items()})
 
 
-def named(name: str, found: History) -> module.Cause:
+def named(name, found):
     asked = problem(name)
     held = standard(asked)
     assert judge(asked, found, held).status is Status.FAIL
@@ -47,12 +47,12 @@ def named(name: str, found: History) -> module.Cause:
 
 
 @pytest.fixture(autouse=True)
-def without_compare(monkeypatch) -> None:
+def without_compare(monkeypatch):
     """Leave out what takes tens of seconds where nothing explains a history."""
     monkeypatch.setattr(module, "compared", lambda scene, history: None)
 
 
-def test_ddas_habit_and_another_integrator() -> None:
+def test_ddas_habit_and_another_integrator():
     asked = problem("locked")
     habit = named("locked", get_solver("dda").solve(asked.scene).history)
     assert habit.sentence.startswith("DDA's usual scheme, constant acceleration (alpha = 0.5, delta = 1, gg = 1)")
@@ -72,7 +72,7 @@ def test_ddas_habit_and_another_integrator() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(("key", "factor"), [("contact.stiffness", 1.05), ("block.density", 1.2)])
-def test_a_wrong_datum_in_an_exact_program(key: str, factor: float) -> None:
+def test_a_wrong_datum_in_an_exact_program(key, factor):
     found = named("locked", fine("locked", {key: factor * datum("locked", key)}))
     if found.ids == ("time-factor",):  # the same motion as that of another density, which it says
         assert key == "block.density" and found.values["time-factor"] == pytest.approx(factor**-0.5, rel=2e-3)
@@ -82,7 +82,7 @@ def test_a_wrong_datum_in_an_exact_program(key: str, factor: float) -> None:
     assert found.values[IDS[key]] == pytest.approx(factor, rel=2e-3)
 
 
-def test_what_gives_the_same_rows_has_one_name() -> None:
+def test_what_gives_the_same_rows_has_one_name():
     """A program may be wrong in Poisson's ratio, the speed below the base or an inertia: no datum of its own."""
     scene = problem("column").scene
     found = {number.id: number for number in DiagnosisHooks.of(scene).numbers(scene)}
@@ -96,7 +96,7 @@ def test_what_gives_the_same_rows_has_one_name() -> None:
         assert words in named["gravity-factor"]
 
 
-def test_columns_that_are_still_or_no_numbers() -> None:
+def test_columns_that_are_still_or_no_numbers():
     exact = standard(problem("locked")).exact
     still = named("locked", History(exact.time, {k: 0 * x for k, x in exact.columns.items()}))
     assert still.sentence == "nothing moves"
@@ -106,7 +106,7 @@ def test_columns_that_are_still_or_no_numbers() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize("name", ["locked", "opening", "column"])
-def test_no_cause_of_a_random_history_is_wrong(name: str) -> None:
+def test_no_cause_of_a_random_history_is_wrong(name):
     """Sixty histories a problem with two wrong things at once, or with noise: no single one may be named for them."""
     exact = standard(problem(name)).exact
     rng = np.random.default_rng(len(name))
@@ -122,7 +122,7 @@ def test_no_cause_of_a_random_history_is_wrong(name: str) -> None:
 
 
 @pytest.mark.long
-def test_a_discount_beside_the_usual_scheme_is_named() -> None:
+def test_a_discount_beside_the_usual_scheme_is_named():
     found = named("locked", get_solver("dda").solve(problem("locked").scene.with_values({"time.gg": 0.97})).history)
     assert found.ids == ("scheme", "gg")
     assert found.values["gg"] == pytest.approx(0.97, rel=1e-4)
@@ -133,7 +133,7 @@ def test_a_discount_beside_the_usual_scheme_is_named() -> None:
 @pytest.mark.parametrize(
     ("key", "factor"), [("block.young", 1e-3), ("contact.stiffness", 1e3), ("load.pressure", 1e-3)]
 )
-def test_a_datum_in_other_units_is_named(key: str, factor: float) -> None:
+def test_a_datum_in_other_units_is_named(key, factor):
     """Steps so fine that the motion of stiffer springs or of less mass is exact as well."""
     found = named("locked", fine("locked", {key: factor * datum("locked", key)}, 128))
     assert found.ids == (IDS[key],)
@@ -149,14 +149,14 @@ UNITS = [
 
 
 @pytest.mark.parametrize(("name", "column", "factor"), UNITS)
-def test_a_column_in_other_units_is_named(name: str, column: str, factor: float) -> None:
+def test_a_column_in_other_units_is_named(name, column, factor):
     exact = standard(problem(name)).exact
     found = named(name, History(exact.time, {**exact.columns, column: factor * exact.columns[column]}))
     assert (found.ids, found.values) == (("unit",), {column: factor})
 
 
 @pytest.mark.parametrize(("name", "column", "factor"), UNITS[1:2])
-def test_a_unit_is_not_named_where_something_else_is_wrong(name: str, column: str, factor: float) -> None:
+def test_a_unit_is_not_named_where_something_else_is_wrong(name, column, factor):
     exact = standard(problem(name)).exact
     late = {key: np.append(0.0, x[:-1]) * (factor if key == column else 1.0) for key, x in exact.columns.items()}
     assert "unit" not in named(name, History(exact.time, late)).ids
@@ -169,13 +169,13 @@ def test_a_unit_is_not_named_where_something_else_is_wrong(name: str, column: st
 OF_BARS = ("cradle", "joint", "spall")  # whose exact motions take seconds, and a search among them a minute
 
 
-def exactly(name: str, values: dict) -> History:
+def exactly(name, values):
     """Return the exact motion of a problem's scene with other values."""
     posed = problem(name)
     return get_solver(posed.truth.name).solve(posed.scene.with_values(values)).history
 
 
-def of_layers(name: str, key: str, factor: float) -> dict:
+def of_layers(name, key, factor):
     """Return the values that change a datum of all layers by a factor, where it is a number."""
     layers = problem(name).scene.definition()["column"]["layer"]
     return {
@@ -189,7 +189,7 @@ def of_layers(name: str, key: str, factor: float) -> dict:
     ("name", "values"),
     [("stack", AVERAGE), ("mass-ratio", {}), *(pytest.param(name, {}, marks=pytest.mark.long) for name in OF_BARS)],
 )
-def test_schemes_of_columns_on_contacts_are_named(name: str, values: dict) -> None:
+def test_schemes_of_columns_on_contacts_are_named(name, values):
     posed = problem(name)
     run = get_solver("dda").solve(posed.scene.with_values(values)).history
     if judge(posed, run).status is Status.FAIL:
@@ -203,7 +203,7 @@ def test_schemes_of_columns_on_contacts_are_named(name: str, values: dict) -> No
 @pytest.mark.parametrize(
     ("name", "key", "factor"), [("stack", "density", 1.2), ("mass-ratio", "density", 0.9), ("cradle", "young", 0.8)]
 )
-def test_a_wrong_datum_of_a_column_on_contacts_is_named(name: str, key: str, factor: float) -> None:
+def test_a_wrong_datum_of_a_column_on_contacts_is_named(name, key, factor):
     identified = named(name, exactly(name, of_layers(name, key, factor)))
     assert identified.ids == (f"{key}-factor",)
     assert identified.values[f"{key}-factor"] == pytest.approx(factor, rel=1e-3)
@@ -219,7 +219,7 @@ BESIDE_THE_SCHEME = {  # faults beside the usual scheme: a problem, what is chan
 
 @pytest.mark.long
 @pytest.mark.parametrize("fault", BESIDE_THE_SCHEME)
-def test_a_fault_beside_the_usual_scheme_is_named(fault: str) -> None:
+def test_a_fault_beside_the_usual_scheme_is_named(fault):
     name, changed, word = BESIDE_THE_SCHEME[fault]
     posed = problem(name)
     values = {f"column.{key}": value for key, value in changed.items()}
@@ -228,7 +228,7 @@ def test_a_fault_beside_the_usual_scheme_is_named(fault: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["stack", *(pytest.param(name, marks=pytest.mark.long) for name in OF_BARS)])
-def test_columns_on_contacts_in_millimetres_are_named(name: str) -> None:
+def test_columns_on_contacts_in_millimetres_are_named(name):
     exact = standard(problem(name)).exact
     lengths = [key for key in exact.columns if key.startswith(("displacement", "gap", "slip"))]
     scaled = {key: x * (1e3 if key in lengths else 1.0) for key, x in exact.columns.items()}
@@ -236,7 +236,7 @@ def test_columns_on_contacts_in_millimetres_are_named(name: str) -> None:
     assert (identified.ids, identified.values) == (("unit",), dict.fromkeys(lengths, 1e3))
 
 
-def test_the_modulus_of_rigid_blocks_is_no_cause() -> None:
+def test_the_modulus_of_rigid_blocks_is_no_cause():
     posed = problem("stack")
     runs = models.runs_of(posed.scene, standard(posed))
     base = runs.exact()

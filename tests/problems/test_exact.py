@@ -28,7 +28,7 @@ print(*{name.partition(".")[0] for name in sys.modules})
 """
 
 
-def test_the_blocks_ones_load_numpy_only() -> None:
+def test_the_blocks_ones_load_numpy_only():
     done = subprocess.run([sys.executable, "-c", CALLED], capture_output=True, text=True, check=True, cwd=ROOT)
     third = {"scipy", "pydantic", "skfem", "meshio", "matplotlib", "mpmath", "typer", "dda"}
     assert "numpy" in done.stdout.split()
@@ -36,7 +36,7 @@ def test_the_blocks_ones_load_numpy_only() -> None:
 
 
 @pytest.mark.parametrize(("name", "function"), [("locked", "locked_block"), ("opening", "unilateral_block")])
-def test_a_block_is_that_of_the_scene(name: str, function: str) -> None:
+def test_a_block_is_that_of_the_scene(name, function):
     asked = problem(name)
     wanted = motion_of(asked.scene, asked.truth)
     found = getattr(exact, function)(wanted.time, **BLOCK, pressure=5e6)
@@ -45,7 +45,7 @@ def test_a_block_is_that_of_the_scene(name: str, function: str) -> None:
     assert bool(found.openings) is (name == "opening")
 
 
-def test_a_block_slides_as_a_rigid_mass_but_for_its_springs() -> None:
+def test_a_block_slides_as_a_rigid_mass_but_for_its_springs():
     t = np.array([0.05, 0.1])
     found = exact.frictional_block(t, **BLOCK, shear_stiffness=4e8, friction=0.0, slope=30.0, gravity=9.81)
     rigid = exact.rigid_slide(t, slope=30.0, friction=0.0)
@@ -53,11 +53,11 @@ def test_a_block_slides_as_a_rigid_mass_but_for_its_springs() -> None:
     assert np.all(exact.rigid_slide(t, slope=10.0, friction=20.0) == 0.0)
 
 
-def test_a_column_lets_a_pulse_pass() -> None:
+def test_a_column_lets_a_pulse_pass():
     asked = problem("column")
     wanted, layer = motion_of(asked.scene, asked.truth), asked.scene.column.layer[0]
 
-    def ricker(t: np.ndarray) -> np.ndarray:
+    def ricker(t):
         from validation.scenes.drive import motion_at
 
         return motion_at(asked.scene, t).pressure
@@ -69,6 +69,6 @@ def test_a_column_lets_a_pulse_pass() -> None:
 
 
 @pytest.mark.parametrize("time", [[-1.0], [0.0], [0.2, 0.1], [math.nan]])
-def test_instants_that_do_not_rise_from_zero_are_refused(time: list[float]) -> None:
+def test_instants_that_do_not_rise_from_zero_are_refused(time):
     with pytest.raises(ValueError, match="time: must be finite instants that rise"):
         exact.locked_block(time, **BLOCK, pressure=5e6)

@@ -10,7 +10,7 @@ from validation.gates.gate import Status
 from validation.models.plane import problems as boxes
 from validation.problems.bands import LARGEST, band, changes, standard
 from validation.problems.judge import judge
-from validation.problems.problem import Problem, problem, problem_of
+from validation.problems.problem import problem, problem_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.scenes.scene import load_scene
 
@@ -23,7 +23,7 @@ ALL = (
 )
 
 
-def short(name: str) -> Problem:
+def short(name):
     """Return a problem; one whose exact motion takes long, over its first steps."""
     steps = SHORTENED.get(name)
     return (
@@ -31,7 +31,7 @@ def short(name: str) -> Problem:
     )
 
 
-def history(asked: Problem, change) -> History:
+def history(asked, change):
     """Return the exact motion with its columns changed."""
     exact = standard(asked).exact
     return History(exact.time, {name: change(exact.time, x) for name, x in exact.columns.items()})
@@ -47,7 +47,7 @@ WRONG = {
 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("wrong", WRONG)
-def test_a_wrong_history_fails(name: str, wrong: str) -> None:
+def test_a_wrong_history_fails(name, wrong):
     asked = short(name)
     word = judge(asked, history(asked, WRONG[wrong])).status
     within = (name, wrong) == ("rocking", "half a step late")  # it falls so slowly that 2.5 ms are less than 1 % of a
@@ -55,7 +55,7 @@ def test_a_wrong_history_fails(name: str, wrong: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["locked", "rocking"])
-def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_exact_from_there_on(name: str) -> None:
+def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_exact_from_there_on(name):
     asked = short(name)
     held = standard(asked)
     column = next(iter(held.bands))
@@ -74,7 +74,7 @@ def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_e
 
 
 @pytest.mark.parametrize("name", ALL)
-def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_changes(name: str) -> None:
+def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_changes(name):
     asked = short(name)
     held = standard(asked)
     assert judge(asked, held.exact).verdict == "PASS"
@@ -86,7 +86,7 @@ def test_the_exact_motion_passes_and_so_does_what_one_per_cent_of_a_datum_change
 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize(("times", "word"), [(1 - 1e-6, Status.PASS), (1 + 1e-6, Status.FAIL)])
-def test_both_sides_of_the_band(name: str, times: float, word: Status) -> None:
+def test_both_sides_of_the_band(name, times, word):
     asked = short(name)
     held = standard(asked)
     for column, edge in held.bands.items():
@@ -98,7 +98,7 @@ def test_both_sides_of_the_band(name: str, times: float, word: Status) -> None:
         assert edge.datum in found.deciding.reason
 
 
-def test_a_column_that_is_absent_is_told() -> None:
+def test_a_column_that_is_absent_is_told():
     asked = short("locked")
     exact = standard(asked).exact
     found = judge(asked, History(exact.time, {DISPLACEMENT: exact.displacement}))
@@ -111,7 +111,7 @@ def test_a_column_that_is_absent_is_told() -> None:
     assert judge(asked, History(exact.time, {})).status is Status.NOT_JUDGED
 
 
-def test_numbers_that_people_understand() -> None:
+def test_numbers_that_people_understand():
     asked = short("opening")
     told = {number.name: number for number in judge(asked, standard(asked).exact).quantities}
     assert told["openings"].value == told["openings"].exact == 5
@@ -123,7 +123,7 @@ def test_numbers_that_people_understand() -> None:
     assert PRESSURE not in {number.name for number in swings}
 
 
-def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more() -> None:
+def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more():
     t = 0.01 * np.arange(1.0, 401)
     found = band(t, np.sin(30 * t), {"the density": np.sin(30.3 * t)})
     assert found.high <= LARGEST
@@ -144,7 +144,7 @@ def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more() -> No
         },
     ],
 )
-def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) -> None:
+def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values):
     """Free fall, and sliding without friction: g t^2 / 2 to seven digits passes, one half a step late does not."""
     asked = problem_of(load_scene("field-opening").with_values({"time.steps": 12, **values}))
     (name,), held = asked.scene.run.columns, standard(asked)
@@ -179,9 +179,7 @@ def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values: dict) 
         ),
     ],
 )
-def test_one_per_cent_of_contacts_is_of_each_of_them(
-    name: str, values: dict, stiffness: list[float], strength: list[float]
-) -> None:
+def test_one_per_cent_of_contacts_is_of_each_of_them(name, values, stiffness, strength):
     scene = load_scene(name).with_values(values)
     data = changes(scene)
     before = scene.column.contacts
@@ -198,7 +196,7 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(
 
 
 @pytest.mark.parametrize("name", boxes.box_problems())
-def test_boxes_are_judged_by_their_numbers(name: str) -> None:
+def test_boxes_are_judged_by_their_numbers(name):
     one = problem(name)
     reference = standard(one)
     assert reference.bands == {} and set(reference.exact.columns) == set(one.scene.run.columns)
@@ -208,7 +206,7 @@ def test_boxes_are_judged_by_their_numbers(name: str) -> None:
     assert all(one.allowed is not None and one.allowed <= 0.026 for one in judgement.criteria)
 
 
-def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
+def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute():
     one = problem("standing")
     exact = standard(one).exact
     creeping = History(exact.time, dict(exact.columns) | {"box.x": exact.time * 0.03 / 60})
@@ -220,7 +218,7 @@ def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute() -> None:
     assert judgement.quantities[0].value == pytest.approx(0.5)
 
 
-def test_a_number_of_a_withheld_column_is_not_reported() -> None:
+def test_a_number_of_a_withheld_column_is_not_reported():
     one = problem("tumbling")
     exact = standard(one).exact
     fewer = History(exact.time, {name: exact.columns[name] for name in ("box.x", "box.y")})
@@ -238,15 +236,13 @@ def test_a_number_of_a_withheld_column_is_not_reported() -> None:
         ("standing", {"plane.contact.restitution": 0.5}, "plane.contact.restitution"),
     ],
 )
-def test_boxes_whose_numbers_would_mean_something_else_are_refused(
-    name: str, values: dict[str, object], field: str
-) -> None:
+def test_boxes_whose_numbers_would_mean_something_else_are_refused(name, values, field):
     with pytest.raises(InputError) as caught:
         problem_of(load_scene(f"rigid-{name}").with_values(values))
     assert caught.value.field == field
 
 
-def test_the_question_of_boxes_may_be_asked_with_another_friction() -> None:
+def test_the_question_of_boxes_may_be_asked_with_another_friction():
     steeper = problem_of(load_scene("rigid-standing").with_values({"plane.contact.friction": 19.0}))
     judgement = judge(steeper, standard(steeper).exact)
     assert [one.name for one in judgement.criteria] == ["distance slid"]

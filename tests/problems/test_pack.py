@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import shutil
-from pathlib import Path
 
 import pytest
 from conftest import refused, typed
@@ -25,7 +24,7 @@ FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": 
 
 
 @pytest.fixture(scope="module")
-def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+def written(tmp_path_factory):
     """Write the problems whose exact motions take no time."""
     directory = tmp_path_factory.mktemp("pack")
     with pytest.MonkeyPatch.context() as patch:
@@ -34,7 +33,7 @@ def written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return directory
 
 
-def filled(problems: Path, place: Path, *names: str) -> Path:
+def filled(problems, place, *names):
     """Fill in the folder of a pack, some problems with their own exact motions."""
     shutil.copytree(problems / "answers", place)
     stated = place / "submission.json"
@@ -44,7 +43,7 @@ def filled(problems: Path, place: Path, *names: str) -> Path:
     return place
 
 
-def test_problems_are_answered_by_the_files_of_the_pack(written: Path, tmp_path: Path) -> None:
+def test_problems_are_answered_by_the_files_of_the_pack(written, tmp_path):
     ((answers),) = [one.answers for one in read_sets(filled(written, tmp_path / "mine", *QUICK))]
     assert {answer.name: judge(answer.problem, answer.history).verdict for answer in answers} == dict.fromkeys(
         sorted(QUICK, key=names().index), "PASS"
@@ -52,7 +51,7 @@ def test_problems_are_answered_by_the_files_of_the_pack(written: Path, tmp_path:
 
 
 @pytest.mark.parametrize("name", QUICK)
-def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
+def test_a_problem_says_what_it_is_judged_by(name, written):
     data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
     table = (written / data.exact).read_text().splitlines()
     assert table[0].split(",") == [pack.TIME, *(column.name for column in data.answer)]
@@ -64,7 +63,7 @@ def test_a_problem_says_what_it_is_judged_by(name: str, written: Path) -> None:
     assert (data.pack, data.problem, "column" in data.scene) == (PACK, name, name in OF_COLUMNS)
 
 
-def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
+def test_schemas_and_the_page_are_those_of_the_pack(written):
     for schema, data in (("problem", ProblemData), ("answers", AnswersData)):
         assert data.model_json_schema().items() <= json.loads((written / f"{schema}.schema.json").read_text()).items()
     page = (written / "README.md").read_text()
@@ -74,10 +73,10 @@ def test_schemas_and_the_page_are_those_of_the_pack(written: Path) -> None:
 
 
 @pytest.fixture
-def short_pack(monkeypatch: pytest.MonkeyPatch) -> None:
+def short_pack(monkeypatch):
     """Let export-pack write its first page only."""
 
-    def write_page(place: Path, progress: object) -> int:
+    def write_page(place, progress):
         (place / "README.md").write_text(pack.PAGE.read_text())
         return 7
 
@@ -85,7 +84,7 @@ def short_pack(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.usefixtures("short_pack")
-def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path: Path) -> None:
+def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path):
     place = tmp_path / "pack"
     assert typed("export-pack", place).stdout == f"wrote {place}: 7 problems for any program\n"
     (place / "old.csv").write_text("1")
@@ -95,7 +94,7 @@ def test_an_earlier_pack_is_replaced_as_a_whole_and_nothing_else(tmp_path: Path)
 
 
 @pytest.mark.usefixtures("short_pack")
-def test_a_users_directory_is_not_written_to(tmp_path: Path) -> None:
+def test_a_users_directory_is_not_written_to(tmp_path):
     (tmp_path / "README.md").write_text("# Mine\n")
     assert "must be a new or empty directory or an earlier pack" in refused("export-pack", tmp_path)
     assert "must be a directory, got a file" in refused("export-pack", tmp_path / "README.md")
@@ -103,8 +102,8 @@ def test_a_users_directory_is_not_written_to(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("short_pack")
-def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupt(place: Path, progress: object) -> int:
+def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path, monkeypatch):
+    def interrupt(place, progress):
         raise InputError("interrupted")
 
     place = tmp_path / "pack"
@@ -118,7 +117,7 @@ def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path: Path, monkeypatch:
 
 
 @pytest.mark.long
-def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
+def test_the_command_writes_a_whole_pack(tmp_path):
     done = typed("export-pack", tmp_path / "pack")
     assert done.returncode == 0, done.stderr
     assert f"{len(names())} problems for any program" in done.stdout
@@ -126,7 +125,7 @@ def test_the_command_writes_a_whole_pack(tmp_path: Path) -> None:
     assert [judge(answer.problem, answer.history).verdict for answer in answers] == ["PASS"] * len(ASKS)
 
 
-def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path, tmp_path: Path) -> None:
+def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written, tmp_path):
     """As it is, every field of words is said to be blank; filled in, a table that is left blank is no answer."""
     place = tmp_path / "mine"
     shutil.copytree(written / "answers", place)
@@ -143,7 +142,7 @@ def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written: Path,
 
 
 @pytest.mark.parametrize("name", BOXES)
-def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(name: str, written: Path) -> None:
+def test_a_problem_of_boxes_says_where_they_are_and_what_is_measured(name, written):
     data = ProblemData.model_validate_json((written / f"{name}.json").read_text())
     assert data.exact is None and list(data.scene) == ["plane"]
     assert [one.name for one in data.numbers] == [one.name for one in problem(name).numbers if not one.optional]

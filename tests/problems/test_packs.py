@@ -14,7 +14,7 @@ from validation.problems.packs import digest, stale
 from validation.problems.problem import names, problem
 
 
-def test_the_version_of_the_pack_is_that_of_its_problems() -> None:
+def test_the_version_of_the_pack_is_that_of_its_problems():
     digests = {name: digest(problem(name)) for name in names()}
     assert packs.packs().get(PACK) == digests, (
         "problems are others: give the pack another version (PACK; minor where problems are added only), "
@@ -22,7 +22,7 @@ def test_the_version_of_the_pack_is_that_of_its_problems() -> None:
     )
 
 
-def test_a_minor_version_adds_problems_only() -> None:
+def test_a_minor_version_adds_problems_only():
     versions = sorted(packs.packs(), key=lambda version: [int(part) for part in version.split(".")])
     assert versions == list(packs.packs()) and versions[-1] == PACK
     for before, after in itertools.pairwise(versions):
@@ -34,20 +34,20 @@ def test_a_minor_version_adds_problems_only() -> None:
     "values",
     [{"block.density": 2701.0}, {"contact.stiffness": 1.01e9}, {"time.step": 0.001}, {"time.steps": 49}],
 )
-def test_another_question_has_another_digest(values: dict[str, float]) -> None:
+def test_another_question_has_another_digest(values):
     one = problem("locked")
     assert digest(replace(one, scene=one.scene.with_values(values))) != digest(one)
     fewer = one.scene.with_values({"run.columns": ["displacement"]})
     assert digest(replace(one, scene=fewer)) != digest(one)
 
 
-def test_other_words_are_the_same_question() -> None:
+def test_other_words_are_the_same_question():
     one = problem("locked")
     other = one.scene.with_values({"title": "another title", "run.solvers": ["dda"]})
     assert digest(replace(one, scene=other, asks="In other words?")) == digest(one)
 
 
-def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monkeypatch):
     now = packs.packs()[PACK]
     earlier = {"1.9": {"locked": "0" * 16, "opening": now["opening"], "gone": "1" * 16}, PACK: now}
     monkeypatch.setattr(packs, "packs", lambda: earlier)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import re
-from typing import Any
 
 import pytest
 
@@ -12,7 +11,7 @@ from validation.errors import InputError
 from validation.models.plane.boxes import boxes_of
 from validation.problems.problem import ASKS, PREFIX, problem
 from validation.scenes.plain import scene_data, words
-from validation.scenes.scene import Scene, load_scene, parse_scene
+from validation.scenes.scene import load_scene, parse_scene
 
 SI = r"_(m|kg|kg_m2|N|kg_per_m3|Pa|m_per_s2?|deg|rad|rad_per_s|N_per_m|Pa_per_m|Hz|s)$"
 WORDS = {"poisson", "hypothesis", "law", "motion", "layers", "joints", "base", "contacts", "settled", "at", "shape"}
@@ -20,7 +19,7 @@ WORDS |= {"geometry", "restitution", "blocks", "contact", "fixed", "name", "pair
 WORDS |= {"block", "corner", "on", "edge"}  # of a stated contact
 
 
-def plain(value: Any) -> Any:
+def plain(value):
     """Return plain data by names without their units, what is null left out; what is infinite is a number."""
     if isinstance(value, dict):
         return {re.sub(SI, "", name): plain(part) for name, part in value.items() if part is not None}
@@ -29,7 +28,7 @@ def plain(value: Any) -> Any:
     return float("inf") if value == "inf" else value
 
 
-def rebuilt(scene: Scene) -> Scene:
+def rebuilt(scene):
     """Return the scene that the plain data of a scene describe."""
     tables = plain(scene_data(scene))
     geometry = tables.pop("geometry", "small")
@@ -47,7 +46,7 @@ def rebuilt(scene: Scene) -> Scene:
     return parse_scene({"name": scene.name, "time": {"step": 1.0, "steps": 1}} | tables, "plain data")
 
 
-def motion_data(scene: Scene) -> dict[str, Any]:
+def motion_data(scene):
     """Return what the motion of a scene depends on, as its own tables have it."""
     if scene.column is not None:
         column = scene.column
@@ -65,7 +64,7 @@ def motion_data(scene: Scene) -> dict[str, Any]:
     return block | contact | scene.load.model_dump() | {"geometry": scene.run.geometry}
 
 
-VARIANTS: list[tuple[str, dict[str, Any]]] = [
+VARIANTS = [
     *((PREFIX + name, {}) for name in ASKS),
     (
         "field-locked",
@@ -85,14 +84,14 @@ VARIANTS: list[tuple[str, dict[str, Any]]] = [
 
 
 @pytest.mark.parametrize(("name", "values"), VARIANTS)
-def test_nothing_of_a_scene_is_lost(name: str, values: dict[str, Any]) -> None:
+def test_nothing_of_a_scene_is_lost(name, values):
     scene = load_scene(name).with_values(values)
     assert motion_data(rebuilt(scene)) == motion_data(scene)
     if values:
         assert scene_data(scene) != scene_data(load_scene(name))
 
 
-def test_blocks_are_stated_by_what_any_program_needs_to_place_them() -> None:
+def test_blocks_are_stated_by_what_any_program_needs_to_place_them():
     scene = problem("tumbling").scene
     data = scene_data(scene)["plane"]
     ground, block = data["blocks"]
@@ -105,12 +104,12 @@ def test_blocks_are_stated_by_what_any_program_needs_to_place_them() -> None:
     assert (data["contact"]["stiffness_N_per_m"], data["contact"]["restitution"]) == ("inf", 1.0)
 
 
-def test_a_block_that_is_driven_brings_its_record() -> None:
+def test_a_block_that_is_driven_brings_its_record():
     ground, _ = scene_data(problem("shaken").scene)["plane"]["blocks"]
     assert (ground["motion"]["time_s"][135], ground["motion"]["x_m"][135]) == pytest.approx((0.25, 0.1))
 
 
-def test_what_is_infinite_stands_in_json_as_inf() -> None:
+def test_what_is_infinite_stands_in_json_as_inf():
     column = scene_data(load_scene("field-stack"))["column"]
     assert {layer["young_Pa"] for layer in column["layers"]} == {"inf"}
     assert [contact["height_m"] for contact in column["contacts"]] == [0.0, 1.0, 2.0, 3.0, 4.0]
@@ -119,13 +118,13 @@ def test_what_is_infinite_stands_in_json_as_inf() -> None:
     assert scene_data(load_scene("field-joint"))["column"]["contacts"][0]["strength_Pa"] == 1e5
 
 
-def test_a_record_is_no_plain_data() -> None:
+def test_a_record_is_no_plain_data():
     with pytest.raises(InputError) as caught:
         scene_data(load_scene("waves-site"))
     assert caught.value.field == "input.shape"
 
 
-def test_every_number_of_the_data_names_its_unit_and_has_its_words() -> None:
+def test_every_number_of_the_data_names_its_unit_and_has_its_words():
     meanings = {name.rpartition(".")[2]: text for name, text in words()}
     assert all(re.search(SI, name) or name in WORDS for name in meanings)
     for name in ("locked", "column", "joint", "impact"):
@@ -134,7 +133,7 @@ def test_every_number_of_the_data_names_its_unit_and_has_its_words() -> None:
                 assert re.search(SI, key) or key in WORDS, key
 
 
-def test_columns_name_their_units() -> None:
+def test_columns_name_their_units():
     assert [problem("joint").named(column) for column in problem("joint").columns] == [
         *("velocity_1_m_per_s", "velocity_2_m_per_s", "force_3_Pa", "slip_3_m"),
     ]

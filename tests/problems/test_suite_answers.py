@@ -23,12 +23,12 @@ LONG = ("rebound", "sliding", "creep", "spall")
 PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
 
 
-def each(names: tuple[str, ...]) -> list[object]:
+def each(names):
     return [pytest.param(name, marks=pytest.mark.long) if name in LONG else name for name in names]
 
 
 @pytest.mark.parametrize("name", each(OF_BLOCKS))
-def test_at_fine_steps_dda_passes(name: str) -> None:
+def test_at_fine_steps_dda_passes(name):
     """Its error is that of its scheme, far below what one per cent of the data changes."""
     one = problem(name)
     scene = one.scene
@@ -41,14 +41,14 @@ def test_at_fine_steps_dda_passes(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", each(("locked", "opening", "rebound")))
-def test_by_habit_dda_damps(name: str) -> None:
+def test_by_habit_dda_damps(name):
     """Alpha = 1/2, delta = 1, one step an instant: as DDA codes are run."""
     judgement = judge(problem(name), get_solver("dda").solve(problem(name).scene).history)
     assert judgement.status is Status.FAIL and 1 < judgement.deciding.beside < 1e3
 
 
 @pytest.mark.parametrize("name", each(tuple(ASKS)))
-def test_the_page_has_the_bands(name: str) -> None:
+def test_the_page_has_the_bands(name):
     """One by one, or from the least to the largest."""
     (cell,) = re.findall(rf"^\| `{name}` \| [^|]* \| ([^|]*) \|$", PAGE, re.MULTILINE)
     bands = [standard(problem(name)).bands[column] for column in problem(name).columns]

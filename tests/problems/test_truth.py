@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ ROCKING = load_scene("field-rocking")
 
 
 @pytest.mark.parametrize("name", [*ASKS, *boxes.box_problems()])
-def test_every_problem_has_its_exact_motion(name: str) -> None:
+def test_every_problem_has_its_exact_motion(name):
     one = problem(name)
     kinds = {"column": "layers", "rocking": "rigid rocking"}
     kinds |= dict.fromkeys(("stack", "mass-ratio"), "column-events")
@@ -35,7 +34,7 @@ def test_every_problem_has_its_exact_motion(name: str) -> None:
         assert truth.until == one.scene.time.duration
 
 
-def test_rigid_blocks_beside_elastic_bars_have_none() -> None:
+def test_rigid_blocks_beside_elastic_bars_have_none():
     scene = load_scene("field-mass-ratio")
     light, heavy = scene.definition()["column"]["layer"]
     with pytest.raises(InputError) as caught:
@@ -44,7 +43,7 @@ def test_rigid_blocks_beside_elastic_bars_have_none() -> None:
     assert "1e+09" in str(caught.value)
 
 
-def test_rigid_stops_of_rigid_blocks_have_none() -> None:
+def test_rigid_stops_of_rigid_blocks_have_none():
     with pytest.raises(InputError, match=r"column-events: .*rigid"):
         truth_of(load_scene("field-mass-ratio").with_values({"column.stiffness": "inf"}))
 
@@ -64,9 +63,7 @@ KNOWN = [
 
 
 @pytest.mark.parametrize(("name", "column", "instant", "known", "digits"), KNOWN)
-def test_columns_of_rigid_blocks_move_as_is_known(
-    name: str, column: str, instant: float, known: float, digits: float
-) -> None:
+def test_columns_of_rigid_blocks_move_as_is_known(name, column, instant, known, digits):
     one = problem(name)
     row = round(instant / one.scene.time.step) - 1
     assert standard(one).exact.columns[column][row] == pytest.approx(known, rel=digits)
@@ -89,12 +86,12 @@ def test_columns_of_rigid_blocks_move_as_is_known(
         ({"run.columns": ["rotation", "displacement"]}, "must be rotation alone"),
     ],
 )
-def test_a_block_that_turns_otherwise_has_none(values: dict[str, Any], said: str) -> None:
+def test_a_block_that_turns_otherwise_has_none(values, said):
     with pytest.raises(InputError, match=said):
         problem_of(ROCKING.with_values(values))
 
 
-def test_a_frictionless_corner_slides() -> None:
+def test_a_frictionless_corner_slides():
     definition = ROCKING.definition()
     del definition["contact"]["friction"]
     scene = type(ROCKING).model_validate(definition | {"name": "x"}).with_values({"contact.shear_stiffness": 0.0})
@@ -102,7 +99,7 @@ def test_a_frictionless_corner_slides() -> None:
         problem_of(scene)
 
 
-def test_a_scene_without_an_exact_motion_says_why() -> None:
+def test_a_scene_without_an_exact_motion_says_why():
     with pytest.raises(InputError, match=r"no exact motion is known: block-events: .*kinetic damping"):
         truth_of(load_scene("field-opening").with_values({"time.gg": 0.99}))
     with pytest.raises(InputError, match="damping tables"):  # the continuum's is not that of a block of one strain
@@ -110,7 +107,7 @@ def test_a_scene_without_an_exact_motion_says_why() -> None:
 
 
 @pytest.mark.parametrize("tilt", [0.5, 0.9])
-def test_the_friction_that_a_corner_needs(tilt: float) -> None:
+def test_the_friction_that_a_corner_needs(tilt):
     """Accelerations of the rotation itself, by differences of the exact motion."""
     width, height = 2.0, 4.0
     alpha = math.atan2(width, height)
@@ -124,7 +121,7 @@ def test_the_friction_that_a_corner_needs(tilt: float) -> None:
 
 
 @pytest.mark.parametrize("sign", [-1, pytest.param(1, marks=pytest.mark.long)])
-def test_the_rotation_is_that_of_the_suites_block(sign: int) -> None:
+def test_the_rotation_is_that_of_the_suites_block(sign):
     scene = ROCKING.with_values({"block.tilt": sign * ROCKING.block.tilt})
     motion = exact(scene, truth_of(scene))
     found = solve(scene, "dda").history

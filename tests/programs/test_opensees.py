@@ -22,7 +22,7 @@ class Told:
     """A program that does nothing but keep what it was told, and does not converge."""
 
     def __init__(self):
-        self.said: list[tuple] = []
+        self.said = []
 
     def __getattr__(self, name):
         return lambda *given: self.said.append((name, *given))
