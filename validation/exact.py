@@ -7,8 +7,8 @@
 >>> round(float(answer.displacement[0]), 6)
 -0.01983
 
-The motions of a block and of a layered column load numpy alone; those of a rigid block that rocks need scipy, which is
-imported when they are called. All start at t = 0; upwards, towards +x and counter-clockwise are positive, compression
+The motions of a block and of a layered column load numpy and scipy alone, and these when they are called. All start at
+t = 0; upwards, towards +x and counter-clockwise are positive, compression
 is positive, everything is per metre of thickness.
 """
 
