@@ -7,13 +7,17 @@ import numpy as np
 import pytest
 from conftest import thinned
 from oracles.elements import error, make, stepped
+from scipy.linalg import eigh
 
-from fem_reference import Bar, named_scheme, solve
+from fem_reference import Bar, Scheme, named_scheme, solve
 from fem_reference.exact.vibration import response as bar_response
 from fem_reference.history.response import response
+from fem_reference.mesh.model import build
 from fem_reference.scheme import modal
 from fem_reference.scheme.diagnostics import diagnostics
 from fem_reference.scheme.eigen import eigenvalues
+from fem_reference.scheme.newmark import Stepper
+from fem_reference.scheme.stage import Motion
 
 HHT = {0.1: 0.9 / 1.1, 0.3: 0.7 / 1.3}  # rho_inf of alpha = -0.1 and -0.3
 IMPLICIT = [
@@ -142,3 +146,26 @@ def test_diagnostics_agree_with_themselves():
     found = diagnostics(make(elements=3, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
     assert found.spectral_radius == pytest.approx(found.predicted_radius, abs=1e-9)
     assert found.spectral_radius < 1
+
+
+@pytest.mark.parametrize(("alpha", "delta"), [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5)])
+def test_a_free_step_loses_the_energy_that_the_scheme_takes(alpha, delta):
+    """In the energy of the scheme, V M V + D K D + c dt^2 A M A with c = alpha - delta / 2, as Hughes has it."""
+    model = build(make(poisson=0.3, elements=2, degree=1), full=True)
+    highest = np.sqrt(eigh(model.K.toarray(), model.M.toarray(), eigvals_only=True)[-1])
+    dt = 2.0 / highest  # of the schemes here the one with alpha = 1/6 has a limit, at sqrt(12)
+    c = alpha - delta / 2
+    step = Stepper(model.M, model.K, np.zeros_like(model.F), Scheme(alpha, delta, 1.0, dt))
+
+    def size(d, a):
+        return d @ (model.K @ d) + c * dt**2 * a @ (model.M @ a)
+
+    D, V = np.random.default_rng(5).normal(size=(2, len(model.F)))
+    state = Motion(D, V * highest, -np.linalg.solve(model.M.toarray(), model.K @ D))
+    energies = [state.V @ (model.M @ state.V) + size(state.D, state.A)]
+    for _ in range(60):
+        new = step.advance(state)
+        energies.append(new.V @ (model.M @ new.V) + size(new.D, new.A))
+        loss = (2 * delta - 1) * size(new.D - state.D, new.A - state.A)
+        assert abs(energies[-1] - energies[-2] + loss) < 1e-12 * energies[0]
+        state = new
