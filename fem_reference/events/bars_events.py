@@ -29,14 +29,11 @@ from fem_reference.events.switches import (
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 40
-"""Decimal digits of the first computation; the second one has twice as many."""
-MOST_DIGITS = 320
-"""Decimal digits of the last one."""
+DIGITS = 40  # decimal digits of the first computation; the second one has twice as many
+MOST_DIGITS = 320  # decimal digits of the last one
+# Part of the limit of work for the first computation; the second, in more digits, takes a little more.
 FIRST_PART = 0.45
-"""Part of the limit of work for the first computation; the second, in more digits, takes a little more."""
-PROMISED = 1e-15
-"""Part of the end of the motion by which the instants of the switches of two computations may differ."""
+PROMISED = 1e-15  # part of the end of the motion by which the instants of the switches of two computations may differ
 KINDS = {OPEN: "opens", CLOSED: "closes"}
 
 

@@ -22,15 +22,16 @@ from flint import arb, ctx
 
 from fem_reference.events.bars_model import BarJoint, BarsProblem, function_of
 from fem_reference.events.column_drive import Drive
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
 from fem_reference.events.switches import Work
 
+# States of a joint; it slips forwards where its upper face moves towards + over the lower one.
 OPEN = "open"
 CLOSED = "closed"
 STICKS = "sticks"
 FORWARDS = "slips forwards"
 BACKWARDS = "slips backwards"
-"""States of a joint; it slips forwards where its upper face moves towards + over the lower one."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,7 @@ class Node:
     arrivals: tuple[Arrival, ...]  # the wave in the bar, and the force N [Pa] that is given at the top
     leaving: Wave
     admittance: arb  # N to what leaves: 1 / z, negative at the top [m/(Pa s)]
-    time: arb = field(default_factory=lambda: arb(0))
+    time: arb = field(default_factory=lambda: ZERO)
 
     def advance(self, end: arb) -> None:
         """Go on as far as the arrivals are known and stay the same, or to `end`."""
@@ -137,9 +138,9 @@ class Joint:
     admittance_above: arb  # 1 / z [m/(Pa s)]
     admittance_below: arb
     static: arb  # force in which the waves have no part [Pa]
-    time: arb = field(default_factory=lambda: arb(0))
-    opening: arb = field(default_factory=lambda: arb(0))  # y or r at that time [m]
-    force: arb = field(default_factory=lambda: arb(0))  # T at that time, of a frictional spring [Pa]
+    time: arb = field(default_factory=lambda: ZERO)
+    opening: arb = field(default_factory=lambda: ZERO)  # y or r at that time [m]
+    force: arb = field(default_factory=lambda: ZERO)  # T at that time, of a frictional spring [Pa]
     pieces: list[JointPiece] = field(default_factory=list)
     switches: list[tuple[arb, str]] = field(default_factory=list)  # instant and new state
 
@@ -261,7 +262,7 @@ class Joint:
         if piece.state in (OPEN, CLOSED):
             none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
             if none or bool(self.opening < 0) != (piece.state == CLOSED):
-                self.opening = arb(0)
+                self.opening = ZERO
         elif not self.rigid:
             self.force = piece.force(elapsed).mid()
             if piece.state == STICKS and switching >= 0:
@@ -291,8 +292,8 @@ def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> 
         velocity = function_of(part, start, rates) * factor
         if fall is not None:
             velocity = velocity.plus(fall * start, fall)
-        pieces.append(WavePiece(start, velocity, velocity.integral(arb(0))))
-    return Arrival(Wave(pieces, arb("inf")), arb(0))
+        pieces.append(WavePiece(start, velocity, velocity.integral(ZERO)))
+    return Arrival(Wave(pieces, arb("inf")), ZERO)
 
 
 def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | Joint], list[Wave], list[Wave]]:
@@ -304,12 +305,12 @@ def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | 
     for bar in bars:
         start = ExponentialSum.polynomial(rates, [arb(bar.velocity) / 2])
         for waves in (up, down):
-            waves.append(Wave([WavePiece(-bar.travel.mid(), start, start.integral(arb(0)))], arb(0)))
+            waves.append(Wave([WavePiece(-bar.travel.mid(), start, start.integral(ZERO))], ZERO))
     nodes: list[Node | Joint] = []
     for j, (bar, law) in enumerate(zip(bars, problem.joints, strict=True)):
         above = Arrival(down[j], bar.travel.mid())
         if law is None:
-            nodes.append(Node((above,), up[j], arb(0)))
+            nodes.append(Node((above,), up[j], ZERO))
             continue
         if j:
             below = Arrival(up[j - 1], bars[j - 1].travel.mid())

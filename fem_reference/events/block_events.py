@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
 from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, States, direction
-from fem_reference.events.enclosure import bits_of, check_request, precision
+from fem_reference.events.enclosure import ZERO, bits_of, check_request, precision
 from fem_reference.events.march import Node
 from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
 from fem_reference.events.series import Start, column, floats
@@ -35,20 +35,16 @@ from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch,
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 50
-"""Decimal digits of the first computation."""
-MOST_DIGITS = 240
-"""Decimal digits of the last one, where switches cost those of the ones before."""
+DIGITS = 50  # decimal digits of the first computation
+MOST_DIGITS = 240  # decimal digits of the last one, where switches cost those of the ones before
+# Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it.
 PROMISED = 1e-20
-"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-_UNKNOWNS = np.zeros((6, 6))
-"""From (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)."""
+_UNKNOWNS = np.zeros((6, 6))  # from (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)
 _UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
 _UNKNOWNS[[3, 4], 2] = -1, 1
 _OUTPUTS = np.linalg.inv(_UNKNOWNS)
 TO_OUTPUTS = arb_mat(_OUTPUTS.tolist())
-REPORT_DIGITS = 40
-"""Decimal digits in which the motion is evaluated where it is reported."""
+REPORT_DIGITS = 40  # decimal digits in which the motion is evaluated where it is reported
 
 
 @dataclass(frozen=True)
@@ -121,7 +117,7 @@ class BlockMotion(ProvenMotion):
         start = instant.start
         away, speed = base_motion(node, start.time)
         u = start.u + away
-        u[1, 0] = u[1, 0] - problem.gap
+        u[1, 0] -= problem.gap
         v = start.v + speed
         x = floats(TO_OUTPUTS * u)[:, 0]
         gap = np.array([float(row) for row in instant.rows[:2]])
@@ -137,7 +133,7 @@ class BlockMotion(ProvenMotion):
         shear = instant.forces[2:4]
         springs = float(model.contacts[0].stiffness) * (pressed**2).sum() / 2
         if problem.shear_stiffness:
-            springs += float(sum((T * T for T in shear), arb(0)) / problem.shear_stiffness / 2)
+            springs += float(sum((T * T for T in shear), ZERO) / problem.shear_stiffness / 2)
         return {
             "displacement": x,
             "velocity": floats(TO_OUTPUTS * v)[:, 0],
@@ -174,14 +170,14 @@ class BlockMotion(ProvenMotion):
             for c, state in enumerate(following.states):
                 T = forces[2 + c]
                 if state in CARRIES_NOTHING and T != 0:
-                    ledger[4, 0] = ledger[4, 0] + T * T / self.problem.shear_stiffness / 2
+                    ledger[4, 0] += T * T / self.problem.shear_stiffness / 2
             ledgers.append(ledger)
         return ledgers
 
     def _gains(self, node: Node, end: Start) -> arb_mat:
         """What a step adds to a ledger until its end, as seen from its base."""
         model = self.model
-        gains = [arb(0)] * 5
+        gains = [ZERO] * 5
         rows = model.values(end)
         for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
             if direction(state):
@@ -205,7 +201,7 @@ class BlockMotion(ProvenMotion):
 def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:
     """What the base adds to unknowns and rates that are seen from it, at an instant of a step."""
     course = [piece.series(time, 1.0, 2) for piece in node.drives]
-    away, speed = (column([*part, *[arb(0)] * 4]) for part in zip(*course, strict=True))
+    away, speed = (column([*part, *[ZERO] * 4]) for part in zip(*course, strict=True))
     return away, speed
 
 

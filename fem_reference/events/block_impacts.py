@@ -45,17 +45,14 @@ from flint import arb, arb_mat, arb_poly, ctx
 
 from fem_reference.events.block_model import BlockModel, RigidContact
 from fem_reference.events.contacts import OPEN
-from fem_reference.events.enclosure import NEWTON_STEPS, ball
+from fem_reference.events.enclosure import NEWTON_STEPS, ZERO, ball
 from fem_reference.events.series import Segment, Start, column, expand
 
+# Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short.
 LONGEST_HOP = 0.03
-"""Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short."""
-SHORTEST = 1e-300
-"""Length of a series over no time [s]."""
-ATTEMPTS = 8
-"""Times that bounds of w'' are widened before accumulation counts as not proven."""
-WIDENING = 1.2
-"""Factor by which they are widened beyond what they imply."""
+SHORTEST = 1e-300  # length of a series over no time [s]
+ATTEMPTS = 8  # times that bounds of w'' are widened before accumulation counts as not proven
+WIDENING = 1.2  # factor by which they are widened beyond what they imply
 
 
 @dataclass(frozen=True)
@@ -118,7 +115,7 @@ class Hops:
 
     def series(self, state: State, length: float) -> Segment:
         """The series of a flight."""
-        zero = arb(0)
+        zero = ZERO
         return expand(self.model, (OPEN, OPEN), Start(zero, *state, [zero, zero]), (), length)
 
     def after(self, state: State, time: arb) -> State:
@@ -198,7 +195,7 @@ class Hops:
         change_norm = self.change_norm(state)
         fastest = speed.upper()
         slowest = speed.lower()
-        margin = arb(0)
+        margin = ZERO
         for _ in range(ATTEMPTS):
             A = now.upper() + margin
             B = now.lower() - margin
@@ -223,4 +220,4 @@ class Hops:
 
 def euclidean(entries: Sequence[arb]) -> arb:
     """Upper bound of the root of a sum of squares."""
-    return sum((x * x for x in entries), arb(0)).abs_upper().sqrt().upper()
+    return sum((x * x for x in entries), ZERO).abs_upper().sqrt().upper()

@@ -42,6 +42,7 @@ import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
@@ -50,10 +51,9 @@ CORNERS = ("M", "N")
 HYPOTHESES = ("plane stress", "plane strain")
 POSITIVE = ("width", "height", "density", "young", "stiffness")
 UNSIGNED = ("shear_stiffness", "gap", "cohesion", "damping")
-INFINITE = ("young", "stiffness")
-"""Fields that may be infinite: of a rigid block and of a rigid contact."""
+INFINITE = ("young", "stiffness")  # fields that may be infinite: of a rigid block and of a rigid contact
+# Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits.
 ANGLE = 12.0
-"""Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits."""
 Vector = list[arb]
 
 
@@ -162,7 +162,7 @@ class BlockModel(System):
         self.stiffness = arb_mat(_elastic(problem, a * b))  # of the strained block [N/m, N m]
         self.load = column(_load(problem, a, b, m))  # of pressure, traction and weight [N, N m]
         self.mobility = self._mobility(problem.rigid)  # [1/kg, 1/(kg m2)]
-        zero = arb(0)
+        zero = ZERO
         ends = -a / 2, a / 2
         gaps = [[zero, arb(1), zero, zero, x, -b / 2] for x in ends]
         slides = [[arb(1), zero, x, -b / 2, zero, zero] for x in ends]
@@ -264,15 +264,15 @@ class RigidContact:
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
     """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4); zero if there is no strain."""
     if problem.rigid:
-        return [[arb(0)] * 6 for _ in range(6)]
+        return [[ZERO] * 6 for _ in range(6)]
     E = arb(problem.young)
     mu = arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))
     if problem.hypothesis == "plane strain":
-        E = E / (1 - mu * mu)
-        mu = mu / (1 - mu)
+        E /= 1 - mu * mu
+        mu /= 1 - mu
     direct = area * E / (1 - mu * mu)
-    K = [[arb(0)] * 6 for _ in range(6)]
+    K = [[ZERO] * 6 for _ in range(6)]
     K[2][2] = K[5][5] = direct
     K[2][5] = K[5][2] = mu * direct
     K[3][3] = K[4][4] = K[3][4] = K[4][3] = shear
@@ -289,4 +289,4 @@ def _load(problem: BlockProblem, a: arb, b: arb, m: arb) -> Vector:
     weight = m * arb(problem.gravity)
     along = weight * arb(math.sin(turn))
     down = weight * arb(math.cos(turn))
-    return [t * a + along, -push - down, arb(0), t * a * b / 2, -push * e, -push * b / 2]
+    return [t * a + along, -push - down, ZERO, t * a * b / 2, -push * e, -push * b / 2]

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.contacts import OPEN, STICKS, States, direction
-from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
+from fem_reference.events.enclosure import ZERO, bits_of, check_request, precision, term_count
 from fem_reference.events.march import March, Node
 from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
 from fem_reference.events.series import Start, floats
@@ -29,14 +29,11 @@ from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enoug
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 60
-"""Decimal digits of the first computation."""
-MOST_DIGITS = 240
-"""Decimal digits of the last one, where switches cost those of the ones before."""
+DIGITS = 60  # decimal digits of the first computation
+MOST_DIGITS = 240  # decimal digits of the last one, where switches cost those of the ones before
+# Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it.
 PROMISED = 1e-20
-"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-REPORT_DIGITS = 28
-"""Decimal digits in which the series are summed where the motion is reported."""
+REPORT_DIGITS = 28  # decimal digits in which the series are summed where the motion is reported
 
 
 @dataclass(frozen=True)
@@ -191,9 +188,9 @@ class ColumnMarch(March):
     def initial(self) -> tuple[Start, States]:
         """Where the column begins; its joints count as open as long as they carry nothing."""
         column = self.column
-        base, rate = self.pieces[0].series(arb(0), 1.0, 2)
+        base, rate = self.pieces[0].series(ZERO, 1.0, 2)
         count = len(column.contacts)
-        start = Start(arb(0), column.displacements(base), column.velocities(rate), [arb(0)] * count)
+        start = Start(ZERO, column.displacements(base), column.velocities(rate), [ZERO] * count)
         return start, (OPEN if column.unilateral else STICKS,) * count
 
     def take_drives(self, moment: float) -> None:

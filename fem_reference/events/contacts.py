@@ -23,16 +23,16 @@ from flint import arb, arb_mat
 
 from fem_reference.events.enclosure import ZERO
 
+# States of a contact: `STICKS` is closed too where nothing slides; `RIGHT` and `LEFT` slip towards + and -.
 OPEN = 0
 STICKS = 1
 RIGHT = 2
 LEFT = -2
 RELEASED = 3
-"""States of a contact: `STICKS` is closed too where nothing slides; `RIGHT` and `LEFT` slip towards + and -."""
+# Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction.
 CARRIES_NOTHING = (OPEN, RELEASED)
 NORMAL = 0
 FORCE = 3
-"""Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction."""
 States = tuple[int, ...]
 
 
@@ -68,7 +68,7 @@ class Contact:
             return slide
         limit = self.cohesion
         if self.gap is not None:
-            limit = limit - rows[self.gap] * (self.friction * self.stiffness)
+            limit -= rows[self.gap] * (self.friction * self.stiffness)
         return slide - limit * (direction(state) / self.shear_stiffness)
 
 

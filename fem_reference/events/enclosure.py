@@ -94,8 +94,7 @@ class Local(NamedTuple):
     bend: arb  # encloses the second derivative over the interval, unless this is a point
 
 
-Smooth = Callable[[arb, arb], Local]
-"""From the middle of an interval and half its length to the function there."""
+Smooth = Callable[[arb, arb], Local]  # from the middle of an interval and half its length to the function there
 
 
 class Fall(NamedTuple):
@@ -156,7 +155,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
         Size below which the function counts as zero, and as no crossing.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
-    pending = [(arb(0), end)]
+    pending = [(ZERO, end)]
     while pending:
         low, high = pending.pop()
         half = ((high - low) / 2).mid()
@@ -170,7 +169,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
             continue
         falls = slope + change < 0
         if falls or half < finest:
-            if function(high, arb(0)).value < 0:
+            if function(high, ZERO).value < 0:
                 return _root(function, low, high) if falls else Fall(middle + ball(half), True)
             if not falls and touches is not None:
                 touches.append(middle)
@@ -183,7 +182,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
 
 def _root(function: Smooth, low: arb, high: arb) -> Fall:
     """The root of a function that falls throughout an interval, by Newton's method inside the bracket."""
-    exact = arb(0)
+    exact = ZERO
     x = ((low + high) / 2).mid()
     width = high - low
     start = low

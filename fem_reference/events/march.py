@@ -38,8 +38,7 @@ from fem_reference.events.switches import (
 from fem_reference.events.watching import CELLS, CUTS, Change, Reach, Watched
 from fem_reference.problem.problem import Array
 
-FEW = 4
-"""Terms that are looked at first where functions begin at zero: most show at once where they go."""
+FEW = 4  # terms that are looked at first where functions begin at zero: most show at once where they go
 
 
 @dataclass(frozen=True)

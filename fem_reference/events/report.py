@@ -12,8 +12,7 @@ from fem_reference.events.march import Node
 from fem_reference.events.series import Start, System, expand, step_length
 from fem_reference.problem.problem import Array
 
-ROUNDING = 4 * np.finfo(float).eps
-"""Part of a displacement by which floats round it."""
+ROUNDING = 4 * np.finfo(float).eps  # part of a displacement by which floats round it
 
 
 class Instant(NamedTuple):

@@ -23,10 +23,8 @@ import numpy as np
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
 
-LIMIT = 100_000
-"""Steps in contact after which the mass counts as stuck; also where it has come to rest."""
-REST = 1e-18
-"""Speed and acceleration below which the mass has come to rest, over those of the impact."""
+LIMIT = 100_000  # steps in contact after which the mass counts as stuck; also where it has come to rest
+REST = 1e-18  # speed and acceleration below which the mass has come to rest, over those of the impact
 
 
 @dataclass(frozen=True)
@@ -125,7 +123,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         If `omega` is not positive.
     """
     step = scheme.step(omega)
-    branches: list[Branch] = []
+    branches = []
     # intervals of theta, and there (w*, v, A) as columns of constants and slopes
     pending = [(0.0, scheme.gg, np.array([[0.0, -1.0], [-1.0, 0.0], [0.0, 0.0]]), 0)]
     while pending:

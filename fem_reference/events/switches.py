@@ -7,10 +7,8 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TypeVar
 
-MARGIN = 1.25
-"""Times the digits that are expected to do which are taken next."""
-MOST_FOLD = 4
-"""Times the digits that are taken next at most, but for the margin."""
+MARGIN = 1.25  # times the digits that are expected to do which are taken next
+MOST_FOLD = 4  # times the digits that are taken next at most, but for the margin
 
 
 @dataclass(frozen=True)

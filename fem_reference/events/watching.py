@@ -20,22 +20,16 @@ from fem_reference.events.series import INFLATION, Segment, Start
 from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
-FLOAT_TERMS = 64
-"""Terms of a series in floats; further ones count as what they may be wrong by."""
-FIRST_CELLS = 4
-"""Parts of a step whose Bernstein forms are looked at first."""
-CELLS = 8
-"""Parts into which the first part that cannot be proven is cut, time and again."""
-CUTS = 5
-"""Times that it is cut: a fall is left in 1/32768 of a step."""
+FLOAT_TERMS = 64  # terms of a series in floats; further ones count as what they may be wrong by
+FIRST_CELLS = 4  # parts of a step whose Bernstein forms are looked at first
+CELLS = 8  # parts into which the first part that cannot be proven is cut, time and again
+CUTS = 5  # times that it is cut: a fall is left in 1/32768 of a step
+# Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms may be wrong after all cuts.
 ROUNDING = 400 * np.finfo(float).eps
-"""Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms may be wrong after all cuts."""
-LEAST_MARGIN = 1e-300
-"""What a radius may be that floats round to zero."""
+LEAST_MARGIN = 1e-300  # what a radius may be that floats round to zero
+# Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more.
 MOST_LOOKS = 5000
-"""Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more."""
-NEWTON_STEPS = 4
-"""Steps from the ball of a fall to the root of the series itself."""
+NEWTON_STEPS = 4  # steps from the ball of a fall to the root of the series itself
 
 
 class Reach(NamedTuple):
@@ -117,7 +111,7 @@ class Watched:
         LostDigitsError
             If what the motion may be off hides a function, or it stays too near to zero for too long.
         """
-        first: tuple[Fall, Watch] | None = None
+        first = None
         begin = arb(low)
         end = high - begin
         for watch in watches:
