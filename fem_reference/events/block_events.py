@@ -27,18 +27,14 @@ from numpy.typing import ArrayLike
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
 from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, States, direction
-from fem_reference.events.enclosure import ZERO, bits_of, check_request, precision
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.march import Node
-from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
 from fem_reference.events.series import Start, column, floats
-from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
-from fem_reference.problem.instants import instants
+from fem_reference.events.switches import Cascade, Impact
 from fem_reference.problem.problem import Array
 
 DIGITS = 50  # decimal digits of the first computation
-MOST_DIGITS = 240  # decimal digits of the last one, where switches cost those of the ones before
-# Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it.
-PROMISED = 1e-20
 _UNKNOWNS = np.zeros((6, 6))  # from (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)
 _UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
 _UNKNOWNS[[3, 4], 2] = -1, 1
@@ -83,12 +79,7 @@ class BlockMotion(ProvenMotion):
     """Exact motion of a block from t = 0 to `end`."""
 
     problem: BlockProblem
-    end: float  # last instant [s]
-    digits: int  # decimal digits of the computation
     closed_at_start: tuple[bool, bool]  # whether M and N are closed just after t = 0
-    switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
-    nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
     model: BlockModel = field(repr=False, compare=False)
     impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
@@ -101,13 +92,7 @@ class BlockMotion(ProvenMotion):
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            # without an instant one gives the columns their shapes
-            columns = [
-                self._at(instant) for instant in instants_of(self.model, self.nodes, t if len(t) else np.zeros(1))
-            ]
-        return BlockHistory(time=t, **stacked(columns, len(t)))
+        return BlockHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     def _at(self, instant: Instant) -> dict[str, Any]:
         """All columns but the time at an instant."""
@@ -235,24 +220,22 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     NoContactStateError
         If no state of the corners agrees with the motion that follows from it.
     """
-    check_request(end, digits)
 
     def motion_in(digits: int) -> BlockMotion:
-        with precision(bits_of(digits)):
-            march = BlockMarch(problem, float(end), limit)
-            march.run()
+        march = BlockMarch(problem, float(end), limit)
+        march.run()
         first = march.nodes[0].states
         return BlockMotion(
-            problem,
-            float(end),
+            march.end,
             digits,
-            (first[0] != OPEN, first[1] != OPEN),
             tuple(march.switches),
             tuple(march.touches),
             tuple(march.nodes),
+            problem,
+            (first[0] != OPEN, first[1] != OPEN),
             march.block,
             tuple(march.impacts),
             tuple(march.cascades),
         )
 
-    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)
+    return with_enough_digits(motion_in, float(end), digits)

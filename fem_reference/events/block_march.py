@@ -43,12 +43,13 @@ INSTANT = 1e-18
 class BlockMarch(March):
     """The motion of a block from t = 0 on."""
 
+    seen_from_base = True
+
     def __init__(self, problem: BlockProblem, end: float, limit: int) -> None:
         self.block = BlockModel(problem)
         super().__init__(self.block, end, limit, Work())
         self.problem = problem
         base = problem.base or Motion((0.0,), (0.0,), (0.0,))
-        self.breaks = base.time  # the rows of the base's record [s]
         self.courses = path(base.time, base.x)(), path(base.time, base.y)()
         self.impacts: list[Impact] = []
         self.cascades: list[Cascade] = []
@@ -65,15 +66,9 @@ class BlockMarch(March):
         reference = ZERO if self.block.locked else -x.mid()
         return Start(ZERO, u, v, [reference, reference]), states
 
-    def take_drives(self, moment: float) -> None:
-        """Take the path of the base from a row of its record on, from which the block is seen."""
-        before = self.drives
-        self.drives = tuple(course.piece_at(moment) for course in self.courses)
-        if before:
-            time = self.start.time
-            old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
-            jump = column([*(one - other for one, other in zip(old, new, strict=True)), *[ZERO] * 4])
-            self.place(time, self.start.u, self.start.v + jump)
+    def jump(self, rates: Sequence[arb]) -> arb_mat:
+        """Return what the block takes over, as seen from its base, of a jump of the base's rates."""
+        return column([*rates, *[ZERO] * 4])
 
     def check_work(self) -> None:
         """Stop where the block oscillates too fast for the length of its motion."""
@@ -124,9 +119,7 @@ class BlockMarch(March):
 
     def _add_impact(self, contact: RigidContact, approach: arb) -> None:
         """Record an impact at this instant."""
-        midpoint = self.start.time.str(40, radius=False)
-        impulse = float(contact.impulse(approach))
-        self.impacts.append(Impact(self.now, float(approach), impulse, midpoint, self.offset))
+        self.impacts.append(Impact(self.now, float(approach), float(contact.impulse(approach))))
         self.last_switch = len(self.nodes)
 
     def _add_rebound(self) -> None:
@@ -165,9 +158,7 @@ class BlockMarch(March):
                     if rest.length < finest:
                         impulse += contact.impulse(rest.speeds)
                         self._rest_after(hops, rest, state, time)
-                        midpoint = self.start.time.str(40, radius=False)
-                        cascade = Cascade(cascade_start, self.now, float(impulse), midpoint, self.switches[-1].radius)
-                        self.cascades.append(cascade)
+                        self.cascades.append(Cascade(cascade_start, self.now, float(impulse), self.offset))
                         return
             hop = hops.find_hop(landed, speed)
             if hop is None or not time + hop.length < self.end:

@@ -10,6 +10,7 @@ is zero in all derivatives, as those of blocks in common flight, carry no force;
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,18 +22,14 @@ from numpy.typing import ArrayLike
 from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.contacts import OPEN, STICKS, States, direction
-from fem_reference.events.enclosure import ZERO, bits_of, check_request, precision, term_count
-from fem_reference.events.march import March, Node
-from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.enclosure import ZERO, bits_of, precision, term_count
+from fem_reference.events.march import March
+from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
 from fem_reference.events.series import Start, floats
-from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enough_digits
-from fem_reference.problem.instants import instants
+from fem_reference.events.switches import Work
 from fem_reference.problem.problem import Array
 
 DIGITS = 60  # decimal digits of the first computation
-MOST_DIGITS = 240  # decimal digits of the last one, where switches cost those of the ones before
-# Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it.
-PROMISED = 1e-20
 REPORT_DIGITS = 28  # decimal digits in which the series are summed where the motion is reported
 
 
@@ -88,13 +85,8 @@ class ColumnMotion(ProvenMotion):
     """Exact motion of a column from t = 0 to `end`."""
 
     problem: ColumnProblem
-    end: float  # last instant [s]
-    digits: int  # decimal digits of the computation
     states_at_start: tuple[int, ...]  # of the joints with a spring just after t = 0
-    switches: tuple[Switch, ...]  # changes of the joints in the order of time; together: from the base upwards
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     resting: tuple[int, ...]  # joints that were at zero gap without force for a while
-    nodes: tuple[Node, ...] = field(repr=False)  # beginnings of the steps in the order of time
     model: ColumnModel = field(repr=False, compare=False)
 
     def at(self, times: ArrayLike) -> ColumnHistory:
@@ -105,10 +97,7 @@ class ColumnMotion(ProvenMotion):
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            columns = [self._at(instant) for instant in instants_of(self.model, self.nodes, t)]
-        return ColumnHistory(time=t, **stacked(columns, len(t)))
+        return ColumnHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     @cached_property
     def _ways(self) -> Array:
@@ -183,7 +172,6 @@ class ColumnMarch(March):
         self.column = ColumnModel(problem)
         super().__init__(self.column, end, limit, work)
         self.courses = problem.base_motion(), problem.pressure()
-        self.breaks = [time for course in self.courses for time in course.breaks]
 
     def initial(self) -> tuple[Start, States]:
         """Where the column begins; its joints count as open as long as they carry nothing."""
@@ -193,17 +181,11 @@ class ColumnMarch(March):
         start = Start(ZERO, column.displacements(base), column.velocities(rate), [ZERO] * count)
         return start, (OPEN if column.unilateral else STICKS,) * count
 
-    def take_drives(self, moment: float) -> None:
-        """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
-        before = self.pieces
-        self.pieces = self.drives = tuple(course.piece_at(moment) for course in self.courses)
-        if not before:
-            return
-        time = self.start.time
-        old, new = (pieces[0].series(time, 1.0, 2)[1] for pieces in (before, self.pieces))
+    def jump(self, rates: Sequence[arb]) -> arb_mat:
+        """Return what a base that the lowest block is welded to passes on of a jump."""
         impulse = arb_mat(self.column.size, 1)
-        impulse[0, 0] = self.column.base_coupling * (old - new)
-        self.place(time, self.start.u, self.start.v + self.column.mobility * impulse)
+        impulse[0, 0] = self.column.base_coupling * rates[0]
+        return self.column.mobility * impulse
 
 
 def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
@@ -251,23 +233,21 @@ def solve(
     NoContactStateError
         If no state of the joints agrees with the motion that follows from it.
     """
-    check_request(end, digits)
     work = Work() if work is None else work
 
     def motion_in(digits: int) -> ColumnMotion:
-        with precision(bits_of(digits)):
-            march = ColumnMarch(problem, float(end), limit, work)
-            march.run()
+        march = ColumnMarch(problem, float(end), limit, work)
+        march.run()
         return ColumnMotion(
-            problem,
-            float(end),
+            march.end,
             digits,
-            march.nodes[0].states,
             tuple(march.switches),
             tuple(march.touches),
-            tuple(sorted(march.column.contacts[c].number for c in march.resting)),
             tuple(march.nodes),
+            problem,
+            march.nodes[0].states,
+            tuple(sorted(march.column.contacts[c].number for c in march.resting)),
             march.column,
         )
 
-    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)
+    return with_enough_digits(motion_in, float(end), digits)
