@@ -107,7 +107,17 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        return JointHistory(*self._rows(times, lambda time: self._joint_row(self.joints[number], time)))
+        joint = self.joints[number]
+
+        def row(time: arb) -> list[float]:
+            if joint is None:
+                return [0.0, 0.0, 0.0]
+            piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=start_of) - 1]
+            force = float(piece.force(time - piece.start))
+            opening = float(piece.opening(time - piece.start))
+            return [force, opening, 0.0] if joint.law.law == "unilateral" else [force, 0.0, opening]
+
+        return JointHistory(*self._rows(times, row))
 
     def impulse(self, number: int, times: ArrayLike) -> Array:
         """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
@@ -138,10 +148,25 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`, or the height is not in the bar.
         """
-        length = self.problem.bars[bar].length
-        if not 0 <= height <= length:
-            raise ValueError(f"height: must be from 0 to {length!r}, got {height!r}")
-        return PointHistory(*self._rows(times, lambda time: self._point(bar, height, time)))
+        data = self.problem.bars[bar]
+        if not 0 <= height <= data.length:
+            raise ValueError(f"height: must be from 0 to {data.length!r}, got {height!r}")
+        gravity = self.problem.fall
+
+        def row(time: arb) -> list[float]:
+            x = data.travel * arb(height) / arb(data.length)
+            displacement, stress = self.problem.static_point(bar, arb(height))
+            displacement -= gravity * time * time / 2
+            velocities = []
+            for wave, delay in ((self.up[bar], x), (self.down[bar], data.travel - x)):
+                velocity, moved = wave.at(time - delay)
+                displacement += moved - wave.at(-delay)[1]
+                velocities.append(velocity)
+            up, down = velocities
+            stress += (up - down) * data.impedance
+            return [float(displacement), float(up + down - gravity * time), float(stress)]
+
+        return PointHistory(*self._rows(times, row))
 
     def _mean_velocity(self, bar: int, time: arb) -> float:
         data = self.problem.bars[bar]
@@ -150,30 +175,6 @@ class BarsMotion:
         for wave in (self.up[bar], self.down[bar]):
             mean += (wave.at(time)[1] - wave.at(time - T)[1]) / T
         return float(mean - self.problem.fall * time)
-
-    def _joint_row(self, joint: Joint | None, time: arb) -> tuple[float, float, float]:
-        if joint is None:
-            return 0.0, 0.0, 0.0
-        piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=start_of) - 1]
-        force = float(piece.force(time - piece.start))
-        opening = float(piece.opening(time - piece.start))
-        return (force, opening, 0.0) if joint.law.law == "unilateral" else (force, 0.0, opening)
-
-    def _point(self, bar: int, height: float, time: arb) -> tuple[float, float, float]:
-        data = self.problem.bars[bar]
-        gravity = self.problem.fall
-        T = data.travel
-        x = T * arb(height) / arb(data.length)
-        displacement, stress = self.problem.static_point(bar, arb(height))
-        displacement -= gravity * time * time / 2
-        velocities = []
-        for wave, delay in ((self.up[bar], x), (self.down[bar], T - x)):
-            velocity, moved = wave.at(time - delay)
-            displacement += moved - wave.at(-delay)[1]
-            velocities.append(velocity)
-        up, down = velocities
-        stress += (up - down) * data.impedance
-        return float(displacement), float(up + down - gravity * time), float(stress)
 
 
 def least_terms(problem: BarsProblem, end: float) -> float:
@@ -279,25 +280,20 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Wor
             work.add(1)
             node.advance(last)
             advances += 1
+        switches: list[Switch] = []
+        for joint in joints:
+            for time, state in joint.switches:
+                midpoint = time.mid().str(40, radius=False)
+                switches.append(Switch(float(time), str(joint.number), KINDS.get(state, state), midpoint))
         by_number = {joint.number: joint for joint in joints}
         numbers = range(len(problem.bars))
         return BarsMotion(
             problem=problem,
             end=end,
             digits=digits,
-            switches=_switches(joints),
+            switches=tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner)))),
             closed_at_start=tuple(i in by_number and by_number[i].pieces[0].state != OPEN for i in numbers),
             joints=tuple(by_number.get(i) for i in numbers),
             up=tuple(up),
             down=tuple(down),
         )
-
-
-def _switches(joints: Sequence[Joint]) -> tuple[Switch, ...]:
-    switches = []
-    for joint in joints:
-        for time, state in joint.switches:
-            midpoint = time.mid().str(40, radius=False)
-            kind = KINDS.get(state, state)
-            switches.append(Switch(float(time), str(joint.number), kind, midpoint))
-    return tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner))))

@@ -17,6 +17,7 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from flint import arb, ctx
 
@@ -32,10 +33,10 @@ CLOSED = "closed"
 STICKS = "sticks"
 FORWARDS = "slips forwards"
 BACKWARDS = "slips backwards"
+DIRECTION = {BACKWARDS: 1, FORWARDS: -1}  # of the force, against which a joint slips
 
 
-@dataclass(frozen=True)
-class WavePiece:
+class WavePiece(NamedTuple):
     """A wave from an instant on."""
 
     start: arb  # [s]
@@ -94,8 +95,7 @@ class Arrival:
         return piece.velocity.shifted(time - piece.start - self.delay)
 
 
-@dataclass(frozen=True)
-class JointPiece:
+class JointPiece(NamedTuple):
     """A joint from an instant on; functions of the time since then."""
 
     start: arb  # [s]
@@ -138,9 +138,9 @@ class Joint:
     admittance_above: arb  # 1 / z [m/(Pa s)]
     admittance_below: arb
     static: arb  # force in which the waves have no part [Pa]
+    opening: arb  # y or r at its time [m]
+    force: arb  # T at its time, of a frictional spring [Pa]
     time: arb = field(default_factory=lambda: ZERO)
-    opening: arb = field(default_factory=lambda: ZERO)  # y or r at that time [m]
-    force: arb = field(default_factory=lambda: ZERO)  # T at that time, of a frictional spring [Pa]
     pieces: list[JointPiece] = field(default_factory=list)
     switches: list[tuple[arb, str]] = field(default_factory=list)  # instant and new state
 
@@ -199,7 +199,7 @@ class Joint:
         if math.isinf(self.law.strength):
             return STICKS
         strength = arb(self.law.strength)
-        for direction, state in ((1, BACKWARDS), (-1, FORWARDS)):  # of the force, against which it slips
+        for state, direction in DIRECTION.items():
             if not self.rigid and self.force * direction < strength:
                 continue
             slip_rate = relative.plus(self.mobility * strength * direction) * -direction
@@ -224,14 +224,9 @@ class Joint:
             else:
                 force = (relative * -self.stiffness).relaxed(self.stiffness * self.mobility, self.force)
             return JointPiece(self.time, state, force, nothing.plus(self.opening))
-        force = nothing.plus(arb(self.law.strength) * self._direction(state))
+        force = nothing.plus(arb(self.law.strength) * DIRECTION[state])
         slip_rate = (relative + force * self.mobility).without_noise()
         return JointPiece(self.time, state, force, slip_rate.integral(self.opening))
-
-    @staticmethod
-    def _direction(state: str) -> int:
-        """Sign of the force of a joint that slips."""
-        return 1 if state == BACKWARDS else -1
 
     def _watched(self, piece: JointPiece, relative: ExponentialSum) -> list[ExponentialSum]:
         """The functions, of the size of velocities or for a gap of lengths, of which one falls where the state ends."""
@@ -244,7 +239,7 @@ class Joint:
             if math.isinf(self.law.strength):
                 return []
             return [((piece.force * sign).plus(strength) * self.mobility).without_noise() for sign in (-1, 1)]
-        direction = self._direction(piece.state)
+        direction = DIRECTION[piece.state]
         return [(relative.plus(self.mobility * strength * direction) * -direction).without_noise()]
 
     def _go_on(self, piece: JointPiece, remainder: arb, watched: Sequence[ExponentialSum]) -> None:
@@ -284,14 +279,12 @@ def earliest(arrivals: Sequence[Arrival], end: arb) -> arb:
     return time
 
 
-def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> Arrival:
+def driven(rates: Rates, drive: Drive, factor: arb, fall: arb = ZERO) -> Arrival:
     """A drive times a factor as a wave; with half the acceleration of gravity, plus that times t."""
     pieces = []
     for time, part in drive().parts():
         start = arb(time)
-        velocity = function_of(part, start, rates) * factor
-        if fall is not None:
-            velocity = velocity.plus(fall * start, fall)
+        velocity = (function_of(part, start, rates) * factor).plus(fall * start, fall)
         pieces.append(WavePiece(start, velocity, velocity.integral(ZERO)))
     return Arrival(Wave(pieces, arb("inf")), ZERO)
 
@@ -320,13 +313,13 @@ def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | 
         admittance = 1 / bar.impedance
         lower = down[j - 1] if j else None
         static = problem.static_force(j)
-        joint = Joint(j, law, above, below, up[j], lower, admittance, problem.mobility(j) - admittance, static)
+        opening = ZERO
         if law.law == "unilateral" and not problem.settled:
-            joint.opening = arb(law.gap)
-        elif law.law == "unilateral" and not joint.rigid:
-            joint.opening = -static / joint.stiffness
-        joint.force = static
-        nodes.append(joint)
+            opening = arb(law.gap)
+        elif law.law == "unilateral" and math.isfinite(law.stiffness):
+            opening = -static / arb(law.stiffness)
+        across = problem.mobility(j) - admittance
+        nodes.append(Joint(j, law, above, below, up[j], lower, admittance, across, static, opening, static))
     pressure = driven(rates, problem.top, arb(1))
     nodes.append(Node((Arrival(up[-1], bars[-1].travel.mid()), pressure), down[-1], -1 / bars[-1].impedance))
     return nodes, up, down

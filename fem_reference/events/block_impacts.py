@@ -38,7 +38,6 @@ time. With w = w' = 0 it is thus the free block's state, projected along d.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from flint import arb, arb_mat, arb_poly, ctx
@@ -55,16 +54,14 @@ ATTEMPTS = 8  # times that bounds of w'' are widened before accumulation counts 
 WIDENING = 1.2  # factor by which they are widened beyond what they imply
 
 
-@dataclass(frozen=True)
-class Hop:
+class Hop(NamedTuple):
     """A flight from one impact to the next."""
 
     length: arb  # [s]
     approach: arb  # speed at which the gap closes at its end [m/s]
 
 
-@dataclass(frozen=True)
-class Accumulation:
+class Accumulation(NamedTuple):
     """What infinitely many impacts come to."""
 
     length: arb  # time from the last impact that was followed to the end of all [s]

@@ -17,7 +17,7 @@ from fem_reference.events.block_impacts import Accumulation, Hops, State
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem, RigidContact
 from fem_reference.events.column_drive import path
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, States
-from fem_reference.events.enclosure import ZERO, ball, is_blank, precision, radius_of
+from fem_reference.events.enclosure import ZERO, ball, precision, radius_of
 from fem_reference.events.march import March, Node
 from fem_reference.events.series import INFLATION, Start, column, floats
 from fem_reference.events.switches import (
@@ -147,7 +147,7 @@ class BlockMarch(March):
         finest = arb(2) ** (-TAIL_BITS * ctx.prec) / hops.rate
         length = arb(self.end)
         while True:
-            if is_blank(speed):
+            if speed.contains(0) or speed.rel_accuracy_bits() < ctx.prec // 4:
                 raise LostDigitsError(float(time), "impacts have cost most of the digits")
             landed = hops.blurred(state, time.rad())  # at the instant of the impact, no longer at its midpoint
             if cascade_start is None or length < finest:

@@ -49,9 +49,6 @@ from fem_reference.problem.motion import Motion
 
 CORNERS = ("M", "N")
 HYPOTHESES = ("plane stress", "plane strain")
-POSITIVE = ("width", "height", "density", "young", "stiffness")
-UNSIGNED = ("shear_stiffness", "gap", "cohesion", "damping")
-INFINITE = ("young", "stiffness")  # fields that may be infinite: of a rigid block and of a rigid contact
 # Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits.
 ANGLE = 12.0
 Vector = list[arb]
@@ -96,7 +93,12 @@ class BlockProblem:
     restitution: float | None = None  # e of the impact law of rigid contact [-], from 0, plastic, to 1, elastic
 
     def __post_init__(self) -> None:
-        require_numbers(self, POSITIVE, UNSIGNED, INFINITE)
+        require_numbers(
+            self,
+            positive=("width", "height", "density", "young", "stiffness"),
+            unsigned=("shear_stiffness", "gap", "cohesion", "damping"),
+            infinite=("young", "stiffness"),
+        )
         require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
         highest = 1.0 if self.hypothesis == "plane stress" else 0.5
         rule = f"must be above -1 and below {highest:g} in {self.hypothesis}"
@@ -114,10 +116,7 @@ class BlockProblem:
         springs = self.friction is None and not self.locked and not self.rigid_contact
         rule = "must be 0 with friction, locked contact or rigid contact, whose loss is set by restitution"
         require(springs or self.damping == 0, "damping", rule, self.damping)
-        self._check_impact_law()
-
-    def _check_impact_law(self) -> None:
-        """Raise for what rigid contact is not solved for: both its corners do the same, and nothing acts sideways."""
+        # Rigid contact is solved for where both its corners do the same, and nothing acts sideways.
         e = self.restitution
         if e is None:
             rule = "must be finite, or rigid contact needs a restitution"
@@ -157,11 +156,18 @@ class BlockModel(System):
         b = arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
-        self.masses = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
-        self.mass = diagonal(self.masses)
+        masses = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
+        self.mass = diagonal(masses)
         self.stiffness = arb_mat(_elastic(problem, a * b))  # of the strained block [N/m, N m]
         self.load = column(_load(problem, a, b, m))  # of pressure, traction and weight [N, N m]
-        self.mobility = self._mobility(problem.rigid)  # [1/kg, 1/(kg m2)]
+        self.mobility = diagonal([1 / mass for mass in masses])  # [1/kg, 1/(kg m2)]
+        if problem.rigid:
+            self.mobility = arb_mat(6, 6)
+            self.mobility[0, 0] = self.mobility[1, 1] = 1 / m
+            # a rotation has uy = -r and vx = r
+            turning = 1 / (masses[3] + masses[4])
+            self.mobility[3, 3] = self.mobility[4, 4] = turning
+            self.mobility[3, 4] = self.mobility[4, 3] = -turning
         zero = ZERO
         ends = -a / 2, a / 2
         gaps = [[zero, arb(1), zero, zero, x, -b / 2] for x in ends]
@@ -192,18 +198,6 @@ class BlockModel(System):
             Contact(c, name, c, 2 + c if ps > 0 else None, p, arb(problem.damping), ps, friction, cohesion, force)
             for c, name in enumerate(CORNERS)
         ]
-
-    def _mobility(self, rigid: bool) -> arb_mat:
-        """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
-        if not rigid:
-            return diagonal([1 / m for m in self.masses])
-        W = arb_mat(6, 6)
-        W[0, 0] = W[1, 1] = 1 / self.masses[0]
-        # a rotation has uy = -r and vx = r
-        turning = 1 / (self.masses[3] + self.masses[4])
-        W[3, 3] = W[4, 4] = turning
-        W[3, 4] = W[4, 3] = -turning
-        return W
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """Yield the functions that are positive as long as the corners keep their states."""

@@ -65,11 +65,6 @@ def radius_of(value: arb) -> float:
     return float(value.rad()) * (1 + 1e-15)
 
 
-def is_blank(value: arb) -> bool:
-    """Whether of a number less than a quarter of the digits is known; it then counts as zero."""
-    return bool(value.contains(0)) or value.rel_accuracy_bits() < ctx.prec // 4
-
-
 @cache
 def _term_count(angle: float, bits: int) -> int:
     logarithm = 0.0

@@ -20,7 +20,7 @@ takes the state that this function names, and the next derivative is looked at.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import arb, arb_mat
 
@@ -41,8 +41,7 @@ from fem_reference.problem.problem import Array
 FEW = 4  # terms that are looked at first where functions begin at zero: most show at once where they go
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """The beginning of a step."""
 
     start: Start

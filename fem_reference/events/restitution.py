@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -60,14 +61,8 @@ class ContactScheme:
         velocity = np.array([-delta * k, gg, 1 - delta])
         return np.array([np.array([1 - k / 2, 0.0, 0.0]) + gg * velocity, velocity, [-k, 0.0, 0.0]])
 
-    @property
-    def last(self) -> Array:
-        """The velocity after a first step without contact, as a row over (w*, v, A), shape (3,)."""
-        return np.array([0.0, self.gg, 1 - self.delta])
 
-
-@dataclass(frozen=True)
-class Branch:
+class Branch(NamedTuple):
     """One straight line of the restitution, e = constant + slope theta."""
 
     low: float  # least theta [-]
@@ -80,8 +75,7 @@ class Branch:
         return self.constant + self.slope * theta
 
 
-@dataclass(frozen=True)
-class Statistics:
+class Statistics(NamedTuple):
     """Restitution over theta uniform from 0 to gg."""
 
     mean: float  # mean of e [-]
@@ -123,6 +117,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         If `omega` is not positive.
     """
     step = scheme.step(omega)
+    last = np.array([0.0, scheme.gg, 1 - scheme.delta])  # the velocity after a first step without contact
     branches = []
     # intervals of theta, and there (w*, v, A) as columns of constants and slopes
     pending = [(0.0, scheme.gg, np.array([[0.0, -1.0], [-1.0, 0.0], [0.0, 0.0]]), 0)]
@@ -135,7 +130,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         rests = np.abs(state[1:]).max() < REST or steps >= LIMIT
         for start, end in parts:
             if constant + slope * (start + end) / 2 >= 0:
-                branches.append(Branch(start, end, *(scheme.last @ state).tolist()))
+                branches.append(Branch(start, end, *(last @ state).tolist()))
             elif rests:
                 branches.append(Branch(start, end, 0.0, 0.0))
             else:

@@ -245,11 +245,8 @@ class Segment:
     def function(self, watch: Watch) -> list[arb]:
         """Series of a watched function."""
         key = watch.contact, watch.side, watch.becomes
-        if key not in self.functions:
-            self.functions[key] = self._function(watch)
-        return self.functions[key]
-
-    def _function(self, watch: Watch) -> list[arb]:
+        if key in self.functions:
+            return self.functions[key]
         terms: list[arb] = []
         for row, factor, dashpot in watch.parts:
             series = self.rows[row]
@@ -261,6 +258,7 @@ class Segment:
             terms = [one + other for one, other in zip(terms, part, strict=True)] if terms else part
         if not watch.rates:
             terms[0] += watch.offset
+        self.functions[key] = terms
         return terms
 
     def function_tail(self, watch: Watch) -> arb:
