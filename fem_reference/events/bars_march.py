@@ -179,8 +179,25 @@ class Joint:
                 self.leaving_down.append(self.time, (below - change * self.admittance_below).without_noise())
         if before is not None and state != before:
             self.switches.append((self.time, state))
-        remainder = (earliest((self.above, self.below), end) - self.time).mid()
-        self._go_on(piece, remainder, self._watched(piece, relative))
+        # on to the first fall of a watched function, if there is one
+        elapsed = (earliest((self.above, self.below), end) - self.time).mid()
+        of_gap = state == OPEN or (state == CLOSED and not self.rigid)
+        switching = -1
+        for number, function in enumerate(self._watched(piece, relative)):
+            fall = function.first_fall(elapsed, of_gap)
+            if fall is not None:
+                switching = number
+                elapsed = min(elapsed, fall)
+        self.time = (self.time + elapsed).mid()
+        self.opening = piece.opening(elapsed).mid()
+        if state in (OPEN, CLOSED):
+            none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
+            if none or bool(self.opening < 0) != (state == CLOSED):
+                self.opening = ZERO
+        elif not self.rigid:
+            self.force = piece.force(elapsed).mid()
+            if state == STICKS and switching >= 0:
+                self.force = arb(self.law.strength) * (1, -1)[switching]
         self.leaving_up.known_until = self.time
         if self.leaving_down is not None:
             self.leaving_down.known_until = self.time
@@ -241,27 +258,6 @@ class Joint:
             return [((piece.force * sign).plus(strength) * self.mobility).without_noise() for sign in (-1, 1)]
         direction = DIRECTION[piece.state]
         return [(relative.plus(self.mobility * strength * direction) * -direction).without_noise()]
-
-    def _go_on(self, piece: JointPiece, remainder: arb, watched: Sequence[ExponentialSum]) -> None:
-        """Advance to the first fall of a watched function, or by the remainder."""
-        of_gap = piece.state == OPEN or (piece.state == CLOSED and not self.rigid)
-        elapsed = remainder
-        switching = -1
-        for number, function in enumerate(watched):
-            fall = function.first_fall(elapsed, of_gap)
-            if fall is not None:
-                switching = number
-                elapsed = min(elapsed, fall)
-        self.time = (self.time + elapsed).mid()
-        self.opening = piece.opening(elapsed).mid()
-        if piece.state in (OPEN, CLOSED):
-            none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
-            if none or bool(self.opening < 0) != (piece.state == CLOSED):
-                self.opening = ZERO
-        elif not self.rigid:
-            self.force = piece.force(elapsed).mid()
-            if piece.state == STICKS and switching >= 0:
-                self.force = arb(self.law.strength) * (1, -1)[switching]
 
 
 def start_of(piece: JointPiece | WavePiece) -> arb:

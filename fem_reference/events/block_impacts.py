@@ -90,7 +90,8 @@ class Hops:
         self.third = contact.row * self.motion.A  # the gap's third derivative over the rates
         weights = [x * unit for x, unit in zip(self.third.entries(), self.units.v.entries(), strict=True)]
         self.third_norm = euclidean(weights)
-        self.direction_norm = self.norm(State(arb_mat(6, 1), contact.direction))
+        self.direction = State(arb_mat(6, 1), contact.direction)
+        self.direction_norm = self.norm(self.direction)
 
     def norm(self, state: State) -> arb:
         """Norm of unknowns and rates, in which those of the block in flight change by `rate` at most."""
@@ -120,10 +121,6 @@ class Hops:
         length = float(abs(time).upper()) * (1 + 1e-9) or SHORTEST
         return State(*self.series(state, length).state(time / arb(length)))
 
-    def blurred(self, state: State, radius: arb) -> State:
-        """The state at any instant within a radius of the present one [s], to first order."""
-        return State(state.u + state.v * ball(radius), state.v + self.accelerations(state) * ball(radius))
-
     def pushed(self, state: State, speeds: arb, spread: arb) -> State:
         """The state after impacts.
 
@@ -137,8 +134,7 @@ class Hops:
             Time within which all of them are around the present instant [s].
         """
         angle = self.rate * spread
-        direction = State(arb_mat(6, 1), self.contact.direction)
-        late = self.spread(direction, angle * angle.exp() * self.direction_norm)
+        late = self.spread(self.direction, angle * angle.exp() * self.direction_norm)
         push = (1 + self.e) * speeds
         return State(state.u + late.u * push, state.v + late.v * push)
 

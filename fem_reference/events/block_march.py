@@ -149,7 +149,8 @@ class BlockMarch(March):
         while True:
             if speed.contains(0) or speed.rel_accuracy_bits() < ctx.prec // 4:
                 raise LostDigitsError(float(time), "impacts have cost most of the digits")
-            landed = hops.blurred(state, time.rad())  # at the instant of the impact, no longer at its midpoint
+            late = ball(time.rad())  # to first order, from the midpoint of the instant of the impact to this itself
+            landed = State(state.u + state.v * late, state.v + hops.accelerations(state) * late)
             if cascade_start is None or length < finest:
                 rest = hops.find_accumulation(landed, speed)
                 if rest is not None and time + rest.length < self.end:

@@ -38,7 +38,6 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
@@ -243,8 +242,9 @@ class RigidContact:
         # what changes the gap's rate, or the gap, by one [-]
         self.direction = self.mobility * (1 / self.compliance)
         # from rates to those after an impact, and from displacements or rates to those without any of the gap
-        self.impact = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row * (1 + restitution)
-        self.rest = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row
+        unit = diagonal([arb(1)] * 6)
+        self.impact = unit - self.direction * row * (1 + restitution)
+        self.rest = unit - self.direction * row
 
     def closing(self, x: arb_mat) -> arb:
         """The gap n x of both corners, or its rate or acceleration."""
@@ -257,8 +257,9 @@ class RigidContact:
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
     """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4); zero if there is no strain."""
+    K = [[ZERO] * 6 for _ in range(6)]
     if problem.rigid:
-        return [[ZERO] * 6 for _ in range(6)]
+        return K
     E = arb(problem.young)
     mu = arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))
@@ -266,7 +267,6 @@ def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
         E /= 1 - mu * mu
         mu /= 1 - mu
     direct = area * E / (1 - mu * mu)
-    K = [[ZERO] * 6 for _ in range(6)]
     K[2][2] = K[5][5] = direct
     K[2][5] = K[5][2] = mu * direct
     K[3][3] = K[4][4] = K[3][4] = K[4][3] = shear

@@ -134,7 +134,14 @@ class ColumnModel(System):
                 top = count
                 count += 1
             if joint is not None:
-                self.contacts.append(self._contact(j, len(joints), joint))
+                name = f"joint {j}" if j else "base"
+                k = arb(joint.stiffness)
+                if self.unilateral:
+                    contact = Contact(j, name, gap=len(joints), stiffness=k)
+                else:
+                    strength = None if joint.strength is None else arb(joint.strength)
+                    contact = Contact(j, name, slide=len(joints), shear_stiffness=k, cohesion=strength)
+                self.contacts.append(contact)
                 joints.append((foot, previous, joint))
             self.faces.append((foot, top))
             previous = top
@@ -187,14 +194,6 @@ class ColumnModel(System):
             self.damping = damping
             inputs[0, 1] = 2 * damping[0, 0]
         return inputs
-
-    def _contact(self, j: int, row: int, joint: ColumnJoint) -> Contact:
-        name = f"joint {j}" if j else "base"
-        k = arb(joint.stiffness)
-        if self.unilateral:
-            return Contact(j, name, gap=row, stiffness=k)
-        strength = None if joint.strength is None else arb(joint.strength)
-        return Contact(j, name, slide=row, shear_stiffness=k, cohesion=strength)
 
     def spring(self, contact: int) -> arb:
         """Stiffness k of a contact [Pa/m]."""

@@ -98,8 +98,8 @@ class System:
     @cached_property
     def root(self) -> tuple[Array, Array]:
         """L' and its inverse in floats, M = L L'."""
-        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T, dtype=np.float64)
-        return upper, np.asarray(np.linalg.inv(upper), dtype=np.float64)
+        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T)
+        return upper, np.asarray(np.linalg.inv(upper))
 
     @cached_property
     def sizes(self) -> Array:
