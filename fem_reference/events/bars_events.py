@@ -234,7 +234,7 @@ def solve(
     """
     check_request(end, digits)
     until = 0.0
-    work = Work() if work is None else work
+    work = work or Work()
     work.part = FIRST_PART
     motion = _solved(problem, float(end), digits, limit, work)
     work.part = 1.0
@@ -285,15 +285,14 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Wor
             for time, state in joint.switches:
                 midpoint = time.mid().str(40, radius=False)
                 switches.append(Switch(float(time), str(joint.number), KINDS.get(state, state), midpoint))
-        by_number = {joint.number: joint for joint in joints}
-        numbers = range(len(problem.bars))
+        feet = [node if isinstance(node, Joint) else None for node in nodes[:-1]]
         return BarsMotion(
             problem=problem,
             end=end,
             digits=digits,
             switches=tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner)))),
-            closed_at_start=tuple(i in by_number and by_number[i].pieces[0].state != OPEN for i in numbers),
-            joints=tuple(by_number.get(i) for i in numbers),
+            closed_at_start=tuple(foot is not None and foot.pieces[0].state != OPEN for foot in feet),
+            joints=tuple(feet),
             up=tuple(up),
             down=tuple(down),
         )

@@ -230,16 +230,13 @@ class Joint:
         nothing = ExponentialSum(relative.rates)
         if state == OPEN:
             return JointPiece(self.time, state, nothing, relative.integral(self.opening).without_noise(True))
-        if state == CLOSED and self.rigid:
-            return JointPiece(self.time, state, relative * (-1 / self.mobility), nothing)
+        if state in (CLOSED, STICKS) and self.rigid:
+            return JointPiece(self.time, state, relative * (-1 / self.mobility), nothing.plus(self.opening))
         if state == CLOSED:
             gap = relative.relaxed(self.stiffness * self.mobility, self.opening).without_noise(True)
             return JointPiece(self.time, state, gap * -self.stiffness, gap)
         if state == STICKS:
-            if self.rigid:
-                force = relative * (-1 / self.mobility)
-            else:
-                force = (relative * -self.stiffness).relaxed(self.stiffness * self.mobility, self.force)
+            force = (relative * -self.stiffness).relaxed(self.stiffness * self.mobility, self.force)
             return JointPiece(self.time, state, force, nothing.plus(self.opening))
         force = nothing.plus(arb(self.law.strength) * DIRECTION[state])
         slip_rate = (relative + force * self.mobility).without_noise()

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
-from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, States, direction
+from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, direction
 from fem_reference.events.enclosure import ZERO
 from fem_reference.events.march import Node
 from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
@@ -167,20 +167,16 @@ class BlockMotion(ProvenMotion):
         for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
             if direction(state):
                 gains[c] = contact.reference(state, rows) - node.start.references[c]
-        if self._dissipates(node.states):
+        losing = any(direction(state) for state in node.states)
+        if self.problem.restitution is not None:
+            losing = self.problem.restitution < 1 and node.states[0] == OPEN
+        elif self.problem.damping:
+            losing = any(state != OPEN for state in node.states)
+        if losing:  # energy in the step or at its end
             gains[2] = model.energy(node.states, node.start) - model.energy(node.states, end)
         momentum = model.mass * (end.v - node.start.v) - model.load * (end.time - node.start.time)
         gains[3] = (base_motion(node, end.time)[1].transpose() * momentum)[0, 0]
         return column(gains)
-
-    def _dissipates(self, states: States) -> bool:
-        """Whether energy is lost in a step or at its end."""
-        restitution = self.problem.restitution
-        if restitution is not None:
-            return restitution < 1 and states[0] == OPEN
-        if self.problem.damping:
-            return any(state != OPEN for state in states)
-        return any(direction(state) for state in states)
 
 
 def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:

@@ -125,7 +125,7 @@ class ColumnMotion(ProvenMotion):
             if model.unilateral:
                 force = max(force, 0.0)
             of_joints[:, contact.number] = force, float(instant.rows[c]), float(slip), state
-            springs += force**2 / (2 * float(model.spring(c)))
+            springs += force**2 / (2 * float(contact.stiffness + contact.shear_stiffness))
             way = self._ways[instant.number, c] + abs(float(slip - reference))
             friction += float(contact.cohesion or 0) * way
         feet, tops = np.transpose(model.faces)
@@ -133,6 +133,15 @@ class ColumnMotion(ProvenMotion):
         moduli = [block.modulus / block.height if math.isfinite(block.modulus) else 0.0 for block in problem.blocks]
         squares = v[feet] ** 2 + v[feet] * v[tops] + v[tops] ** 2
         inertia = mass * ((a[feet] + a[tops]) / 2 + problem.gravity)
+        # the force on the foot of each block, by the law of its joint or else by the momentum of what is above it
+        faces = np.append(of_joints[0], float(pressure[0]))
+        for i in range(len(problem.blocks) - 1, -1, -1):
+            if problem.joints[i] is None:
+                faces[i] = faces[i + 1] + inertia[i]
+        if problem.base == "free":
+            faces[0] = 0.0
+        elif problem.base == "transmitting":
+            faces[0] = problem.impedance * (2 * v[-1] - v[0])
         return {
             "foot": u[feet],
             "top": u[tops],
@@ -142,7 +151,7 @@ class ColumnMotion(ProvenMotion):
             "stretch": of_joints[1],
             "slip": of_joints[2],
             "states": of_joints[3].astype(int),
-            "face_force": self._face_force(of_joints[0], inertia, pressure[0], 2 * v[-1] - v[0]),
+            "face_force": faces,
             "kinetic": mass @ squares / 6,
             "strain": moduli @ (u[tops] - u[feet]) ** 2 / 2,
             "springs": springs,
@@ -150,19 +159,6 @@ class ColumnMotion(ProvenMotion):
             "friction": friction,
             "displacement_radius": instant.radius.max() + ROUNDING * np.abs(u[:-1]).max(),
         }
-
-    def _face_force(self, force: Array, inertia: Array, pressure: arb, outflow: float) -> Array:
-        """Force on the foot of each block, by the law of its joint or else by the momentum of what is above it [Pa]."""
-        problem = self.problem
-        faces = np.append(force, float(pressure))
-        for i in range(len(force) - 1, -1, -1):
-            if problem.joints[i] is None:
-                faces[i] = faces[i + 1] + inertia[i]
-        if problem.base == "free":
-            faces[0] = 0.0
-        elif problem.base == "transmitting":
-            faces[0] = problem.impedance * outflow
-        return faces
 
 
 class ColumnMarch(March):
@@ -233,10 +229,10 @@ def solve(
     NoContactStateError
         If no state of the joints agrees with the motion that follows from it.
     """
-    work = Work() if work is None else work
+    counted = work or Work()
 
     def motion_in(digits: int) -> ColumnMotion:
-        march = ColumnMarch(problem, float(end), limit, work)
+        march = ColumnMarch(problem, float(end), limit, counted)
         march.run()
         return ColumnMotion(
             march.end,

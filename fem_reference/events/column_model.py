@@ -195,10 +195,6 @@ class ColumnModel(System):
             inputs[0, 1] = 2 * damping[0, 0]
         return inputs
 
-    def spring(self, contact: int) -> arb:
-        """Stiffness k of a contact [Pa/m]."""
-        return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
-
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
         blocks = self.problem.blocks

@@ -63,20 +63,13 @@ class Change(NamedTuple):
     impact: arb_mat | None  # by which rates jump
 
 
-class Watched:
+class Watched(NamedTuple):
     """The watched functions of a step."""
 
-    def __init__(
-        self,
-        time: float,
-        segment: Segment,
-        watches: Sequence[Watch],
-        reach: Callable[[Watch, bool], Reach],
-    ) -> None:
-        self.time = time  # at its beginning [s]
-        self.segment = segment
-        self.watches = [watch for watch in watches if watch.lead is not None]
-        self.reach = reach  # how far the terms of a function may be off, also where its start is a switch
+    time: float  # at its beginning [s]
+    segment: Segment
+    watches: Sequence[Watch]
+    reach: Callable[[Watch, bool], Reach]  # what terms of a function may be off by, also where its start is a switch
 
     def clear(self) -> tuple[float, float, list[Watch]]:
         """Where floats prove all functions to be positive.
@@ -87,11 +80,12 @@ class Watched:
             The part of the step throughout which they are; the length of the next part, in which that cannot be proven,
             0 where there is none; and the functions that may fall in or after it.
         """
-        if not self.watches:
+        watches = [watch for watch in self.watches if watch.lead is not None]
+        if not watches:
             return 1.0, 0.0, []
-        terms = np.zeros((len(self.watches), FLOAT_TERMS))
-        margin = np.zeros(len(self.watches))
-        for i, watch in enumerate(self.watches):
+        terms = np.zeros((len(watches), FLOAT_TERMS))
+        margin = np.zeros(len(watches))
+        for i, watch in enumerate(watches):
             series = np.array([float(c) for c in self.segment.function(watch)])
             off = self.reach(watch, bool(watch.lead)).total()
             beyond = np.abs(series[FLOAT_TERMS:]).sum() + float(self.segment.function_tail(watch))
@@ -99,7 +93,7 @@ class Watched:
             series = series[watch.lead :][:FLOAT_TERMS]
             terms[i, : len(series)] = series
         share, width, doubtful = first_doubt(terms, margin)
-        return share, width, [self.watches[i] for i in doubtful]
+        return share, width, [watches[i] for i in doubtful]
 
     def first_fall(
         self, low: float, high: arb, watches: Sequence[Watch], touches: list[arb]
