@@ -29,14 +29,11 @@ from fem_reference.events.switches import (
 from fem_reference.problem.instants import instants
 from fem_reference.problem.problem import Array
 
-DIGITS = 40
-"""Decimal digits of the first computation; the second one has twice as many."""
-MOST_DIGITS = 320
-"""Decimal digits of the last one."""
+DIGITS = 40  # decimal digits of the first computation; the second one has twice as many
+MOST_DIGITS = 320  # decimal digits of the last one
+# Part of the limit of work for the first computation; the second, in more digits, takes a little more.
 FIRST_PART = 0.45
-"""Part of the limit of work for the first computation; the second, in more digits, takes a little more."""
-PROMISED = 1e-15
-"""Part of the end of the motion by which the instants of the switches of two computations may differ."""
+PROMISED = 1e-15  # part of the end of the motion by which the instants of the switches of two computations may differ
 KINDS = {OPEN: "opens", CLOSED: "closes"}
 
 
@@ -110,7 +107,17 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`.
         """
-        return JointHistory(*self._rows(times, lambda time: self._joint_row(self.joints[number], time)))
+        joint = self.joints[number]
+
+        def row(time: arb) -> list[float]:
+            if joint is None:
+                return [0.0, 0.0, 0.0]
+            piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=start_of) - 1]
+            force = float(piece.force(time - piece.start))
+            opening = float(piece.opening(time - piece.start))
+            return [force, opening, 0.0] if joint.law.law == "unilateral" else [force, 0.0, opening]
+
+        return JointHistory(*self._rows(times, row))
 
     def impulse(self, number: int, times: ArrayLike) -> Array:
         """Integral of the force of a joint from t = 0 to instants in any order [Pa s], shape (times,).
@@ -141,10 +148,25 @@ class BarsMotion:
         ValueError
             If an instant is not from 0 to `end`, or the height is not in the bar.
         """
-        length = self.problem.bars[bar].length
-        if not 0 <= height <= length:
-            raise ValueError(f"height: must be from 0 to {length!r}, got {height!r}")
-        return PointHistory(*self._rows(times, lambda time: self._point(bar, height, time)))
+        data = self.problem.bars[bar]
+        if not 0 <= height <= data.length:
+            raise ValueError(f"height: must be from 0 to {data.length!r}, got {height!r}")
+        gravity = self.problem.fall
+
+        def row(time: arb) -> list[float]:
+            x = data.travel * arb(height) / arb(data.length)
+            displacement, stress = self.problem.static_point(bar, arb(height))
+            displacement -= gravity * time * time / 2
+            velocities = []
+            for wave, delay in ((self.up[bar], x), (self.down[bar], data.travel - x)):
+                velocity, moved = wave.at(time - delay)
+                displacement += moved - wave.at(-delay)[1]
+                velocities.append(velocity)
+            up, down = velocities
+            stress += (up - down) * data.impedance
+            return [float(displacement), float(up + down - gravity * time), float(stress)]
+
+        return PointHistory(*self._rows(times, row))
 
     def _mean_velocity(self, bar: int, time: arb) -> float:
         data = self.problem.bars[bar]
@@ -153,30 +175,6 @@ class BarsMotion:
         for wave in (self.up[bar], self.down[bar]):
             mean += (wave.at(time)[1] - wave.at(time - T)[1]) / T
         return float(mean - self.problem.fall * time)
-
-    def _joint_row(self, joint: Joint | None, time: arb) -> tuple[float, float, float]:
-        if joint is None:
-            return 0.0, 0.0, 0.0
-        piece = joint.pieces[bisect_right(joint.pieces, time.mid(), key=start_of) - 1]
-        force = float(piece.force(time - piece.start))
-        opening = float(piece.opening(time - piece.start))
-        return (force, opening, 0.0) if joint.law.law == "unilateral" else (force, 0.0, opening)
-
-    def _point(self, bar: int, height: float, time: arb) -> tuple[float, float, float]:
-        data = self.problem.bars[bar]
-        gravity = self.problem.fall
-        T = data.travel
-        x = T * arb(height) / arb(data.length)
-        displacement, stress = self.problem.static_point(bar, arb(height))
-        displacement -= gravity * time * time / 2
-        velocities = []
-        for wave, delay in ((self.up[bar], x), (self.down[bar], T - x)):
-            velocity, moved = wave.at(time - delay)
-            displacement += moved - wave.at(-delay)[1]
-            velocities.append(velocity)
-        up, down = velocities
-        stress += (up - down) * data.impedance
-        return float(displacement), float(up + down - gravity * time), float(stress)
 
 
 def least_terms(problem: BarsProblem, end: float) -> float:
@@ -236,7 +234,7 @@ def solve(
     """
     check_request(end, digits)
     until = 0.0
-    work = Work() if work is None else work
+    work = work or Work()
     work.part = FIRST_PART
     motion = _solved(problem, float(end), digits, limit, work)
     work.part = 1.0
@@ -282,25 +280,19 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Wor
             work.add(1)
             node.advance(last)
             advances += 1
-        by_number = {joint.number: joint for joint in joints}
-        numbers = range(len(problem.bars))
+        switches: list[Switch] = []
+        for joint in joints:
+            for time, state in joint.switches:
+                midpoint = time.mid().str(40, radius=False)
+                switches.append(Switch(float(time), str(joint.number), KINDS.get(state, state), midpoint))
+        feet = [node if isinstance(node, Joint) else None for node in nodes[:-1]]
         return BarsMotion(
             problem=problem,
             end=end,
             digits=digits,
-            switches=_switches(joints),
-            closed_at_start=tuple(i in by_number and by_number[i].pieces[0].state != OPEN for i in numbers),
-            joints=tuple(by_number.get(i) for i in numbers),
+            switches=tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner)))),
+            closed_at_start=tuple(foot is not None and foot.pieces[0].state != OPEN for foot in feet),
+            joints=tuple(feet),
             up=tuple(up),
             down=tuple(down),
         )
-
-
-def _switches(joints: Sequence[Joint]) -> tuple[Switch, ...]:
-    switches = []
-    for joint in joints:
-        for time, state in joint.switches:
-            midpoint = time.mid().str(40, radius=False)
-            kind = KINDS.get(state, state)
-            switches.append(Switch(float(time), str(joint.number), kind, midpoint))
-    return tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner))))

@@ -17,24 +17,26 @@ import math
 from bisect import bisect_right
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from flint import arb, ctx
 
 from fem_reference.events.bars_model import BarJoint, BarsProblem, function_of
 from fem_reference.events.column_drive import Drive
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.exponential_sum import ExponentialSum, Rates
 from fem_reference.events.switches import Work
 
+# States of a joint; it slips forwards where its upper face moves towards + over the lower one.
 OPEN = "open"
 CLOSED = "closed"
 STICKS = "sticks"
 FORWARDS = "slips forwards"
 BACKWARDS = "slips backwards"
-"""States of a joint; it slips forwards where its upper face moves towards + over the lower one."""
+DIRECTION = {BACKWARDS: 1, FORWARDS: -1}  # of the force, against which a joint slips
 
 
-@dataclass(frozen=True)
-class WavePiece:
+class WavePiece(NamedTuple):
     """A wave from an instant on."""
 
     start: arb  # [s]
@@ -93,8 +95,7 @@ class Arrival:
         return piece.velocity.shifted(time - piece.start - self.delay)
 
 
-@dataclass(frozen=True)
-class JointPiece:
+class JointPiece(NamedTuple):
     """A joint from an instant on; functions of the time since then."""
 
     start: arb  # [s]
@@ -110,7 +111,7 @@ class Node:
     arrivals: tuple[Arrival, ...]  # the wave in the bar, and the force N [Pa] that is given at the top
     leaving: Wave
     admittance: arb  # N to what leaves: 1 / z, negative at the top [m/(Pa s)]
-    time: arb = field(default_factory=lambda: arb(0))
+    time: arb = field(default_factory=lambda: ZERO)
 
     def advance(self, end: arb) -> None:
         """Go on as far as the arrivals are known and stay the same, or to `end`."""
@@ -137,9 +138,9 @@ class Joint:
     admittance_above: arb  # 1 / z [m/(Pa s)]
     admittance_below: arb
     static: arb  # force in which the waves have no part [Pa]
-    time: arb = field(default_factory=lambda: arb(0))
-    opening: arb = field(default_factory=lambda: arb(0))  # y or r at that time [m]
-    force: arb = field(default_factory=lambda: arb(0))  # T at that time, of a frictional spring [Pa]
+    opening: arb  # y or r at its time [m]
+    force: arb  # T at its time, of a frictional spring [Pa]
+    time: arb = field(default_factory=lambda: ZERO)
     pieces: list[JointPiece] = field(default_factory=list)
     switches: list[tuple[arb, str]] = field(default_factory=list)  # instant and new state
 
@@ -178,8 +179,25 @@ class Joint:
                 self.leaving_down.append(self.time, (below - change * self.admittance_below).without_noise())
         if before is not None and state != before:
             self.switches.append((self.time, state))
-        remainder = (earliest((self.above, self.below), end) - self.time).mid()
-        self._go_on(piece, remainder, self._watched(piece, relative))
+        # on to the first fall of a watched function, if there is one
+        elapsed = (earliest((self.above, self.below), end) - self.time).mid()
+        of_gap = state == OPEN or (state == CLOSED and not self.rigid)
+        switching = -1
+        for number, function in enumerate(self._watched(piece, relative)):
+            fall = function.first_fall(elapsed, of_gap)
+            if fall is not None:
+                switching = number
+                elapsed = min(elapsed, fall)
+        self.time = (self.time + elapsed).mid()
+        self.opening = piece.opening(elapsed).mid()
+        if state in (OPEN, CLOSED):
+            none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
+            if none or bool(self.opening < 0) != (state == CLOSED):
+                self.opening = ZERO
+        elif not self.rigid:
+            self.force = piece.force(elapsed).mid()
+            if state == STICKS and switching >= 0:
+                self.force = arb(self.law.strength) * (1, -1)[switching]
         self.leaving_up.known_until = self.time
         if self.leaving_down is not None:
             self.leaving_down.known_until = self.time
@@ -198,7 +216,7 @@ class Joint:
         if math.isinf(self.law.strength):
             return STICKS
         strength = arb(self.law.strength)
-        for direction, state in ((1, BACKWARDS), (-1, FORWARDS)):  # of the force, against which it slips
+        for state, direction in DIRECTION.items():
             if not self.rigid and self.force * direction < strength:
                 continue
             slip_rate = relative.plus(self.mobility * strength * direction) * -direction
@@ -212,25 +230,17 @@ class Joint:
         nothing = ExponentialSum(relative.rates)
         if state == OPEN:
             return JointPiece(self.time, state, nothing, relative.integral(self.opening).without_noise(True))
-        if state == CLOSED and self.rigid:
-            return JointPiece(self.time, state, relative * (-1 / self.mobility), nothing)
+        if state in (CLOSED, STICKS) and self.rigid:
+            return JointPiece(self.time, state, relative * (-1 / self.mobility), nothing.plus(self.opening))
         if state == CLOSED:
             gap = relative.relaxed(self.stiffness * self.mobility, self.opening).without_noise(True)
             return JointPiece(self.time, state, gap * -self.stiffness, gap)
         if state == STICKS:
-            if self.rigid:
-                force = relative * (-1 / self.mobility)
-            else:
-                force = (relative * -self.stiffness).relaxed(self.stiffness * self.mobility, self.force)
+            force = (relative * -self.stiffness).relaxed(self.stiffness * self.mobility, self.force)
             return JointPiece(self.time, state, force, nothing.plus(self.opening))
-        force = nothing.plus(arb(self.law.strength) * self._direction(state))
+        force = nothing.plus(arb(self.law.strength) * DIRECTION[state])
         slip_rate = (relative + force * self.mobility).without_noise()
         return JointPiece(self.time, state, force, slip_rate.integral(self.opening))
-
-    @staticmethod
-    def _direction(state: str) -> int:
-        """Sign of the force of a joint that slips."""
-        return 1 if state == BACKWARDS else -1
 
     def _watched(self, piece: JointPiece, relative: ExponentialSum) -> list[ExponentialSum]:
         """The functions, of the size of velocities or for a gap of lengths, of which one falls where the state ends."""
@@ -243,29 +253,8 @@ class Joint:
             if math.isinf(self.law.strength):
                 return []
             return [((piece.force * sign).plus(strength) * self.mobility).without_noise() for sign in (-1, 1)]
-        direction = self._direction(piece.state)
+        direction = DIRECTION[piece.state]
         return [(relative.plus(self.mobility * strength * direction) * -direction).without_noise()]
-
-    def _go_on(self, piece: JointPiece, remainder: arb, watched: Sequence[ExponentialSum]) -> None:
-        """Advance to the first fall of a watched function, or by the remainder."""
-        of_gap = piece.state == OPEN or (piece.state == CLOSED and not self.rigid)
-        elapsed = remainder
-        switching = -1
-        for number, function in enumerate(watched):
-            fall = function.first_fall(elapsed, of_gap)
-            if fall is not None:
-                switching = number
-                elapsed = min(elapsed, fall)
-        self.time = (self.time + elapsed).mid()
-        self.opening = piece.opening(elapsed).mid()
-        if piece.state in (OPEN, CLOSED):
-            none = switching >= 0 or abs(self.opening) < piece.force.rates.negligible_length
-            if none or bool(self.opening < 0) != (piece.state == CLOSED):
-                self.opening = arb(0)
-        elif not self.rigid:
-            self.force = piece.force(elapsed).mid()
-            if piece.state == STICKS and switching >= 0:
-                self.force = arb(self.law.strength) * (1, -1)[switching]
 
 
 def start_of(piece: JointPiece | WavePiece) -> arb:
@@ -283,16 +272,14 @@ def earliest(arrivals: Sequence[Arrival], end: arb) -> arb:
     return time
 
 
-def driven(rates: Rates, drive: Drive, factor: arb, fall: arb | None = None) -> Arrival:
+def driven(rates: Rates, drive: Drive, factor: arb, fall: arb = ZERO) -> Arrival:
     """A drive times a factor as a wave; with half the acceleration of gravity, plus that times t."""
     pieces = []
     for time, part in drive().parts():
         start = arb(time)
-        velocity = function_of(part, start, rates) * factor
-        if fall is not None:
-            velocity = velocity.plus(fall * start, fall)
-        pieces.append(WavePiece(start, velocity, velocity.integral(arb(0))))
-    return Arrival(Wave(pieces, arb("inf")), arb(0))
+        velocity = (function_of(part, start, rates) * factor).plus(fall * start, fall)
+        pieces.append(WavePiece(start, velocity, velocity.integral(ZERO)))
+    return Arrival(Wave(pieces, arb("inf")), ZERO)
 
 
 def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | Joint], list[Wave], list[Wave]]:
@@ -304,12 +291,12 @@ def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | 
     for bar in bars:
         start = ExponentialSum.polynomial(rates, [arb(bar.velocity) / 2])
         for waves in (up, down):
-            waves.append(Wave([WavePiece(-bar.travel.mid(), start, start.integral(arb(0)))], arb(0)))
+            waves.append(Wave([WavePiece(-bar.travel.mid(), start, start.integral(ZERO))], ZERO))
     nodes: list[Node | Joint] = []
     for j, (bar, law) in enumerate(zip(bars, problem.joints, strict=True)):
         above = Arrival(down[j], bar.travel.mid())
         if law is None:
-            nodes.append(Node((above,), up[j], arb(0)))
+            nodes.append(Node((above,), up[j], ZERO))
             continue
         if j:
             below = Arrival(up[j - 1], bars[j - 1].travel.mid())
@@ -319,13 +306,13 @@ def nodes_of(problem: BarsProblem, end: float, work: Work) -> tuple[list[Node | 
         admittance = 1 / bar.impedance
         lower = down[j - 1] if j else None
         static = problem.static_force(j)
-        joint = Joint(j, law, above, below, up[j], lower, admittance, problem.mobility(j) - admittance, static)
+        opening = ZERO
         if law.law == "unilateral" and not problem.settled:
-            joint.opening = arb(law.gap)
-        elif law.law == "unilateral" and not joint.rigid:
-            joint.opening = -static / joint.stiffness
-        joint.force = static
-        nodes.append(joint)
+            opening = arb(law.gap)
+        elif law.law == "unilateral" and math.isfinite(law.stiffness):
+            opening = -static / arb(law.stiffness)
+        across = problem.mobility(j) - admittance
+        nodes.append(Joint(j, law, above, below, up[j], lower, admittance, across, static, opening, static))
     pressure = driven(rates, problem.top, arb(1))
     nodes.append(Node((Arrival(up[-1], bars[-1].travel.mid()), pressure), down[-1], -1 / bars[-1].impedance))
     return nodes, up, down

@@ -9,6 +9,7 @@ from typing import Literal
 from flint import acb, acb_poly, arb
 
 from fem_reference.events.column_drive import Drive, Piece, Polynomial, Ricker, Sine, still
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.exponential_sum import ExponentialSum, Rate, Rates, distinct
 from fem_reference.events.switches import Work
 from fem_reference.problem.checks import require, require_numbers
@@ -67,8 +68,7 @@ class BarJoint:
         require(self.law == "unilateral" or self.gap == 0, "gap", "must be 0 of a frictional joint", self.gap)
 
 
-BONDED = BarJoint("frictional")
-"""Faces that always move alike."""
+BONDED = BarJoint("frictional")  # faces that always move alike
 
 
 def function_of(piece: Piece, start: arb, rates: Rates) -> ExponentialSum:
@@ -130,21 +130,21 @@ class BarsProblem:
     def static_force(self, joint: int) -> arb:
         """Force of a joint at t = 0 [Pa]: the weight above it where the bars begin at rest."""
         if not self.settled:
-            return arb(0)
+            return ZERO
         masses = (arb(bar.density) * arb(bar.length) for bar in self.bars[joint:])
-        return arb(self.gravity) * sum(masses, arb(0))
+        return arb(self.gravity) * sum(masses, ZERO)
 
     def static_point(self, bar: int, height: arb) -> tuple[arb, arb]:
         """Displacement [m] and stress [Pa] at t = 0 at a height above the foot of a bar."""
-        displacement = arb(0)
+        displacement = ZERO
         if not self.settled:
-            return displacement, arb(0)
+            return displacement, ZERO
         for number in range(bar + 1):
             data = self.bars[number]
             joint = self.joints[number]
             N = self.static_force(number)
             if joint is not None:
-                displacement -= N / arb(joint.stiffness) if math.isfinite(joint.stiffness) else arb(0)
+                displacement -= N / arb(joint.stiffness) if math.isfinite(joint.stiffness) else ZERO
                 displacement -= arb(joint.gap)
             x = height if number == bar else arb(data.length)
             weight = arb(data.density) * arb(self.gravity) * x
@@ -153,7 +153,7 @@ class BarsProblem:
 
     def mobility(self, joint: int) -> arb:
         """Relative velocity of the faces of a joint over its force, 1/z above + 1/z below [m/(Pa s)]."""
-        below = arb(0)
+        below = ZERO
         if joint:
             below = 1 / self.bars[joint - 1].impedance
         elif math.isfinite(self.base_impedance):

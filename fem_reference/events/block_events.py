@@ -26,29 +26,21 @@ from numpy.typing import ArrayLike
 
 from fem_reference.events.block_march import BlockMarch
 from fem_reference.events.block_model import BlockModel, BlockProblem
-from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, States, direction
-from fem_reference.events.enclosure import bits_of, check_request, precision
+from fem_reference.events.contacts import CARRIES_NOTHING, OPEN, direction
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.march import Node
-from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
 from fem_reference.events.series import Start, column, floats
-from fem_reference.events.switches import Cascade, Impact, ProvenMotion, Switch, with_enough_digits
-from fem_reference.problem.instants import instants
+from fem_reference.events.switches import Cascade, Impact
 from fem_reference.problem.problem import Array
 
-DIGITS = 50
-"""Decimal digits of the first computation."""
-MOST_DIGITS = 240
-"""Decimal digits of the last one, where switches cost those of the ones before."""
-PROMISED = 1e-20
-"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-_UNKNOWNS = np.zeros((6, 6))
-"""From (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)."""
+DIGITS = 50  # decimal digits of the first computation
+_UNKNOWNS = np.zeros((6, 6))  # from (u, v, r, ex, ey, gxy) to (u, v, ux, uy, vx, vy)
 _UNKNOWNS[range(6), [0, 1, 3, 5, 5, 4]] = [1, 1, 1, 0.5, 0.5, 1]
 _UNKNOWNS[[3, 4], 2] = -1, 1
 _OUTPUTS = np.linalg.inv(_UNKNOWNS)
 TO_OUTPUTS = arb_mat(_OUTPUTS.tolist())
-REPORT_DIGITS = 40
-"""Decimal digits in which the motion is evaluated where it is reported."""
+REPORT_DIGITS = 40  # decimal digits in which the motion is evaluated where it is reported
 
 
 @dataclass(frozen=True)
@@ -87,12 +79,7 @@ class BlockMotion(ProvenMotion):
     """Exact motion of a block from t = 0 to `end`."""
 
     problem: BlockProblem
-    end: float  # last instant [s]
-    digits: int  # decimal digits of the computation
     closed_at_start: tuple[bool, bool]  # whether M and N are closed just after t = 0
-    switches: tuple[Switch, ...]  # changes of the corners in the order of time; together: M, then N
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
-    nodes: tuple[Node, ...]  # beginnings of the steps in the order of time
     model: BlockModel = field(repr=False, compare=False)
     impacts: tuple[Impact, ...] = ()  # impacts on a rigid contact in the order of time, but for those of cascades
     cascades: tuple[Cascade, ...] = ()  # infinitely many impacts that end in rest, in the order of time
@@ -105,13 +92,7 @@ class BlockMotion(ProvenMotion):
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            # without an instant one gives the columns their shapes
-            columns = [
-                self._at(instant) for instant in instants_of(self.model, self.nodes, t if len(t) else np.zeros(1))
-            ]
-        return BlockHistory(time=t, **stacked(columns, len(t)))
+        return BlockHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     def _at(self, instant: Instant) -> dict[str, Any]:
         """All columns but the time at an instant."""
@@ -121,7 +102,7 @@ class BlockMotion(ProvenMotion):
         start = instant.start
         away, speed = base_motion(node, start.time)
         u = start.u + away
-        u[1, 0] = u[1, 0] - problem.gap
+        u[1, 0] -= problem.gap
         v = start.v + speed
         x = floats(TO_OUTPUTS * u)[:, 0]
         gap = np.array([float(row) for row in instant.rows[:2]])
@@ -137,7 +118,7 @@ class BlockMotion(ProvenMotion):
         shear = instant.forces[2:4]
         springs = float(model.contacts[0].stiffness) * (pressed**2).sum() / 2
         if problem.shear_stiffness:
-            springs += float(sum((T * T for T in shear), arb(0)) / problem.shear_stiffness / 2)
+            springs += float(sum((T * T for T in shear), ZERO) / problem.shear_stiffness / 2)
         return {
             "displacement": x,
             "velocity": floats(TO_OUTPUTS * v)[:, 0],
@@ -174,38 +155,34 @@ class BlockMotion(ProvenMotion):
             for c, state in enumerate(following.states):
                 T = forces[2 + c]
                 if state in CARRIES_NOTHING and T != 0:
-                    ledger[4, 0] = ledger[4, 0] + T * T / self.problem.shear_stiffness / 2
+                    ledger[4, 0] += T * T / self.problem.shear_stiffness / 2
             ledgers.append(ledger)
         return ledgers
 
     def _gains(self, node: Node, end: Start) -> arb_mat:
         """What a step adds to a ledger until its end, as seen from its base."""
         model = self.model
-        gains = [arb(0)] * 5
+        gains = [ZERO] * 5
         rows = model.values(end)
         for c, (contact, state) in enumerate(zip(model.contacts, node.states, strict=True)):
             if direction(state):
                 gains[c] = contact.reference(state, rows) - node.start.references[c]
-        if self._dissipates(node.states):
+        losing = any(direction(state) for state in node.states)
+        if self.problem.restitution is not None:
+            losing = self.problem.restitution < 1 and node.states[0] == OPEN
+        elif self.problem.damping:
+            losing = any(state != OPEN for state in node.states)
+        if losing:  # energy in the step or at its end
             gains[2] = model.energy(node.states, node.start) - model.energy(node.states, end)
         momentum = model.mass * (end.v - node.start.v) - model.load * (end.time - node.start.time)
         gains[3] = (base_motion(node, end.time)[1].transpose() * momentum)[0, 0]
         return column(gains)
 
-    def _dissipates(self, states: States) -> bool:
-        """Whether energy is lost in a step or at its end."""
-        restitution = self.problem.restitution
-        if restitution is not None:
-            return restitution < 1 and states[0] == OPEN
-        if self.problem.damping:
-            return any(state != OPEN for state in states)
-        return any(direction(state) for state in states)
-
 
 def base_motion(node: Node, time: arb) -> tuple[arb_mat, arb_mat]:
     """What the base adds to unknowns and rates that are seen from it, at an instant of a step."""
     course = [piece.series(time, 1.0, 2) for piece in node.drives]
-    away, speed = (column([*part, *[arb(0)] * 4]) for part in zip(*course, strict=True))
+    away, speed = (column([*part, *[ZERO] * 4]) for part in zip(*course, strict=True))
     return away, speed
 
 
@@ -239,24 +216,22 @@ def solve(problem: BlockProblem, end: float, digits: int = DIGITS, limit: int = 
     NoContactStateError
         If no state of the corners agrees with the motion that follows from it.
     """
-    check_request(end, digits)
 
     def motion_in(digits: int) -> BlockMotion:
-        with precision(bits_of(digits)):
-            march = BlockMarch(problem, float(end), limit)
-            march.run()
+        march = BlockMarch(problem, float(end), limit)
+        march.run()
         first = march.nodes[0].states
         return BlockMotion(
-            problem,
-            float(end),
+            march.end,
             digits,
-            (first[0] != OPEN, first[1] != OPEN),
             tuple(march.switches),
             tuple(march.touches),
             tuple(march.nodes),
+            problem,
+            (first[0] != OPEN, first[1] != OPEN),
             march.block,
             tuple(march.impacts),
             tuple(march.cascades),
         )
 
-    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)
+    return with_enough_digits(motion_in, float(end), digits)

@@ -38,36 +38,30 @@ time. With w = w' = 0 it is thus the free block's state, projected along d.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from flint import arb, arb_mat, arb_poly, ctx
 
 from fem_reference.events.block_model import BlockModel, RigidContact
 from fem_reference.events.contacts import OPEN
-from fem_reference.events.enclosure import NEWTON_STEPS, ball
+from fem_reference.events.enclosure import NEWTON_STEPS, ZERO, ball
 from fem_reference.events.series import Segment, Start, column, expand
 
+# Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short.
 LONGEST_HOP = 0.03
-"""Longest flight that is a hop [rad]; in a longer one the gap need not be concave, nor its series be short."""
-SHORTEST = 1e-300
-"""Length of a series over no time [s]."""
-ATTEMPTS = 8
-"""Times that bounds of w'' are widened before accumulation counts as not proven."""
-WIDENING = 1.2
-"""Factor by which they are widened beyond what they imply."""
+SHORTEST = 1e-300  # length of a series over no time [s]
+ATTEMPTS = 8  # times that bounds of w'' are widened before accumulation counts as not proven
+WIDENING = 1.2  # factor by which they are widened beyond what they imply
 
 
-@dataclass(frozen=True)
-class Hop:
+class Hop(NamedTuple):
     """A flight from one impact to the next."""
 
     length: arb  # [s]
     approach: arb  # speed at which the gap closes at its end [m/s]
 
 
-@dataclass(frozen=True)
-class Accumulation:
+class Accumulation(NamedTuple):
     """What infinitely many impacts come to."""
 
     length: arb  # time from the last impact that was followed to the end of all [s]
@@ -96,7 +90,8 @@ class Hops:
         self.third = contact.row * self.motion.A  # the gap's third derivative over the rates
         weights = [x * unit for x, unit in zip(self.third.entries(), self.units.v.entries(), strict=True)]
         self.third_norm = euclidean(weights)
-        self.direction_norm = self.norm(State(arb_mat(6, 1), contact.direction))
+        self.direction = State(arb_mat(6, 1), contact.direction)
+        self.direction_norm = self.norm(self.direction)
 
     def norm(self, state: State) -> arb:
         """Norm of unknowns and rates, in which those of the block in flight change by `rate` at most."""
@@ -118,17 +113,13 @@ class Hops:
 
     def series(self, state: State, length: float) -> Segment:
         """The series of a flight."""
-        zero = arb(0)
+        zero = ZERO
         return expand(self.model, (OPEN, OPEN), Start(zero, *state, [zero, zero]), (), length)
 
     def after(self, state: State, time: arb) -> State:
         """The state after a flight of a time [s]."""
         length = float(abs(time).upper()) * (1 + 1e-9) or SHORTEST
         return State(*self.series(state, length).state(time / arb(length)))
-
-    def blurred(self, state: State, radius: arb) -> State:
-        """The state at any instant within a radius of the present one [s], to first order."""
-        return State(state.u + state.v * ball(radius), state.v + self.accelerations(state) * ball(radius))
 
     def pushed(self, state: State, speeds: arb, spread: arb) -> State:
         """The state after impacts.
@@ -143,8 +134,7 @@ class Hops:
             Time within which all of them are around the present instant [s].
         """
         angle = self.rate * spread
-        direction = State(arb_mat(6, 1), self.contact.direction)
-        late = self.spread(direction, angle * angle.exp() * self.direction_norm)
+        late = self.spread(self.direction, angle * angle.exp() * self.direction_norm)
         push = (1 + self.e) * speeds
         return State(state.u + late.u * push, state.v + late.v * push)
 
@@ -198,7 +188,7 @@ class Hops:
         change_norm = self.change_norm(state)
         fastest = speed.upper()
         slowest = speed.lower()
-        margin = arb(0)
+        margin = ZERO
         for _ in range(ATTEMPTS):
             A = now.upper() + margin
             B = now.lower() - margin
@@ -223,4 +213,4 @@ class Hops:
 
 def euclidean(entries: Sequence[arb]) -> arb:
     """Upper bound of the root of a sum of squares."""
-    return sum((x * x for x in entries), arb(0)).abs_upper().sqrt().upper()
+    return sum((x * x for x in entries), ZERO).abs_upper().sqrt().upper()

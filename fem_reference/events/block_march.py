@@ -17,7 +17,7 @@ from fem_reference.events.block_impacts import Accumulation, Hops, State
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem, RigidContact
 from fem_reference.events.column_drive import path
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, States
-from fem_reference.events.enclosure import ball, is_blank, precision, radius_of
+from fem_reference.events.enclosure import ZERO, ball, precision, radius_of
 from fem_reference.events.march import March, Node
 from fem_reference.events.series import INFLATION, Start, column, floats
 from fem_reference.events.switches import (
@@ -32,25 +32,24 @@ from fem_reference.events.switches import (
 from fem_reference.problem.motion import Motion
 from fem_reference.problem.problem import Array
 
+# Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB.
 STEPS = 60_000
-"""Greatest number of steps of `ANGLE` radians; as many of a block at rest on p = 1e18 N/m took 18 s and 90 MB."""
-IDLE = 500
-"""Steps without a switch after which a motion that would take too many steps is given up."""
-TAIL_BITS = 0.3
-"""Part of the working bits to which hops are followed before the rest of them is enclosed at once."""
+IDLE = 500  # steps without a switch after which a motion that would take too many steps is given up
+TAIL_BITS = 0.3  # part of the working bits to which hops are followed before the rest of them is enclosed at once
+# Part of the end of the motion below which a hop has no node of its own: no float tells its instants apart.
 INSTANT = 1e-18
-"""Part of the end of the motion below which a hop has no node of its own: no float tells its instants apart."""
 
 
 class BlockMarch(March):
     """The motion of a block from t = 0 on."""
+
+    seen_from_base = True
 
     def __init__(self, problem: BlockProblem, end: float, limit: int) -> None:
         self.block = BlockModel(problem)
         super().__init__(self.block, end, limit, Work())
         self.problem = problem
         base = problem.base or Motion((0.0,), (0.0,), (0.0,))
-        self.breaks = base.time  # the rows of the base's record [s]
         self.courses = path(base.time, base.x)(), path(base.time, base.y)()
         self.impacts: list[Impact] = []
         self.cascades: list[Cascade] = []
@@ -58,24 +57,18 @@ class BlockMarch(March):
 
     def initial(self) -> tuple[Start, States]:
         """Where the block is as seen from the base; corners that touch count as closed until they lift off."""
-        (x, vx), (y, vy) = (piece.series(arb(0), 1.0, 2) for piece in self.drives)
-        u = column([-x, arb(self.problem.gap) - y, *[arb(0)] * 4])
-        v = column([-vx, arb(self.problem.velocity) - vy, *[arb(0)] * 4])
+        (x, vx), (y, vy) = (piece.series(ZERO, 1.0, 2) for piece in self.drives)
+        u = column([-x, arb(self.problem.gap) - y, *[ZERO] * 4])
+        v = column([-vx, arb(self.problem.velocity) - vy, *[ZERO] * 4])
         is_open = u[1, 0] > 0 and not self.block.locked  # a base that begins below the block pulls at a locked one
         states = (OPEN, OPEN) if is_open or self.block.contact else (STICKS, STICKS)
         # Springs that never let go are unstrained where the base's record is zero, others where their corner touches.
-        reference = arb(0) if self.block.locked else -x.mid()
-        return Start(arb(0), u, v, [reference, reference]), states
+        reference = ZERO if self.block.locked else -x.mid()
+        return Start(ZERO, u, v, [reference, reference]), states
 
-    def take_drives(self, moment: float) -> None:
-        """Take the path of the base from a row of its record on, from which the block is seen."""
-        before = self.drives
-        self.drives = tuple(course.piece_at(moment) for course in self.courses)
-        if before:
-            time = self.start.time
-            old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
-            jump = column([*(one - other for one, other in zip(old, new, strict=True)), *[arb(0)] * 4])
-            self.place(time, self.start.u, self.start.v + jump)
+    def jump(self, rates: Sequence[arb]) -> arb_mat:
+        """Return what the block takes over, as seen from its base, of a jump of the base's rates."""
+        return column([*rates, *[ZERO] * 4])
 
     def check_work(self) -> None:
         """Stop where the block oscillates too fast for the length of its motion."""
@@ -126,9 +119,7 @@ class BlockMarch(March):
 
     def _add_impact(self, contact: RigidContact, approach: arb) -> None:
         """Record an impact at this instant."""
-        midpoint = self.start.time.str(40, radius=False)
-        impulse = float(contact.impulse(approach))
-        self.impacts.append(Impact(self.now, float(approach), impulse, midpoint, self.offset))
+        self.impacts.append(Impact(self.now, float(approach), float(contact.impulse(approach))))
         self.last_switch = len(self.nodes)
 
     def _add_rebound(self) -> None:
@@ -150,26 +141,25 @@ class BlockMarch(March):
         state = State(self.start.u + balls(hull[:6]), self.start.v + balls(hull[6:12]))
         row = np.pad(floats(contact.row), [(0, 0), (6, 2)])
         speed = contact.closing(self.start.v) + ball(float(self.transport.radius(row)[0]))
-        speed = speed + contact.closing(hops.accelerations(state)) * ball(self.offset)
-        cascade_start: float | None = None
-        impulse = arb(0)
+        speed += contact.closing(hops.accelerations(state)) * ball(self.offset)
+        cascade_start = None
+        impulse = ZERO
         finest = arb(2) ** (-TAIL_BITS * ctx.prec) / hops.rate
         length = arb(self.end)
         while True:
-            if is_blank(speed):
+            if speed.contains(0) or speed.rel_accuracy_bits() < ctx.prec // 4:
                 raise LostDigitsError(float(time), "impacts have cost most of the digits")
-            landed = hops.blurred(state, time.rad())  # at the instant of the impact, no longer at its midpoint
+            late = ball(time.rad())  # to first order, from the midpoint of the instant of the impact to this itself
+            landed = State(state.u + state.v * late, state.v + hops.accelerations(state) * late)
             if cascade_start is None or length < finest:
                 rest = hops.find_accumulation(landed, speed)
                 if rest is not None and time + rest.length < self.end:
                     if cascade_start is None:
                         cascade_start = float(time)
                     if rest.length < finest:
-                        impulse = impulse + contact.impulse(rest.speeds)
+                        impulse += contact.impulse(rest.speeds)
                         self._rest_after(hops, rest, state, time)
-                        midpoint = self.start.time.str(40, radius=False)
-                        cascade = Cascade(cascade_start, self.now, float(impulse), midpoint, self.switches[-1].radius)
-                        self.cascades.append(cascade)
+                        self.cascades.append(Cascade(cascade_start, self.now, float(impulse), self.offset))
                         return
             hop = hops.find_hop(landed, speed)
             if hop is None or not time + hop.length < self.end:
@@ -180,7 +170,7 @@ class BlockMarch(March):
                 raise AccumulationError(float(time), f"{reason}; another restitution or load, however near, may do")
             if length > self.end * INSTANT:
                 self.add_node()
-            time = time + length
+            time += length
             moved = hops.after(state, difference(time.mid(), self.start.time))
             state = hops.pushed(moved, hop.approach, time.rad())
             speed = e * hop.approach
@@ -191,12 +181,12 @@ class BlockMarch(March):
                 self._add_impact(contact, hop.approach)
                 self._add_rebound()
             else:
-                impulse = impulse + contact.impulse(hop.approach)
+                impulse += contact.impulse(hop.approach)
 
     def _stand_in(self, state: State, time: arb) -> None:
         """Stand at the middle of balls that hold the state at the middle of an instant."""
         radii = [x.rad() for part in state for x in part.entries()]
-        self.transport.restart([*radii, arb(0), arb(0)])
+        self.transport.restart([*radii, ZERO, ZERO])
         self.start = Start(time.mid(), state.u.mid(), state.v.mid(), self.start.references)
         self.offset = radius_of(time)
 
@@ -215,7 +205,7 @@ class BlockMarch(March):
         error = self.transport.record()
         error[:12] += [float(rest.reach * x) * INFLATION for part in hops.units for x in part.entries()]
         self.nodes.append(Node(self.start, self.states, self.drives, (), error))
-        time = time + rest.length
+        time += rest.length
         state = hops.after(state, difference(time.mid(), self.start.time))
         state = hops.pushed(state, rest.speeds, rest.length.upper() + 2 * time.rad())
         second_order = 2 * (hops.rate * time.rad()) ** 2 * hops.change_norm(state) / hops.rate

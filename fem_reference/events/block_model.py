@@ -38,22 +38,18 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-import numpy as np
 from flint import arb, arb_mat
 
 from fem_reference.events.contacts import NORMAL, OPEN, STICKS, Contact, Part, States, Watch
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.series import Start, System, column, diagonal
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.motion import Motion
 
 CORNERS = ("M", "N")
 HYPOTHESES = ("plane stress", "plane strain")
-POSITIVE = ("width", "height", "density", "young", "stiffness")
-UNSIGNED = ("shear_stiffness", "gap", "cohesion", "damping")
-INFINITE = ("young", "stiffness")
-"""Fields that may be infinite: of a rigid block and of a rigid contact."""
+# Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits.
 ANGLE = 12.0
-"""Length of a step times the greatest rate [rad]: e^12 is how far the terms of its series may cancel, 18 bits."""
 Vector = list[arb]
 
 
@@ -96,7 +92,12 @@ class BlockProblem:
     restitution: float | None = None  # e of the impact law of rigid contact [-], from 0, plastic, to 1, elastic
 
     def __post_init__(self) -> None:
-        require_numbers(self, POSITIVE, UNSIGNED, INFINITE)
+        require_numbers(
+            self,
+            positive=("width", "height", "density", "young", "stiffness"),
+            unsigned=("shear_stiffness", "gap", "cohesion", "damping"),
+            infinite=("young", "stiffness"),
+        )
         require(self.hypothesis in HYPOTHESES, "hypothesis", f"must be one of {HYPOTHESES}", self.hypothesis)
         highest = 1.0 if self.hypothesis == "plane stress" else 0.5
         rule = f"must be above -1 and below {highest:g} in {self.hypothesis}"
@@ -114,10 +115,7 @@ class BlockProblem:
         springs = self.friction is None and not self.locked and not self.rigid_contact
         rule = "must be 0 with friction, locked contact or rigid contact, whose loss is set by restitution"
         require(springs or self.damping == 0, "damping", rule, self.damping)
-        self._check_impact_law()
-
-    def _check_impact_law(self) -> None:
-        """Raise for what rigid contact is not solved for: both its corners do the same, and nothing acts sideways."""
+        # Rigid contact is solved for where both its corners do the same, and nothing acts sideways.
         e = self.restitution
         if e is None:
             rule = "must be finite, or rigid contact needs a restitution"
@@ -157,12 +155,19 @@ class BlockModel(System):
         b = arb(problem.height)
         m = arb(problem.density) * a * b
         self.locked = problem.locked  # whether the corners never change their state
-        self.masses = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
-        self.mass = diagonal(self.masses)
+        masses = [m, m, *(m * a * a / 12, m * b * b / 12) * 2]  # diagonal of the mass matrix [kg, kg m2]
+        self.mass = diagonal(masses)
         self.stiffness = arb_mat(_elastic(problem, a * b))  # of the strained block [N/m, N m]
         self.load = column(_load(problem, a, b, m))  # of pressure, traction and weight [N, N m]
-        self.mobility = self._mobility(problem.rigid)  # [1/kg, 1/(kg m2)]
-        zero = arb(0)
+        self.mobility = diagonal([1 / mass for mass in masses])  # [1/kg, 1/(kg m2)]
+        if problem.rigid:
+            self.mobility = arb_mat(6, 6)
+            self.mobility[0, 0] = self.mobility[1, 1] = 1 / m
+            # a rotation has uy = -r and vx = r
+            turning = 1 / (masses[3] + masses[4])
+            self.mobility[3, 3] = self.mobility[4, 4] = turning
+            self.mobility[3, 4] = self.mobility[4, 3] = -turning
+        zero = ZERO
         ends = -a / 2, a / 2
         gaps = [[zero, arb(1), zero, zero, x, -b / 2] for x in ends]
         slides = [[arb(1), zero, x, -b / 2, zero, zero] for x in ends]
@@ -192,18 +197,6 @@ class BlockModel(System):
             Contact(c, name, c, 2 + c if ps > 0 else None, p, arb(problem.damping), ps, friction, cohesion, force)
             for c, name in enumerate(CORNERS)
         ]
-
-    def _mobility(self, rigid: bool) -> arb_mat:
-        """M^-1, or the sum of d d' / (d' M d) over the rigid motions d, shape (6, 6)."""
-        if not rigid:
-            return diagonal([1 / m for m in self.masses])
-        W = arb_mat(6, 6)
-        W[0, 0] = W[1, 1] = 1 / self.masses[0]
-        # a rotation has uy = -r and vx = r
-        turning = 1 / (self.masses[3] + self.masses[4])
-        W[3, 3] = W[4, 4] = turning
-        W[3, 4] = W[4, 3] = -turning
-        return W
 
     def watches(self, states: States, references: Sequence[arb]) -> Iterable[Watch]:
         """Yield the functions that are positive as long as the corners keep their states."""
@@ -249,8 +242,9 @@ class RigidContact:
         # what changes the gap's rate, or the gap, by one [-]
         self.direction = self.mobility * (1 / self.compliance)
         # from rates to those after an impact, and from displacements or rates to those without any of the gap
-        self.impact = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row * (1 + restitution)
-        self.rest = arb_mat(np.eye(6, dtype=int).tolist()) - self.direction * row
+        unit = diagonal([arb(1)] * 6)
+        self.impact = unit - self.direction * row * (1 + restitution)
+        self.rest = unit - self.direction * row
 
     def closing(self, x: arb_mat) -> arb:
         """The gap n x of both corners, or its rate or acceleration."""
@@ -263,16 +257,16 @@ class RigidContact:
 
 def _elastic(problem: BlockProblem, area: arb) -> list[Vector]:
     """Area times the elastic matrix: ex = ux (2), ey = vy (5), gxy = uy + vx (3, 4); zero if there is no strain."""
+    K = [[ZERO] * 6 for _ in range(6)]
     if problem.rigid:
-        return [[arb(0)] * 6 for _ in range(6)]
+        return K
     E = arb(problem.young)
     mu = arb(problem.poisson)
     shear = area * E / (2 * (1 + mu))
     if problem.hypothesis == "plane strain":
-        E = E / (1 - mu * mu)
-        mu = mu / (1 - mu)
+        E /= 1 - mu * mu
+        mu /= 1 - mu
     direct = area * E / (1 - mu * mu)
-    K = [[arb(0)] * 6 for _ in range(6)]
     K[2][2] = K[5][5] = direct
     K[2][5] = K[5][2] = mu * direct
     K[3][3] = K[4][4] = K[3][4] = K[4][3] = shear
@@ -289,4 +283,4 @@ def _load(problem: BlockProblem, a: arb, b: arb, m: arb) -> Vector:
     weight = m * arb(problem.gravity)
     along = weight * arb(math.sin(turn))
     down = weight * arb(math.cos(turn))
-    return [t * a + along, -push - down, arb(0), t * a * b / 2, -push * e, -push * b / 2]
+    return [t * a + along, -push - down, ZERO, t * a * b / 2, -push * e, -push * b / 2]

@@ -18,13 +18,12 @@ from itertools import pairwise
 
 from flint import arb, arb_poly, arb_series, ctx
 
-from fem_reference.events.enclosure import term_count
+from fem_reference.events.enclosure import ZERO, term_count
 
-ANGLE = 6.0
-"""Length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column."""
+ANGLE = 6.0  # length of a step times the greatest rate [rad]; few more than lie between two switches of a busy column
+# Greatest pi f times a step: n terms leave (sqrt(2 e / n))^n, below 60 digits at 92 and below the 28 of reports in
+# each of the parts into which they cut a step. Twice as much needs as many terms for the time passed.
 RICKER_ANGLE = 1.0
-"""Greatest pi f times a step: n terms leave (sqrt(2 e / n))^n, below 60 digits at 92 and below the 28 of reports in
-each of the parts into which they cut a step. Twice as much needs as many terms for the time passed."""
 
 
 def tail_sum(ratio: arb) -> arb:
@@ -69,15 +68,15 @@ class Polynomial:
         """Coefficients of the first powers of (t - start) / length."""
         about = arb_poly([start - arb(self.origin), arb(length)])
         shifted = arb_poly([arb(c) for c in self.coefficients])(about).coeffs()
-        return [*shifted, *[arb(0)] * count][:count]
+        return [*shifted, *[ZERO] * count][:count]
 
     def tail(self, start: arb, length: float, count: int) -> arb:
         """Bound of the terms from `count` on times the cube of their number."""
-        return arb(0) if len(self.coefficients) <= count else arb("inf")
+        return ZERO if len(self.coefficients) <= count else arb("inf")
 
     def antiderivative(self, start: arb, value: arb) -> Polynomial:
         """Return the integral that has a value at an instant."""
-        powers = [arb(0), *(arb(c) / (k + 1) for k, c in enumerate(self.coefficients))]
+        powers = [ZERO, *(arb(c) / (k + 1) for k, c in enumerate(self.coefficients))]
         powers[0] = value - arb_poly(powers)(start - arb(self.origin))
         return Polynomial(tuple(powers), self.origin)
 
@@ -115,7 +114,7 @@ class Sine:
 
     def antiderivative(self, start: arb, value: arb) -> Sine:
         """Return the integral that has a value at an instant, of a sine without an offset."""
-        turned = Sine(self.amplitude / self.rate, self.rate, arb(0), (self.quarters - 1) % 4, self.origin)
+        turned = Sine(self.amplitude / self.rate, self.rate, ZERO, (self.quarters - 1) % 4, self.origin)
         return replace(turned, offset=value - turned.series(start, 1.0, 1)[0])
 
 
@@ -196,9 +195,9 @@ class Course:
 
     def integral(self) -> Course:
         """Return the integral that is zero where the first piece begins."""
-        value = arb(0)
-        start = arb(0)
-        pieces: list[Piece] = []
+        value = ZERO
+        start = ZERO
+        pieces = []
         for number, piece in enumerate(self.pieces):
             pieces.append(piece.antiderivative(start, value))
             if number < len(self.breaks):
@@ -207,8 +206,7 @@ class Course:
         return Course(self.breaks, tuple(pieces))
 
 
-Drive = Callable[[], Course]
-"""Makes its course in the precision of the current context."""
+Drive = Callable[[], Course]  # makes its course in the precision of the current context
 
 
 def still() -> Course:
@@ -235,12 +233,12 @@ def integrated(drive: Drive, times: int = 1) -> Drive:
 
 def half_sine(size: float, duration: float) -> Drive:
     """Size sin(pi t / T) until T and nothing after it."""
-    return lambda: Course((duration,), (Sine(arb(size), arb.pi() / arb(duration), arb(0)), NOTHING))
+    return lambda: Course((duration,), (Sine(arb(size), arb.pi() / arb(duration), ZERO), NOTHING))
 
 
 def sine(size: float, frequency: float, quarters: int = 0) -> Drive:
     """Size sin(2 pi f t + quarters pi / 2) from t = 0 on."""
-    return lambda: Course((), (Sine(arb(size), 2 * arb.pi() * arb(frequency), arb(0), quarters),))
+    return lambda: Course((), (Sine(arb(size), 2 * arb.pi() * arb(frequency), ZERO, quarters),))
 
 
 def triangle(size: float, duration: float) -> Drive:

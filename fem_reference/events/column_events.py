@@ -10,6 +10,7 @@ is zero in all derivatives, as those of blocks in common flight, carry no force;
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -21,22 +22,15 @@ from numpy.typing import ArrayLike
 from fem_reference.events.column_drive import ANGLE
 from fem_reference.events.column_model import ColumnModel, ColumnProblem
 from fem_reference.events.contacts import OPEN, STICKS, States, direction
-from fem_reference.events.enclosure import bits_of, check_request, precision, term_count
-from fem_reference.events.march import March, Node
-from fem_reference.events.report import ROUNDING, Instant, instants_of, stacked
+from fem_reference.events.enclosure import ZERO, bits_of, precision, term_count
+from fem_reference.events.march import March
+from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
 from fem_reference.events.series import Start, floats
-from fem_reference.events.switches import ProvenMotion, Switch, Work, with_enough_digits
-from fem_reference.problem.instants import instants
+from fem_reference.events.switches import Work
 from fem_reference.problem.problem import Array
 
-DIGITS = 60
-"""Decimal digits of the first computation."""
-MOST_DIGITS = 240
-"""Decimal digits of the last one, where switches cost those of the ones before."""
-PROMISED = 1e-20
-"""Part of the end of the motion to which the instant of each switch is enclosed; more digits are taken for it."""
-REPORT_DIGITS = 28
-"""Decimal digits in which the series are summed where the motion is reported."""
+DIGITS = 60  # decimal digits of the first computation
+REPORT_DIGITS = 28  # decimal digits in which the series are summed where the motion is reported
 
 
 @dataclass(frozen=True)
@@ -91,13 +85,8 @@ class ColumnMotion(ProvenMotion):
     """Exact motion of a column from t = 0 to `end`."""
 
     problem: ColumnProblem
-    end: float  # last instant [s]
-    digits: int  # decimal digits of the computation
     states_at_start: tuple[int, ...]  # of the joints with a spring just after t = 0
-    switches: tuple[Switch, ...]  # changes of the joints in the order of time; together: from the base upwards
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
     resting: tuple[int, ...]  # joints that were at zero gap without force for a while
-    nodes: tuple[Node, ...] = field(repr=False)  # beginnings of the steps in the order of time
     model: ColumnModel = field(repr=False, compare=False)
 
     def at(self, times: ArrayLike) -> ColumnHistory:
@@ -108,10 +97,7 @@ class ColumnMotion(ProvenMotion):
         ValueError
             If an instant is not from 0 to `end`.
         """
-        t = instants(times, self.end)
-        with precision(bits_of(min(self.digits, REPORT_DIGITS))):
-            columns = [self._at(instant) for instant in instants_of(self.model, self.nodes, t)]
-        return ColumnHistory(time=t, **stacked(columns, len(t)))
+        return ColumnHistory(**self.columns(self.model, times, REPORT_DIGITS))
 
     @cached_property
     def _ways(self) -> Array:
@@ -139,7 +125,7 @@ class ColumnMotion(ProvenMotion):
             if model.unilateral:
                 force = max(force, 0.0)
             of_joints[:, contact.number] = force, float(instant.rows[c]), float(slip), state
-            springs += force**2 / (2 * float(model.spring(c)))
+            springs += force**2 / (2 * float(contact.stiffness + contact.shear_stiffness))
             way = self._ways[instant.number, c] + abs(float(slip - reference))
             friction += float(contact.cohesion or 0) * way
         feet, tops = np.transpose(model.faces)
@@ -147,6 +133,15 @@ class ColumnMotion(ProvenMotion):
         moduli = [block.modulus / block.height if math.isfinite(block.modulus) else 0.0 for block in problem.blocks]
         squares = v[feet] ** 2 + v[feet] * v[tops] + v[tops] ** 2
         inertia = mass * ((a[feet] + a[tops]) / 2 + problem.gravity)
+        # the force on the foot of each block, by the law of its joint or else by the momentum of what is above it
+        faces = np.append(of_joints[0], float(pressure[0]))
+        for i in range(len(problem.blocks) - 1, -1, -1):
+            if problem.joints[i] is None:
+                faces[i] = faces[i + 1] + inertia[i]
+        if problem.base == "free":
+            faces[0] = 0.0
+        elif problem.base == "transmitting":
+            faces[0] = problem.impedance * (2 * v[-1] - v[0])
         return {
             "foot": u[feet],
             "top": u[tops],
@@ -156,7 +151,7 @@ class ColumnMotion(ProvenMotion):
             "stretch": of_joints[1],
             "slip": of_joints[2],
             "states": of_joints[3].astype(int),
-            "face_force": self._face_force(of_joints[0], inertia, pressure[0], 2 * v[-1] - v[0]),
+            "face_force": faces,
             "kinetic": mass @ squares / 6,
             "strain": moduli @ (u[tops] - u[feet]) ** 2 / 2,
             "springs": springs,
@@ -164,19 +159,6 @@ class ColumnMotion(ProvenMotion):
             "friction": friction,
             "displacement_radius": instant.radius.max() + ROUNDING * np.abs(u[:-1]).max(),
         }
-
-    def _face_force(self, force: Array, inertia: Array, pressure: arb, outflow: float) -> Array:
-        """Force on the foot of each block, by the law of its joint or else by the momentum of what is above it [Pa]."""
-        problem = self.problem
-        faces = np.append(force, float(pressure))
-        for i in range(len(force) - 1, -1, -1):
-            if problem.joints[i] is None:
-                faces[i] = faces[i + 1] + inertia[i]
-        if problem.base == "free":
-            faces[0] = 0.0
-        elif problem.base == "transmitting":
-            faces[0] = problem.impedance * outflow
-        return faces
 
 
 class ColumnMarch(March):
@@ -186,27 +168,20 @@ class ColumnMarch(March):
         self.column = ColumnModel(problem)
         super().__init__(self.column, end, limit, work)
         self.courses = problem.base_motion(), problem.pressure()
-        self.breaks = [time for course in self.courses for time in course.breaks]
 
     def initial(self) -> tuple[Start, States]:
         """Where the column begins; its joints count as open as long as they carry nothing."""
         column = self.column
-        base, rate = self.pieces[0].series(arb(0), 1.0, 2)
+        base, rate = self.pieces[0].series(ZERO, 1.0, 2)
         count = len(column.contacts)
-        start = Start(arb(0), column.displacements(base), column.velocities(rate), [arb(0)] * count)
+        start = Start(ZERO, column.displacements(base), column.velocities(rate), [ZERO] * count)
         return start, (OPEN if column.unilateral else STICKS,) * count
 
-    def take_drives(self, moment: float) -> None:
-        """Take the pieces from an instant on; a base that the lowest block is welded to passes on a jump."""
-        before = self.pieces
-        self.pieces = self.drives = tuple(course.piece_at(moment) for course in self.courses)
-        if not before:
-            return
-        time = self.start.time
-        old, new = (pieces[0].series(time, 1.0, 2)[1] for pieces in (before, self.pieces))
+    def jump(self, rates: Sequence[arb]) -> arb_mat:
+        """Return what a base that the lowest block is welded to passes on of a jump."""
         impulse = arb_mat(self.column.size, 1)
-        impulse[0, 0] = self.column.base_coupling * (old - new)
-        self.place(time, self.start.u, self.start.v + self.column.mobility * impulse)
+        impulse[0, 0] = self.column.base_coupling * rates[0]
+        return self.column.mobility * impulse
 
 
 def least_terms(problem: ColumnProblem, end: float) -> tuple[float, float]:
@@ -254,23 +229,21 @@ def solve(
     NoContactStateError
         If no state of the joints agrees with the motion that follows from it.
     """
-    check_request(end, digits)
-    work = Work() if work is None else work
+    counted = work or Work()
 
     def motion_in(digits: int) -> ColumnMotion:
-        with precision(bits_of(digits)):
-            march = ColumnMarch(problem, float(end), limit, work)
-            march.run()
+        march = ColumnMarch(problem, float(end), limit, counted)
+        march.run()
         return ColumnMotion(
-            problem,
-            float(end),
+            march.end,
             digits,
-            march.nodes[0].states,
             tuple(march.switches),
             tuple(march.touches),
-            tuple(sorted(march.column.contacts[c].number for c in march.resting)),
             tuple(march.nodes),
+            problem,
+            march.nodes[0].states,
+            tuple(sorted(march.column.contacts[c].number for c in march.resting)),
             march.column,
         )
 
-    return with_enough_digits(motion_in, float(end), digits, MOST_DIGITS, PROMISED)
+    return with_enough_digits(motion_in, float(end), digits)

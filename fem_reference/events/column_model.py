@@ -21,6 +21,7 @@ from flint import arb, arb_mat
 
 from fem_reference.events.column_drive import ANGLE, Drive, still
 from fem_reference.events.contacts import STICKS, Contact
+from fem_reference.events.enclosure import ZERO
 from fem_reference.events.series import System, column
 from fem_reference.problem.checks import require, require_numbers
 
@@ -118,7 +119,7 @@ class ColumnModel(System):
         super().__init__()
         self.problem = problem
         self.unilateral = problem.law == "unilateral"
-        self.faces: list[tuple[int, int]] = []  # unknowns of foot and top of each block
+        self.faces = []  # unknowns of foot and top of each block
         joints: list[tuple[int, int, ColumnJoint]] = []  # those with a spring, and their unknowns above and below
         self.contacts = []
         previous = BASE
@@ -127,13 +128,20 @@ class ColumnModel(System):
             foot = previous
             if joint is not None or (j == 0 and problem.base != "rigid"):
                 foot = count
-                count = count + 1
+                count += 1
             top = foot
             if math.isfinite(block.modulus):
                 top = count
-                count = count + 1
+                count += 1
             if joint is not None:
-                self.contacts.append(self._contact(j, len(joints), joint))
+                name = f"joint {j}" if j else "base"
+                k = arb(joint.stiffness)
+                if self.unilateral:
+                    contact = Contact(j, name, gap=len(joints), stiffness=k)
+                else:
+                    strength = None if joint.strength is None else arb(joint.strength)
+                    contact = Contact(j, name, slide=len(joints), shear_stiffness=k, cohesion=strength)
+                self.contacts.append(contact)
                 joints.append((foot, previous, joint))
             self.faces.append((foot, top))
             previous = top
@@ -161,19 +169,19 @@ class ColumnModel(System):
         load = arb_mat(count + 1, 1)
         for faces, block in zip(self.faces, problem.blocks, strict=True):
             m = arb(block.density) * arb(block.height)
-            k = arb(block.modulus) / arb(block.height) if math.isfinite(block.modulus) else arb(0)
+            k = arb(block.modulus) / arb(block.height) if math.isfinite(block.modulus) else ZERO
             sides = [(face % (count + 1), sign) for face, sign in zip(faces, (-1, 1), strict=True)]
             for i, sign in sides:
-                load[i, 0] = load[i, 0] - m * arb(problem.gravity) / 2
+                load[i, 0] -= m * arb(problem.gravity) / 2
                 for j, other in sides:
-                    mass[i, j] = mass[i, j] + m * (3 + sign * other) / 12
-                    stiffness[i, j] = stiffness[i, j] + k * (sign * other)
+                    mass[i, j] += m * (3 + sign * other) / 12
+                    stiffness[i, j] += k * (sign * other)
         own = range(count)
         self.mass = arb_mat([mass.tolist()[i][:count] for i in own])
         self.stiffness = arb_mat([stiffness.tolist()[i][:count] for i in own])
         self.load = arb_mat([[load[i, 0]] for i in own])
         self.mobility = self.mass.inv()
-        self.base_coupling = mass[0, base] if problem.base == "rigid" else arb(0)  # of the base and the first unknown
+        self.base_coupling = mass[0, base] if problem.base == "rigid" else ZERO  # of the base and the first unknown
         inputs = arb_mat(count, 4)
         for i in own:
             inputs[i, 0] = -stiffness[i, base]
@@ -187,22 +195,10 @@ class ColumnModel(System):
             inputs[0, 1] = 2 * damping[0, 0]
         return inputs
 
-    def _contact(self, j: int, row: int, joint: ColumnJoint) -> Contact:
-        name = f"joint {j}" if j else "base"
-        k = arb(joint.stiffness)
-        if self.unilateral:
-            return Contact(j, name, gap=row, stiffness=k)
-        strength = None if joint.strength is None else arb(joint.strength)
-        return Contact(j, name, slide=row, shear_stiffness=k, cohesion=strength)
-
-    def spring(self, contact: int) -> arb:
-        """Stiffness k of a contact [Pa/m]."""
-        return self.contacts[contact].stiffness + self.contacts[contact].shear_stiffness
-
     def velocities(self, base: arb) -> arb_mat:
         """Velocity of each unknown just after t = 0, of the blocks' momentum and the velocity of the base."""
         blocks = self.problem.blocks
-        by_face: dict[int, list[arb]] = {BASE: [base]}
+        by_face = {BASE: [base]}
         for (foot, top), block in zip(self.faces, blocks, strict=True):
             for face in {foot, top}:
                 by_face.setdefault(face, []).append(arb(block.velocity))
@@ -214,7 +210,7 @@ class ColumnModel(System):
             for face in faces:
                 if face != BASE:
                     half = arb(block.density) * arb(block.height) * arb(block.velocity) / 2
-                    momentum[face, 0] = momentum[face, 0] + half
+                    momentum[face, 0] += half
         return self.mobility * momentum
 
     def displacements(self, base: arb) -> arb_mat:
@@ -223,4 +219,4 @@ class ColumnModel(System):
         if not self.problem.at_rest:
             return u
         closed = self.motion((STICKS,) * len(self.contacts))
-        return closed.A.solve((closed.f + closed.E * column([base, *[arb(0)] * 3])) * -1)
+        return closed.A.solve((closed.f + closed.E * column([base, *[ZERO] * 3])) * -1)

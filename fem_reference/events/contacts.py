@@ -16,23 +16,22 @@ is made of rows and of their rates alone, so that its power series follows from 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from flint import arb, arb_mat
 
 from fem_reference.events.enclosure import ZERO
 
+# States of a contact: `STICKS` is closed too where nothing slides; `RIGHT` and `LEFT` slip towards + and -.
 OPEN = 0
 STICKS = 1
 RIGHT = 2
 LEFT = -2
 RELEASED = 3
-"""States of a contact: `STICKS` is closed too where nothing slides; `RIGHT` and `LEFT` slip towards + and -."""
+# Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction.
 CARRIES_NOTHING = (OPEN, RELEASED)
 NORMAL = 0
 FORCE = 3
-"""Sides of watched functions: the gap, the force on a dashpot; those of slip have the sign of its direction."""
 States = tuple[int, ...]
 
 
@@ -41,18 +40,17 @@ def direction(state: int) -> int:
     return {RIGHT: 1, LEFT: -1}.get(state, 0)
 
 
-@dataclass(frozen=True)
-class Contact:
+class Contact(NamedTuple):
     """A contact, and its numbers in the unit of the forces of its model."""
 
     number: int  # of its joint or corner
     name: str  # the same in words
     gap: int | None = None  # number of the row w; None: it never opens
     slide: int | None = None  # number of the row s; None: nothing slides
-    stiffness: arb = field(default_factory=lambda: ZERO)  # p
-    damping: arb = field(default_factory=lambda: ZERO)  # c of the dashpot beside it
-    shear_stiffness: arb = field(default_factory=lambda: ZERO)  # p_s
-    friction: arb = field(default_factory=lambda: ZERO)  # tan(phi)
+    stiffness: arb = ZERO  # p
+    damping: arb = ZERO  # c of the dashpot beside it
+    shear_stiffness: arb = ZERO  # p_s
+    friction: arb = ZERO  # tan(phi)
     cohesion: arb | None = None  # C; None: it never slips
     force: int | None = None  # number of the row of N of both corners of a rigid contact, which has no springs
 
@@ -68,7 +66,7 @@ class Contact:
             return slide
         limit = self.cohesion
         if self.gap is not None:
-            limit = limit - rows[self.gap] * (self.friction * self.stiffness)
+            limit -= rows[self.gap] * (self.friction * self.stiffness)
         return slide - limit * (direction(state) / self.shear_stiffness)
 
 
@@ -132,36 +130,27 @@ class Watch(NamedTuple):
 def watches(contacts: Sequence[Contact], states: Sequence[int], references: Sequence[arb]) -> Iterator[Watch]:
     """Yield the functions that are positive as long as the contacts keep their states."""
     for c, (contact, state, reference) in enumerate(zip(contacts, states, references, strict=True)):
-        if contact.gap is not None:
-            yield from _of_gap(c, contact, contact.gap, state)
-        if contact.slide is not None and contact.cohesion is not None and state not in CARRIES_NOTHING:
-            yield from _of_slide(c, contact, contact.slide, state, reference)
-
-
-def _of_gap(c: int, contact: Contact, gap: int, state: int) -> Iterator[Watch]:
-    if state == OPEN:
-        yield Watch(c, NORMAL, (Part(gap, arb(1)),), STICKS)
-        return
-    if contact.damping == 0:
-        yield Watch(c, NORMAL, (Part(gap, arb(-1)),), OPEN)
-        return
-    if state == RELEASED:
-        yield Watch(c, NORMAL, (Part(gap, arb(-1)),), OPEN)
-        yield Watch(c, FORCE, (Part(gap, contact.stiffness, contact.damping),), STICKS, order=1)
-        return
-    yield Watch(c, FORCE, (Part(gap, -contact.stiffness, -contact.damping),), RELEASED, order=1)
-
-
-def _of_slide(c: int, contact: Contact, slide: int, state: int, reference: arb) -> Iterator[Watch]:
-    """The shear force that a contact has left, or the rate at which one that slips moves its reference."""
-    limit = [] if contact.gap is None else [Part(contact.gap, -contact.friction * contact.stiffness)]
-    if state == STICKS:
-        for side, becomes in ((1, RIGHT), (-1, LEFT)):
-            pull = contact.shear_stiffness * side
-            offset = (contact.cohesion or 0) + pull * reference
-            yield Watch(c, side, (*limit, Part(slide, -pull)), becomes, offset, pull)
-        return
-    # r = s + T / p_s moves in the direction of the slip
-    side = direction(state)
-    rates = [Part(row, factor * -side * side) for row, factor, _ in limit]
-    yield Watch(c, side, (*rates, Part(slide, contact.shear_stiffness * side)), STICKS, rates=True, order=1)
+        gap = contact.gap
+        slide = contact.slide
+        damped = contact.damping != 0
+        if gap is not None and state == OPEN:
+            yield Watch(c, NORMAL, (Part(gap, arb(1)),), STICKS)
+        elif gap is not None:
+            if state == RELEASED or not damped:
+                yield Watch(c, NORMAL, (Part(gap, arb(-1)),), OPEN)
+            if damped:
+                side, becomes = (1, STICKS) if state == RELEASED else (-1, RELEASED)
+                force = Part(gap, contact.stiffness * side, contact.damping * side)
+                yield Watch(c, FORCE, (force,), becomes, order=1)
+        if slide is None or contact.cohesion is None or state in CARRIES_NOTHING:
+            continue
+        limit = [] if gap is None else [Part(gap, -contact.friction * contact.stiffness)]
+        if state == STICKS:  # the shear force that it has left
+            for side, becomes in ((1, RIGHT), (-1, LEFT)):
+                pull = contact.shear_stiffness * side
+                offset = contact.cohesion + pull * reference
+                yield Watch(c, side, (*limit, Part(slide, -pull)), becomes, offset, pull)
+        else:  # the rate at which it moves its reference r = s + T / p_s in the direction of the slip
+            side = direction(state)
+            rates = [Part(row, factor * -side * side) for row, factor, _ in limit]
+            yield Watch(c, side, (*rates, Part(slide, contact.shear_stiffness * side)), STICKS, rates=True, order=1)

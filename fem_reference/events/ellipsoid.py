@@ -35,12 +35,10 @@ from fem_reference.events.series import INFLATION, Segment, Start, System, float
 from fem_reference.events.watching import Change, Reach
 from fem_reference.problem.problem import Array
 
+# Part of the norm of a matrix by which floats of it, also of an exponential, and of its product may be wrong.
 FLOAT_ERROR = 1e-13
-"""Part of the norm of a matrix by which floats of it, also of an exponential, and of its product may be wrong."""
-LARGEST_WEIGHT = 1e6
-"""Greatest p of a sum: so often the set may move before it has grown by a factor of sqrt(e)."""
-DIFFERENCE_ERROR = 1e-14
-"""Part of its terms by which a difference of floats may be wrong."""
+LARGEST_WEIGHT = 1e6  # greatest p of a sum: so often the set may move before it has grown by a factor of sqrt(e)
+DIFFERENCE_ERROR = 1e-14  # part of its terms by which a difference of floats may be wrong
 
 
 class Ellipsoid:
@@ -58,7 +56,7 @@ class Ellipsoid:
         references = self.frequency / model.row_sizes[[contact.row for contact in model.contacts]]
         self.unit = block_diag(self.frequency * upper, upper, np.diag(references))
         self.inverse = block_diag(inverse / self.frequency, inverse, np.diag(1 / references))
-        self.size = arb(0)
+        self.size = ZERO
         self.shape = np.zeros_like(self.unit)  # S
         self.generator = lru_cache(maxsize=32)(self._generator)
 
@@ -83,7 +81,7 @@ class Ellipsoid:
 
     def restart(self, radii: Sequence[arb]) -> None:
         """Make the set a box."""
-        self.size = arb(0)
+        self.size = ZERO
         self.take(radii)
 
     def take(self, radii: Sequence[arb]) -> None:
@@ -161,7 +159,7 @@ class Ellipsoid:
         if change.impact is not None:
             upper, inverse = model.root
             P[self.v] = upper @ floats(change.impact) @ inverse @ P[self.v]
-        course = drives[0].series(change.before.time, 1.0, 3) if drives else [arb(0)] * 3
+        course = drives[0].series(change.before.time, 1.0, 3) if drives else [ZERO] * 3
         base_rate, base_bend = float(course[1]), 2 * float(abs(course[2]))
         rates, further = self._rates(change.before, change.was, drives)
         next_rates, next_further = self._rates(change.after, change.now, drives)
@@ -190,7 +188,7 @@ class Ellipsoid:
         references = np.zeros((len(hull), len(change.radii)))
         references[self.r] = self.unit[self.r, self.r]
         added += list(zip(change.radii, references.T, strict=True))
-        size = sum((part for part, _ in added), arb(0)).upper()
+        size = sum((part for part, _ in added), ZERO).upper()
         box = sum(vector * float(part / size) for part, vector in added) if size > 0 else None
         self.transport(M, size, box)
 

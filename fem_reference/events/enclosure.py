@@ -65,11 +65,6 @@ def radius_of(value: arb) -> float:
     return float(value.rad()) * (1 + 1e-15)
 
 
-def is_blank(value: arb) -> bool:
-    """Whether of a number less than a quarter of the digits is known; it then counts as zero."""
-    return bool(value.contains(0)) or value.rel_accuracy_bits() < ctx.prec // 4
-
-
 @cache
 def _term_count(angle: float, bits: int) -> int:
     logarithm = 0.0
@@ -94,8 +89,7 @@ class Local(NamedTuple):
     bend: arb  # encloses the second derivative over the interval, unless this is a point
 
 
-Smooth = Callable[[arb, arb], Local]
-"""From the middle of an interval and half its length to the function there."""
+Smooth = Callable[[arb, arb], Local]  # from the middle of an interval and half its length to the function there
 
 
 class Fall(NamedTuple):
@@ -156,7 +150,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
         Size below which the function counts as zero, and as no crossing.
     """
     finest = end * arb(2) ** (-ctx.prec // 2)
-    pending = [(arb(0), end)]
+    pending = [(ZERO, end)]
     while pending:
         low, high = pending.pop()
         half = ((high - low) / 2).mid()
@@ -170,7 +164,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
             continue
         falls = slope + change < 0
         if falls or half < finest:
-            if function(high, arb(0)).value < 0:
+            if function(high, ZERO).value < 0:
                 return _root(function, low, high) if falls else Fall(middle + ball(half), True)
             if not falls and touches is not None:
                 touches.append(middle)
@@ -183,7 +177,7 @@ def first_fall(function: Smooth, end: arb, touches: list[arb] | None = None, flo
 
 def _root(function: Smooth, low: arb, high: arb) -> Fall:
     """The root of a function that falls throughout an interval, by Newton's method inside the bracket."""
-    exact = arb(0)
+    exact = ZERO
     x = ((low + high) / 2).mid()
     width = high - low
     start = low

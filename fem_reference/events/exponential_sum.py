@@ -17,24 +17,19 @@ from typing import Any
 
 from flint import acb, acb_poly, arb, arb_poly
 
-from fem_reference.events.enclosure import first_fall, polynomial
+from fem_reference.events.enclosure import ZERO, first_fall, polynomial
 from fem_reference.events.switches import Work
 
-Rate = Any
-"""arb, or acb of a sine; python-flint's stubs know no arithmetic of either."""
-Polynomial = Any
-"""arb_poly, or acb_poly beside the rate of a sine."""
+Rate = Any  # arb, or acb of a sine; python-flint's stubs know no arithmetic of either
+Polynomial = Any  # arb_poly, or acb_poly beside the rate of a sine
+# Bits, of the size of the velocities, below which a coefficient counts as zero: bars that touch at rest, whose
+# contacts would otherwise open and close in turns of no size and at the cost of all digits.
 NEGLIGIBLE_BITS = 80
-"""Bits, of the size of the velocities, below which a coefficient counts as zero: bars that touch at rest, whose
-contacts would otherwise open and close in turns of no size and at the cost of all digits."""
+# Time over which a function is taken as a power series, over that in which its fastest exponential decays.
 STRETCH = 2.0
-"""Time over which a function is taken as a power series, over that in which its fastest exponential decays."""
-ORDER = 48
-"""Terms of that series; 2^48 / 48! = 2e-47."""
-HALVINGS = 16
-"""Doublings by which the intervals of the search grow behind a zero at its start."""
-NEWTON_STEPS = 4
-"""Steps in which a root of the series becomes one of the function."""
+ORDER = 48  # terms of that series; 2^48 / 48! = 2e-47
+HALVINGS = 16  # doublings by which the intervals of the search grow behind a zero at its start
+NEWTON_STEPS = 4  # steps in which a root of the series becomes one of the function
 
 
 @dataclass(frozen=True)
@@ -79,13 +74,13 @@ class Rates:
     def unit(self, number: int) -> arb:
         """Size of a derivative of a term over the term [1/s]."""
         rate = self.values[number]
-        size: arb = abs(rate) if number and isinstance(rate, arb) else 1 / self.end
+        size = abs(rate) if number and isinstance(rate, arb) else 1 / self.end
         return size
 
 
 def distinct(rates: list[Rate]) -> tuple[Rate, ...]:
     """Zero and those rates that differ from each other."""
-    table: list[Rate] = [arb(0)]
+    table = [ZERO]
     for rate in rates:
         if not any(isinstance(rate, acb) == isinstance(other, acb) and rate.overlaps(other) for other in table):
             table.append(rate)
@@ -126,11 +121,11 @@ class ExponentialSum:
 
     def __call__(self, s: arb) -> arb:
         """Value."""
-        value = arb(0)
+        value = ZERO
         for number, Q in self.terms.items():
             term = Q(s)
             if number:
-                term = term * (self.rates.values[number] * s).exp()
+                term *= (self.rates.values[number] * s).exp()
             value += term.real if isinstance(term, acb) else term
         return value
 
@@ -157,28 +152,28 @@ class ExponentialSum:
         for number, Q in self.terms.items():
             terms[number] = _particular(Q, self.rates.values[number]) if number else Q.integral()
         antiderivative = ExponentialSum(self.rates, terms)
-        return antiderivative.plus(start - antiderivative(arb(0)))
+        return antiderivative.plus(start - antiderivative(ZERO))
 
     def relaxed(self, kappa: arb, start: arb) -> ExponentialSum:
         """The w with w' + kappa w = f and the value `start` at zero; beside exp(-kappa s) itself R' = Q."""
         own = self.rates.index(-kappa)
-        terms: dict[int, Polynomial] = {own: arb_poly([])}
+        terms = {own: arb_poly([])}
         for number, Q in self.terms.items():
             terms[number] = Q.integral() if number == own else _particular(Q, self.rates.values[number] + kappa)
         particular = ExponentialSum(self.rates, terms)
-        terms[own] = terms[own] + arb_poly([start - particular(arb(0))])
+        terms[own] += arb_poly([start - particular(ZERO)])
         return ExponentialSum(self.rates, terms)
 
     def without_noise(self, integrated: bool = False) -> ExponentialSum:
         """The function, rounded, without the terms that are negligible beside the velocities, or their integrals."""
         size = self.rates.negligible_length if integrated else self.rates.negligible
-        terms: dict[int, Polynomial] = {}
+        terms = {}
         for number, Q in self.terms.items():
             unit = self.rates.unit(number)
             negligible = size
             coefficients = Q.coeffs()
             for k, c in enumerate(coefficients):
-                coefficients[k] = arb(0) if abs(c) < negligible else c.mid()
+                coefficients[k] = ZERO if abs(c) < negligible else c.mid()
                 negligible *= unit
             cleaned = type(Q)(coefficients)
             if cleaned.length():
@@ -190,7 +185,7 @@ class ExponentialSum:
         function = self
         negligible = self.rates.negligible
         for _ in range(sum(2 * Q.length() for Q in self.terms.values())):
-            value = function(arb(0))
+            value = function(ZERO)
             if abs(value) > negligible:
                 return 1 if value > 0 else -1
             function = function.derivative()
@@ -206,7 +201,7 @@ class ExponentialSum:
             return None
         end = end.mid()
         floor = self.rates.negligible_length if integrated else self.rates.negligible
-        start = arb(0)
+        start = ZERO
         flat = bool(abs(self(start)) < floor)
         while start < end:
             here = self.shifted(start).without_noise(integrated)
@@ -236,7 +231,7 @@ class ExponentialSum:
 
     def series(self) -> list[arb]:
         """Coefficients of the power series about zero, as many as `ORDER` and those of polynomials."""
-        total: Polynomial = arb_poly([])
+        total = arb_poly([])
         for number, Q in self.terms.items():
             if not number:
                 total += Q

@@ -20,11 +20,11 @@ takes the state that this function names, and the next derivative is looked at.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from flint import arb, arb_mat
 
-from fem_reference.events.column_drive import Piece
+from fem_reference.events.column_drive import Course, Piece
 from fem_reference.events.contacts import CARRIES_NOTHING, NORMAL, OPEN, RELEASED, STICKS, States, Watch
 from fem_reference.events.ellipsoid import Ellipsoid
 from fem_reference.events.enclosure import ZERO, radius_of
@@ -38,12 +38,10 @@ from fem_reference.events.switches import (
 from fem_reference.events.watching import CELLS, CUTS, Change, Reach, Watched
 from fem_reference.problem.problem import Array
 
-FEW = 4
-"""Terms that are looked at first where functions begin at zero: most show at once where they go."""
+FEW = 4  # terms that are looked at first where functions begin at zero: most show at once where they go
 
 
-@dataclass(frozen=True)
-class Node:
+class Node(NamedTuple):
     """The beginning of a step."""
 
     start: Start
@@ -56,6 +54,8 @@ class Node:
 class March:
     """The motion from t = 0 on, node by node."""
 
+    seen_from_base = False  # whether what moves is counted from its base, so that its model knows of no drives
+
     def __init__(self, model: System, end: float, limit: int, work: Work) -> None:
         self.model = model
         self.transport = Ellipsoid(model)
@@ -63,8 +63,8 @@ class March:
         self.limit = limit
         self.work = work
         self.states: States = ()
-        self.breaks: Sequence[float] = ()  # instants at which the drives become others [s]
-        self.drives: Sequence[Piece] = ()  # of the base and of the pressure, or of the base in two directions
+        self.courses: Sequence[Course] = ()  # of the base and of the pressure, or of the base in two directions
+        self.drives: Sequence[Piece] = ()  # their present pieces
         self.pieces: Sequence[Piece] = ()  # those that the model knows: all, or none of what is seen from its base
         self.offset = 0.0  # what the instant of the last switch may be off, while the motion stands at it [s]
         self.watches: list[Watch] = []
@@ -80,8 +80,8 @@ class March:
         """Where the motion begins, and the states of contacts whose functions rest there."""
         raise NotImplementedError
 
-    def take_drives(self, moment: float) -> None:
-        """Take the drives from an instant on, and what velocities jump with them."""
+    def jump(self, rates: Sequence[arb]) -> arb_mat:
+        """What the rates of the unknowns jump by where those of the drives fall."""
         raise NotImplementedError
 
     def check_work(self) -> None:
@@ -118,7 +118,7 @@ class March:
         if impact is not None:
             self.follow_impact()
         self.switches = [switch for switch in self.switches if switch.time > 0]
-        borders = sorted({border for border in self.breaks if 0 < border < self.end})
+        borders = sorted({time for course in self.courses for time in course.breaks if 0 < time < self.end})
         for border in [*borders, self.end]:
             limit = arb(border)
             while self.start.time < limit:
@@ -127,6 +127,17 @@ class March:
             if border < self.end:
                 self.take_drives(border)
                 self.switch()
+
+    def take_drives(self, moment: float) -> None:
+        """Take the drives from an instant on, and what velocities jump with them."""
+        before = self.drives
+        self.drives = tuple(course.piece_at(moment) for course in self.courses)
+        self.pieces = () if self.seen_from_base else self.drives
+        if before:
+            time = self.start.time
+            old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
+            falls = [one - other for one, other in zip(old, new, strict=True)]
+            self.place(time, self.start.u, self.start.v + self.jump(falls))
 
     def place(self, time: arb, u: arb_mat, v: arb_mat) -> None:
         """Stand at a state; the radii of its balls go into what it may be off."""

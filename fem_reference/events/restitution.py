@@ -17,16 +17,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from fem_reference.problem.checks import require, require_numbers
 from fem_reference.problem.problem import Array
 
-LIMIT = 100_000
-"""Steps in contact after which the mass counts as stuck; also where it has come to rest."""
-REST = 1e-18
-"""Speed and acceleration below which the mass has come to rest, over those of the impact."""
+LIMIT = 100_000  # steps in contact after which the mass counts as stuck; also where it has come to rest
+REST = 1e-18  # speed and acceleration below which the mass has come to rest, over those of the impact
 
 
 @dataclass(frozen=True)
@@ -62,14 +61,8 @@ class ContactScheme:
         velocity = np.array([-delta * k, gg, 1 - delta])
         return np.array([np.array([1 - k / 2, 0.0, 0.0]) + gg * velocity, velocity, [-k, 0.0, 0.0]])
 
-    @property
-    def last(self) -> Array:
-        """The velocity after a first step without contact, as a row over (w*, v, A), shape (3,)."""
-        return np.array([0.0, self.gg, 1 - self.delta])
 
-
-@dataclass(frozen=True)
-class Branch:
+class Branch(NamedTuple):
     """One straight line of the restitution, e = constant + slope theta."""
 
     low: float  # least theta [-]
@@ -82,8 +75,7 @@ class Branch:
         return self.constant + self.slope * theta
 
 
-@dataclass(frozen=True)
-class Statistics:
+class Statistics(NamedTuple):
     """Restitution over theta uniform from 0 to gg."""
 
     mean: float  # mean of e [-]
@@ -125,7 +117,8 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         If `omega` is not positive.
     """
     step = scheme.step(omega)
-    branches: list[Branch] = []
+    last = np.array([0.0, scheme.gg, 1 - scheme.delta])  # the velocity after a first step without contact
+    branches = []
     # intervals of theta, and there (w*, v, A) as columns of constants and slopes
     pending = [(0.0, scheme.gg, np.array([[0.0, -1.0], [-1.0, 0.0], [0.0, 0.0]]), 0)]
     while pending:
@@ -137,7 +130,7 @@ def branches(scheme: ContactScheme, omega: float) -> tuple[Branch, ...]:
         rests = np.abs(state[1:]).max() < REST or steps >= LIMIT
         for start, end in parts:
             if constant + slope * (start + end) / 2 >= 0:
-                branches.append(Branch(start, end, *(scheme.last @ state).tolist()))
+                branches.append(Branch(start, end, *(last @ state).tolist()))
             elif rests:
                 branches.append(Branch(start, end, 0.0, 0.0))
             else:

@@ -32,17 +32,14 @@ from flint import arb, arb_mat, arb_poly
 
 from fem_reference.events.column_drive import Piece, tail_sum
 from fem_reference.events.contacts import Contact, States, Watch, laws, watches
-from fem_reference.events.enclosure import ball, term_count
+from fem_reference.events.enclosure import ZERO, ball, term_count
 from fem_reference.problem.problem import Array
 
-LEAST_TERMS = 28
-"""Terms of a step, at least."""
-FURTHER_TERMS = 6
-"""Terms beyond those that the angle of the step needs: the tail bounds three derivatives too."""
+LEAST_TERMS = 28  # terms of a step, at least
+FURTHER_TERMS = 6  # terms beyond those that the angle of the step needs: the tail bounds three derivatives too
+# Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time.
 LEAST_RATE = 1.0
-"""Rate that stands for none, as of a rigid block in flight [rad/s]; its series end after the square of the time."""
-INFLATION = 1 + 1e-9
-"""What covers the rounding of floats that bound radii and rates."""
+INFLATION = 1 + 1e-9  # what covers the rounding of floats that bound radii and rates
 
 
 class Start(NamedTuple):
@@ -101,8 +98,8 @@ class System:
     @cached_property
     def root(self) -> tuple[Array, Array]:
         """L' and its inverse in floats, M = L L'."""
-        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T, dtype=np.float64)
-        return upper, np.asarray(np.linalg.inv(upper), dtype=np.float64)
+        upper = np.asarray(np.linalg.cholesky(floats(self.mass)).T)
+        return upper, np.asarray(np.linalg.inv(upper))
 
     @cached_property
     def sizes(self) -> Array:
@@ -143,7 +140,7 @@ class System:
         upper = np.abs(self.root[0])
         apart = bounds.frequency * np.linalg.norm(upper @ radii[:n]) + np.linalg.norm(upper @ radii[n : 2 * n])
         pull = np.linalg.norm(upper @ np.abs(floats(self.motion(states).R)) @ radii[2 * n :]) / bounds.motion
-        return np.asarray(self.sizes / bounds.frequency * math.exp(bounds.motion * passed) * (apart + pull))
+        return self.sizes / bounds.frequency * math.exp(bounds.motion * passed) * (apart + pull)
 
     def norm(self, x: Sequence[arb]) -> arb:
         """Norm of the unknowns, in which `rate` bounds the motion."""
@@ -167,7 +164,7 @@ class System:
             D = pushes * law.rates * self.rows
             f = self.mobility * self.load + pushes * (law.constant + law.rows * self.offsets)
             if self.damping is not None:
-                D = D - self.mobility * self.damping
+                D -= self.mobility * self.damping
             E = self.mobility * self.inputs - pushes * law.rows * self.on_base * arb_mat([[1, 0, 0, 0]])
             still = all(d == 0 for d in D.entries())
             self.motions[states] = Motion(A, None if still else D, pushes * law.references, f, E)
@@ -177,7 +174,7 @@ class System:
         """The rows at a state."""
         y = self.rows * start.u + self.offsets
         if drives:
-            y = y - self.on_base * drives[0].series(start.time, 1.0, 1)[0]
+            y -= self.on_base * drives[0].series(start.time, 1.0, 1)[0]
         return list(y.entries())
 
     def forces(self, states: States, start: Start, drives: Sequence[Piece]) -> tuple[list[arb], list[arb]]:
@@ -192,7 +189,7 @@ class System:
         motion = self.motion(states)
         a = motion.A * start.u + motion.R * column(start.references) + motion.f
         if motion.D is not None:
-            a = a + motion.D * start.v
+            a += motion.D * start.v
         pushes = arb_mat(self.size, 2)
         if drives:
             b, rate, bend, third = drives[0].series(start.time, 1.0, 4)
@@ -223,7 +220,7 @@ class Segment:
         """The terms of each row."""
         y = [list(series) for series in zip(*((self.system.rows * term).entries() for term in self.terms), strict=True)]
         for series, offset, b in zip(y, self.system.offsets.entries(), self.system.on_base.entries(), strict=True):
-            series[0] = series[0] + offset
+            series[0] += offset
             if b != 0:
                 series[:] = [c - base for c, base in zip(series, self.drives[0], strict=True)]
         return y
@@ -248,11 +245,8 @@ class Segment:
     def function(self, watch: Watch) -> list[arb]:
         """Series of a watched function."""
         key = watch.contact, watch.side, watch.becomes
-        if key not in self.functions:
-            self.functions[key] = self._function(watch)
-        return self.functions[key]
-
-    def _function(self, watch: Watch) -> list[arb]:
+        if key in self.functions:
+            return self.functions[key]
         terms: list[arb] = []
         for row, factor, dashpot in watch.parts:
             series = self.rows[row]
@@ -260,15 +254,16 @@ class Segment:
             part = [c * factor for c in (slopes if watch.rates else series)]
             if dashpot is not None:
                 unit = dashpot / arb(self.length)
-                part = [c + slope * unit for c, slope in zip(part, [*slopes, arb(0)], strict=True)]
+                part = [c + slope * unit for c, slope in zip(part, [*slopes, ZERO], strict=True)]
             terms = [one + other for one, other in zip(terms, part, strict=True)] if terms else part
         if not watch.rates:
-            terms[0] = terms[0] + watch.offset
+            terms[0] += watch.offset
+        self.functions[key] = terms
         return terms
 
     def function_tail(self, watch: Watch) -> arb:
         """What the series leaves out of a function, and of its first two derivatives."""
-        tail = arb(0)
+        tail = ZERO
         for row, factor, dashpot in watch.parts:
             size = abs(factor) if dashpot is None else abs(factor) + abs(dashpot) / arb(self.length)
             tail += size * self.row_tail(row)
@@ -321,7 +316,7 @@ def expand(
         of_motion = term_count(min(max(angle, 1.0), 2 * system.angle)) + FURTHER_TERMS
         count = max([LEAST_TERMS, of_motion, *(piece.term_count(length) + 2 for piece in drives)])
     known = count - 2 if full else count
-    of_drives = [[*piece.series(start.time, length, known), *[arb(0)] * (count - known)] for piece in drives]
+    of_drives = [[*piece.series(start.time, length, known), *[ZERO] * (count - known)] for piece in drives]
     span = arb(length)
     motion = system.motion(states)
     terms = [start.u, start.v * span]
@@ -331,12 +326,12 @@ def expand(
         if k == 0:
             a = a + motion.R * column(start.references) + motion.f
         if motion.D is not None:
-            a = a + motion.D * terms[k + 1] * ((k + 1) / span)
+            a += motion.D * terms[k + 1] * ((k + 1) / span)
         if of_drives:
             base, pressure = of_drives
             rate = base[k + 1] * (k + 1) / span
             s = [base[k], rate, base[k + 2] * ((k + 1) * (k + 2)) / square, pressure[k]]
-            a = a + motion.E * column(s)
+            a += motion.E * column(s)
         terms.append(a * (square / ((k + 1) * (k + 2))))
     if not full:
         return Segment(system, length, terms, of_drives, arb("inf"), [arb("inf") for _ in drives])
@@ -349,7 +344,7 @@ def expand(
         of_base, of_pressure = drive_tails
         pushes = np.linalg.norm(system.root[0] @ floats(motion.E), axis=0) * INFLATION
         left_out = zip(pushes.tolist(), (of_base * square, of_base * span, of_base, of_pressure * square), strict=True)
-        tail += sum((push * part for push, part in left_out), arb(0)) * arb(angle).exp() * (1 + arb(angle)) ** 3
+        tail += sum((push * part for push, part in left_out), ZERO) * arb(angle).exp() * (1 + arb(angle)) ** 3
     tail = tail.upper()
     return Segment(system, length, terms, of_drives, tail, drive_tails)
 

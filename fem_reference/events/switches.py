@@ -5,12 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import TypeVar
-
-MARGIN = 1.25
-"""Times the digits that are expected to do which are taken next."""
-MOST_FOLD = 4
-"""Times the digits that are taken next at most, but for the margin."""
 
 
 @dataclass(frozen=True)
@@ -28,13 +22,11 @@ class Switch:
 
 @dataclass(frozen=True)
 class Impact:
-    """An impact of a block on a rigid contact, its instant enclosed."""
+    """An impact of a block on a rigid contact, at the instant of the switches that go with it."""
 
-    time: float  # the midpoint as a float [s]
+    time: float  # [s]
     approach: float  # speed at which the gap closed [m/s]; it opens at e times this
     impulse: float  # of both corners together, upwards [N s]
-    midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
-    radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
 
 
 @dataclass(frozen=True)
@@ -44,31 +36,7 @@ class Cascade:
     start: float  # the last impact that is listed one by one; it is of all after it that accumulation is proven [s]
     time: float  # the instant of accumulation, the midpoint as a float [s]
     impulse: float  # of both corners together, of all impacts after `start`, upwards [N s]
-    midpoint: str = field(default="", compare=False)  # decimal digits of the midpoint [s]
-    radius: float = field(default=0.0, compare=False)  # proven distance of the instant from the midpoint, at most [s]
-
-
-class ProvenMotion:
-    """A motion whose switches are enclosed."""
-
-    switches: tuple[Switch, ...]
-    touches: tuple[float, ...]  # instants at which a switch was neither proven nor excluded, and none was taken [s]
-
-    @property
-    def radius(self) -> float:
-        """Greatest proven radius of the instant of a switch, 0 without one [s]."""
-        return max((switch.radius for switch in self.switches), default=0.0)
-
-    @property
-    def simultaneous(self) -> tuple[float, ...]:
-        """Instants at which several contacts switch within one ball [s]."""
-        contacts: dict[str, set[str]] = {}
-        for switch in self.switches:
-            contacts.setdefault(switch.midpoint, set()).add(switch.corner)
-        return tuple(float(time) for time, together in contacts.items() if len(together) > 1)
-
-
-Motion = TypeVar("Motion", bound=ProvenMotion)
+    radius: float  # proven distance of the instant from the midpoint, at most [s]
 
 
 class NoContactStateError(ArithmeticError):
@@ -127,40 +95,3 @@ class AccumulationError(HorizonError):
 
 class LostDigitsError(HorizonError):
     """The switches have amplified the enclosure of the motion until nothing can be decided."""
-
-
-def with_enough_digits(
-    motion_in: Callable[[int], Motion], end: float, digits: int, most: int, promised: float
-) -> Motion:
-    """The motion in as many digits as it needs.
-
-    Parameters
-    ----------
-    motion_in
-        From decimal digits to the motion in them.
-    end
-        Last instant of the motion [s].
-    digits, most
-        The digits of the first computation; more are taken time after time, up to the most.
-    promised
-        Part of the end to which the instants of all switches are enclosed.
-
-    Raises
-    ------
-    LostDigitsError
-        If the most digits do not do.
-    """
-    while True:
-        try:
-            motion = motion_in(digits)
-            if motion.radius <= promised * end:
-                return motion
-            times = [switch.time for switch in motion.switches if switch.radius <= promised * end]
-            lost = LostDigitsError(times[-1] if times else 0.0, f"{len(motion.switches)} switches have cost the digits")
-        except LostDigitsError as error:
-            lost = error
-        if digits >= most:
-            raise lost
-        # Digits are lost evenly, so that the time they lasted for tells how many are needed.
-        needed = MARGIN * digits * end / max(lost.time, end / MOST_FOLD)
-        digits = min(most, math.ceil(needed))

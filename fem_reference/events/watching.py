@@ -20,22 +20,16 @@ from fem_reference.events.series import INFLATION, Segment, Start
 from fem_reference.events.switches import LostDigitsError
 from fem_reference.problem.problem import Array
 
-FLOAT_TERMS = 64
-"""Terms of a series in floats; further ones count as what they may be wrong by."""
-FIRST_CELLS = 4
-"""Parts of a step whose Bernstein forms are looked at first."""
-CELLS = 8
-"""Parts into which the first part that cannot be proven is cut, time and again."""
-CUTS = 5
-"""Times that it is cut: a fall is left in 1/32768 of a step."""
+FLOAT_TERMS = 64  # terms of a series in floats; further ones count as what they may be wrong by
+FIRST_CELLS = 4  # parts of a step whose Bernstein forms are looked at first
+CELLS = 8  # parts into which the first part that cannot be proven is cut, time and again
+CUTS = 5  # times that it is cut: a fall is left in 1/32768 of a step
+# Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms may be wrong after all cuts.
 ROUNDING = 400 * np.finfo(float).eps
-"""Part of its terms by which a Bernstein form of `FLOAT_TERMS` terms may be wrong after all cuts."""
-LEAST_MARGIN = 1e-300
-"""What a radius may be that floats round to zero."""
+LEAST_MARGIN = 1e-300  # what a radius may be that floats round to zero
+# Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more.
 MOST_LOOKS = 5000
-"""Evaluations of a function in one step; one that stays as near to zero as half of the digits takes more."""
-NEWTON_STEPS = 4
-"""Steps from the ball of a fall to the root of the series itself."""
+NEWTON_STEPS = 4  # steps from the ball of a fall to the root of the series itself
 
 
 class Reach(NamedTuple):
@@ -69,20 +63,13 @@ class Change(NamedTuple):
     impact: arb_mat | None  # by which rates jump
 
 
-class Watched:
+class Watched(NamedTuple):
     """The watched functions of a step."""
 
-    def __init__(
-        self,
-        time: float,
-        segment: Segment,
-        watches: Sequence[Watch],
-        reach: Callable[[Watch, bool], Reach],
-    ) -> None:
-        self.time = time  # at its beginning [s]
-        self.segment = segment
-        self.watches = [watch for watch in watches if watch.lead is not None]
-        self.reach = reach  # how far the terms of a function may be off, also where its start is a switch
+    time: float  # at its beginning [s]
+    segment: Segment
+    watches: Sequence[Watch]
+    reach: Callable[[Watch, bool], Reach]  # what terms of a function may be off by, also where its start is a switch
 
     def clear(self) -> tuple[float, float, list[Watch]]:
         """Where floats prove all functions to be positive.
@@ -93,11 +80,12 @@ class Watched:
             The part of the step throughout which they are; the length of the next part, in which that cannot be proven,
             0 where there is none; and the functions that may fall in or after it.
         """
-        if not self.watches:
+        watches = [watch for watch in self.watches if watch.lead is not None]
+        if not watches:
             return 1.0, 0.0, []
-        terms = np.zeros((len(self.watches), FLOAT_TERMS))
-        margin = np.zeros(len(self.watches))
-        for i, watch in enumerate(self.watches):
+        terms = np.zeros((len(watches), FLOAT_TERMS))
+        margin = np.zeros(len(watches))
+        for i, watch in enumerate(watches):
             series = np.array([float(c) for c in self.segment.function(watch)])
             off = self.reach(watch, bool(watch.lead)).total()
             beyond = np.abs(series[FLOAT_TERMS:]).sum() + float(self.segment.function_tail(watch))
@@ -105,7 +93,7 @@ class Watched:
             series = series[watch.lead :][:FLOAT_TERMS]
             terms[i, : len(series)] = series
         share, width, doubtful = first_doubt(terms, margin)
-        return share, width, [self.watches[i] for i in doubtful]
+        return share, width, [watches[i] for i in doubtful]
 
     def first_fall(
         self, low: float, high: arb, watches: Sequence[Watch], touches: list[arb]
@@ -117,7 +105,7 @@ class Watched:
         LostDigitsError
             If what the motion may be off hides a function, or it stays too near to zero for too long.
         """
-        first: tuple[Fall, Watch] | None = None
+        first = None
         begin = arb(low)
         end = high - begin
         for watch in watches:

@@ -12,7 +12,7 @@ from oracles.column_motions import COLUMNS, RIGID, blocks, half_unit, kind_of
 from oracles.integrated import integrated_column, random_column
 
 from fem_reference.events import column_drive as drives
-from fem_reference.events import column_events, contacts
+from fem_reference.events import contacts, report
 from fem_reference.events.column_events import solve
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.enclosure import precision
@@ -160,8 +160,8 @@ def test_a_graze_is_named_and_not_guessed():
 
 
 def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
-    monkeypatch.setattr(column_events, "MOST_DIGITS", 30)
-    monkeypatch.setattr(column_events, "PROMISED", 1e-29)
+    monkeypatch.setattr(report, "MOST_DIGITS", 30)
+    monkeypatch.setattr(report, "PROMISED", 1e-29)
     with pytest.raises(LostDigitsError) as error:
         solve(COLUMNS["A5"].problem, 0.2, digits=30)
     assert 0.05 < error.value.time < 0.2

@@ -10,7 +10,7 @@ from flint import arb, arb_mat
 from oracles.integrated import slipping_problem
 from scipy.linalg import expm
 
-from fem_reference.events import block_events, block_march, column_events, series, watching
+from fem_reference.events import block_march, column_events, report, series, watching
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
 from fem_reference.events.column_drive import sine
@@ -348,9 +348,9 @@ def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(mo
 def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch):
     stiff = replace(PAPER, stiffness=1e11)
     assert solve(stiff, 0.02, digits=30).digits == 30
-    monkeypatch.setattr(block_events, "PROMISED", 1e-40)
+    monkeypatch.setattr(report, "PROMISED", 1e-40)
     assert solve(stiff, 0.02, digits=30).digits > 30
-    monkeypatch.setattr(block_events, "MOST_DIGITS", 30)
+    monkeypatch.setattr(report, "MOST_DIGITS", 30)
     with pytest.raises(LostDigitsError) as caught:
         solve(stiff, 0.02, digits=30)
     assert 0 <= caught.value.time < 0.02

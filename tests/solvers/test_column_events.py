@@ -98,10 +98,10 @@ def test_notes_name_switches_and_the_proven_radius():
 
 
 def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch):
-    from fem_reference.events import column_events
+    from fem_reference.events import report
 
-    monkeypatch.setattr(column_events, "MOST_DIGITS", 30)
-    monkeypatch.setattr(column_events, "PROMISED", 1e-70)
+    monkeypatch.setattr(report, "MOST_DIGITS", 30)
+    monkeypatch.setattr(report, "PROMISED", 1e-70)
     run = solve(scene_of(OPENS, ["displacement"]), "column-events")
     assert run.outcome is Outcome.HORIZON
     assert "exact up to" in run.notes[0]

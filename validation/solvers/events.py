@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from fem_reference.events import switches as events
     from fem_reference.events.bars_events import BarsMotion
     from fem_reference.events.block_model import BlockProblem
+    from fem_reference.events.report import ProvenMotion
     from fem_reference.problem.bar import BarProblem
     from fem_reference.problem.motion import Motion as BaseMotion
 
@@ -107,7 +108,7 @@ class Motion(Prepared):
     """A scene whose motion is found from switch to switch; nothing in it is a step, a mesh or a saving."""
 
     names: tuple[str, ...]  # of the columns
-    motion: events.ProvenMotion
+    motion: ProvenMotion
     most_terms = math.inf  # of series, see `work`
 
     def __init__(self, scene: Scene, name: str, full: bool = False) -> None:
