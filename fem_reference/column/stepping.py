@@ -20,6 +20,7 @@ from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Gro
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.problem.result import Result, just_ended
+from fem_reference.scheme.eigen import largest_frequency
 from fem_reference.scheme.newmark import Stepper
 
 MEAN_VELOCITY = "mean_velocity"
@@ -166,3 +167,11 @@ def histories(model: Model, stepper: Stepper, excitation: Excitation, observed: 
         for rows, vector in zip(observed.motion, (state.D, state.V, state.A), strict=True):
             columns[:, n] += rows @ vector
     return columns
+
+
+def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> float:
+    """Return the highest natural frequency [rad/s], the base held; on a half-space the foot of the column is free."""
+    mesh = line_mesh(ground, elements, degree)
+    massless = mesh.M.diagonal()[mesh.base_node] == 0  # a joint lies on it
+    M, _, K = Model(mesh, None if massless else ground.impedance).matrices()
+    return largest_frequency(K, M)

@@ -15,13 +15,14 @@ import numpy as np
 from scipy.sparse import csr_array, vstack
 from skfem import Basis
 
-from fem_reference.contact.system import ContactSystem, point_rows
+from fem_reference.contact.system import ContactSystem, point_rows, with_springs
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
 from fem_reference.problem.checks import require
 from fem_reference.problem.motion import moved_base
 from fem_reference.problem.problem import Array, Indices, Problem
+from fem_reference.scheme.eigen import largest_frequency
 from fem_reference.scheme.stage import Motion
 
 OBSERVED = ("displacement", "horizontal_displacement", "rotation")
@@ -175,3 +176,13 @@ def base_rule(problem: Problem, basis: Basis, facets: Indices) -> elasticity.Rul
     fresh = np.append(True, np.diff(along) > SAME_PLACE * problem.base_length)
     weights = np.add.reduceat(rule.weights, np.flatnonzero(fresh))
     return elasticity.Rule(rule.points[:, fresh], rule.cells[fresh], weights)
+
+
+def highest_closed_frequency(problem: Problem, full: bool = False) -> float:
+    """Return the largest natural frequency while every point of the base is closed and sticks [rad/s].
+
+    A point that opens or slides takes its springs away, which lowers every frequency: the springs of all bound every
+    contact state.
+    """
+    system = build(problem, full).system("glued")
+    return largest_frequency(with_springs(system.K, system.B, system.rows.compliance), system.M)

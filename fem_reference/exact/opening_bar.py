@@ -29,6 +29,7 @@ from scipy.fft import next_fast_len
 
 from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import Result, just_ended
 from fem_reference.scheme import modal
 from fem_reference.scheme.stage import Motion, end_of_stage, predicted_change
 
@@ -61,8 +62,12 @@ class OpeningBar(BarProblem):
         loads = problem.pressure, problem.gravity
         return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, *loads, gap, velocity)
 
-    def solve(self, scheme: Scheme, steps: int) -> OpeningResult:
+    def solve(self, scheme: Scheme, steps: int) -> Result:
         """History under a scheme; row 0 is step 1.
+
+        Its columns are `displacement` of the mid-height [m], `contact_pressure` N / W [Pa], `gap` w under the base [m],
+        negative where pressed, `closed`, 1 where the base is closed and 0 where open [-], and `velocity` of the centre
+        of mass, upwards [m/s].
 
         Raises
         ------
@@ -79,33 +84,14 @@ class OpeningBar(BarProblem):
         series = _Series.of(scheme, steps, self.travel)
         ready = time.perf_counter()
         unit = self.height / self.young
-        base = _stepped(self, scheme, unit * series.own, -self.pressure * unit * series.across)
-        middle = unit * (_convolved(series.half, base.pressure) - self.pressure * series.half_load)
-        ended = time.perf_counter()
-        return OpeningResult(
-            time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
-            displacement=(base.rigid + middle)[1:],
-            contact_pressure=base.pressure[1:],
-            gap=base.gap[1:],
-            closed=base.closed[1:],
-            velocity=base.velocity[1:],
-            setup_seconds=ready - began,
-            stepping_seconds=ended - ready,
+        columns = _stepped(self, scheme, unit * series.own, -self.pressure * unit * series.across)
+        convolved = _convolved(series.half, columns["contact_pressure"])
+        columns["displacement"] += unit * (convolved - self.pressure * series.half_load)
+        return Result(
+            **just_ended(scheme.step, steps, began, ready),
+            columns={name: values[1:] for name, values in columns.items()},
+            unknowns=1,
         )
-
-
-@dataclass(frozen=True)
-class OpeningResult:
-    """A history; row 0 is step 1."""
-
-    time: Array  # time of each row [s], shape (steps,)
-    displacement: Array  # displacement of the mid-height [m], shape (steps,)
-    contact_pressure: Array  # N / W [Pa], shape (steps,)
-    gap: Array  # gap w under the base [m], negative where pressed, shape (steps,)
-    closed: Array  # 1 where the base is closed, 0 where open [-], shape (steps,)
-    velocity: Array  # velocity of the centre of mass, upwards [m/s], shape (steps,)
-    setup_seconds: float  # time for the weights of the convolutions [s]
-    stepping_seconds: float  # time for the steps [s]
 
 
 def applicable(problem: Problem) -> str | None:
@@ -191,19 +177,8 @@ def _stretch(x: Array) -> Array:
     return np.where(near, fraction, values)
 
 
-@dataclass(frozen=True)
-class _Base:
-    """The base from step 0 on."""
-
-    rigid: Array  # rigid displacement of the bar [m]
-    pressure: Array  # contact pressure [Pa]
-    gap: Array  # gap [m]
-    closed: Array  # 1 where closed [-]
-    velocity: Array  # velocity of the centre of mass [m/s]
-
-
-def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Base:
-    """Contact pressures step by step.
+def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dict[str, Array]:
+    """Columns of the history from step 0 on, the displacement being that of the rigid motion.
 
     Parameters
     ----------
@@ -248,7 +223,7 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
         now = end_of_stage(stage, dt, gg, now, now, predicted, e + (1 - stage.af) * N[n] / surface, now.D)
         rigid[n] = now.D
         speed[n] = now.V
-    return _Base(rigid, N, gap, closed, speed)
+    return {"displacement": rigid, "contact_pressure": N, "gap": gap, "closed": closed, "velocity": speed}
 
 
 def _convolved(weights: Array, values: Array) -> Array:

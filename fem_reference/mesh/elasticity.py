@@ -169,8 +169,7 @@ def together(rules: Sequence[Rule]) -> Rule:
 
 def gauss(degree: int) -> tuple[Array, Array]:
     """Gauss points and weights that are exact for products of two elements of a degree."""
-    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
-    return nodes, weights
+    return np.polynomial.legendre.leggauss(degree + 1)
 
 
 def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
