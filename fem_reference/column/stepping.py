@@ -113,7 +113,7 @@ class Model:
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
         base = self.mesh.base_node
-        loads: Array = np.zeros((self.mesh.size, 4))
+        loads = np.zeros((self.mesh.size, 4))
         loads[self.mesh.top, 3] = -1.0
         if self.holds_base:
             loads[:, 0] = -self.mesh.K[[base]].toarray()[0]
@@ -133,8 +133,8 @@ class Observation(NamedTuple):
 def observed_by(model: Model, columns: Sequence[str], heights: Sequence[float]) -> Observation:
     """Return how columns of a history are observed; of those that only a contact knows nothing is."""
     mesh = model.mesh
-    motion: Array = np.zeros((3, len(columns), mesh.size))
-    parts: Array = np.zeros((len(columns), 4))
+    motion = np.zeros((3, len(columns), mesh.size))
+    parts = np.zeros((len(columns), 4))
     for column, name in enumerate(columns):
         D, V, A = motion[:, column]
         kind, _, number = name.rpartition("_")

@@ -149,7 +149,7 @@ class Bar(BarProblem):
         if scheme.gg == 0:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         began = time.perf_counter()
-        s: Array = scheme.step * np.arange(1.0, steps + 1) / self.travel
+        s = scheme.step * np.arange(1.0, steps + 1) / self.travel
         rate = (scheme.mass_damping - float(np.log(scheme.gg)) / scheme.step) * self.travel
         if scheme.stiffness_damping:
             lag = scheme.stiffness_damping / self.travel

@@ -22,7 +22,6 @@ Lubich, Convolution quadrature and discretized operational calculus, Numer. Math
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import next_fast_len
@@ -81,12 +80,12 @@ class OpeningBar(BarProblem):
         if reason := modal.applicable(scheme):
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
-        series = _Series.of(scheme, steps, self.travel)
+        own, half, across, half_load = _series(scheme, steps, self.travel)
         ready = time.perf_counter()
         unit = self.height / self.young
-        columns = _stepped(self, scheme, unit * series.own, -self.pressure * unit * series.across)
-        convolved = _convolved(series.half, columns["contact_pressure"])
-        columns["displacement"] += unit * (convolved - self.pressure * series.half_load)
+        columns = _stepped(self, scheme, unit * own, -self.pressure * unit * across)
+        convolved = _convolved(half, columns["contact_pressure"])
+        columns["displacement"] += unit * (convolved - self.pressure * half_load)
         return Result(
             **just_ended(scheme.step, steps, began, ready),
             columns={name: values[1:] for name, values in columns.items()},
@@ -108,30 +107,19 @@ def steppable(scheme: Scheme) -> str | None:
     return f"{scheme.name!r} has {len(scheme.stages)}" if len(scheme.stages) > 1 else None
 
 
-@dataclass(frozen=True)
-class _Series:
-    """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E."""
+def _series(scheme: Scheme, steps: int, travel: float) -> Array:
+    """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E, shape (4, steps + 1).
 
-    own: Array  # weights of the end that is pressed
-    half: Array  # weights of the mid-height
-    across: Array  # history of the base under a unit pressure on the top from t = 0 on
-    half_load: Array  # history of the mid-height under that pressure, for one that acts upwards
-
-    @classmethod
-    def of(cls, scheme: Scheme, steps: int, travel: float) -> _Series:
-        """The series up to a number of steps."""
-        count = next_fast_len(OVERSAMPLED * (steps + 1), real=True)
-        radius = 10.0 ** (-1.0 / (steps + 1))
-        z = radius * np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)
-        x2, load = _image(scheme, travel, z)
-        stretch, across, half = closed_forms(x2)
-        powers = radius ** np.arange(steps + 1.0)
-
-        def series(image: Array) -> Array:
-            values: Array = np.fft.irfft(np.conj(image), count)[: steps + 1] / powers
-            return values
-
-        return cls(series(stretch), series(half), series(across * load), series(half * load))
+    Weights of the end that is pressed and of the mid-height; histories of the base under a unit pressure on the top
+    from t = 0 on, and of the mid-height under that pressure, for one that acts upwards.
+    """
+    count = next_fast_len(OVERSAMPLED * (steps + 1), real=True)
+    radius = 10.0 ** (-1.0 / (steps + 1))
+    z = radius * np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)
+    x2, load = _image(scheme, travel, z)
+    stretch, across, half = closed_forms(x2)
+    images = np.array([stretch, half, across * load, half * load])
+    return np.asarray(np.fft.irfft(np.conj(images), count)[:, : steps + 1] / radius ** np.arange(steps + 1.0))
 
 
 def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
@@ -229,5 +217,5 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dic
 def _convolved(weights: Array, values: Array) -> Array:
     """Sum of weights[k] values[n - k], shape (steps + 1,)."""
     count = next_fast_len(2 * len(values), real=True)
-    convolved: Array = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
+    convolved = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
     return convolved

@@ -147,7 +147,7 @@ def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
     rate = 0.0
     fallen = False
     swings: list[Swing] = []
-    impacts: list[float] = []
+    impacts = []
     while time < end and not fallen:
         if len(swings) > SWINGS:
             raise ArithmeticError(f"more than {SWINGS} swings by {time:g} s")

@@ -49,4 +49,4 @@ def response(
 def _sine(theta: Complex) -> Complex:
     """exp(-i theta) sin(theta) / theta."""
     ways = 2j * np.where(theta == 0, np.finfo(float).tiny, theta)
-    return np.asarray(-np.expm1(-ways) / ways)
+    return -np.expm1(-ways) / ways

@@ -76,4 +76,4 @@ def response(t: Array, w: Array, a: float | Array) -> Array:
         # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
         fall = -np.expm1(-2 * v * t)
         x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))
-    return np.asarray(x)
+    return x

@@ -140,7 +140,7 @@ def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[In
         raise ValueError(
             f"edge: must be covered by edges of the outline, got {tuple(start.tolist())!r} to {tuple(end.tolist())!r}"
         )
-    return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
+    return np.asarray(facets[on_piece], np.int64), places[:, on_piece]
 
 
 def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> Indices:

@@ -184,7 +184,7 @@ class Problem(Elastic):
     def centroid(self) -> Array:
         """Area centroid relative to the start of the base, shape (2,) [m]."""
         cross, sums = self._cross
-        return np.asarray(cross @ sums / (6 * self.area))
+        return cross @ sums / (6 * self.area)
 
     @property
     def rectangle(self) -> tuple[float, float] | None:
