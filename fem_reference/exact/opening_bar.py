@@ -84,7 +84,9 @@ class OpeningBar(BarProblem):
         ready = time.perf_counter()
         unit = self.height / self.young
         columns = _stepped(self, scheme, unit * own, -self.pressure * unit * across)
-        convolved = _convolved(half, columns["contact_pressure"])
+        count = next_fast_len(2 * len(half), real=True)
+        spectrum = np.fft.rfft(half, count) * np.fft.rfft(columns["contact_pressure"], count)
+        convolved = np.fft.irfft(spectrum, count)[: len(half)]  # sum of half[k] pressure[n - k]
         columns["displacement"] += unit * (convolved - self.pressure * half_load)
         return Result(
             **just_ended(scheme.step, steps, began, ready),
@@ -212,10 +214,3 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dic
         rigid[n] = now.D
         speed[n] = now.V
     return {"displacement": rigid, "contact_pressure": N, "gap": gap, "closed": closed, "velocity": speed}
-
-
-def _convolved(weights: Array, values: Array) -> Array:
-    """Sum of weights[k] values[n - k], shape (steps + 1,)."""
-    count = next_fast_len(2 * len(values), real=True)
-    convolved = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
-    return convolved

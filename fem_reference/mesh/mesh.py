@@ -65,8 +65,7 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
     xi = eta[: n // 2 + 1] if half else eta
     # triangles are cut from the lower left to the upper right corner of each cell
     square = (MeshTri if problem.cells == "triangles" else MeshQuad).init_tensor(xi, eta)
-    edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
-    axis, value = edges[(problem.top - problem.base) % 4]
+    axis, value = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[(problem.top - problem.base) % 4]
     base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
     top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
     x, y = square.p
