@@ -7,6 +7,7 @@ parts: displacement, velocity and acceleration of the base, and the pressure on 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -59,12 +60,17 @@ def system_of(
     mesh = model.mesh
     held = int(model.holds_base)
     weight = -column.gravity * (mesh.M @ np.ones(mesh.size))
+    B = np.zeros((len(compliance), mesh.size))  # relative displacement of the faces of each contact, less the base's
+    above = mesh.parts if column.foot_contact else mesh.parts[1:]
+    B[np.arange(len(B)), [run.end(top=False) for run in above]] = 1.0
+    inner = np.arange(int(column.foot_contact), len(B))
+    B[inner, [run.end(top=True) for run in mesh.parts[:-1]]] = -1.0
     return ContactSystem(
         M=M,
         K=K,
         C=None if model.impedance is None else C,
         F=weight[model.free],
-        B=csr_array(_openings(column, mesh)[:, model.free]),
+        B=csr_array(B[:, model.free]),
         rows=rows,
         watch=Motion(*observed.motion),
         pushes=model.loads(),
@@ -97,16 +103,6 @@ def stepper_of(column: ContactColumn, system: ContactSystem, scheme: Scheme, com
     return ContactStepper(system, scheme, limit, single_limit, compiled=compiled)
 
 
-def _openings(column: ContactColumn, mesh: LineMesh) -> Array:
-    """Rows that give the relative displacement of the faces of each contact, less the base's."""
-    B = np.zeros((len(column.contacts), mesh.size))
-    above = mesh.parts if column.foot_contact else mesh.parts[1:]
-    B[np.arange(len(B)), [run.end(top=False) for run in above]] = 1.0
-    inner = np.arange(int(column.foot_contact), len(B))
-    B[inner, [run.end(top=True) for run in mesh.parts[:-1]]] = -1.0
-    return B
-
-
 def column_at_start(stepper: ContactStepper, column: ContactColumn, model: Model) -> ContactState:
     """State at t = 0: unstrained with the gaps of the contacts, or at rest under the weight."""
     system = stepper.system
@@ -122,15 +118,12 @@ def column_at_start(stepper: ContactStepper, column: ContactColumn, model: Model
         place = -force * system.rows.compliance
         states = np.zeros(n, dtype=np.int8)
     touching = np.flatnonzero((system.rows.compliance == 0) & (place == 0))
-
-    def pull(mass: Any, A: Array) -> tuple[Array, Array]:
-        return _at_once(system, states, touching, mass, A, V, force)
-
+    pull = partial(_at_once, system, states, touching, V, force)
     return stepper.start(V, place, states, D, force, pull if len(touching) and not column.settled else None)
 
 
 def _at_once(
-    system: ContactSystem, states: States, touching: Indices, mass: Any, A: Array, V: Array, force: Array
+    system: ContactSystem, states: States, touching: Indices, V: Array, force: Array, mass: Any, A: Array
 ) -> tuple[Array, Array]:
     """Acceleration and forces at t = 0 with those of rigid contacts that touch, which come at once.
 

@@ -122,7 +122,7 @@ def line_mesh(ground: Ground, elements: Sequence[int], degree: int, springs: boo
     moduli = np.array([stratum.modulus(ground.motion) for stratum in ground.strata])
     densities = np.array([stratum.density for stratum in ground.strata])
     cuts = [height for height in heights if height > near]
-    parts: list[Part] = []
+    parts = []
     first = 0
     for low, high in itertools.pairwise([0.0, *cuts, ground.height]):
         own = nodes[(nodes > low - near) & (nodes < high + near)]
@@ -156,7 +156,6 @@ def _joined(ground: Ground, parts: list[Part], springs: bool) -> LineMesh:
 def _springs(faces: Sequence[tuple[int, int]], stiffness: Sequence[float], size: int) -> csr_array:
     """Matrix of springs between pairs of unknowns."""
     i, j = np.array(faces, dtype=int).reshape(-1, 2).T
-    k = np.asarray(stiffness, float)
-    rows = np.concatenate([i, j, i, j])
-    columns = np.concatenate([i, j, j, i])
-    return csr_array(coo_array((np.concatenate([k, k, -k, -k]), (rows, columns)), shape=(size, size)))
+    k = np.array(stiffness, float)
+    places = np.concatenate([i, j, i, j]), np.concatenate([i, j, j, i])
+    return csr_array(coo_array((np.concatenate([k, k, -k, -k]), places), shape=(size, size)))

@@ -20,6 +20,7 @@ from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Excitation, Gro
 from fem_reference.problem.checks import require
 from fem_reference.problem.problem import Array, Indices, Scheme
 from fem_reference.problem.result import Result, just_ended
+from fem_reference.scheme.eigen import largest_frequency
 from fem_reference.scheme.newmark import Stepper
 
 MEAN_VELOCITY = "mean_velocity"
@@ -112,7 +113,7 @@ class Model:
     def loads(self) -> Array:
         """Load of a unit of each part of the excitation on the free unknowns, shape (unknowns, 4)."""
         base = self.mesh.base_node
-        loads: Array = np.zeros((self.mesh.size, 4))
+        loads = np.zeros((self.mesh.size, 4))
         loads[self.mesh.top, 3] = -1.0
         if self.holds_base:
             loads[:, 0] = -self.mesh.K[[base]].toarray()[0]
@@ -132,8 +133,8 @@ class Observation(NamedTuple):
 def observed_by(model: Model, columns: Sequence[str], heights: Sequence[float]) -> Observation:
     """Return how columns of a history are observed; of those that only a contact knows nothing is."""
     mesh = model.mesh
-    motion: Array = np.zeros((3, len(columns), mesh.size))
-    parts: Array = np.zeros((len(columns), 4))
+    motion = np.zeros((3, len(columns), mesh.size))
+    parts = np.zeros((len(columns), 4))
     for column, name in enumerate(columns):
         D, V, A = motion[:, column]
         kind, _, number = name.rpartition("_")
@@ -166,3 +167,11 @@ def histories(model: Model, stepper: Stepper, excitation: Excitation, observed: 
         for rows, vector in zip(observed.motion, (state.D, state.V, state.A), strict=True):
             columns[:, n] += rows @ vector
     return columns
+
+
+def highest_frequency(ground: Ground, elements: Sequence[int], degree: int) -> float:
+    """Return the highest natural frequency [rad/s], the base held; on a half-space the foot of the column is free."""
+    mesh = line_mesh(ground, elements, degree)
+    massless = mesh.M.diagonal()[mesh.base_node] == 0  # a joint lies on it
+    M, _, K = Model(mesh, None if massless else ground.impedance).matrices()
+    return largest_frequency(K, M)

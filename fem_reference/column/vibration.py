@@ -17,7 +17,7 @@ from fem_reference.column.mesh import line_mesh
 from fem_reference.column.problem import DISPLACEMENT, PRESSURE, Ground
 from fem_reference.column.stepping import Model, observed_by
 from fem_reference.problem.problem import Array, Scheme
-from fem_reference.scheme.harmonic import Complex, StepSystem, step_system
+from fem_reference.scheme.harmonic import Complex, step_system
 
 
 def line_response(
@@ -55,25 +55,20 @@ def line_response(
     drive: Complex = np.zeros((4, len(w)), complex)
     drive[:] = [[0], [0], [0], [1]] if at_top else np.array([np.ones_like(w), 1j * w, -w * w, 0 * w])
     system = step_system(frequencies, scheme, exact)
-    X = _solutions(model, model.loads() @ drive, system)
+    M, C, K = model.matrices()
+    loads = model.loads() @ drive
+    stages = system.load.shape[1]
+    X: Complex = np.empty((len(loads), stages, len(w)), complex)  # free unknowns of all stages at every frequency
+    for i in range(len(w)):
+        matrix = kron(K, system.stiffness[i]) + kron(C, system.damping[i]) + kron(M, system.inertia[i])
+        right = np.kron(loads[:, i], system.load[i])
+        try:
+            X[:, :, i] = splu(csc_array(matrix)).solve(right).reshape(-1, stages)
+        except RuntimeError:  # a resonance that nothing damps
+            X[:, :, i] = np.inf
     V = np.einsum("fs,usf->uf", system.velocity, X)
     A = np.einsum("fs,usf->uf", system.acceleration, X)
     amplitudes = observed.parts @ drive
     for rows, motion in zip(observed.motion, (X[:, -1], V, A), strict=True):
         amplitudes = amplitudes + rows @ motion
     return dict(zip(columns, amplitudes, strict=True))
-
-
-def _solutions(model: Model, loads: Complex, system: StepSystem) -> Complex:
-    """Free unknowns of all stages at every frequency, shape (unknowns, stages, frequencies)."""
-    M, C, K = model.matrices()
-    stages = system.load.shape[1]
-    solutions = np.empty((len(loads), stages, loads.shape[1]), complex)
-    for i in range(loads.shape[1]):
-        matrix = kron(K, system.stiffness[i]) + kron(C, system.damping[i]) + kron(M, system.inertia[i])
-        right = np.kron(loads[:, i], system.load[i])
-        try:
-            solutions[:, :, i] = splu(csc_array(matrix)).solve(right).reshape(-1, stages)
-        except RuntimeError:  # a resonance that nothing damps
-            solutions[:, :, i] = np.inf
-    return solutions

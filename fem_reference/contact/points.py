@@ -13,15 +13,15 @@ from functools import partial
 
 import numpy as np
 from scipy.sparse import csr_array, vstack
-from skfem import Basis
 
-from fem_reference.contact.system import ContactSystem, point_rows
+from fem_reference.contact.system import ContactSystem, point_rows, with_springs
 from fem_reference.mesh import elasticity
 from fem_reference.mesh.mesh import block_mesh
 from fem_reference.mesh.model import assemble, column_applies, line_of
 from fem_reference.problem.checks import require
 from fem_reference.problem.motion import moved_base
-from fem_reference.problem.problem import Array, Indices, Problem
+from fem_reference.problem.problem import Array, Problem
+from fem_reference.scheme.eigen import largest_frequency
 from fem_reference.scheme.stage import Motion
 
 OBSERVED = ("displacement", "horizontal_displacement", "rotation")
@@ -149,14 +149,24 @@ def whole(problem: Problem) -> ContactModel:
     """
     assembled = assemble(problem)
     basis = assembled.basis
-    rule = base_rule(problem, basis, block_mesh(problem).base)
+    base = block_mesh(problem).base
+    if problem.foundation == "distributed":
+        lumped = elasticity.LUMPED[problem.degree]
+        rule = elasticity.edge_rule(basis.mesh, base, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
+    else:
+        rule = elasticity.foundation_rule(problem, basis, base)
+    # The points of the base with weights, each place once, in the order along it.
+    rule, along = elasticity.in_order(basis, rule, problem.tangent)
+    fresh = np.append(True, np.diff(along) > SAME_PLACE * problem.base_length)
+    weights = np.add.reduceat(rule.weights, np.flatnonzero(fresh))
+    rule = elasticity.Rule(rule.points[:, fresh], rule.cells[fresh], weights)
     return ContactModel(
         problem=problem,
         M=assembled.M,
         K=assembled.K,
         F=assembled.F,
         sides=elasticity.across_and_along(problem, basis, rule),
-        share=rule.weights / rule.weights.sum(),
+        share=weights / weights.sum(),
         motions=elasticity.rigid_motions(basis),
         upwards=elasticity.components(basis),
         observers=np.array([assembled.observers[name] for name in OBSERVED]),
@@ -164,14 +174,11 @@ def whole(problem: Problem) -> ContactModel:
     )
 
 
-def base_rule(problem: Problem, basis: Basis, facets: Indices) -> elasticity.Rule:
-    """Points of the base with weights, each place once, in the order along it."""
-    if problem.foundation == "distributed":
-        lumped = elasticity.LUMPED[problem.degree]
-        rule = elasticity.edge_rule(basis.mesh, facets, np.zeros(2), problem.tangent, [elasticity.WHOLE], lumped)
-    else:
-        rule = elasticity.foundation_rule(problem, basis, facets)
-    rule, along = elasticity.in_order(basis, rule, problem.tangent)
-    fresh = np.append(True, np.diff(along) > SAME_PLACE * problem.base_length)
-    weights = np.add.reduceat(rule.weights, np.flatnonzero(fresh))
-    return elasticity.Rule(rule.points[:, fresh], rule.cells[fresh], weights)
+def highest_closed_frequency(problem: Problem, full: bool = False) -> float:
+    """Return the largest natural frequency while every point of the base is closed and sticks [rad/s].
+
+    A point that opens or slides takes its springs away, which lowers every frequency: the springs of all bound every
+    contact state.
+    """
+    system = build(problem, full).system("glued")
+    return largest_frequency(with_springs(system.K, system.B, system.rows.compliance), system.M)

@@ -174,57 +174,49 @@ class ContactStepper:
             self._lengths = {1.0: self._lengths[1.0]}
         system = self.system
         scheme = replace(self.scheme, step=self.scheme.step * ratio, gg=self.scheme.gg**ratio)
-        weight = 1 / (2 * scheme.alpha) if self.rule == "implicit" else 1.0
+        is_implicit = self.rule == "implicit"
+        weight = 1 / (2 * scheme.alpha) if is_implicit else 1.0
         responses: list[tuple[Any, Array]] = []
         stages: list[ContactStage] = []
-        made = inverses(system.M, system.K, scheme, system.C, self.factor)
-        for number, first in enumerate(scheme.stage_matrices):
-            responses.append(responses[first] if first < number else self._responses(made[number], weight))
-            begin = scheme.stages[number - 1].end if number else 0.0
-            stages.append(self._stage(scheme, number, begin, made[number], *responses[number], ratio))
-        self._lengths[ratio] = tuple(stages)
-        return self._lengths[ratio]
-
-    def _stage(
-        self, scheme: Scheme, number: int, begin: float, inverse: Any, response: Any, W: Array, ratio: float
-    ) -> ContactStage:
-        system = self.system
-        stage = Stage(*(float(value) for value in scheme.stages[number]))
-        implicit = self.rule == "implicit"
+        begin = 0.0
+        is_newmark = scheme.table is None
         is_modal = system.to_modes is not None
         M = system.M if is_modal else operator(system.M)
         K = system.K if is_modal else system.elastic
         C = None if system.C is None else operator(system.C)
-        rows = system.rows
-        is_alone = rows.partner == np.arange(len(rows.partner))
+        is_alone = system.rows.partner == np.arange(len(system.rows.partner))
         singly = SINGLY_UNIQUE if is_alone.all() else SINGLY
-        points = int(is_alone.sum())
-        is_newmark = scheme.table is None
-        end_weight = stage.gamma if is_newmark else 0.5
-        return ContactStage(
-            stage=stage,
-            body=Body(M, C, K, inverse),
-            law=Law(
-                stage.stiffness_weight * scheme.step**2 * (W + W.T) / 2,
-                *rows,
-                limit=self.limit,
-                single_limit=singly * points if self.single_limit is None else self.single_limit,
-            ),
-            B=system.B,
-            response=response,
-            impulse=self._impulse if implicit else response,
-            F=system.F,
-            pushes=system.pushes,
-            ground=system.ground,
-            h=float(scheme.step),
-            gg=float(scheme.gg),
-            ratio=float(ratio),
-            duration=float(stage.end - begin),
-            stagger=scheme.step / 2 if scheme.staggered else 0.0,
-            end_weight=1.0 if implicit else float(end_weight),
-            is_implicit=implicit,
-            is_newmark=is_newmark,
-        )
+        single_limit = singly * int(is_alone.sum()) if self.single_limit is None else self.single_limit
+        made = inverses(system.M, system.K, scheme, system.C, self.factor)
+        for number, first in enumerate(scheme.stage_matrices):
+            responses.append(responses[first] if first < number else self._responses(made[number], weight))
+            response, W = responses[number]
+            stage = Stage(*(float(value) for value in scheme.stages[number]))
+            end_weight = stage.gamma if is_newmark else 0.5
+            flexibility = stage.stiffness_weight * scheme.step**2 * (W + W.T) / 2
+            of_stage = ContactStage(
+                stage=stage,
+                body=Body(M, C, K, made[number]),
+                law=Law(flexibility, *system.rows, limit=self.limit, single_limit=single_limit),
+                B=system.B,
+                response=response,
+                impulse=self._impulse if is_implicit else response,
+                F=system.F,
+                pushes=system.pushes,
+                ground=system.ground,
+                h=float(scheme.step),
+                gg=float(scheme.gg),
+                ratio=float(ratio),
+                duration=stage.end - begin,
+                stagger=scheme.step / 2 if scheme.staggered else 0.0,
+                end_weight=1.0 if is_implicit else end_weight,
+                is_implicit=is_implicit,
+                is_newmark=is_newmark,
+            )
+            stages.append(of_stage)
+            begin = stage.end
+        self._lengths[ratio] = tuple(stages)
+        return self._lengths[ratio]
 
     def _responses(self, inverse: Any, weight: float = 1.0) -> tuple[Any, Array]:
         """Weighted S^-1 B', an operator where it is not kept, and B times it; of M^-1 likewise."""

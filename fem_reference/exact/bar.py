@@ -91,10 +91,8 @@ class Bar(BarProblem):
         """The lowest modes, with the eigenvalues of the scheme's step."""
         b = wave_numbers(self.kappa, count)
         weight = shares("load", b, self.kappa)
-        modes = []
-        for i, w in enumerate(b / self.travel):
-            modes.append(Mode(float(w), float(weight[i]), roots(float(w) * scheme.step, scheme)))
-        return tuple(modes)
+        pairs = zip((b / self.travel).tolist(), weight.tolist(), strict=True)
+        return tuple(Mode(w, share, roots(w * scheme.step, scheme)) for w, share in pairs)
 
     def solve(
         self, scheme: Scheme, steps: int, columns: tuple[str, ...] = ("displacement", "contact_pressure")
@@ -106,18 +104,17 @@ class Bar(BarProblem):
         ValueError
             If the scheme is not stable for every frequency, or `steps` or `columns` are not valid.
         """
-        check_request(steps, tuple(columns))
-        reason = steppable(scheme)
-        if reason is not None:
+        check_request(steps, columns)
+        if reason := steppable(scheme):
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
         count = FIRST
         while True:
-            history, estimate = self._sum(scheme, steps, tuple(columns), count)
+            history, estimate = self._sum(scheme, steps, columns, count)
             if estimate <= TARGET or count >= LAST:
                 break
             count *= 2
-        return self._result(scheme.step, history, count, tuple(columns), estimate, began)
+        return self._result(scheme.step, history, count, columns, estimate, began)
 
     def _sum(self, scheme: Scheme, steps: int, columns: tuple[str, ...], count: int) -> tuple[Array, float]:
         """Histories over their static values and the truncation error over the maximum."""
@@ -146,20 +143,20 @@ class Bar(BarProblem):
         ValueError
             If gg is zero, the load rises in a ramp, or `steps` or `columns` are not valid.
         """
-        check_request(steps, tuple(columns))
+        check_request(steps, columns)
         if self.ramp:
             raise ValueError(f"ramp: must be 0 for a bar in continuous time, got {self.ramp!r}")
         if scheme.gg == 0:
             raise ValueError("gg: must be positive for a damping rate -ln(gg) / dt, got 0")
         began = time.perf_counter()
-        s: Array = scheme.step * np.arange(1.0, steps + 1) / self.travel
+        s = scheme.step * np.arange(1.0, steps + 1) / self.travel
         rate = (scheme.mass_damping - float(np.log(scheme.gg)) / scheme.step) * self.travel
         if scheme.stiffness_damping:
             lag = scheme.stiffness_damping / self.travel
-            history, change = viscous.histories(s, self.kappa, rate, lag, tuple(columns))
-            return self._result(scheme.step, history, 0, tuple(columns), change, began)
-        history = continuum.histories(s, self.kappa, rate, tuple(columns))
-        return self._result(scheme.step, history, 0, tuple(columns), None, began)
+            history, change = viscous.histories(s, self.kappa, rate, lag, columns)
+            return self._result(scheme.step, history, 0, columns, change, began)
+        history = continuum.histories(s, self.kappa, rate, columns)
+        return self._result(scheme.step, history, 0, columns, None, began)
 
     def _result(
         self, step: float, history: Array, count: int, columns: tuple[str, ...], estimate: float | None, began: float

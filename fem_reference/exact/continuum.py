@@ -17,6 +17,7 @@ each term from its arrival on. The damped bar, which is made of the same waves, 
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -83,11 +84,11 @@ def undamped(waves: damped.Waves, times: Array, kappa: float) -> Array:
 
 def pressure_waves(t: Array, kappa: float) -> Iterator[Array]:
     """Yield I_j for j = 0, 1, ..., of the waves from j on, the last axis of `t`."""
-    laguerre = _Laguerre(2 * kappa * t)
-    force: Array = -2 * np.expm1(-kappa * t)
-    while True:
+    force = -2 * np.expm1(-kappa * t)
+    yield force
+    for value in _laguerre(2 * kappa * t):
+        force = 2 * value - force[..., 1:]
         yield force
-        force = 2 * laguerre.advance() - force[..., 1:]
 
 
 def displacement_waves(t: Array, kappa: float) -> Iterator[Array]:
@@ -102,42 +103,31 @@ def displacement_waves(t: Array, kappa: float) -> Iterator[Array]:
         step = ((force[0] - force[1]) / kappa - step)[..., 1:]
 
 
-class _Laguerre:
-    """l_j(x) for the waves that go on beyond reflection j, the last axis of x.
+def _laguerre(x: Array) -> Iterator[Array]:
+    """Yield l_j(x), exp(-x / 2) (L_j - L_(j+1)), j = 0, 1, ..., of the waves that go on beyond reflection j.
 
-    P_j = L_j^1 / (j + 1) goes on by (j + 2) (P_(j+1) - P_j) = j (P_j - P_(j-1)) - x P_j. Where exp(-x / 2) underflows
-    P_j still matters: there the rest of the exponent is held back.
+    They are the last axis of x, of which each step drops the first. P_j = L_j^1 / (j + 1) goes on by
+    (j + 2) (P_(j+1) - P_j) = j (P_j - P_(j-1)) - x P_j. Where exp(-x / 2) underflows P_j still matters: there the rest
+    of the exponent is held back.
     """
-
-    def __init__(self, x: Array) -> None:
-        self._x = x
-        self._j = 0
-        begun = np.minimum(x / 2, 600.0)
-        self._rise = np.zeros_like(x)
-        self._now = np.exp(-begun)
-        self._exponent = begun - x / 2
-        self._scaled = bool(np.any(self._exponent < 0))
-
-    def advance(self) -> Array:
-        """Drop the first wave, raise j by one and return l_j, exp(-x / 2) (L_j - L_(j+1))."""
-        j = self._j
-        x = self._x[..., 1:]
-        now = self._now[..., 1:]
-        self._rise = (j * self._rise[..., 1:] - x * now) / (j + 2)
-        self._j = j + 1
-        self._x = x
-        self._now = now + self._rise
+    begun = np.minimum(x / 2, 600.0)
+    rise = np.zeros_like(x)
+    now = np.exp(-begun)
+    exponent = begun - x / 2
+    is_scaled = np.any(exponent < 0)
+    for j in itertools.count():
+        x = x[..., 1:]
+        now = now[..., 1:]
+        rise = (j * rise[..., 1:] - x * now) / (j + 2)
         value = x * now
-        return self._rescaled(value) if self._scaled else value
-
-    def _rescaled(self, value: Array) -> Array:
-        """Return a value to its scale; take polynomials that have become huge nearer to theirs."""
-        self._exponent = self._exponent[..., 1:]
-        result: Array = value * np.exp(self._exponent)
-        down = np.where(np.abs(self._now) > HUGE, np.minimum(np.log(HUGE), -self._exponent), 0.0)
-        if down.any():
+        now = now + rise
+        if is_scaled:
+            # The value returns to its scale; polynomials that have become huge are taken nearer to theirs.
+            exponent = exponent[..., 1:]
+            value = value * np.exp(exponent)
+            down = np.where(np.abs(now) > HUGE, np.minimum(np.log(HUGE), -exponent), 0.0)
             factor = np.exp(-down)
-            self._rise = self._rise * factor
-            self._now = self._now * factor
-            self._exponent = self._exponent + down
-        return result
+            rise = rise * factor
+            now = now * factor
+            exponent = exponent + down
+        yield value

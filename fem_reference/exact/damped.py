@@ -117,12 +117,12 @@ def kernel(t: float, s: Array, a: float) -> Array:
 
 def lagrange(x: Array) -> Array:
     """Values at places in [-1, 1] of the polynomials that are one at one Gauss point each, shape (places, points)."""
-    return np.asarray(np.polynomial.legendre.legvander(x, POINTS - 1) @ _BASIS)
+    return np.polynomial.legendre.legvander(x, POINTS - 1) @ _BASIS
 
 
 def _points(edges: Array) -> Array:
     """Gauss points of cells, shape (cells, points)."""
-    return np.asarray(edges[:-1, None] + np.diff(edges)[:, None] * (GAUSS + 1) / 2)
+    return edges[:-1, None] + np.diff(edges)[:, None] * (GAUSS + 1) / 2
 
 
 def _edges(kappa: float, trips: int) -> Array:

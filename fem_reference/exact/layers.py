@@ -63,25 +63,13 @@ def amplitudes(
     zero = np.zeros_like(w)
     free = dict(_descend(ground, heights, w2, (one, zero)))
     pressed = dict(_descend(ground, heights, w2, (zero, -one)))
-    if ground.impedance is None:
-        excitation = np.asarray(1 / (1j * w))
-        free_residual = free[-1][0]
-        pressed_residual = pressed[-1][0]
-    else:
-        z = ground.impedance
-        excitation = np.asarray(-2 * z * one)
-        free_residual, pressed_residual = (
-            np.asarray(state[1] - z * 1j * w * state[0]) for state in (free[-1], pressed[-1])
-        )
-    by_base = excitation / free_residual
-    by_top = -pressed_residual / free_residual
+    z = ground.impedance
+    excitation = 1 / (1j * w) if z is None else -2 * z * one
+    of_free, of_pressed = (u if z is None else sigma - z * 1j * w * u for u, sigma in (free[-1], pressed[-1]))
+    by_base = excitation / of_free
+    by_top = -of_pressed / of_free
     moved = {name: by_base * _part(free, name) for name in columns}
     return moved, {name: by_top * _part(free, name) + _part(pressed, name) for name in columns}
-
-
-def _damped(scheme: Scheme, w: Complex) -> Complex:
-    """Return w^2 - i c w with the rate c of the kinetic discount."""
-    return np.asarray(w * w + 1j * math.log(scheme.gg) / scheme.step * w)
 
 
 def _part(states: dict[int, State], name: str) -> Complex:
@@ -161,15 +149,37 @@ def solve_layers(
     ground.check_request(columns, heights)
     if reason := applicable(scheme):
         raise ValueError(f"gg: {reason}")
+    from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
+
     began = perf_counter()
+    travel = sum(x.thickness * math.sqrt(x.density / x.modulus(ground.motion)) for x in ground.strata)
+    period = max(PERIODS * steps * scheme.step, -math.log(ROUND) * travel / LARGEST)
+    picked = np.arange(1, steps + 1)
+
+    def synthesis(count: int) -> Array:
+        """Return the columns at the steps from `count` samples a step, shape (columns, steps)."""
+        spacing = scheme.step / count
+        samples = next_fast_len(math.ceil(period / spacing), real=True)
+        shift = -math.log(ROUND) / (samples * spacing)
+        time = spacing * np.arange(samples)
+        weight = np.exp(-shift * time)
+        w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
+        excitation = drive(time)
+        w2 = w * w + 1j * math.log(scheme.gg) / scheme.step * w
+        moved, pressed = amplitudes(ground, w, columns, heights, w2)
+        velocity = rfft(weight * excitation.velocity)
+        pressure = rfft(weight * excitation.pressure)
+        histories = [irfft(velocity * moved[name] + pressure * pressed[name], samples) for name in columns]
+        return np.asarray((np.array(histories) / weight)[:, count * picked])
+
     count = 1
     samples = 0
-    histories = _synthesis(ground, scheme, steps, drive, columns, heights, count)
+    histories = synthesis(count)
     error = math.inf
     while error > TOLERANCE and PERIODS * steps * 2 * count <= max(MOST_SAMPLES, 2 * PERIODS * steps):
         count *= 2
         samples = int(PERIODS * steps * count)
-        finer = _synthesis(ground, scheme, steps, drive, columns, heights, count)
+        finer = synthesis(count)
         largest = np.abs(finer).max(axis=1)
         error = float(np.max(np.abs(finer - histories).max(axis=1) / np.where(largest > 0, largest, 1.0)))
         histories = finer
@@ -180,32 +190,3 @@ def solve_layers(
         notes=(f"{samples} samples",),
         estimate=error,
     )
-
-
-def _synthesis(
-    ground: Ground,
-    scheme: Scheme,
-    steps: int,
-    drive: Callable[[Array], Excitation],
-    columns: Sequence[str],
-    heights: Sequence[float],
-    count: int,
-) -> Array:
-    """Return the columns at the steps from `count` samples a step, shape (columns, steps)."""
-    from scipy.fft import irfft, next_fast_len, rfft, rfftfreq
-
-    spacing = scheme.step / count
-    travel = sum(x.thickness * math.sqrt(x.density / x.modulus(ground.motion)) for x in ground.strata)
-    period = max(PERIODS * steps * scheme.step, -math.log(ROUND) * travel / LARGEST)
-    samples = next_fast_len(math.ceil(period / spacing), real=True)
-    shift = -math.log(ROUND) / (samples * spacing)
-    time = spacing * np.arange(samples)
-    weight = np.exp(-shift * time)
-    w = 2 * np.pi * rfftfreq(samples, spacing) - 1j * shift
-    excitation = drive(time)
-    moved, pressed = amplitudes(ground, w, columns, heights, _damped(scheme, w))
-    velocity = rfft(weight * excitation.velocity)
-    pressure = rfft(weight * excitation.pressure)
-    picked = count * np.arange(1, steps + 1)
-    histories = [irfft(velocity * moved[name] + pressure * pressed[name], samples)[picked] for name in columns]
-    return np.asarray(np.array(histories) / weight[picked])

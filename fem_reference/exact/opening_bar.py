@@ -22,13 +22,13 @@ Lubich, Convolution quadrature and discretized operational calculus, Numer. Math
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 
 import numpy as np
 from scipy.fft import next_fast_len
 
 from fem_reference.problem.bar import BarProblem, no_bar
 from fem_reference.problem.problem import Array, Problem, Scheme
+from fem_reference.problem.result import Result, just_ended
 from fem_reference.scheme import modal
 from fem_reference.scheme.stage import Motion, end_of_stage, predicted_change
 
@@ -61,8 +61,12 @@ class OpeningBar(BarProblem):
         loads = problem.pressure, problem.gravity
         return cls(height, width, problem.density, problem.young, 2 * problem.stiffness, *loads, gap, velocity)
 
-    def solve(self, scheme: Scheme, steps: int) -> OpeningResult:
+    def solve(self, scheme: Scheme, steps: int) -> Result:
         """History under a scheme; row 0 is step 1.
+
+        Its columns are `displacement` of the mid-height [m], `contact_pressure` N / W [Pa], `gap` w under the base [m],
+        negative where pressed, `closed`, 1 where the base is closed and 0 where open [-], and `velocity` of the centre
+        of mass, upwards [m/s].
 
         Raises
         ------
@@ -76,36 +80,19 @@ class OpeningBar(BarProblem):
         if reason := modal.applicable(scheme):
             raise ValueError(f"scheme: must be stable for every frequency, but {reason}")
         began = time.perf_counter()
-        series = _Series.of(scheme, steps, self.travel)
+        own, half, across, half_load = _series(scheme, steps, self.travel)
         ready = time.perf_counter()
         unit = self.height / self.young
-        base = _stepped(self, scheme, unit * series.own, -self.pressure * unit * series.across)
-        middle = unit * (_convolved(series.half, base.pressure) - self.pressure * series.half_load)
-        ended = time.perf_counter()
-        return OpeningResult(
-            time=np.asarray(scheme.step * np.arange(1, steps + 1), dtype=np.float64),
-            displacement=(base.rigid + middle)[1:],
-            contact_pressure=base.pressure[1:],
-            gap=base.gap[1:],
-            closed=base.closed[1:],
-            velocity=base.velocity[1:],
-            setup_seconds=ready - began,
-            stepping_seconds=ended - ready,
+        columns = _stepped(self, scheme, unit * own, -self.pressure * unit * across)
+        count = next_fast_len(2 * len(half), real=True)
+        spectrum = np.fft.rfft(half, count) * np.fft.rfft(columns["contact_pressure"], count)
+        convolved = np.fft.irfft(spectrum, count)[: len(half)]  # sum of half[k] pressure[n - k]
+        columns["displacement"] += unit * (convolved - self.pressure * half_load)
+        return Result(
+            **just_ended(scheme.step, steps, began, ready),
+            columns={name: values[1:] for name, values in columns.items()},
+            unknowns=1,
         )
-
-
-@dataclass(frozen=True)
-class OpeningResult:
-    """A history; row 0 is step 1."""
-
-    time: Array  # time of each row [s], shape (steps,)
-    displacement: Array  # displacement of the mid-height [m], shape (steps,)
-    contact_pressure: Array  # N / W [Pa], shape (steps,)
-    gap: Array  # gap w under the base [m], negative where pressed, shape (steps,)
-    closed: Array  # 1 where the base is closed, 0 where open [-], shape (steps,)
-    velocity: Array  # velocity of the centre of mass, upwards [m/s], shape (steps,)
-    setup_seconds: float  # time for the weights of the convolutions [s]
-    stepping_seconds: float  # time for the steps [s]
 
 
 def applicable(problem: Problem) -> str | None:
@@ -122,30 +109,19 @@ def steppable(scheme: Scheme) -> str | None:
     return f"{scheme.name!r} has {len(scheme.stages)}" if len(scheme.stages) > 1 else None
 
 
-@dataclass(frozen=True)
-class _Series:
-    """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E."""
+def _series(scheme: Scheme, steps: int, travel: float) -> Array:
+    """What a pressure does to the bar beyond its rigid motion, from step 0 on, in units of H / E, shape (4, steps + 1).
 
-    own: Array  # weights of the end that is pressed
-    half: Array  # weights of the mid-height
-    across: Array  # history of the base under a unit pressure on the top from t = 0 on
-    half_load: Array  # history of the mid-height under that pressure, for one that acts upwards
-
-    @classmethod
-    def of(cls, scheme: Scheme, steps: int, travel: float) -> _Series:
-        """The series up to a number of steps."""
-        count = next_fast_len(OVERSAMPLED * (steps + 1), real=True)
-        radius = 10.0 ** (-1.0 / (steps + 1))
-        z = radius * np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)
-        x2, load = _image(scheme, travel, z)
-        stretch, across, half = closed_forms(x2)
-        powers = radius ** np.arange(steps + 1.0)
-
-        def series(image: Array) -> Array:
-            values: Array = np.fft.irfft(np.conj(image), count)[: steps + 1] / powers
-            return values
-
-        return cls(series(stretch), series(half), series(across * load), series(half * load))
+    Weights of the end that is pressed and of the mid-height; histories of the base under a unit pressure on the top
+    from t = 0 on, and of the mid-height under that pressure, for one that acts upwards.
+    """
+    count = next_fast_len(OVERSAMPLED * (steps + 1), real=True)
+    radius = 10.0 ** (-1.0 / (steps + 1))
+    z = radius * np.exp(2j * np.pi * np.arange(count // 2 + 1) / count)
+    x2, load = _image(scheme, travel, z)
+    stretch, across, half = closed_forms(x2)
+    images = np.array([stretch, half, across * load, half * load])
+    return np.asarray(np.fft.irfft(np.conj(images), count)[:, : steps + 1] / radius ** np.arange(steps + 1.0))
 
 
 def _image(scheme: Scheme, travel: float, z: Array) -> tuple[Array, Array]:
@@ -191,19 +167,8 @@ def _stretch(x: Array) -> Array:
     return np.where(near, fraction, values)
 
 
-@dataclass(frozen=True)
-class _Base:
-    """The base from step 0 on."""
-
-    rigid: Array  # rigid displacement of the bar [m]
-    pressure: Array  # contact pressure [Pa]
-    gap: Array  # gap [m]
-    closed: Array  # 1 where closed [-]
-    velocity: Array  # velocity of the centre of mass [m/s]
-
-
-def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Base:
-    """Contact pressures step by step.
+def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> dict[str, Array]:
+    """Columns of the history from step 0 on, the displacement being that of the rigid motion.
 
     Parameters
     ----------
@@ -248,11 +213,4 @@ def _stepped(bar: OpeningBar, scheme: Scheme, loaded: Array, free: Array) -> _Ba
         now = end_of_stage(stage, dt, gg, now, now, predicted, e + (1 - stage.af) * N[n] / surface, now.D)
         rigid[n] = now.D
         speed[n] = now.V
-    return _Base(rigid, N, gap, closed, speed)
-
-
-def _convolved(weights: Array, values: Array) -> Array:
-    """Sum of weights[k] values[n - k], shape (steps + 1,)."""
-    count = next_fast_len(2 * len(values), real=True)
-    convolved: Array = np.fft.irfft(np.fft.rfft(weights, count) * np.fft.rfft(values, count), count)[: len(values)]
-    return convolved
+    return {"displacement": rigid, "contact_pressure": N, "gap": gap, "closed": closed, "velocity": speed}

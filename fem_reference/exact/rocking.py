@@ -147,7 +147,7 @@ def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
     rate = 0.0
     fallen = False
     swings: list[Swing] = []
-    impacts: list[float] = []
+    impacts = []
     while time < end and not fallen:
         if len(swings) > SWINGS:
             raise ArithmeticError(f"more than {SWINGS} swings by {time:g} s")
@@ -161,8 +161,8 @@ def solve(block: RockingBlock, end: float, tilt: float) -> RockingMotion:
         time = float(swing.t[-1])
         angle = float(swing.y[0, -1])
         rate = float(swing.y[1, -1])
-        fallen = len(swing.t_events[1]) > 0
-        if len(swing.t_events[0]):
+        fallen = swing.status == 1 and abs(angle) > FALLEN / 2
+        if swing.status == 1 and not fallen:
             impacts.append(time)
             angle = 0.0
             rate = rate * block.ratio
@@ -177,13 +177,9 @@ def _swing(block: RockingBlock, side: int, span: tuple[float, float], start: tup
     def motion(t: float, y: Array) -> list[float]:
         return [y[1], -square * math.sin(alpha - y[0])]
 
-    def lands(t: float, y: Array) -> float:
-        return side * float(y[0])
+    def stands(t: float, y: Array) -> float:
+        return min(side * float(y[0]), FALLEN - side * float(y[0]))
 
-    def falls(t: float, y: Array) -> float:
-        return FALLEN - side * float(y[0])
-
-    for event in (lands, falls):
-        event.terminal = True  # type: ignore[attr-defined]
-        event.direction = -1  # type: ignore[attr-defined]
-    return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=[lands, falls], dense_output=True)
+    stands.terminal = True  # type: ignore[attr-defined]
+    stands.direction = -1  # type: ignore[attr-defined]
+    return solve_ivp(motion, span, start, "DOP853", rtol=ACCURACY, atol=1e-15, events=stands, dense_output=True)

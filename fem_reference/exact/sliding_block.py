@@ -95,11 +95,8 @@ def recorded(time: ArrayLike, acceleration: ArrayLike) -> tuple[Segment, ...]:
         Accelerations towards +x [m/s2], shape (rows,).
     """
     t, a = _rows("recorded", time, acceleration)
-    rises = [
-        Segment(p, q, a0=x, a1=(y - x) / (q - p))
-        for (p, q), (x, y) in zip(pairwise(t), pairwise(a), strict=True)
-        if q > p
-    ]
+    ends = pairwise(zip(t, a, strict=True))
+    rises = [Segment(p, q, a0=x, a1=(y - x) / (q - p)) for (p, x), (q, y) in ends if q > p]
     return (*rises, Segment(t[-1], math.inf))
 
 
@@ -193,18 +190,21 @@ def solve(block: SlidingBlock, base: tuple[Segment, ...], end: float) -> Sliding
         while time < last:
             acceleration = segment.acceleration(time - segment.start)
             way = int(np.sign(velocity)) or _yields(block, acceleration, segment.a1)
-            rate = (velocity, block.push(way) - acceleration, -segment.a1 / 2)
-            change = _sticks(way, rate, last - time) if way else 0.0
+            a = block.push(way) - acceleration
+            b = -segment.a1 / 2
+            change = _sticks(way, velocity, a, b, last - time) if way else 0.0
             if change == 0:  # at rest, also where rounding alone would let it slide
                 way = 0
-                rate = (0.0, 0.0, 0.0)
+                velocity = 0.0
+                a = 0.0
+                b = 0.0
                 change = _slips(block, acceleration, segment.a1, last - time)
             s = last - time if change is None else change
             times.append(time)
             ways.append(way)
-            cubics.append((rate[2] / 3, rate[1] / 2, rate[0], slide))
-            slide += ((rate[2] / 3 * s + rate[1] / 2) * s + rate[0]) * s
-            velocity = (rate[2] * s + rate[1]) * s + rate[0] if change is None else 0.0
+            cubics.append((b / 3, a / 2, velocity, slide))
+            slide += ((b / 3 * s + a / 2) * s + velocity) * s
+            velocity = (b * s + a) * s + velocity if change is None else 0.0
             # At least to the next float: a change that rounding puts at the present instant would come for ever.
             time = last if change is None else max(time + s, math.nextafter(time, math.inf))
     return SlidingMotion(block, float(end), PPoly(np.transpose(cubics), [*times, end]), tuple(ways))
@@ -227,13 +227,13 @@ def _slips(block: SlidingBlock, acceleration: float, growth: float, length: floa
     return min((s for s in crossings if NOISE * min(length, 1.0) < s <= length), default=None)
 
 
-def _sticks(way: int, rate: tuple[float, float, float], length: float) -> float | None:
-    """The first root of the rate of a slide within a length of time, monotone before and after its extreme value."""
+def _sticks(way: int, velocity: float, a: float, b: float, length: float) -> float | None:
+    """The first root of velocity + a s + b s^2 within a length of time, monotone before and after its extreme value."""
 
     def forwards(s: float) -> float:
-        return way * ((rate[2] * s + rate[1]) * s + rate[0])
+        return way * ((b * s + a) * s + velocity)
 
-    turn = -rate[1] / (2 * rate[2]) if rate[2] else 0.0
+    turn = -a / (2 * b) if b else 0.0
     bounds = [0.0, turn, length] if NOISE * min(length, 1.0) < turn <= length else [0.0, length]
     for low, high in pairwise(bounds):
         if forwards(high) < 0:

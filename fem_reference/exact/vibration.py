@@ -31,32 +31,22 @@ def response(
     ValueError
         If gg = 0 where the response that is exact in time is asked for.
     """
-    parts = answering(frequencies, scheme, exact)
-    amplitudes = [(factor, _undamped(bar, W2)) for W2, factor in parts]
-    return {name: np.asarray(sum(factor * part[name] for factor, part in amplitudes)) for name in columns}
-
-
-def _undamped(bar: Bar, W2: Complex) -> dict[str, Complex]:
-    """Amplitudes of all columns at squared frequencies W2."""
+    W2, factor = np.array(answering(frequencies, scheme, exact)).swapaxes(0, 1)
     root = bar.travel * np.sqrt(W2)
-    theta: Complex = np.where(root.imag > 0, -root, root)
+    theta = np.where(root.imag > 0, -root, root)
     whole = np.exp(-1j * theta)
-    cosine = (1 + whole**2) / 2
-    sine = theta * _sine(theta, whole**2)
-    below = bar.kappa * cosine - theta * sine
-    half = np.exp(-0.5j * theta)
-    middle = half * ((1 + whole) / 2 + bar.kappa / 2 * _sine(theta / 2, whole))
+    below = bar.kappa * (1 + whole**2) / 2 - theta**2 * _sine(theta)
+    middle = np.exp(-0.5j * theta) * ((1 + whole) / 2 + bar.kappa / 2 * _sine(theta / 2))
     with np.errstate(divide="ignore", invalid="ignore"):
-        return {
+        amplitudes = {
             "displacement": -bar.pressure * bar.height / bar.young * middle / below,
             "contact_pressure": bar.pressure * bar.kappa * whole / below,
             "horizontal_displacement": np.zeros_like(theta),
         }
+    return {name: (factor * amplitudes[name]).sum(axis=0) for name in columns}
 
 
-def _sine(theta: Complex, square: Complex) -> Complex:
-    """exp(-i theta) sin(theta) / theta, where `square` is exp(-2 i theta)."""
-    small = np.abs(theta) < 1e-4
-    safe = np.where(small, 1.0, theta)
-    near = np.exp(-1j * theta) * (1 - theta * theta / 6)
-    return np.asarray(np.where(small, near, (1 - square) / (2j * safe)))
+def _sine(theta: Complex) -> Complex:
+    """exp(-i theta) sin(theta) / theta."""
+    ways = 2j * np.where(theta == 0, np.finfo(float).tiny, theta)
+    return -np.expm1(-ways) / ways

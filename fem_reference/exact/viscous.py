@@ -49,14 +49,13 @@ def _summed(times: Array, kappa: float, rate: float, lag: float, columns: tuple[
     weights = np.array([shares(name, b, kappa) for name in columns]) * cut_off(count, count)
     half = (rate + lag * b * b) / 2
     parts = np.array_split(times, 1 + len(times) * count // BLOCK)
-    sums = [_sum(weights, 1 - response(part[:, None], b, half).T) for part in parts]
+    sums = []
+    for part in parts:
+        ways = 1 - response(part[:, None], b, half).T
+        total = weights @ ways
+        # What only rounding leaves, before a wave has come, is nothing.
+        sums.append(np.where(np.abs(total) <= ROUNDING * (np.abs(weights) @ np.abs(ways)), 0.0, total))
     return np.concatenate(sums, axis=1)
-
-
-def _sum(weights: Array, ways: Array) -> Array:
-    """Sum over the modes; what only rounding leaves, before a wave has come, is nothing."""
-    total = weights @ ways
-    return np.where(np.abs(total) <= ROUNDING * (np.abs(weights) @ np.abs(ways)), 0.0, total)
 
 
 def response(t: Array, w: Array, a: float | Array) -> Array:
@@ -77,4 +76,4 @@ def response(t: Array, w: Array, a: float | Array) -> Array:
         # exp(-slow t) (1 + exp(-2 v t)) / 2 + a (exp(-slow t) - exp(-(2 a - slow) t)) / (2 v)
         fall = -np.expm1(-2 * v * t)
         x[:, over] = np.exp(-slow * t) * (1 - fall / 2 + a * fall / (2 * v))
-    return np.asarray(x)
+    return x

@@ -49,23 +49,20 @@ class KrylovSpace:
     def grow(self, size: int) -> None:
         """Add vectors until there are `size`, or the space is closed."""
         while len(self) < size and not self.closed:
-            self._add()
-
-    def _add(self) -> None:
-        j = len(self)
-        V = self.vectors[: j + 1]
-        v = self.vectors[j]
-        Mv = self._M @ v
-        w = self._solve(Mv)
-        self.diagonal.append(float(v @ Mv))
-        w -= self.diagonal[-1] * v
-        if j:
-            w -= self.beside[-1] * V[j - 1]
-        Sw = self._S @ w
-        outside = V @ Sw
-        size = float(np.sqrt(max(w @ Sw - outside @ outside, 0.0)))
-        w -= outside @ V
-        self.closed = size <= CLOSED or j + 1 == len(v)
-        self.beside.append(size)
-        if not self.closed:
-            self.vectors[j + 1] = w / size
+            j = len(self)
+            V = self.vectors[: j + 1]
+            v = self.vectors[j]
+            Mv = self._M @ v
+            w = self._solve(Mv)
+            self.diagonal.append(float(v @ Mv))
+            w -= self.diagonal[-1] * v
+            if j:
+                w -= self.beside[-1] * V[j - 1]
+            Sw = self._S @ w
+            outside = V @ Sw
+            remainder = float(np.sqrt(max(w @ Sw - outside @ outside, 0.0)))
+            w -= outside @ V
+            self.closed = remainder <= CLOSED or j + 1 == len(v)
+            self.beside.append(remainder)
+            if not self.closed:
+                self.vectors[j + 1] = w / remainder

@@ -11,7 +11,6 @@ The space is enlarged until the history no longer changes; the last change is th
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from scipy.linalg import eigh_tridiagonal
@@ -72,7 +71,7 @@ def reduced(stepper: Stepper, rows: Array, steps: int) -> Reduced | str:
     space = KrylovSpace(stepper.M, stepper.S, stepper.F, stepper.solve, capacity)
     duals = np.sqrt([row @ stepper.solve(row) for row in rows])
     histories: list[Array] = []
-    changes: list[float] = []
+    changes = []
     size = 0
     while size < capacity:
         size = min(capacity, size + max(FEWEST, size // 8))
@@ -159,7 +158,7 @@ def _stiffness(stepper: Stepper, shapes: Array) -> Array:
 
 def history(modes: Modes, scheme: Scheme, steps: int) -> Array:
     """Columns of every step from rest, shape (columns, steps)."""
-    tau: Any = modes.inertia.astype(np.longdouble)  # any: the step is typed for doubles
-    K: Any = modes.stiffness.astype(np.longdouble) / scheme.stages[0].stiffness_weight
+    tau = modes.inertia.astype(np.longdouble)
+    K = modes.stiffness.astype(np.longdouble) / scheme.stages[0].stiffness_weight
     bodies = [Body(tau, None, K, 1.0)] * len(scheme.stages)
     return power_histories(*affine_step(scheme, bodies, np.ones_like(tau)), modes.observed * modes.load, steps)

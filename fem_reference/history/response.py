@@ -105,21 +105,16 @@ def _in_space(model: Model, F: Array, rows: Array, W2: Complex) -> tuple[Complex
     space = KrylovSpace(model.M * unit, model.K, F, solve, min(LARGEST, len(F)))
     while True:
         space.grow(min(len(space) + ADDED, LARGEST))
-        amplitudes, remains, rounding = _projected(space, rows, W2 / unit)
+        size = len(space)
+        values, shapes = eigh_tridiagonal(space.diagonal, space.beside[: size - 1])
+        y = space.load * shapes[0][:, None] / (1 - values[:, None] * (W2 / unit))
+        out = 0.0 if space.closed else space.beside[-1]
+        response = np.minimum(space.load, np.linalg.norm(y, axis=0))
+        remains = out * np.abs(W2 / unit) * np.abs(shapes[-1] @ y) / response  # over the response
+        observers = rows @ space.vectors[:size].T @ shapes
+        amplitudes = observers @ y
+        with np.errstate(divide="ignore", invalid="ignore"):
+            sums = np.max(np.abs(observers) @ np.abs(y) / np.abs(amplitudes), axis=0)
+        rounding = np.nan_to_num(np.finfo(float).eps * sums)
         if space.closed or len(space) >= LARGEST or np.all(remains <= SMALL):
             return amplitudes, (remains <= SMALL) & (rounding <= CANCELLED)
-
-
-def _projected(space: KrylovSpace, rows: Array, W2: Complex) -> tuple[Complex, Array, Array]:
-    """Observed amplitudes in a space, what remains over the response, and the rounding of the sums."""
-    size = len(space)
-    values, shapes = eigh_tridiagonal(space.diagonal, space.beside[: size - 1])
-    y = space.load * shapes[0][:, None] / (1 - values[:, None] * W2)
-    out = 0.0 if space.closed else space.beside[-1]
-    response = np.minimum(space.load, np.linalg.norm(y, axis=0))
-    remains = out * np.abs(W2) * np.abs(shapes[-1] @ y) / response
-    observers = rows @ space.vectors[:size].T @ shapes
-    amplitudes = observers @ y
-    with np.errstate(divide="ignore", invalid="ignore"):
-        rounding = np.finfo(float).eps * np.max(np.abs(observers) @ np.abs(y) / np.abs(amplitudes), axis=0)
-    return amplitudes, remains, np.nan_to_num(rounding)

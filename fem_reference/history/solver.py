@@ -76,7 +76,7 @@ def solve(
     if isinstance(small, str):
         instants = scheme.stage_times(steps)
         moved = None if problem.motion is None else problem.motion(instants)
-        shares = problem.load_shares(instants) if problem.ramp else None
+        shares = np.minimum(instants / problem.ramp, 1.0) if problem.ramp else None
         history = run(stepper, model, steps, observed, moved, shares, discount, kept)
         estimate = None
         how = f"stepped: {small}"

@@ -169,8 +169,7 @@ def together(rules: Sequence[Rule]) -> Rule:
 
 def gauss(degree: int) -> tuple[Array, Array]:
     """Gauss points and weights that are exact for products of two elements of a degree."""
-    nodes, weights = np.polynomial.legendre.leggauss(degree + 1)
-    return nodes, weights
+    return np.polynomial.legendre.leggauss(degree + 1)
 
 
 def springs(basis: Basis, problem: Problem, rule: Rule) -> tuple[csr_array, Array]:
@@ -262,7 +261,14 @@ def _cells_at(basis: Basis, point: Array) -> Rule:
     slack = 1e-9 * np.ptp(basis.mesh.p)
     inside = (corners.min(axis=1) <= x + slack) & (corners.max(axis=1) >= x - slack)
     cells = np.flatnonzero(inside.all(axis=0))
-    local = _reference(basis, point, cells)
+    # By Newton's method: a bilinear map needs few steps near its cell; where it fails the point is not in that cell.
+    target = np.repeat(x[:, :, None], len(cells), axis=1)
+    places = np.full(target.shape, 0.5)
+    with np.errstate(all="ignore"):
+        for _ in range(12):
+            inverse = basis.mapping.invDF(places, cells)
+            places = places + np.einsum("ijkl,jkl->ikl", inverse, target - basis.mapping.F(places, cells))
+    local = places[:, :, 0]
     outside = np.maximum(-local, local - 1).max(axis=0, initial=-np.inf)
     if basis.mesh.t.shape[0] == 3:
         outside = np.maximum(outside, local.sum(axis=0) - 1)
@@ -283,15 +289,3 @@ def _rotation(basis: Basis, rule: Rule) -> Array:
         gradient = basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0].grad[..., 0]
         np.add.at(row, basis.element_dofs[k, rule.cells], rule.weights * (gradient[1, 0] - gradient[0, 1]) / 2)
     return row
-
-
-def _reference(basis: Basis, point: Array, cells: Indices) -> Array:
-    """Reference coordinates of a point in each of some cells, by Newton's method, shape (2, cells)."""
-    x = np.repeat(point[:, None, None], len(cells), axis=1)
-    local = np.full(x.shape, 0.5)
-    # A bilinear map needs few steps near its cell; where it fails the point is not in that cell.
-    with np.errstate(all="ignore"):
-        for _ in range(12):
-            inverse = basis.mapping.invDF(local, cells)
-            local = local + np.einsum("ijkl,jkl->ikl", inverse, x - basis.mapping.F(local, cells))
-    return np.asarray(local[:, :, 0])

@@ -65,8 +65,7 @@ def structured(problem: Problem, half: bool = False) -> TaggedMesh:
     xi = eta[: n // 2 + 1] if half else eta
     # triangles are cut from the lower left to the upper right corner of each cell
     square = (MeshTri if problem.cells == "triangles" else MeshQuad).init_tensor(xi, eta)
-    edges = {0: (1, 0.0), 1: (0, 1.0), 2: (1, 1.0), 3: (0, 0.0)}
-    axis, value = edges[(problem.top - problem.base) % 4]
+    axis, value = ((1, 0.0), (0, 1.0), (1, 1.0), (0, 0.0))[(problem.top - problem.base) % 4]
     base = square.facets_satisfying(lambda x: x[1] == 0.0, boundaries_only=True)
     top = square.facets_satisfying(lambda x: x[axis] == value, boundaries_only=True)
     x, y = square.p
@@ -140,7 +139,7 @@ def facets_along(mesh: Mesh, start: Array, end: Array, slack: float) -> tuple[In
         raise ValueError(
             f"edge: must be covered by edges of the outline, got {tuple(start.tolist())!r} to {tuple(end.tolist())!r}"
         )
-    return np.asarray(facets[on_piece], np.int64), np.asarray(places[:, on_piece])
+    return np.asarray(facets[on_piece], np.int64), places[:, on_piece]
 
 
 def facets_between(mesh: Mesh, start: ArrayLike, end: ArrayLike, slack: float) -> Indices:

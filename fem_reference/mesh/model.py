@@ -79,7 +79,7 @@ def build(problem: Problem, full: bool = False) -> Model:
         model = whole_block(problem)
     elif column_applies(problem):
         model = reachable(column(problem))
-    elif half_applies(problem):
+    elif problem.rectangle is not None and problem.vertical and _tensor(problem) and problem.elements % 2 == 0:
         model = reachable(half_block(problem))
     else:
         model = reachable(whole_block(problem))
@@ -208,12 +208,6 @@ def column(problem: Problem) -> Model:
         kind="column",
         notes=("one column of elements",),
     )
-
-
-def half_applies(problem: Problem) -> bool:
-    """Whether the block and its mesh are symmetric: rectangle, structured, even number of elements."""
-    symmetric = problem.rectangle is not None and problem.vertical
-    return symmetric and _tensor(problem) and problem.elements % 2 == 0
 
 
 def _tensor(problem: Problem) -> bool:

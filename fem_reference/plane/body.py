@@ -8,7 +8,7 @@ with that singularity.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -98,34 +98,27 @@ def _tensor_mesh(body: PlaneBody) -> MeshQuad:
     size = float(np.min(high - low)) / body.elements
     clamped = np.array([point for clamp in body.clamps for point in clamp]).reshape(-1, 2)
     axes = []
-    for axis in (0, 1):
-        ends = [bool(np.any(abs(clamped[:, axis] - end) <= body.slack)) for end in (low[axis], high[axis])]
-        axes.append(_graded(float(low[axis]), float(high[axis]), size, ends))
-    return MeshQuad.init_tensor(*axes)
-
-
-def _graded(low: float, high: float, size: float, graded: Sequence[bool]) -> Array:
-    """Return equal steps from low to high, the first and the last halved again and again where they are graded."""
-    count = max(1, round((high - low) / size))
-    places = np.linspace(low, high, count + 1)
     halves = 0.5 ** np.arange(1, LAYERS + 1)
-    if graded[0]:
-        places = np.union1d(places, low + (places[1] - places[0]) * halves)
-    if graded[1]:
-        places = np.union1d(places, high - (places[-1] - places[-2]) * halves)
-    return places
+    for axis, length in enumerate((high - low).tolist()):
+        places = np.linspace(low[axis], high[axis], max(1, round(length / size)) + 1)
+        for end, inner in ((0, 1), (-1, -2)):  # the first and the last step are halved again and again at a clamp
+            if np.any(abs(clamped[:, axis] - places[end]) <= body.slack):
+                places = np.union1d(places, places[end] + (places[inner] - places[end]) * halves)
+        axes.append(places)
+    return MeshQuad.init_tensor(*axes)
 
 
 def _fan_mesh(body: PlaneBody) -> MeshTri:
     """Return triangles from the middle of each polygon, all corners that lie on its sides among its own."""
-    places = np.vstack([np.array(polygon, float) for polygon in body.polygons])
+    polygons = [np.array(polygon, float) for polygon in body.polygons]
+    places = np.vstack(polygons)
     first = [min(near) for near in cKDTree(places).query_ball_point(places, body.slack)]
     corners = places[np.unique(first)]
     points = [*corners]
     triangles = []
-    for polygon in body.polygons:
-        ring = _ring(np.array(polygon, float), corners, body.slack)
-        points.append(np.mean(np.array(polygon, float), axis=0))
+    for polygon in polygons:
+        ring = _ring(polygon, corners, body.slack)
+        points.append(np.mean(polygon, axis=0))
         triangles += [[len(points) - 1, ring[i - 1], ring[i]] for i in range(len(ring))]
     a, b, c = np.moveaxis(np.array(points)[np.array(triangles)], 1, 0)
     turns = (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]

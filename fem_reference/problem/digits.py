@@ -67,6 +67,6 @@ def bounded(history: Array, pressure: float) -> Array:
     if pressure == 0:
         return np.zeros_like(history)
     with np.errstate(over="ignore", invalid="ignore"):
-        scaled: Array = pressure * history
+        scaled = pressure * history
     scaled[~np.logical_and.accumulate(np.isfinite(scaled), axis=1)] = np.inf
     return scaled

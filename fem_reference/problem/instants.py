@@ -18,7 +18,7 @@ def instants(times: ArrayLike, end: float) -> Array:
     ValueError
         If an instant is not from 0 to `end`.
     """
-    t: Array = np.array(times, float, ndmin=1)
+    t = np.array(times, float, ndmin=1)
     if t.ndim != 1 or not np.all((t >= 0) & (t <= end)):
         raise ValueError(f"times: must be a list of instants from 0 to the end {end!r}, got {times!r}")
     return t
@@ -26,7 +26,7 @@ def instants(times: ArrayLike, end: float) -> Array:
 
 def by_pieces(t: Array, starts: ArrayLike) -> Iterator[tuple[int, NDArray[np.intp]]]:
     """Yield the pieces that instants fall into, by their starts in the order of time, and the indices of these."""
-    index = np.searchsorted(np.asarray(starts), t, side="right") - 1
+    index = np.searchsorted(starts, t, side="right") - 1
     order = np.argsort(index, kind="stable")
     pieces, first = np.unique(index[order], return_index=True)
     yield from zip(pieces.tolist(), np.split(order, first[1:]), strict=True)

@@ -50,4 +50,4 @@ def moved_base(motion: Motion | None, positions: Array, times: Array) -> Array:
     """
     if motion is None:
         return np.zeros((*times.shape, 2))
-    return np.asarray(motion(times.ravel())).reshape(*times.shape, 2)
+    return motion(times.ravel()).reshape(*times.shape, 2)

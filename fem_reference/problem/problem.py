@@ -139,10 +139,6 @@ class Problem(Elastic):
         weight = self.density * self.gravity * float(np.sqrt(self.area))
         return max(abs(self.pressure), abs(self.traction), abs(weight))
 
-    def load_shares(self, instants: Array) -> Array:
-        """Shares of the loads that act at some instants [-]."""
-        return np.minimum(instants / self.ramp, 1.0) if self.ramp else np.ones_like(instants)
-
     @property
     def unit(self) -> Problem:
         """The problem under its loads over `load_size`; under a pressure of 1 Pa where there is no load."""
@@ -188,7 +184,7 @@ class Problem(Elastic):
     def centroid(self) -> Array:
         """Area centroid relative to the start of the base, shape (2,) [m]."""
         cross, sums = self._cross
-        return np.asarray(cross @ sums / (6 * self.area))
+        return cross @ sums / (6 * self.area)
 
     @property
     def rectangle(self) -> tuple[float, float] | None:
@@ -251,8 +247,8 @@ class Scheme:
     def stage_matrices(self) -> tuple[int, ...]:
         """Number of the first stage that has the matrix of each stage: each is factorised once."""
         weights = np.array([(stage.stiffness_weight, stage.damping_weight) for stage in self.stages])
-        first = [int(np.argmax(np.all(np.isclose(weights, row, rtol=SAME_MATRIX, atol=0), axis=1))) for row in weights]
-        return tuple(first)
+        alike = np.isclose(weights[:, None], weights, rtol=SAME_MATRIX, atol=0).all(axis=2)
+        return tuple(alike.argmax(axis=1).tolist())
 
     @property
     def staggered(self) -> bool:

@@ -96,7 +96,7 @@ def eigenvalues(frequency: float, scheme: Scheme) -> Complex:
     one = csr_array(np.eye(3))  # the mode three times, from each unit state
     D, V, A = np.eye(3)
     end = Stepper(one, frequency**2 * one, np.zeros(3), scheme).advance(Motion(D, V / dt, A / dt**2))
-    roots: Complex = np.linalg.eigvals(np.array([end.D, dt * end.V, dt**2 * end.A])).astype(complex)
+    roots = np.linalg.eigvals(np.array([end.D, dt * end.V, dt**2 * end.A])).astype(complex)
     return principal_first(roots)
 
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -136,7 +135,7 @@ def weighted_response(omega: Array, weights: Array, scheme: Scheme, steps: int) 
     total = np.zeros((len(weights), steps))
     for begin in range(0, len(omega), CHUNK):
         part = slice(begin, begin + CHUNK)
-        square: Any = np.square(omega[part].astype(np.longdouble))  # any: the step is typed for doubles
+        square = np.square(omega[part].astype(np.longdouble))
         bodies = [modes_body(scheme, stage, square) for stage in scheme.stages]
         total += power_histories(*affine_step(scheme, bodies, square), weights[:, part], steps)
     return total
@@ -157,10 +156,10 @@ def affine_step(scheme: Scheme, bodies: Sequence[Body], load: Array) -> tuple[Ex
     tuple
         Map of (x, v, a, 1), shape (modes, 4, 4), and that state at t = 0, shape (modes, 4).
     """
-    units: Any = np.eye(4)[:, :, None] * np.ones_like(load)
+    units = np.eye(4)[:, :, None] * np.ones_like(load)
     x, v, a, acting = units  # of each unit state, shape (4, modes)
     end = step_change(scheme, scheme.gg, 1.0, bodies, Motion(x, v, a), [acting * load] * (len(scheme.stages) + 1))
-    step: Extended = np.array([x + end.D, end.V, end.A, acting]).transpose(2, 0, 1)
+    step = np.array([x + end.D, end.V, end.A, acting]).transpose(2, 0, 1)
     start = np.zeros((len(load), 4))
     if scheme.start == "consistent":
         start[:, 2] = load / bodies[0].M

@@ -41,7 +41,7 @@ def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
     truth = motion.at(0.03 / 250 * np.arange(1, 251)).displacement
     for count in steps:
         bar = OpeningBar.of(make()).solve(replace(scheme, step=0.03 / count), count)
-        away = bar.displacement[count // 250 - 1 :: count // 250] - truth
+        away = bar.columns["displacement"][count // 250 - 1 :: count // 250] - truth
         errors.append(np.linalg.norm(away) / np.linalg.norm(truth))
     found = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
     assert found == pytest.approx(order, abs=0.1)

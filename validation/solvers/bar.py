@@ -92,8 +92,9 @@ class OpeningBar(Prepared):
         with np.errstate(over="ignore", invalid="ignore"):
             result = self.bar.solve(self.scheme, self.scene.time.steps)
         self.result = result
-        force = result.contact_pressure * self.bar.width / 2
-        values = (result.displacement, result.contact_pressure, result.gap, result.gap, force, force)
+        displacement, pressure, gap, *_ = result.columns.values()
+        force = pressure * self.bar.width / 2
+        values = (displacement, pressure, gap, gap, force, force)
         columns = dict(zip(OPENING_COLUMNS, values, strict=True))
         history = History(result.time, {name: columns[name] for name in self.scene.run.columns})
         seconds = {"setup": result.setup_seconds, "stepping": result.stepping_seconds}
@@ -102,22 +103,22 @@ class OpeningBar(Prepared):
 
     def switches(self) -> tuple[Switch, ...]:
         """Return the switches of the base between the steps."""
-        return switches_between_steps({"base": self.result.closed == 0}, self.result.time)
+        return switches_between_steps({"base": self.result.columns["closed"] == 0}, self.result.time)
 
     def contact_record(self) -> ContactRecord:
         """Return what the contact did; the bar reports no energies."""
-        result = self.result
-        force = result.contact_pressure * self.bar.width
+        _, pressure, gap, closed, velocity = self.result.columns.values()
+        force = pressure * self.bar.width
         return opened.record(
             self.scene,
-            time=result.time,
+            time=self.result.time,
             force=force,
-            impulse=opened.impulse_of_contact(self.scene, force, result.velocity),
-            penetration=np.maximum(0.0, -result.gap),
-            gap=np.maximum(0.0, result.gap),
-            open_share=1 - result.closed,
-            velocity=result.velocity,
-            rebounds=opened.rebounds(np.array([result.gap]), self.scheme.step),
+            impulse=opened.impulse_of_contact(self.scene, force, velocity),
+            penetration=np.maximum(0.0, -gap),
+            gap=np.maximum(0.0, gap),
+            open_share=1 - closed,
+            velocity=velocity,
+            rebounds=opened.rebounds(np.array([gap]), self.scheme.step),
         )
 
 

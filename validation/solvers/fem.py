@@ -97,7 +97,7 @@ def locked_frequency(problem: fem_reference.Problem, model: Model | None = None)
 
 def opening_frequency(problem: fem_reference.Problem, full: bool) -> float:
     """Return the largest frequency while every point of a base that may open is closed and sticks [rad/s]."""
-    from fem_reference.contact.frequency import highest_closed_frequency
+    from fem_reference.contact.points import highest_closed_frequency
 
     return highest_closed_frequency(problem, full)
 

@@ -4,21 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
 
 from fem_reference.problem.problem import Scheme
 from fem_reference.problem.schemes.composite import composite
-from fem_reference.problem.schemes.generalised_alpha import (
-    chung_hulbert,
-    hilber_hughes_taylor,
-    wood_bossak_zienkiewicz,
-)
+from fem_reference.problem.schemes.generalised_alpha import LAGS, generalised_alpha
 from fem_reference.problem.schemes.leapfrog import leapfrog
 from fem_reference.problem.stages import StageTable
 
 TABLES: dict[str, Callable[[float | None, float | None], StageTable]] = {
-    "chung-hulbert": chung_hulbert,
-    "hht": hilber_hughes_taylor,
-    "wbz": wood_bossak_zienkiewicz,
+    **{name: partial(generalised_alpha, name) for name in LAGS},
     "leapfrog": leapfrog,
     "composite": composite,
 }

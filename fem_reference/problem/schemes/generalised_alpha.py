@@ -12,36 +12,26 @@ Papers write HHT's alpha as -af; some programs write 1 - am and 1 - af.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from fem_reference.problem.stages import Stage, StageTable
 
-
-def chung_hulbert(rho_inf: float | None, split: float | None) -> StageTable:
-    """Return the scheme of Chung and Hulbert: least damping of slow modes for a radius rho_inf of fast ones."""
-    r = _radius(rho_inf, split, 0.0, "chung-hulbert")
-    return _table("chung-hulbert", (2 * r - 1) / (r + 1), r / (r + 1))
-
-
-def hilber_hughes_taylor(rho_inf: float | None, split: float | None) -> StageTable:
-    """Return the scheme of Hilber, Hughes and Taylor: the inertia is taken at the end of the step."""
-    r = _radius(rho_inf, split, 0.5, "hht")
-    return _table("hht", 0.0, (1 - r) / (1 + r))
+LAGS: dict[str, tuple[float, Callable[[float], tuple[float, float]]]] = {
+    "chung-hulbert": (0.0, lambda r: ((2 * r - 1) / (r + 1), r / (r + 1))),
+    "hht": (0.5, lambda r: (0.0, (1 - r) / (1 + r))),
+    "wbz": (0.0, lambda r: ((r - 1) / (r + 1), 0.0)),
+}
+"""Least radius, and am and af of a radius, by the name."""
 
 
-def wood_bossak_zienkiewicz(rho_inf: float | None, split: float | None) -> StageTable:
-    """Return the scheme of Wood, Bossak and Zienkiewicz: forces are taken at the end of the step."""
-    r = _radius(rho_inf, split, 0.0, "wbz")
-    return _table("wbz", (r - 1) / (r + 1), 0.0)
-
-
-def _radius(rho_inf: float | None, split: float | None, least: float, name: str) -> float:
+def generalised_alpha(name: str, rho_inf: float | None, split: float | None) -> StageTable:
+    """Return one of these schemes for a radius rho_inf of the fastest modes."""
     if split is not None:
         raise ValueError(f"split: belongs to the composite scheme, must be absent for {name!r}, got {split!r}")
+    least, lags = LAGS[name]
     if rho_inf is None or not least <= rho_inf <= 1:
         raise ValueError(f"rho_inf: must be from {least:g} to 1 for {name!r}, got {rho_inf!r}")
-    return float(rho_inf)
-
-
-def _table(name: str, am: float, af: float) -> StageTable:
+    am, af = lags(float(rho_inf))
     beta = (1 - am + af) ** 2 / 4
     gamma = 0.5 - am + af
     return StageTable(name, (Stage(beta=beta, gamma=gamma, e_0=0.5 - beta, g_0=1 - gamma, am=am, af=af),))

@@ -72,7 +72,7 @@ class LineColumn(Prepared):
 
     def highest_frequency(self) -> float:
         """Return the largest frequency of the elements, all springs closed [rad/s]."""
-        from fem_reference.column.frequency import highest_frequency
+        from fem_reference.column.stepping import highest_frequency
 
         return highest_frequency(self.ground, self.elements, self.scene.fem.degree)
 
