@@ -7,8 +7,9 @@
 >>> round(float(answer.displacement[0]), 6)
 -0.01983
 
-They load numpy alone, and what else they need when they are called: scipy, of blocks python-flint too. All start at t = 0;
-upwards, towards +x and counter-clockwise are positive, compression is positive, everything is per metre of thickness.
+They load numpy alone, and what else they need when they are called: scipy, of blocks python-flint too. All start at
+t = 0; upwards, towards +x and counter-clockwise are positive, compression is positive, everything is per metre of
+thickness.
 """
 
 from __future__ import annotations
