@@ -243,6 +243,26 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(drive, size, sti
                 assert left_out <= segment.tail
 
 
+@pytest.mark.parametrize("base", ["rigid", "transmitting", "free"])
+def test_the_forces_at_both_ends_make_the_momentum(base):
+    """Between two instants the momentum changes by the integral of the force on the foot less that on the top."""
+    joints = (ColumnJoint(1e9) if base == "rigid" else None, ColumnJoint(3e8, 1e-4))
+    problem = ColumnProblem(
+        (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, 3e8, -0.1)),
+        joints,
+        base=base,
+        impedance=4e6 if base == "transmitting" else 0.0,
+        base_motion=drives.still if base == "free" else drives.integrated(drives.ricker(0.5, 60.0)),
+        pressure=drives.half_sine(1e5, 0.02),
+    )
+    time = np.linspace(0.0, 0.02, 4001)
+    state = solve(problem, time[-1]).at(time)
+    momentum = np.array([2500.0, 1540.0]) @ state.velocity
+    pushed = state.face_force[0] - state.face_force[-1]
+    impulse = np.append(0.0, np.cumsum((pushed[1:] + pushed[:-1]) / 2)) * time[1]
+    assert momentum - momentum[0] == pytest.approx(impulse, abs=1e-5 * np.abs(momentum).max())
+
+
 @pytest.mark.parametrize("seed", range(3))
 def test_the_norm_of_the_mass_bounds_unknowns_rows_and_rates(seed):
     """Both sides of each bound, for a column above a half-space; the greatest ones are nearly reached."""
