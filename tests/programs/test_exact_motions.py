@@ -42,7 +42,8 @@ def scene_of(row, directory):
     if row.get("record"):
         t = np.arange(0, 0.05, 0.005)
         path = directory / "base.csv"
-        motion = np.column_stack([t, 0.3 + 0.02 * np.sin(60 * t), 0.002 * np.sin(80 * t)])
+        sines = np.column_stack([t, 0.3 + 0.02 * np.sin(60 * t), 0.002 * np.sin(80 * t)])
+        motion = sines if row["record"] is True else row["record"]
         np.savetxt(path, motion, delimiter=",", header="time,x,y", comments="")
         values["load.base_motion"] = str(path)
     return load_scene(f"field-{row['problem']}").with_values(values)
