@@ -8,6 +8,7 @@ Matrices are those of mpmath; steps are made with arrays of `decimal`'s numbers,
 
 from decimal import Context, Decimal, localcontext
 from itertools import product
+from types import SimpleNamespace
 
 import numpy as np
 from mpmath import mp, mpf
@@ -36,46 +37,41 @@ def displacement_rows(x, y):
     return [1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]
 
 
-def equations(model):
-    """Return M, K of the block alone, F, rows across and along the base at its two ends, and the base's length."""
-    block, material = model.block, model.block.material
+def matrices(model):
+    """Return M, K and F, as matrices of mpmath."""
+    block, material, contact = model.block, model.block.material, model.contact
     points = [(mpf(float(x)), mpf(float(y))) for x, y in block.corners]
     s, x0, y0, s1, s2, s3 = integrals(points)
     rho, E, mu = mpf(material.density), mpf(material.young), mpf(material.poisson)
-    M = mp.diag([s, s, s1 + s2, s1, s2, (s1 + s2) / 4])
+    M = mp.zeros(6)
+    M[0, 0] = M[1, 1] = s
+    M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
     for i, j, value in ((2, 3, -s3), (2, 4, s3), (2, 5, (s1 - s2) / 2), (3, 5, s3 / 2), (4, 5, s3 / 2)):
         M[i, j] = M[j, i] = value
     M *= rho
     G = E / (2 * (1 + mu))
     lam = E * mu / (1 - mu**2) if material.hypothesis == "plane stress" else E * mu / ((1 + mu) * (1 - 2 * mu))
-    K = mp.diag([0, 0, 0, s * (lam + 2 * G), s * (lam + 2 * G), s * G])
+    K = mp.zeros(6)
+    K[3, 3] = K[4, 4] = s * (lam + 2 * G)
     K[3, 4] = K[4, 3] = s * lam
-
-    def edge(number):
-        ends = [points[(number + i) % len(points)] for i in (0, 1)]
-        (x1, y1), (x2, y2) = ends
-        return [(x - x0, y - y0) for x, y in ends], mp.hypot(x2 - x1, y2 - y1)
-
-    ends, base = edge(model.base)
-    tx, ty = ((after - before) / base for before, after in zip(*ends, strict=True))
-    rows = [[mp.matrix(row) for row in displacement_rows(x, y)] for x, y in ends]
-    across = [tx * v - ty * u for u, v in rows]
-    along = [tx * u + ty * v for u, v in rows]
-    ((x1, y1), (x2, y2)), length = edge(model.top)
-    e = mpf(model.eccentricity)  # pressure on the part whose middle is shifted (level top edge only)
-    _, pressed = displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
-    whole, _ = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
-    F = -mpf(model.pressure) * (length - 2 * abs(e)) * mp.matrix(pressed)
-    F += mpf(model.traction) * length * mp.matrix(whole)
-    F[1] -= M[0, 0] * mpf(model.gravity)
-    return M, K, F, across, along, base
-
-
-def matrices(model):
-    """Return M, K on closed corners and F, as matrices of mpmath."""
-    M, K, F, across, along, _ = equations(model)
-    for n, s in zip(across, along, strict=True):
-        K += mpf(model.contact.normal) * n * n.T + mpf(model.contact.shear) * s * s.T
+    K[5, 5] = s * G
+    centred = [(x - x0, y - y0) for x, y in points]
+    ends = [centred[(model.base + i) % len(points)] for i in (0, 1)]
+    tx, ty = ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]
+    a = mp.sqrt(tx**2 + ty**2)
+    tx, ty = tx / a, ty / a
+    pn, ps = mpf(contact.normal), mpf(contact.shear)
+    for x, y in ends:
+        u, v = displacement_rows(x, y)
+        normal = [tx * b - ty * c for b, c in zip(v, u, strict=True)]
+        shear = [tx * b + ty * c for b, c in zip(u, v, strict=True)]
+        for i in range(6):
+            for j in range(6):
+                K[i, j] += pn * normal[i] * normal[j] + ps * shear[i] * shear[j]
+    (x1, y1), (x2, y2) = (centred[(model.top + i) % len(points)] for i in (0, 1))
+    length = mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
+    row = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)[1]
+    F = mp.matrix([-mpf(model.pressure) * length * t for t in row])
     return M, K, F
 
 
@@ -99,47 +95,93 @@ def zeros(n):
     return np.array([ZERO] * n)
 
 
-def inverse(matrix):
-    """Return the inverse of a positive definite matrix by Gauss and Jordan's elimination."""
-    A = np.hstack([matrix, np.diag([ONE] * len(matrix))])
-    for k in range(len(matrix)):
-        A[k] /= A[k, k]
-        others = A[:, k].copy()
-        others[k] = ZERO
-        A -= np.outer(others, A[k])
-    return A[:, len(matrix) :]
+def factorised(matrix):
+    """Return L (ones on its diagonal) below U, and the order of the rows, by Gauss's elimination."""
+    A, order = matrix.copy(), list(range(len(matrix)))
+    for k in range(len(A)):
+        best = max(range(k, len(A)), key=lambda i: abs(A[i, k]))
+        A[[k, best]] = A[[best, k]]
+        order[k], order[best] = order[best], order[k]
+        A[k + 1 :, k] /= A[k, k]
+        A[k + 1 :, k + 1 :] -= np.outer(A[k + 1 :, k], A[k, k + 1 :])
+    return A, order
+
+
+def solved(factors, b):
+    """Return the solution for one right-hand side."""
+    (A, order), n = factors, len(b)
+    x = b[order]
+    for i in range(1, n):
+        x[i] -= A[i, :i] @ x[:i]
+    x[-1] /= A[-1, -1]
+    for i in range(n - 2, -1, -1):
+        x[i] = (x[i] - A[i, i + 1 :] @ x[i + 1 :]) / A[i, i]
+    return x
 
 
 class OpeningBlock:
     """The model and the scheme in numbers of many digits."""
 
-    candidates = tuple(product((False, True), repeat=2))  # states of the corners that a step tries, closed or not
-    pulls = False
-
     def __init__(self, model, scheme):
-        M, K, F, across, along, _ = equations(model)
-        self.M, self.K0, self.F = array(M), array(K), array(F)[:, 0]
-        self.inverse = inverse(self.M)
-        self.normal, self.shear = ([array(row)[:, 0] for row in rows] for rows in (across, along))
+        locked = SimpleNamespace(
+            block=model.block,
+            contact=SimpleNamespace(normal=0, shear=0),
+            base=model.base,
+            top=model.top,
+            pressure=model.pressure,
+        )
+        M, K0, _ = matrices(locked)
+        self.M, self.K0, self.inverse = array(M), array(K0), array(M**-1)
         self.alpha, self.delta, self.gg, self.dt = map(exact, (scheme.alpha, scheme.delta, scheme.gg, scheme.step))
+        points = [(mpf(float(x)), mpf(float(y))) for x, y in model.block.corners]
+        _, x0, y0, *_ = integrals(points)
+        self.centred = [(decimal(x - x0), decimal(y - y0)) for x, y in points]
         self.p, self.ps, self.g0 = map(exact, self.springs(model.contact))
+        self.F = self._load(model)
+        self._rows(model)
         self.D, self.V = zeros(6), zeros(6)
         self.V[1] = exact(getattr(model, "velocity", 0.0))
         self.A = self.inverse @ self.F if scheme.start == "consistent" else zeros(6)
         self.closed = (self.g0 == 0,) * 2
         self.r = [ZERO, ZERO]
         self.h = self.alpha * self.dt**2
-        self.inverses = {}  # of the matrix of the step, by closed corners and their shares
+        self.free = self.M + self.h * self.K0
+        self.factors = {}  # of the matrix of the step, by closed corners and their shares
 
     @staticmethod
     def springs(contact):
         """Return stiffness across and along the base, and the gap at t = 0."""
         return contact.stiffness, contact.shear, contact.gap
 
+    def _ends(self, edge):
+        n = len(self.centred)
+        return self.centred[edge % n], self.centred[(edge + 1) % n]
+
+    def _rows(self, model):
+        (x1, y1), (x2, y2) = self._ends(model.base)
+        self.a = ((x2 - x1) ** 2 + (y2 - y1) ** 2).sqrt()
+        tx, ty = (x2 - x1) / self.a, (y2 - y1) / self.a
+        self.normal, self.shear = [], []
+        for x, y in ((x1, y1), (x2, y2)):
+            u, v = map(np.array, displacement_rows(x, y))
+            self.normal.append(tx * v - ty * u)
+            self.shear.append(tx * u + ty * v)
+
+    def _load(self, model):
+        """Pressure on the part whose middle is shifted, traction on the whole top, weight (level top edge only)."""
+        (x1, y1), (x2, y2) = self._ends(model.top)
+        e, length = exact(model.eccentricity), ((x2 - x1) ** 2 + (y2 - y1) ** 2).sqrt()
+        part = length - 2 * abs(e)
+        _, v = displacement_rows((x1 + x2) / 2 + e, (y1 + y2) / 2)
+        whole, _ = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)
+        F = -exact(model.pressure) * part * np.array(v) + exact(model.traction) * length * np.array(whole)
+        F[1] -= self.M[0, 0] * exact(model.gravity)
+        return F
+
     def step(self):
         """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
         self._begin()
-        found = [trial for trial in map(self._trial, self.candidates) if trial]
+        found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
         assert len(found) == 1, "one contact state agrees"
         D1, N, T, self.r, self.closed = found[0]
         self._moved(D1, N, T)
@@ -163,7 +205,7 @@ class OpeningBlock:
     def _trial(self, closed):
         """Return the step with these corners closed if its gaps agree with that."""
         found = self._repeated(closed)
-        if found is None or not (self.pulls or all((w < 0) == shut for w, shut in zip(found[1], closed, strict=True))):
+        if found is None or any((w < 0) != shut for w, shut in zip(found[1], closed, strict=True)):
             return None
         return self._accepted(*found)
 
@@ -199,17 +241,18 @@ class OpeningBlock:
         return self._solved(tuple(self.ps * x if shut else None for x, shut in zip(shares, closed, strict=True)), b)
 
     def _solved(self, key, b):
-        """Solve by the step's inverse, which is kept: most steps have the states and shares of others.
+        """Solve with the step's matrix, whose factors are kept: most steps have the states and shares of others."""
+        if key not in self.factors:
+            self.factors[key] = factorised(self._matrix(key))
+        return solved(self.factors[key], b)
 
-        The key is the shear stiffness of every corner, None where it is open.
-        """
-        if key not in self.inverses:
-            S = self.M + self.h * self.K0
-            for n, s, ps in zip(self.normal, self.shear, key, strict=True):
-                if ps is not None:
-                    S += self.h * (self.p * np.outer(n, n) + ps * np.outer(s, s))
-            self.inverses[key] = inverse(S)
-        return self.inverses[key] @ b
+    def _matrix(self, held):
+        """Return the matrix of the step from the shear stiffness of every corner, None where it is open."""
+        S = self.free.copy()
+        for n, s, ps in zip(self.normal, self.shear, held, strict=True):
+            if ps is not None:
+                S += self.h * (self.p * np.outer(n, n) + ps * np.outer(s, s))
+        return S
 
     def _accepted(self, D1, gaps, closed, shares):
         N, T, r = [ZERO] * 2, [ZERO] * 2, [ZERO] * 2
@@ -224,12 +267,18 @@ class OpeningBlock:
 class LockedBlock(OpeningBlock):
     """The same whose corners stay closed, and pull."""
 
-    candidates = ((True, True),)
-    pulls = True
-
     @staticmethod
     def springs(contact):
         return contact.normal, contact.shear, 0.0
+
+    def step(self):
+        """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
+        self._begin()
+        both, shares = (True, True), (ONE, ONE)
+        D1 = self._solve(both, shares)
+        D1, N, T, self.r, self.closed = self._accepted(D1, [row @ D1 for row in self.normal], both, shares)
+        self._moved(D1, N, T)
+        return D1[1], N, T
 
 
 def history(model, scheme, steps, kind=OpeningBlock):
@@ -242,8 +291,9 @@ def history(model, scheme, steps, kind=OpeningBlock):
 def locked_history(model, scheme, steps):
     """Return v of the centroid and the contact pressure of every step, as lists."""
     rows = history(model, scheme, steps, LockedBlock)
+    start, end = model.block.edge(model.base)
     with mp.workdps(DIGITS):
-        *_, width = equations(model)
+        width = mp.hypot(*(mpf(float(x)) - mpf(float(y)) for x, y in zip(end, start, strict=True)))
         return [v for v, _, _ in rows], [sum(N) / width for _, N, _ in rows]
 
 
