@@ -254,11 +254,20 @@ class Equations:
             return self
         modes = reached[: len(self.k)]
         gaps = reached[len(self.k) :]
-        kept = {name: getattr(self, name)[modes] for name in ("k", "rigid", "F", "inertia")}
-        kept |= {name: getattr(self, name)[gaps] for name in ("G", "pressure")}
-        kept |= {name: getattr(self, name)[gaps][:, gaps] for name in ("kappa", "C")}
-        observers = {name: row[modes] for name, row in self.observers.items()}
-        return replace(self, shapes=self.shapes[:, modes], B=self.B[gaps][:, modes], observers=observers, **kept)
+        return replace(
+            self,
+            k=self.k[modes],
+            shapes=self.shapes[:, modes],
+            rigid=self.rigid[modes],
+            B=self.B[gaps][:, modes],
+            G=self.G[gaps],
+            kappa=self.kappa[gaps][:, gaps],
+            C=self.C[gaps][:, gaps],
+            F=self.F[modes],
+            inertia=self.inertia[modes],
+            observers={name: row[modes] for name, row in self.observers.items()},
+            pressure=self.pressure[gaps],
+        )
 
     def rows(self, columns: Sequence[str]) -> ArrayPair:
         """Return the rows of some columns by z and by lambda."""

@@ -15,7 +15,7 @@ from validation.advice.plain import Line, in_columns
 from validation.errors import InputError
 from validation.runs.beside import table_beside
 from validation.runs.numbers import number_text, share_text
-from validation.runs.row import Metrics, NewMetrics, Row, RowsBySolver
+from validation.runs.row import Metrics, Row, RowsBySolver, Value
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -123,7 +123,7 @@ def answer(
     }
 
 
-def measured(row: Row) -> NewMetrics:
+def measured(row: Row) -> dict[str, Value]:
     """Return what was measured of the contact."""
     prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
     return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}

@@ -167,9 +167,8 @@ class Stepper:
         # what the scene's own matrices hold of every variant's
         model = rectangle.model
         normal, shear = dda.spring_vectors(model.block, 0)
-        of_block = (
-            model.mass[PLACES, PLACES][:, None] * of.density * np.array([1.0 + 0 * of.base, of.inertia, of.inertia])
-        )
+        of_block = model.mass[PLACES, PLACES][:, None] * of.density
+        of_block[1:] *= of.inertia
         self.masses = np.concatenate([of_block, of.base * of_block[:1]])
         self.moduli = model.block.section.area * rectangle.elasticity(variants)
         self.lever = normal[0, 4]

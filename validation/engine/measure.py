@@ -23,7 +23,7 @@ from validation.metrics.measurable import Measurable
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.results import WITH_HISTORY
-from validation.runs.row import NewMetrics, Row
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome, Run
 from validation.runs.text import error_text, printable
 from validation.runs.threads import one_thread
@@ -69,16 +69,13 @@ def failed_row(case: Case, key: str, study: str, note: str) -> Row:
 def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     solver = case.make_solver()
     scene = case.scene
-    prepared, run = attempt(
-        solver,
-        scene,
-        case.full,
-        contact_record=any(CONTACT in metric.needs for metric in measured_by({*case.measures, "switches"}, case.only)),
-    )
+    own_metrics = measured_by({*case.measures, "switches"}, case.only)
+    reads_contact = any(CONTACT in metric.needs for metric in own_metrics)
+    prepared, run = attempt(solver, scene, case.full, contact_record=reads_contact)
     run = checked(run, scene)
     failed: list[str] = []
-    metrics: NewMetrics = {}
-    spread: NewMetrics = {}
+    metrics: dict[str, Value] = {}
+    spread: dict[str, Value] = {}
     if case.repeats and run.outcome is Outcome.COMPLETED:
         run, spread["seconds.spread"] = timed(run, solver, case)
     if prepared is not None:
@@ -255,7 +252,7 @@ def _narrowed(solver: Solver, scene: Scene) -> tuple[Scene, list[str]]:
     return scene.with_values({"run.columns": [name for name in scene.run.columns if name not in absent]}), absent
 
 
-def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> NewMetrics:
+def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: list[str]) -> dict[str, Value]:
     """Metrics of the run itself; of its history none where that is not sound. What fails beside it is noted."""
     # the parts of the study's measures that this run has
     measures = set(case.measures)
@@ -295,7 +292,7 @@ def _measure(prepared: Prepared, solver: Solver, case: Case, run: Run, failed: l
         lambda: horizon.shadow(solver, case.scene, case.full),
         lambda: stability.limit(solver, case.scene),
     )
-    metrics: NewMetrics = {}
+    metrics: dict[str, Value] = {}
     for part in sorted(parts):
         try:
             metrics |= solo(measurable, (part,), case.only)

@@ -9,7 +9,7 @@ from validation.metrics.catalogue import CATALOGUE
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.runs.row import Metrics, NewMetrics, Value
+from validation.runs.row import Metrics, Value
 
 
 @dataclass(frozen=True)
@@ -58,9 +58,9 @@ def tidy(results: Results, manifest: Manifest) -> Iterator[TidyRow]:
 
     for record in manifest["cases"]:
         row = rows[record["key"]]
-        cost: NewMetrics = {f"work.{name}": value for name, value in row.work.items()}
+        cost: dict[str, Value] = {f"work.{name}": value for name, value in row.work.items()}
         cost |= {f"seconds.{name}": value for name, value in row.seconds.items()}
-        numbers: NewMetrics = {"outcome": str(row.outcome), **row.metrics, **cost}
+        numbers: dict[str, Value] = {"outcome": str(row.outcome), **row.metrics, **cost}
         if row.estimate is not None:
             numbers["estimate"] = row.estimate
         yield from of(record["scene"], record["solver"], numbers)

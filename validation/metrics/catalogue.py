@@ -15,7 +15,7 @@ from validation.metrics.pairs import Pairing
 from validation.metrics.values import UNDEFINED, finite
 from validation.runs.beside import table_beside
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics, Value
+from validation.runs.row import Metrics, Value
 
 HISTORY = "history"
 STATIC = "static"
@@ -96,7 +96,7 @@ def measured_by(measures: Collection[str], only: Collection[str] | None = None) 
 
 def solo(
     m: Measurable, measures: Collection[str] = ("history", "modes"), only: Collection[str] | None = None
-) -> NewMetrics:
+) -> dict[str, Value]:
     """Return the metrics of one run that are asked for; none of them is ever NaN."""
     with np.errstate(all="ignore"):
         return {metric.id: finite(metric.function(m)) for metric in measured_by(measures, only)}

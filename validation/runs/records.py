@@ -7,7 +7,7 @@ from typing import Annotated, Any, NotRequired
 from pydantic import AfterValidator, Field
 from typing_extensions import TypedDict
 
-from validation.runs.row import NewMetrics, Value
+from validation.runs.row import Value
 
 
 class CaseRecord(TypedDict):
@@ -27,7 +27,7 @@ class ComparisonRecord(TypedDict):
     solver: str
     reference: str
     window: float  # s
-    metrics: NewMetrics
+    metrics: dict[str, Value]
 
 
 class DerivedRecord(TypedDict):
@@ -35,7 +35,7 @@ class DerivedRecord(TypedDict):
 
     scene: str
     name: str
-    metrics: NewMetrics
+    metrics: dict[str, Value]
 
 
 class AlarmRecord(TypedDict):

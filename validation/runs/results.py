@@ -197,16 +197,7 @@ class Results:
                 part = "history"
             else:
                 if histories and row.outcome in WITH_HISTORY:
-                    # Refuse a history without the columns and steps of its row, from the archive's directory alone.
-                    path = self._history_file(row.key)
-                    with _archive(path) as archive:
-                        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
-                    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
-                    content = 8 * row.steps  # bytes of a column of doubles
-                    if {*sizes} != {"time", *row.columns}:
-                        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
-                    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
-                        raise InputError("has not the steps of its row", source=path, advice=ADVICE)
+                    _check_shape(self._history_file(row.key), row)
                 continue
             raise InputError(
                 f"the {part} of {case['scene']} {case['solver']} is missing",
@@ -319,3 +310,15 @@ def _defect(columns: dict[str, Array], between: dict[str, Array]) -> str | None:
         if values.dtype != np.float64 or values.shape != (len(columns["time"]),) or not np.isfinite(values).all():
             return f"{name} must hold one finite number a step"
     return None
+
+
+def _check_shape(path: Path, row: Row) -> None:
+    """Refuse a kept history that has not the columns and steps of its row, from the archive's directory alone."""
+    with _archive(path) as archive:
+        members = [member for member in archive.infolist() if not member.filename.startswith(BETWEEN)]
+    sizes = {member.filename.removesuffix(".npy"): member.file_size for member in members}
+    content = 8 * row.steps  # bytes of a column of doubles
+    if {*sizes} != {"time", *row.columns}:
+        raise InputError("has not the columns of its row", source=path, advice=ADVICE)
+    if any(not content <= size <= content + LARGEST_HEADER for size in sizes.values()):
+        raise InputError("has not the steps of its row", source=path, advice=ADVICE)

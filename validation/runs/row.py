@@ -12,7 +12,6 @@ from validation.runs.run import Outcome
 
 Value = float | str | None  # a number, or "undefined", or "not reported"
 Metrics = Mapping[str, Value]  # by their ids
-NewMetrics = dict[str, Value]  # the same, to be filled
 
 
 @dataclass(frozen=True)

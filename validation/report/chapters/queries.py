@@ -41,7 +41,7 @@ from validation.report.chapters.data import CaseGroup, CaseResults, groups_of_st
 from validation.runs.case_name import scene_of
 from validation.runs.records import Manifest
 from validation.runs.results import Results
-from validation.runs.row import Metrics, NewMetrics, Value
+from validation.runs.row import Metrics, Value
 
 Query = dict[str, Any]
 NO_NUMBERS = ("undefined", "not reported", "alias")  # words in the place of a number
@@ -242,11 +242,11 @@ def _pattern(text: str) -> re.Pattern[str]:
     return re.compile(PLACEHOLDER.sub(r"(?P<\1>.+)", re.escape(text)))
 
 
-def _words(match: re.Match[str]) -> NewMetrics:
+def _words(match: re.Match[str]) -> dict[str, Value]:
     return {word: _number(text) for word, text in match.groupdict().items()}
 
 
-def _words_of_owner(owner: str, wanted: str) -> NewMetrics | None:
+def _words_of_owner(owner: str, wanted: str) -> dict[str, Value] | None:
     """Return the words of what owns a row, or of its scene, None where it is another one."""
     for name in (owner, scene_of(owner)):
         if match := _pattern(wanted).fullmatch(name):

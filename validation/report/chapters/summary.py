@@ -23,7 +23,7 @@ from validation.report.figures import histories
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.hooks import SCHEMES, ShowingHooks
 from validation.runs.numbers import DASH, bounded, percent, plain, short
-from validation.runs.row import NewMetrics, Row, Value
+from validation.runs.row import Row, Value
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -60,7 +60,7 @@ def overview(groups: Groups) -> Table:
     """Return a line for each scene: how far DDA is off, what its first mode is damped by, what a run costs."""
     lines = []
     for group in groups.values():
-        own: NewMetrics = {"title": group.title, "cases": float(len(group.cases))}
+        own: dict[str, Value] = {"title": group.title, "cases": float(len(group.cases))}
         errors = [errors_of(group, case, "dda", reference_of(group, case)) for case in group.cases]
         for metric in ERRORS:
             values = [found[metric] for found in errors if metric in found]

@@ -18,7 +18,7 @@ from itertools import starmap
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 
@@ -32,9 +32,9 @@ def blocks(case: Scene) -> Metrics:
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
 
-def ratios(case: Scene, row: Row, elements: Row) -> NewMetrics:
+def ratios(case: Scene, row: Row, elements: Row) -> dict[str, Value]:
     """Return what a solver's static displacement and frequencies are over those of elements on the same outline."""
-    ratios: NewMetrics = {}
+    ratios: dict[str, Value] = {}
     for metric, value in row.metrics.items():
         other = elements.metrics.get(metric)
         if metric in READ and isinstance(value, float) and isinstance(other, float):

@@ -18,7 +18,7 @@ from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
 from validation.runs.records import Annotations
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import get_solver
 from validation.studies.cost.ladder import Ladder
@@ -116,7 +116,7 @@ def order_in_mesh(runs: Sequence[tuple[Scene, History, History]]) -> Metrics:
 def grid_convergence(runs: Runs) -> Metrics:
     """Return the grid-convergence index: order from successive changes, uncertainty of the finest mesh."""
     histories = [_columns(history) for _, history in runs]
-    metrics: NewMetrics = {}
+    metrics: dict[str, Value] = {}
     for quantity in QUANTITIES:
         changes = [or_nan(relative_l2(a[quantity], b[quantity])) for a, b in itertools.pairwise(histories)]
         order = fitted_order([1 / n for n in MESHES[1:]], changes)

@@ -16,7 +16,7 @@ from validation.engine.finished import Derived, Finished
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import or_nan, ratio
 from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row, Value
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver
@@ -132,7 +132,7 @@ class BlockRows:
     def _reference(self, finished: Finished) -> Metrics:
         """Return what the errors are measured in, and the uncertainty of the reference."""
         ladder = self.ladder
-        metrics: NewMetrics = {"block": self.name, "label": ladder.reference.label}
+        metrics: dict[str, Value] = {"block": self.name, "label": ladder.reference.label}
         metrics |= {"period": ladder.period, "window": ladder.window, "mean": ladder.mean}
         finest = finished.needed_history(*self.reference)
         for coarser in self.coarser:
@@ -145,7 +145,7 @@ class BlockRows:
             reference = finished.needed_history(*self.reference)
             row = finished.rows[case.name, method.solver]
             history = finished.needed_history(case.name, method.solver)
-            metrics: NewMetrics = {"block": self.name, "method": method.id, "label": method.label}
+            metrics: dict[str, Value] = {"block": self.name, "method": method.id, "label": method.label}
             metrics |= {"level": level, "step": case.time.step}
             if method.per_element:
                 metrics["mesh"] = case.fem.per_side
@@ -172,7 +172,7 @@ class BlockRows:
     def _cheapest(self, quantity: str, accuracy: str, who: str) -> Callable[[Finished], Metrics]:
         def compute(finished: Finished) -> Metrics:
             runs = [run for run in self.runs(finished) if who in (ANY, run.method.solver)]
-            metrics: NewMetrics = {"block": self.name, "quantity": quantity, "accuracy": accuracy, "who": who}
+            metrics: dict[str, Value] = {"block": self.name, "quantity": quantity, "accuracy": accuracy, "who": who}
             within = reaching(runs, quantity, ACCURACIES[accuracy])
             if not within:
                 return {**metrics, "way": "no run gets there"}
@@ -191,7 +191,7 @@ class BlockRows:
         def compute(finished: Finished) -> Metrics:
             runs = self.runs(finished)
             places = [np.argsort(np.argsort([run.number(name) for run in runs])) for name in ("work", "seconds")]
-            facts: NewMetrics = {"rank": np.asarray(np.corrcoef(places))[0, 1]}
+            facts: dict[str, Value] = {"rank": np.asarray(np.corrcoef(places))[0, 1]}
             for who in (ANY, OWN, ELEMENTS):
                 facts[f"reached.{who}"] = reached([run for run in runs if who in (ANY, run.method.solver)], quantity)
             one_strain = [run for run in runs if run.method.solver == OWN and not run.method.cut]

@@ -10,7 +10,7 @@ import math
 from collections.abc import Sequence
 
 from validation.metrics.values import finite, or_nan
-from validation.runs.row import Metrics, NewMetrics, Row
+from validation.runs.row import Metrics, Row, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, Bands, about, near
 
@@ -118,7 +118,7 @@ def depth_by_steps(scene: Scene) -> Band:
 def rigid(levels: Sequence[tuple[Scene, Row]]) -> Metrics:
     """Return the bouncing bar's times on a rigid wall, linearly in 1/p from the two stiffest springs [s]."""
     a, b = (1 / stiffness_ratio(case) for case, _ in levels[-2:])
-    times: NewMetrics = {}
+    times: dict[str, Value] = {}
     for name, switch in SWITCHES.items():
         x, y = (or_nan(row.metrics.get(switch)) for _, row in levels[-2:])
         times[name] = finite((a * y - b * x) / (a - b))

@@ -19,7 +19,7 @@ from validation.metrics.values import or_nan
 from validation.runs.case_name import scene_of
 from validation.runs.history import Array, History
 from validation.runs.numbers import significant
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene, load_scene
 from validation.studies.methods import facts
 from validation.studies.methods.closed import exact_locked
@@ -284,7 +284,7 @@ def order(scheme: Method, finished: Finished) -> Metrics:
     errors = {case.time.steps: error_of_steps(case, finished) for case in expanded(refined(scheme))}
     *_, coarse, fine = errors.values()
     reached = [count for count, error in errors.items() if error <= TARGET]
-    values: NewMetrics = {"last halving": math.log2(coarse / fine), "finest error": fine}
+    values: dict[str, Value] = {"last halving": math.log2(coarse / fine), "finest error": fine}
     values["solves to 1 %"] = float(min(reached) * scheme.solves) if reached else "undefined"
     return values | {f"error of {count} steps": error for count, error in errors.items()}
 

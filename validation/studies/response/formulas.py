@@ -20,7 +20,7 @@ from validation.advice.response import Response, polar, response
 from validation.engine.finished import Derived, DerivedRows, Finished
 from validation.gates.gate import Gate
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.record import read_record
 from validation.scenes.scene import Scene, load_scene
 from validation.suite.bands import Band, about, cases, gate, short
@@ -92,7 +92,7 @@ def _loaded(answer: Answer, solver: str, frequency: float, _: Finished) -> Metri
     """Return amplitudes under the pressure and how far they are from the closed form; of elements also from the bar."""
     reported = answer.reported(solver, frequency)
     closed = answer.closed(solver, frequency)
-    values: NewMetrics = {}
+    values: dict[str, Value] = {}
     for column, part in COLUMNS.items():
         amplitude = complex(reported.columns[column][0])
         expected = complex(getattr(closed, column)[0])
@@ -180,7 +180,7 @@ def _stepped(scene: Scene, solver: str, frequency: float, finished: Finished) ->
     """Return amplitudes per metre of the base, and how far from the response, of those of the record in all."""
     steady_state = steady(finished, scene, solver, frequency)
     reported = response(scene, FREQUENCIES, solver)
-    values: NewMetrics = {}
+    values: dict[str, Value] = {}
     for column, part in COLUMNS.items():
         expected = reported.columns[column]
         difference = abs(steady_state[column] - expected[FREQUENCIES.index(frequency)]) / abs(expected).sum()

@@ -10,7 +10,7 @@ import numpy as np
 from validation.models.plane.canon import moving_blocks, slide_of, spinning_of, stiffness_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, Bands, Runs, cases, fitted_order, near
 from validation.theory.spectra import EPS
@@ -27,7 +27,7 @@ def errors_of(scene: Scene, history: History) -> dict[str, float]:
     return {name: float(np.max(np.abs(history.columns[f"block.{name}"] - values))) for name, values in exact.items()}
 
 
-def accounts(scene: Scene, history: History) -> NewMetrics:
+def accounts(scene: Scene, history: History) -> dict[str, Value]:
     """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
     balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]

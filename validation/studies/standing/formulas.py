@@ -29,7 +29,7 @@ from validation.models.plane.limits import (
 )
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band, Runs, cases
 
@@ -59,7 +59,7 @@ def unbalanced(scene: Scene, history: History) -> Metrics:
 # ---- limits -------------------------------------------------------------------------------------------------------
 
 
-def limit_of(scene: Scene) -> NewMetrics:
+def limit_of(scene: Scene) -> dict[str, Value]:
     """Return the limit of a scene in closed form, and how far it is above it, negative where it stands."""
     quantity, compute = LIMITS[scene.name.partition("[")[0]]
     limit, beyond = compute(scene.table(PlaneSection))

@@ -11,7 +11,7 @@ import numpy as np
 from validation.engine.finished import Derived, DerivedRows
 from validation.gates.gate import Gate
 from validation.runs.history import History
-from validation.runs.row import Metrics, NewMetrics
+from validation.runs.row import Metrics, Value
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.columns.names import column_of
 from validation.studies.waves import rows
@@ -71,7 +71,7 @@ def closed(case: Scene) -> Metrics:
     height = layer.thickness / layer.blocks
     speed = math.sqrt(column.modulus(layer) / layer.density)
     time = case.time
-    values: NewMetrics = {
+    values: dict[str, Value] = {
         "courant": round(speed * time.step / height, 6),
         "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
     }
