@@ -407,31 +407,33 @@ def contact_columns(model: PlaneModel, march: March, history: History, kept: int
     # a contact's number: those that are stated, then by corner and edge those that are found
     number = np.hstack([np.tile(k[:stated], (kept, 1)), stated + identity[:, 1 : 1 + len(k) - stated]])
     closed = history.state[:kept, : len(k)] == INSIDE
-    told = (k < present) & (closed | (k < stated))
-    numbers, first = np.unique(number[told], return_index=True)
-    begins = np.flatnonzero(told)[first]  # from where on it is told of
-    at, one = np.nonzero(np.isin(number, numbers) & (k < present))
-    known = np.searchsorted(numbers, number[at, one])
-    since = at * len(k) + one >= begins[known]
-    at, one, known = at[since], one[since], known[since]
+    is_reported = (k < present) & (closed | (k < stated))
+    numbers, first = np.unique(number[is_reported], return_index=True)
+    begins = np.flatnonzero(is_reported)[first]  # from where on it is reported
+    row, place = np.nonzero(np.isin(number, numbers) & (k < present))
+    rank = np.searchsorted(numbers, number[row, place])
+    since = row * len(k) + place >= begins[rank]
+    row = row[since]
+    place = place[since]
+    rank = rank[since]
     order = np.argsort(begins)
-    column = np.argsort(order)[known]
-    along = present[at, 0] + one
-    shear_state = history.state[at, along]
+    column = np.argsort(order)[rank]
+    along = present[row, 0] + place
+    shear_state = history.state[row, along]
     found = (numbers[order][stated:] - stated).tolist()
-    contacts = stated_contacts(model) + [found_contact(march, *divmod(one, corners)) for one in found]
+    contacts = stated_contacts(model) + [found_contact(march, *divmod(pair, corners)) for pair in found]
     pairs = [contact.block * len(model.blocks) + contact.on for contact in contacts[stated:]]
     laws = [*plane.places.law[:stated], *plane.detection.law[pairs]]
     table: dict[str, Array] = {}
     for name, values in (
-        ("normal", history.force[at, one]),
-        ("shear", history.force[at, along]),
-        ("gap", history.opening[at, one]),
-        ("slip", history.path[at, one]),
-        ("state", closed[at, one] * np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state).astype(np.int8)),
+        ("normal", history.force[row, place]),
+        ("shear", history.force[row, along]),
+        ("gap", history.opening[row, place]),
+        ("slip", history.path[row, place]),
+        ("state", closed[row, place] * np.where(shear_state == INSIDE, STICKS, -SLIPS * shear_state).astype(np.int8)),
     ):
         table[name] = np.full((kept, len(contacts)), np.nan if name == "gap" else 0, dtype=values.dtype)
-        table[name][at, column] = values
+        table[name][row, column] = values
     stored = table["normal"] ** 2 @ plane.springs.across[laws] + table["shear"] ** 2 @ plane.springs.along[laws]
     glued = np.array([contact.corner < 0 for contact in contacts], dtype=bool)
     bonds = np.stack([table["normal"][:, glued], table["shear"][:, glued]], axis=-1)

@@ -146,8 +146,8 @@ def _at_once(
     B = system.B[touching] if system.to_modes is not None else system.B[touching].toarray()
     mobility = np.array([mass * row for row in B]).T
     count = len(touching)
-    held = ContactRows._make(part[touching] for part in rows)._replace(partner=np.arange(count))
-    law = Law(B @ mobility, *held, limit=TOGETHER * count + 3, single_limit=SINGLY_UNIQUE * count)
+    touching_rows = ContactRows._make(part[touching] for part in rows)._replace(partner=np.arange(count))
+    law = Law(B @ mobility, *touching_rows, limit=TOGETHER * count + 3, single_limit=SINGLY_UNIQUE * count)
     q = B @ A - system.ground[touching, 0] * system.start_parts[2]
     begun = states[touching]
     equations = equations_of(law, begun, np.ones(count))

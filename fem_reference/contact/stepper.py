@@ -187,16 +187,16 @@ class ContactStepper:
         is_alone = system.rows.partner == np.arange(len(system.rows.partner))
         singly = SINGLY_UNIQUE if is_alone.all() else SINGLY
         single_limit = singly * int(is_alone.sum()) if self.single_limit is None else self.single_limit
-        made = inverses(system.M, system.K, scheme, system.C, self.factor)
+        stage_inverses = inverses(system.M, system.K, scheme, system.C, self.factor)
         for number, first in enumerate(scheme.stage_matrices):
-            responses.append(responses[first] if first < number else self._responses(made[number], weight))
+            responses.append(responses[first] if first < number else self._responses(stage_inverses[number], weight))
             response, W = responses[number]
             stage = Stage(*(float(value) for value in scheme.stages[number]))
             end_weight = stage.gamma if is_newmark else 0.5
             flexibility = stage.stiffness_weight * scheme.step**2 * (W + W.T) / 2
             of_stage = ContactStage(
                 stage=stage,
-                body=Body(M, C, K, made[number]),
+                body=Body(M, C, K, stage_inverses[number]),
                 law=Law(flexibility, *system.rows, limit=self.limit, single_limit=single_limit),
                 B=system.B,
                 response=response,

@@ -133,7 +133,7 @@ class Ellipsoid:
         g = self.function(watch)
         scale = np.repeat([bounds.frequency / self.frequency, 1.0], self.model.size)
         of_references = self.generator(states)[self.v, self.r] @ self.shape[self.r]
-        apart = np.linalg.norm(self.shape[: len(scale)].T * scale) + np.linalg.norm(of_references) / bounds.motion
+        deviation = np.linalg.norm(self.shape[: len(scale)].T * scale) + np.linalg.norm(of_references) / bounds.motion
         late = 0.0
         if offset:
             speed, bend = (floats(term)[:, 0] for term in segment.terms[1:3])
@@ -145,7 +145,9 @@ class Ellipsoid:
         of_set = float(self.size / total)
         late *= float(arb(offset) / total)
         size = np.linalg.norm(g[: len(scale)] / scale)
-        parts = size * (apart * of_set + late) * exponential_terms(bounds.motion * length, segment.count - watch.rates)
+        parts = (
+            size * (deviation * of_set + late) * exponential_terms(bounds.motion * length, segment.count - watch.rates)
+        )
         parts[0] = np.linalg.norm(g @ self.shape) * of_set + size * late
         return Reach(total * arb(length if watch.rates else 1.0), parts * INFLATION)
 

@@ -136,7 +136,7 @@ class March:
         if before:
             time = self.start.time
             old, new = ([piece.series(time, 1.0, 2)[1] for piece in drives] for drives in (before, self.drives))
-            falls = [one - other for one, other in zip(old, new, strict=True)]
+            falls = [old_rate - new_rate for old_rate, new_rate in zip(old, new, strict=True)]
             self.place(time, self.start.u, self.start.v + self.jump(falls))
 
     def place(self, time: arb, u: arb_mat, v: arb_mat) -> None:

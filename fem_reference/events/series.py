@@ -233,8 +233,9 @@ class Segment:
     @cached_property
     def unknowns(self) -> list[tuple[arb_poly, arb_poly]]:
         """Series of the unknowns and their derivatives."""
-        series = [arb_poly(list(one)) for one in zip(*(term.entries() for term in self.terms), strict=True)]
-        return [(one, one.derivative()) for one in series]
+        coefficients = zip(*(term.entries() for term in self.terms), strict=True)
+        polynomials = [arb_poly(list(of_unknown)) for of_unknown in coefficients]
+        return [(polynomial, polynomial.derivative()) for polynomial in polynomials]
 
     def state(self, share: arb) -> tuple[arb_mat, arb_mat]:
         """Unknowns and their rates at a share of the step."""
