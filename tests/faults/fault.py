@@ -69,7 +69,7 @@ def late(sound):
 
 
 def told(change):
-    """Change fields of what a function returns, a dataclass, or what that makes when it is asked for."""
+    """Change fields of what a function returns, or what a dataclass makes when it is asked for."""
 
     def wrap(sound):
         def faulty(*a, **k):
@@ -82,7 +82,9 @@ def told(change):
 
 
 def changed(found, values):
-    """Return a dataclass with other values of its fields and properties."""
+    """Return a dataclass with other values of its fields and properties, or a named tuple with other fields."""
+    if isinstance(found, tuple):
+        return found._replace(**values)
     stored = {one.name for one in fields(found)} & values.keys()
     other = replace(found, **{name: values[name] for name in stored})
     made = {name: value for name, value in values.items() if name not in stored}
