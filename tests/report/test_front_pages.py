@@ -51,7 +51,8 @@ def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step()
 def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest, least, words):
     dda = made_row("dda", {"pressure.static": at_rest, "pressure.minimum": least, "pressure.peak": 8.4e6})
     row = decisions.first_peak(PAPER, dda, made_row("bar", {"pressure.peak": 8e6}))
-    assert row["excess"] == pytest.approx(0.05) and (row["at rest"], row["tension"]) == words
+    told = row["at rest"], row["tension"]
+    assert row["excess"] == pytest.approx(0.05) and told == words
 
 
 # ---- the pages ------------------------------------------------------------------------------------------------------
