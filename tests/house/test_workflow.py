@@ -86,7 +86,10 @@ def test_the_action_s_last_step_judges_a_solver(tmp_path, solver, status):
     if solver != "absent":
         factor = "1.0" if solver == "right" else "1.5"
         (tmp_path / "mine.py").write_text(OWN_SOLVER.format(factor=factor), encoding="utf-8")
-    path = os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])
+    else:  # the command is only told what it would be asked
+        (tmp_path / "dda-validate").write_text('#!/bin/sh\necho "$@"\nexit 2\n', encoding="utf-8")
+        (tmp_path / "dda-validate").chmod(0o755)
+    path = os.pathsep.join([str(tmp_path), str(Path(sys.executable).parent), os.environ["PATH"]])
     done = subprocess.run(
         ["bash", "-e", "-o", "pipefail", "-c", step["run"]],
         cwd=tmp_path,
@@ -95,6 +98,7 @@ def test_the_action_s_last_step_judges_a_solver(tmp_path, solver, status):
         text=True,
     )
     assert done.returncode == status, done.stdout + done.stderr
+    assert solver != "absent" or done.stdout.split() == ["judge", inputs["solver"], inputs["problems"]]
 
 
 # ---- what pages name ------------------------------------------------------------------------------------------------
