@@ -187,9 +187,11 @@ def figure_text(figure):
         place = (25.4 * np.outer([1, 1], figure.get_size_inches())).ravel() * axes.get_position().bounds
         lines.append(f"axes at {_short(place)} mm, x {_axis(axes.xaxis)}, y {_axis(axes.yaxis)}")
         lines += [f"  title {text!r}" for text in (axes.get_title(loc="left"), axes.get_title()) if text]
-        for line in axes.lines:
+        leaders = [line for line in axes.lines if _kind(axes, line) == "in axes"]  # from a line to its name
+        lines += [f"  {len(leaders)} leaders"] * bool(leaders)
+        for line in [line for line in axes.lines if line not in leaders]:
             x, y = (np.asarray(values, dtype=float) for values in line.get_data())
-            shown = f"{_kind(axes, line)} {to_hex(line.get_color())} {line.get_linestyle()} {line.get_linewidth():g}"
+            shown = f"{to_hex(line.get_color())} {line.get_linestyle()} {line.get_linewidth():g}"
             dots = f" {line.get_marker()} {line.get_markersize():g} {to_hex(line.get_markerfacecolor())}"
             ends = _short([*x[:1], *x[-1:], *dict.fromkeys([*y[:1], *y[-1:], *_range(y)])])
             lines.append(f"  line {shown}{dots * (line.get_marker() != 'None')}: {x.size} at {ends}")

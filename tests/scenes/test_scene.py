@@ -4,7 +4,6 @@ import copy
 import functools
 import operator
 import tomllib
-from pathlib import Path
 
 import pytest
 from conftest import SCENE
@@ -26,12 +25,6 @@ def parse(**changes):
     return parse_scene(changed(**changes), "x.toml")
 
 
-REFUSED = [
-    (row["keys"], row["says"])
-    for row in tomllib.loads(Path(__file__).with_name("refused.toml").read_text(encoding="utf-8"))["refused"]
-]
-
-
 def test_a_scheme_refuses_the_numbers_of_newmarks():
     time = parse(time__scheme="chung-hulbert", time__rho_inf=0.8).time
     for weight in ("alpha", "delta"):
@@ -39,16 +32,6 @@ def test_a_scheme_refuses_the_numbers_of_newmarks():
             getattr(time, weight)
         assert caught.value.field == f"time.{weight}"
     assert (parse().time.alpha, parse().time.delta) == (0.5, 1.0)
-
-
-@pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
-def test_refusals_name_file_field_rule_and_value(changes, words):
-    with pytest.raises(InputError) as caught:
-        parse(**changes)
-    text = str(caught.value)
-    assert text.startswith("x.toml: ")
-    assert words in text
-    assert "\n" not in text and ", got " in text
 
 
 @pytest.mark.parametrize(
