@@ -19,7 +19,7 @@ OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 
 
-def scene_of(column, columns, steps=400, **tables):
+def scene_of(column, columns, steps=200, **tables):
     time = {"step": 5e-5, "steps": steps, "alpha": 0.25, "delta": 0.5, "start": "consistent"} | tables.pop("time", {})
     run = {"solvers": ["dda", "column-events"], "columns": columns}
     return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, **tables}, "made")
@@ -110,7 +110,7 @@ def test_digits_that_do_not_do_end_at_a_horizon(monkeypatch):
 def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(monkeypatch):
     scene = scene_of(OPENS, ["displacement"])
     shares = []
-    for limit, predicted in ((6e3, False), (10.0, True)):
+    for limit, predicted in ((3e3, False), (10.0, True)):
         monkeypatch.setattr(ColumnEventMotion, "most_terms", limit)
         prepared = get_solver("column-events").prepare(scene)
         prepared.progress = shares.append

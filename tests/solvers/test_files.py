@@ -59,7 +59,7 @@ def compiled(tmp_path_factory):
 
 
 GATED = ("figure-8[time.start", "figures-5-6[contact.stiffness=1e+09]", "figures-3-4[time.step=0.002")
-MARKED = [(SOUND, GATED[:1]), *(pytest.param(name, GATED, marks=pytest.mark.long) for name in FAULTS)]
+MARKED = [pytest.param(name, GATED, marks=pytest.mark.long) for name in FAULTS]
 
 
 @pytest.mark.parametrize(("fault", "scenes"), MARKED)

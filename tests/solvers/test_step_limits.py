@@ -1,5 +1,6 @@
 """A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
 
+import itertools
 import math
 import tomllib
 from pathlib import Path
@@ -165,11 +166,14 @@ def test_blocks_that_are_no_part_of_a_height_are_refused(layers):
     assert "layer.thickness" in str(error.value)
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem", "column-events", "bars-events"])
-@pytest.mark.parametrize("case", TABLES["sound"].values(), ids=TABLES["sound"])
-def test_a_column_with_gaps_and_hardly_a_drive_is_sound(case, solver, tmp_path, monkeypatch):
+SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))
+
+
+@pytest.mark.parametrize(("name", "solver"), thinned(SOUND, 3))
+def test_a_column_with_gaps_and_hardly_a_drive_is_sound(name, solver, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("late.csv").write_text("time,velocity\n5,0\n6,1\n7,0\n")
+    case = TABLES["sound"][name]
     column = RESTING | {"motion": "pressure", "law": "unilateral", "heights": [0.0, 2.0]} | case.get("column", {})
     columns = ["displacement", *["gap_1", "gap_2"] * (column["law"] == "unilateral")]
     stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | case.get("time", {})
