@@ -25,7 +25,8 @@ from validation.solvers.registry import BUILT_IN, get_solver
 
 TIME = {"step": 2e-3, "steps": 12}
 USUAL = ("displacement", "contact_pressure")
-SCENES = tomllib.loads(Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8"))
+TABLES = tomllib.loads(Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8"))
+SCENES = TABLES["scenes"]
 NOT_LINEAR = (
     *("opening in a ramp", "adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning"),
     *("dashpots", "impact"),
@@ -34,23 +35,10 @@ NOT_LINEAR = (
 OF_CONTACTS = NOT_LINEAR[-4:]  # columns
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
-# what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time, of a
-# slice of unit thickness
-EXPONENTS = {
-    "length": (1, 0, 0), "time": (0, 0, 1), "rate": (0, 0, -1), "velocity": (1, 0, -1), "acceleration": (1, 0, -2),
-    "density": (-2, 1, 0), "bedding": (-1, 1, -2), "stress": (0, 1, -2), "number": (0, 0, 0),
-}  # fmt: skip
-KINDS = {
-    "ramp": "time", "duration": "time",
-    "side": "length", "width": "length", "height": "length", "vertices": "length", "eccentricity": "length",
-    "gap": "length", "band": "length", "thickness": "length", "density": "density", "base_density": "density",
-    "young": "stress", "pressure": "stress", "traction": "stress", "shear_stiffness": "stress",
-    "velocity": "velocity", "base_speed": "velocity", "gravity": "acceleration", "step": "time", "mass": "rate",
-    "frequency": "rate", "strength": "stress", "contact_pressure": "stress",
-    "displacement": "length", "horizontal_displacement": "length",
-}  # fmt: skip
-# N/m of a slice of unit thickness, a1 of the damping tables, Pa/m
-STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}
+# of a slice of unit thickness: how each kind of number goes with the units of length, mass and time, and which has it
+EXPONENTS = TABLES["exponents"]
+KINDS = {name: kind for kind, names in TABLES["kinds"].items() for name in names}
+STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}  # N/m, a1 of the damping tables, Pa/m
 UNITS = (2.0**-9, 2.0**-12, 2.0**-5)  # powers of two round nothing: an absolute tolerance shows, and nothing else does
 
 

@@ -99,65 +99,57 @@ def test_a_step_that_does_not_end_names_the_contacts_that_flip():
 
 
 LASTING = 0.1  # s: more than a period of the base
-DRIVEN = {"stiffness": STIFFNESS, "frequency": 12.0, "amplitude": 1e-4}  # p [N/m], Hz, m: less than opens it
+AMPLITUDE = 1e-4  # m: less than opens the contact
+DRIVEN = 2 * np.pi * 12.0  # rad/s
+UNDER = {  # a square on a base that shakes up and down, or glued between two walls that shake along
+    "y": {
+        "held": [{"name": "base", "rectangle": [3.0, 1.0], "at": [0.0, MASS * 9.81 / (2 * STIFFNESS) - 1.0]}],
+        "contact": {"stiffness": STIFFNESS, "friction": 30.0},
+        "touch": [{"block": "square", "corner": corner, "on": "base", "edge": 2} for corner in (0, 1)],
+        "gravity": [0.0, -9.81],
+    },
+    "x": {
+        "held": [{"name": n, "rectangle": [1.0, 1.0], "at": [x, 0.0]} for n, x in (("base", -1.0), ("other", 1.0))],
+        "bond": [{"blocks": ["square", name], "stiffness": STIFFNESS} for name in ("base", "other")],
+    },
+}
 
 
-def shaken(directory, step, horizontal):
-    """Return a square that stands on a base which shakes up and down, or is glued between two walls that shake along.
-
-    It has one frequency: four springs of glue are symmetric about its centroid, two under its weight never open.
-    """
-    time = step * np.arange(round(LASTING / step) + 1)
-    moved = DRIVEN["amplitude"] * np.sin(2 * np.pi * DRIVEN["frequency"] * time)
-    record = "\n".join(f"{t!r},{u!r}" for t, u in zip(time.tolist(), moved.tolist(), strict=True))
-    (directory / "shake.csv").write_text(f"time,{'x' if horizontal else 'y'}\n{record}\n")
-    square = {"name": "square", "rectangle": [1.0, 1.0]}
-    walls = [{"name": f"wall_{k}", "rectangle": [1.0, 1.0], "at": [x, 0.0]} for k, x in enumerate((-1.0, 1.0))]
-    sink = MASS * 9.81 / (2 * STIFFNESS)
-    base = {"name": "base", "rectangle": [3.0, 1.0], "at": [0.0, sink - 1.0]}
-    touch = [{"block": "square", "corner": corner, "on": "base", "edge": 2} for corner in (0, 1)]
-    plane = {"young": "inf", "density": MASS}
-    if horizontal:
-        plane["bond"] = [{"blocks": ["square", wall["name"]], "stiffness": STIFFNESS} for wall in walls]
-    else:
-        plane |= {"contact": {"stiffness": STIFFNESS, "friction": 30.0}, "touch": touch, "gravity": [0.0, -9.81]}
-    held = [block | {"motion": str(directory / "shake.csv")} for block in (walls if horizontal else [base])]
-    parts = ("x", "y", "vx", "vy", "spin")
-    columns = ["square.x", "square.y", *(f"{held[0]['name']}.{part}" for part in parts), "energy.balance"]
-    stepping = {"step": step, "steps": len(time) - 1, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
-    return parse_scene(
-        {"plane": plane | {"block": [*held, square]}, "time": stepping, "run": {"columns": columns}}, "s"
-    )
+def shaken(along, time, directory):
+    """Return the columns of a square of one frequency: glue is symmetric about its centroid, its corners never open."""
+    record = np.column_stack([time, AMPLITUDE * np.sin(DRIVEN * time)])
+    np.savetxt(directory / "shake.csv", record, "%.17g", ",", header=f"time,{along}", comments="")
+    tables = dict(UNDER[along])
+    held = [block | {"motion": str(directory / "shake.csv")} for block in tables.pop("held")]
+    plane = {"young": "inf", "density": MASS, "block": [*held, {"name": "square", "rectangle": [1.0, 1.0]}], **tables}
+    names = [f"{name}.{part}" for name in ("base", "square") for part in ("x", "y", "vx", "vy", "spin")]
+    stepping = {"step": time[1], "steps": len(time) - 1, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
+    scene = parse_scene({"plane": plane, "time": stepping, "run": {"columns": [*names, "energy.balance"]}}, "shaken")
+    return solve(scene, "dda").history.columns
 
 
-@pytest.mark.parametrize("horizontal", [False, True], ids=["pressed", "glued"])
-def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(tmp_path, horizontal):
+@pytest.mark.parametrize(("along", "across", "springs"), [("y", "x", 2), ("x", "y", 4)], ids=["pressed", "glued"])
+def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(along, across, springs, tmp_path):
     """Its motion is u = a / (1 - r^2) (sin w t - r sin w0 t), r = w / w0; the scheme is of second order."""
-    w = 2 * np.pi * DRIVEN["frequency"]
-    own = math.sqrt((4 if horizontal else 2) * STIFFNESS / MASS)
-    r = w / own
+    own = math.sqrt(springs * STIFFNESS / MASS)
+    r = DRIVEN / own
     errors = []
     for step in (5e-4, 2.5e-4):
-        history = solve(shaken(tmp_path, step, horizontal), "dda").history
-        time = history.time
-        exact = DRIVEN["amplitude"] / (1 - r**2) * (np.sin(w * time) - r * np.sin(own * time))
-        along, across = ("x", "y") if horizontal else ("y", "x")
-        base = next(name for name in history.columns if name.startswith(("base", "wall")))[:-2]
-        driven = DRIVEN["amplitude"] * np.sin(w * time)
-        assert history.columns[f"{base}.{along}"] - history.columns[f"{base}.{along}"][-1] == pytest.approx(
-            driven - driven[-1], abs=1e-9 * DRIVEN["amplitude"]
-        )
-        rate = np.diff(driven, prepend=0.0) / step
-        assert history.columns[f"{base}.v{along}"] == pytest.approx(rate, abs=1e-9 * w * DRIVEN["amplitude"])
-        assert not np.any(history.columns[f"{base}.v{across}"]) and not np.any(history.columns[f"{base}.spin"])
-        assert history.columns[f"square.{across}"] == pytest.approx(0.0, abs=1e-9 * DRIVEN["amplitude"])
-        assert np.max(np.abs(history.columns["energy.balance"])) < 1e-9 * MASS * (w * DRIVEN["amplitude"]) ** 2
-        errors.append(np.max(np.abs(history.columns[f"square.{along}"] - exact)))
-    orders = np.log2(np.array(errors[:-1]) / errors[1:])
-    assert orders == pytest.approx(2.0, abs=0.15)
+        time = step * np.arange(round(LASTING / step) + 1)
+        columns = shaken(along, time, tmp_path)
+        driven = AMPLITUDE * np.sin(DRIVEN * time)
+        base = columns[f"base.{along}"]
+        assert base - base[-1] == pytest.approx(driven[1:] - driven[-1], abs=1e-9 * AMPLITUDE)
+        assert columns[f"base.v{along}"] == pytest.approx(np.diff(driven) / step, abs=1e-9 * DRIVEN * AMPLITUDE)
+        assert not any(np.any(columns[name]) for name in (f"base.v{across}", "base.spin"))
+        assert columns[f"square.{across}"] == pytest.approx(0.0, abs=1e-9 * AMPLITUDE)
+        assert np.max(np.abs(columns["energy.balance"])) < 1e-9 * MASS * (DRIVEN * AMPLITUDE) ** 2
+        exact = AMPLITUDE / (1 - r**2) * (np.sin(DRIVEN * time) - r * np.sin(own * time))
+        errors.append(np.max(np.abs(columns[f"square.{along}"] - exact[1:])))
+    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.15)
     # average acceleration shortens the frequency of the free part by w0^3 dt^2 / 12
     lag = own**3 * step**2 / 12 * LASTING
-    assert errors[-1] == pytest.approx(lag * DRIVEN["amplitude"] * r / (1 - r**2), rel=0.1)
+    assert errors[-1] == pytest.approx(lag * AMPLITUDE * r / (1 - r**2), rel=0.1)
 
 
 def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():

@@ -37,6 +37,7 @@ ROOT = Path(__file__).parents[2]
 ORACLES = ROOT / "tests/oracles"
 HERE = Path(__file__).parent
 APPLYING = gates.applying
+TABLES = tomllib.loads((HERE / "own_solver.toml").read_text(encoding="utf-8"))
 START = ("figure-8[time.start=zero]", "figure-8[time.start=consistent]", "figure-8[time.start=consistent,time.gg=0.95]")
 FIGURES = (*START, "figures-5-6[contact.stiffness=1e+09]", "figures-3-4[time.step=0.002]")
 
@@ -129,12 +130,7 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(solver, sam
     assert [heading for heading in headings if heading in ("\nidentical", "\nnot repeatable")] == warned
 
 
-AUTHORS = {  # of tests/oracles/six_unknowns.py: how its runs end, and how many of three scenes do
-    "raises_in_one_scene": ("raised", 2),
-    "not_a_number": ("not a number", 3),
-    "short": ("wrong shape", 3),
-    "millimetres": ("wrong units", 3),
-}
+AUTHORS = TABLES["authors"]
 THREE = (*START[:2], block_data.scenes()[0].name)
 
 
@@ -358,34 +354,13 @@ def test_what_compare_says_ends_the_block(causes, lines, monkeypatch):
 
 # ---- data of the block ----------------------------------------------------------------------------------------------
 
-WHAT_IS_MISREAD = {  # of tests/oracles/six_unknowns.py: scenes that fail where they rest, what is named
-    "sound": ([], []),
-    "plane_stress": (["plane strain"], ["plane stress is assumed"]),
-    "plane_strain": (["Poisson's ratio", "shear springs of their own stiffness"], ["plane strain is assumed"]),
-    "interchanged": (["a rectangle that is no square"], ["width and height are interchanged"]),
-    "squared": (["a rectangle that is no square"], ["the width is taken for the height"]),
-    "without_poisson": (
-        ["Poisson's ratio", "plane strain", "shear springs of their own stiffness"],
-        ["block.poisson is not read"],
-    ),
-    "one_stiffness": (["shear springs of their own stiffness"], ["contact.shear_stiffness is not read"]),
-    "without_shear": (
-        ["Poisson's ratio", "plane strain", "shear springs of their own stiffness"],
-        ["there are no shear springs"],
-    ),
-    "central": (["an off-centre load"], ["load.eccentricity is not read"]),
-    "without_poisson_and_central": (
-        ["Poisson's ratio", "plane strain", "shear springs of their own stiffness", "an off-centre load"],
-        ["block.poisson is not read", "load.eccentricity is not read"],
-    ),
-    "turned_plane": (["plane strain"], ["plane strain: rests at "]),  # no misreading that is known
-}
+WHAT_IS_MISREAD = TABLES["misread"]
 
 
 @pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 8))
 def test_a_datum_that_a_solver_misreads_is_named(solver, reports_of):
     told = reports_of(solver)
-    scenes, misread = WHAT_IS_MISREAD[solver]
+    scenes, misread = WHAT_IS_MISREAD[solver].values()
     data = block_data.datum_of()
     assert {t.group for t in failed(told)} <= {gates.BLOCK_DATA} and first(told, failed(told)) == []
     assert [data[t.scene].words for t in failed(told) if t.metric == AT_REST] == scenes
@@ -396,13 +371,7 @@ def test_a_datum_that_a_solver_misreads_is_named(solver, reports_of):
     assert all(kind in lines[-1] for kind in gates.KINDS if kind not in [datum.words for datum in data.values()])
 
 
-SLIPS_OF_THE_SCHEME = {  # of tests/oracles/six_unknowns.py, and the group that each lies in
-    "gg_twice": "damping",
-    "delta_missing": "damping",
-    "zero_start": "start",
-    "consistent_start": "start",
-    "late_pressure": "pressure",
-}
+SLIPS_OF_THE_SCHEME = TABLES["slips"]
 
 
 @pytest.mark.long
