@@ -10,6 +10,7 @@ from validation.engine.run import run_study
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE
+from validation.metrics.values import NOT_REPORTED
 from validation.results import Results
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
@@ -65,13 +66,13 @@ def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear
     assert {"displacement.final", "pressure.minimum"} <= judged
     assert not {name for name in judged if CATALOGUE[name].linear}
     row = next(row for row in Results(tmp_path).rows().values() if row.solver == "jointed")
-    assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == "not reported"
+    assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == NOT_REPORTED
 
 
 def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed):
     gate = {"pair": ["jointed"], "metric": "mode1.frequency", "band": [0.0, 1e9], "reason": "a test"}
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
-    with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
+    with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .*{JOINTS}"):
         check_names(asked, "mine.toml")
     swept = parse_scene(
         asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml"

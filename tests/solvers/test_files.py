@@ -76,12 +76,13 @@ def test_what_cannot_be_started_and_kinds_without_words(tmp_path):
     path.write_bytes(b"\x7fELF no such thing")
     assert completed(get_solver(str(path)), SCENE).outcome is Outcome.RAISED
     plane = completed(get_solver(str(path)), load_scene("patch-strip").expand()[0])
-    assert plane.outcome is Outcome.NOT_APPLICABLE and "plain data hold blocks" in plane.notes[0]
+    assert plane.outcome is Outcome.NOT_APPLICABLE
 
 
 def test_a_program_is_told_what_problems_never_have():
     changed = LOCKED.with_values({"damping.mass": 2.0, "load.ramp": 0.01})
-    assert set(lines(changed)) - set(lines(LOCKED)) == {"also damping.mass_1_per_s 2.0", "also load.ramp_s 0.01"}
+    told = sorted(line.split() for line in set(lines(changed)) - set(lines(LOCKED)))
+    assert told == [["also", "damping.mass_1_per_s", "2.0"], ["also", "load.ramp_s", "0.01"]]
 
 
 def test_files_are_solvers(tmp_path):

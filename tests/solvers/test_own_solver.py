@@ -91,6 +91,7 @@ def test_gates_are_those_on_two_blocks_and_on_the_start():
 
 # ---- slips ----------------------------------------------------------------------------------------------------------
 
+WARNINGS = ("identical", "not repeatable")
 COPIES = """
 import numpy as np
 import six_unknowns
@@ -111,9 +112,9 @@ def noisy(scene):
 @pytest.mark.parametrize(
     ("solver", "same_as", "warned"),
     [
-        ("copies:dda", {"dda"}, ["\nidentical"]),
-        ("copies:textbook", {"dda-textbook"}, ["\nidentical"]),
-        ("copies:noisy", set(), ["\nnot repeatable"]),
+        ("copies:dda", {"dda"}, ["identical"]),
+        ("copies:textbook", {"dda-textbook"}, ["identical"]),
+        ("copies:noisy", set(), ["not repeatable"]),
         ("six_unknowns:sound", set(), []),
     ],
 )
@@ -126,8 +127,8 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(solver, sam
     assert {name for t in told for name in t.same_as.split()} == same_as
     assert all(t.repeated for t in told)
     assert {0.01 < t.apart < 0.1 for t in told} == {solver == "copies:noisy"}
-    headings = [text.partition(":")[0] for text in block(told)]
-    assert [heading for heading in headings if heading in ("\nidentical", "\nnot repeatable")] == warned
+    headings = [text.partition(":")[0].strip() for text in block(told)]
+    assert [heading for heading in WARNINGS if heading in headings] == warned
 
 
 AUTHORS = TABLES["authors"]
@@ -264,7 +265,7 @@ def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene, monk
     run = completed(get_solver("six_unknowns:raises"), scene)
     lines = (ORACLES / "six_unknowns.py").read_text().splitlines()
     (number,) = (n for n, line in enumerate(lines, 1) if "np.linalg.solve(np.zeros" in line)  # raises inside numpy
-    assert run.notes[0].endswith(f" (six_unknowns.py:{number}, in raises)")
+    assert f"(six_unknowns.py:{number}," in run.notes[0]
     assert place_of(ValueError(), ORACLES) == ""
 
 
