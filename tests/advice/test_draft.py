@@ -42,7 +42,6 @@ def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path)
     path = tmp_path / "column.toml"
     path.write_text(draft({"kind": "column", "height": 100.0, "frequency": 200.0}, default))
     scene = load_scene(path)
-    assert scene.column is not None
     (layer,) = scene.column.layer
     speed = math.sqrt(layer.young / (2.5 * layer.density))
     assert layer.blocks == math.ceil(10 * 100.0 * 200.0 / speed)

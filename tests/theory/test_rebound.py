@@ -97,7 +97,7 @@ def test_newmarks_rebounds_are_those_of_the_other_program(alpha, delta, omega):
 
 
 def test_energy_conserving_contact_has_no_rigid_stop():
-    with pytest.raises(ValueError, match="omega: must be finite"):
+    with pytest.raises(ValueError, match=r"^omega: "):
         conserving_steps(math.inf)
 
 

@@ -50,7 +50,7 @@ def test_the_ends_of_the_inverse():
     assert damping_ratio(5e-324) > 1e161
     assert restitution(math.inf) == 0.0
     for e in (0.0, -0.1, 1.0000001, math.nan):
-        with pytest.raises(ValueError, match=r"^restitution: must be above 0 and at most 1"):
+        with pytest.raises(ValueError, match=r"^restitution: "):
             damping_ratio(e)
-    with pytest.raises(ValueError, match=r"^damping_ratio: must not be negative, got -1"):
+    with pytest.raises(ValueError, match=r"^damping_ratio: .*, got -1"):
         restitution(-1)
