@@ -5,9 +5,9 @@ import re
 from dataclasses import replace
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 from oracles.made_cases import made_row
+from oracles.stepped_vibration import two_unknowns
 
 from validation.advice import budget
 from validation.advice.alarms import alarms, fixed_discount
@@ -90,38 +90,18 @@ OBLONG = {
 }
 
 
-def oblong(**more):
-    """Return a block 1 m wide and 3 m high under a scheme with damping of both kinds."""
-    changes = {key.replace("__", "."): value for key, value in more.items()}
-    return SCENE.with_values(OBLONG).with_values(changes)
-
-
-def frequencies(scene):
-    """Return both axial frequencies [rad/s] of a block 1 m wide and 3 m high at mu = 0, from (v, ey)."""
-    m, p, E, h = scene.block.density * 3.0, scene.contact.stiffness, scene.block.young, 3.0
-    stiffness = np.array([[2 * p, -p * h], [-p * h, E * 3.0 + p * h * h / 2]])
-    mass = np.diag([m, m * h * h / 12])
-    return np.sqrt(np.sort(np.linalg.eigvals(np.linalg.solve(mass, stiffness)).real))
-
-
-def test_a_budget_says_how_far_ddas_first_frequency_lies_above_the_bars():
+def test_a_budget_is_of_both_frequencies_with_and_without_the_discount_and_beside_the_bars():
     """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
-    scene = oblong()
+    scene = SCENE.with_values(OBLONG)
     (found,) = budget.budgets([scene])
-    from scipy.optimize import brentq
-
-    b = brentq(lambda b: b * math.sin(b) - 30 * math.cos(b), 1.0, math.pi / 2)
-    assert found["floor"] == pytest.approx(frequencies(scene)[0] / (b / 3 * math.sqrt(4e9 / 2500)), rel=1e-5)
-    assert next(budget.budgets([oblong(block__poisson=0.2)]))["floor"] is None
-
-
-def test_a_budgets_curves_are_the_ratios_of_the_scheme_with_and_without_its_discount():
-    scene = oblong()
-    (found,) = budget.budgets([scene])
-    for name, w in zip(("first axial", "contact"), frequencies(scene), strict=True):
+    both = two_unknowns(scene.block, scene.contact.stiffness)
+    b = both[0] / found["floor"] * 3 / math.sqrt(4e9 / 2500)
+    assert b * math.tan(b) == pytest.approx(30, rel=1e-3)
+    for name, w in zip(("first axial", "contact"), both, strict=True):
         curves = found["modes"][name]
         for i in (0, 40, 70):
             dt = found["dt"][i]
             discounted, plain = (Stepping(dt, 0.36, 0.7, gg).damping_ratio(w * dt) for gg in (0.97, 1.0))
             parts = [curves[part][i] for part in ("total", "algorithmic", "kinetic")]
             assert parts == pytest.approx([discounted, plain, discounted - plain], rel=1e-3)
+    assert next(budget.budgets([scene.with_values({"block.poisson": 0.2})]))["floor"] is None
