@@ -12,7 +12,7 @@ from oracles.sliding_block import Plain, run
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
-OPENS = Plain(steps=80, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
+OPENS = Plain(steps=36, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
 
 
 @pytest.mark.parametrize(
