@@ -298,18 +298,9 @@ def test_the_exact_continuum_is_not_the_same_scheme():
     scene = SCENE.with_values({"time.step": 5e-4})
     run = solve(scene, "continuum")
     answer = compare(scene, Foreign(run.time, run.displacement, run.contact_pressure))
-    assert answer.causes == ["exact-in-time"] and answer.departs and answer.departure is not None
-    assert answer.model == "continuum" and set(answer.scheme.values()) == {None}
+    assert (answer.causes, answer.model) == (["exact-in-time"], "continuum") and answer.departure.step >= 1
+    assert set(answer.scheme.values()) == {None}
     assert not [stage for stage in answer.evidence if stage.agrees is False]
-
-
-@pytest.mark.long
-def test_what_surrounds_a_block_leaves_no_wrong_stage():
-    run = solve(SCENE.with_values({"load.gravity": 9.81}), "dda")
-    answer = compare(SCENE, Foreign(run.time, run.displacement, run.contact_pressure))
-    assert answer.causes == ["own-weight"] and answer.departure is None
-    assert not [stage for stage in answer.evidence if stage.agrees is False]
-    assert answer.intervals["own-weight"] == pytest.approx((1, 1), abs=1e-6)
 
 
 READINGS = {  # columns of a wrong reading, its causes, and what is to be typed
@@ -374,14 +365,12 @@ def test_damping_of_mass_and_stiffness_together_is_named():
     assert answer.values == pytest.approx({"viscous-damping": 10.0, "stiffness-damping": 1e-4}, rel=1e-5)
 
 
-@pytest.mark.parametrize("with_pressure", [True, pytest.param(False, marks=pytest.mark.long)])
-def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction(with_pressure):
+def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direction():
     weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
     own = solve(weighty, "dda")
-    answer = compare(weighty, Foreign(own.time, -own.displacement, -own.contact_pressure if with_pressure else None))
-    assert answer.causes == ["unexplained"]
+    answer = compare(weighty, Foreign(own.time, -own.displacement, -own.contact_pressure))
+    assert (answer.causes, answer.unexplained, answer.nearest) == (["unexplained"], 0, None)
     assert [one["values"] for one in answer.alike] == [{}, {"gravity-factor": -1.0}]
-    assert answer.unexplained == 0 and answer.nearest is None
     assert answer.departure.step == 1
     # the pressure alone stays: that is a sign, not a load
     assert compare(weighty, Foreign(own.time, -own.displacement, own.contact_pressure)).causes == ["sign"]

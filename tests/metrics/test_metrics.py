@@ -1,6 +1,7 @@
 """Metrics against signals whose answers are known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -151,6 +152,19 @@ def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps():
     history = History(n + 1.0, {"displacement": 1 + 0.1 * growth**n * np.cos(0.5 * n)})
     m = Measurable(history, 1.0, {"displacement": 1.0}, (Mode(0.5, 1.0, (root, root.conjugate())),))
     assert solo(m, ("energy",))["energy.drift"] == pytest.approx(2 * 6000e-6, rel=1e-2)  # 6000 steps between the two
+    short = History(n[:3000] + 1.0, {"displacement": np.cos(0.5 * n[:3000])})
+    assert solo(replace(m, history=short), ("energy",))["energy.drift"] == UNDEFINED
+    assert solo(replace(m, modes=()), ("energy",))["energy.drift"] == NOT_REPORTED
+
+
+@pytest.mark.parametrize(
+    ("pressure", "when", "total"),
+    [([1.0, -0.5, -2.0, 3.0], 1.5, 1.0), ([1.0, -1e-16, 2.0, 4.0], UNDEFINED, UNDEFINED), (None, *2 * [NOT_REPORTED])],
+)
+def test_tension_has_an_instant_and_a_duration(pressure, when, total):
+    columns = {"displacement": np.ones(4)} if pressure is None else {"contact_pressure": np.array(pressure)}
+    found = solo(Measurable(History(0.5 * np.arange(1.0, 5.0), columns), 0.5))
+    assert (found["pressure.minimum_time"], found["pressure.tension_time"]) == (when, total)
 
 
 def test_the_horizon_is_the_last_step_that_two_codes_agree_at():

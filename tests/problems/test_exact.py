@@ -29,6 +29,7 @@ print(*{name.partition(".")[0] for name in sys.modules})
 """
 
 
+@pytest.mark.long
 def test_the_blocks_ones_load_numpy_and_scipy_only():
     done = subprocess.run([sys.executable, "-c", CALLED], capture_output=True, text=True, check=True, cwd=ROOT)
     third = {"pydantic", "skfem", "meshio", "matplotlib", "mpmath", "typer", "dda"}

@@ -190,6 +190,10 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(name, values, stiffness, st
         assert [(one.height, one.gap) for one in after] == [(one.height, one.gap) for one in before]
 
 
+def test_the_modulus_of_rigid_blocks_is_no_datum():
+    assert ["Young's modulus" in changes(problem(name).scene) for name in ("stack", "cradle")] == [False, True]
+
+
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 

@@ -9,7 +9,6 @@ from conftest import thinned
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.solvers.rigid.impacts import impact_restitution
 from validation.theory import landing, spectra
 from validation.theory.stepping import Stepping
 
@@ -126,18 +125,6 @@ def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
         step = omega / landing.contact_frequency(on_springs(ratio))
         expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
-
-
-@pytest.mark.parametrize("gg", [0.95, 0.99, 1.0])
-def test_a_rigid_block_lands_as_the_map_with_overshoots_up_to_gg(gg):
-    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
-        scheme = Stepping(1.0, alpha, delta, gg)
-        for omega in (0.3, 2.0, 7.0):
-            phases = np.array([0.1, 0.45, 0.9, 0.99])
-            found = landing.restitutions(scheme, 1e-8, omega / math.sqrt(1e-8), 1.0, phases)
-            expected = [impact_restitution(alpha, delta, gg, omega, gg * float(phase)) for phase in phases]
-            assert found == pytest.approx(expected, abs=1e-6)
 
 
 def test_a_landing_of_very_many_steps_is_not_stepped():
