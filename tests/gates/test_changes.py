@@ -74,17 +74,6 @@ def test_a_summary_tells_why_a_gate_was_not_run_before_the_reason_of_its_band():
     assert "| `a` | 2 | 0 .. 1 | a \\| b |" in markdown([verdict("a", "FAIL", 2.0)])
 
 
-def test_diff_is_a_table_and_a_status(tmp_path):
-    a = write(tmp_path / "a.json", verdict("one", "PASS"), verdict("two", "FAIL"))
-    b = write(tmp_path / "b.json", verdict("one", "FAIL"), verdict("two", "PASS"))
-    done = typed("diff", a, b)
-    assert done.returncode == 1
-    found = [line.split()[:3] for line in done.stdout.splitlines()]
-    assert ["worse", "s", "one"] in found and ["better", "s", "two"] in found
-    assert typed("diff", a, a).returncode == 0
-    assert typed("diff", a, tmp_path / "absent.json").returncode == 2
-
-
 def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file, tmp_path):
     summary, base = tmp_path / "summary.md", tmp_path / "base.json"
     scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "too | tight"\n')

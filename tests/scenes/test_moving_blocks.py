@@ -40,22 +40,6 @@ def square(**changes):
     return {"block": [FLOOR, SQUARE | changes]}
 
 
-@pytest.mark.parametrize(
-    ("field", "advice"),
-    [
-        ("plane.contact.stifness", "did you mean plane.contact.stiffness?"),
-        ("plane.block.1.turnd", "did you mean plane.block.turned?"),
-    ],
-)
-def test_a_key_inside_of_a_table_is_set_or_its_name_is_told(field, advice):
-    changed = scene().with_values({"plane.contact.stiffness": 2e9, "plane.block.1.at": [0.0, 0.7]})
-    assert (changed.plane.contact.stiffness, changed.plane.block[1].at) == (2e9, (0.0, 0.7))
-    assert changed.plane.contact.friction == 30.0
-    with pytest.raises(InputError) as caught:
-        scene().with_values({field: 1.0})
-    assert (caught.value.field, caught.value.advice) == (field, advice)
-
-
 STATED = {"touch": [{"block": "square", "corner": corner, "on": "floor", "edge": 2} for corner in (0, 1)]}
 
 
