@@ -2,6 +2,7 @@
 
 import json
 import re
+from functools import cache
 from html import unescape
 from xml.etree import ElementTree
 
@@ -331,7 +332,7 @@ def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypa
 
     monkeypatch.setattr(gates, "gates", dict)  # those of all studies take seconds to read
     for name in ("applying", "asked"):
-        monkeypatch.setattr(gates, name, getattr(gates, name).__wrapped__)
+        monkeypatch.setattr(gates, name, cache(getattr(gates, name).__wrapped__))
     monkeypatch.chdir(tmp_path)
     scene = gates.START.scenes[0]
     history = registry.get_solver("dda").solve(scene).history
