@@ -72,6 +72,8 @@ def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene):
     assert Case(scene, "dda").key() != Case(other_step, "dda").key()
     assert Case(scene, "dda").key() != Case(scene, "dda:full").key() == Case(scene, "dda", True).key()
     assert Case(scene, "dda").key() != Case(scene, "dda-textbook").key()
+    names = [Case(scene, solver, ranks=ranks).make_solver().name for solver in ("fenicsx", "dda") for ranks in (1, 2)]
+    assert names == ["fenicsx", "fenicsx:2", "dda", "dda"]
 
 
 class Broken(Solver):
