@@ -277,7 +277,6 @@ KILLS = {
     "limits": LIMITS,
 }
 SHORT = {  # some gates and the faults that bite them, in the short tests
-    "spin": (("spin-flight", "spin-turns"), [SPIN[0], *SPIN[2:]]),
     "columns": (
         ("columns-domino", "columns-settle[time.step=0.02", "columns-slips-steps[time.step=0.005"),
         COLUMNS[:3],

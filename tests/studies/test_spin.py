@@ -28,6 +28,7 @@ def test_a_square_spins_for_a_hundred_turns_as_its_equation_has_it():
     assert moved["angle"] == pytest.approx(624.973081387 - 198 * math.pi, abs=1e-9)
 
 
+@pytest.mark.long
 def test_a_rectangle_swings_as_two_other_programs_have_it():
     moved = RECTANGLE.at(np.array([math.pi]))
     printed = {"ex": 7.48780141e-4, "ey": 0.00194805412, "gxy": 2 * -3.86763715e-4, "angle": -0.335056469}

@@ -171,6 +171,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     check_study("touching", FAULTS, tmp_path, finished_cases, lambda gate: gate.pair != ("query",))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("wrong", "metrics"), [(other_edge, {"wrong"}), (later, {"later", "foot"})])
 def test_a_wrong_query_is_seen_on_every_scene(wrong, metrics, monkeypatch):
     gates = [gate for gate in get_study("touching").gates() if gate.pair == ("query",) and gate.metric in metrics]
