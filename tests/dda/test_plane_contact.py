@@ -20,7 +20,7 @@ from dda.plane.outcomes import contact_name
 from dda.plane.solution import PlaneContact
 
 
-@pytest.mark.parametrize(("friction", "speed"), [((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)])
+@pytest.mark.parametrize(("friction", "speed"), thinned([((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)], 2))
 def test_two_blocks_on_a_slope_slide_together(friction, speed):
     result = solve_plane(slope(*friction), scheme(CONSTANT, 2e-3), 200, every=25, compiled=False)
     assert result.outcome == "completed"
@@ -32,7 +32,7 @@ def test_two_blocks_on_a_slope_slide_together(friction, speed):
     assert np.abs(result.angle).max() < 1e-3
 
 
-@pytest.mark.parametrize("name", thinned(SCHEMES, 3))
+@pytest.mark.parametrize("name", thinned(SCHEMES, 5))
 def test_mirrored_turned_and_shifted_scenes_move_alike(name):
     step = SCHEMES[name]
     model = slope(0.3, 0.6)
@@ -101,7 +101,7 @@ def test_a_driven_floor_gives_its_work_to_what_stands_on_it():
     assert result.energy["friction"][-1] > 0
 
 
-@pytest.mark.parametrize("young", thinned([1e8, math.inf], 2))
+@pytest.mark.parametrize("young", thinned([math.inf, 1e8], 2))
 def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
     """The edge belongs to a block that turns: its turn is part of every row."""
     struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)

@@ -43,13 +43,13 @@ def test_the_names_are_those_of_scenes():
 # ---- roots -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("gg", [1.0, 0.93])
-@pytest.mark.parametrize("omega", [0.05, 0.7, 1.9, 40.0])
+@pytest.mark.parametrize("omega", [0.05, 1.9, 40.0])
 @every_scheme
-def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega, gg):
+def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega):
     """The polynomial of the roots makes nothing of displacements in a row; the first step of leapfrog is its own."""
     if name == "leapfrog" and omega > 2:
         return
+    gg = 0.93
     scheme = scheme_of(name, values, 1.0, gg)
     found = roots.roots(scheme, omega)
     one = np.eye(1)

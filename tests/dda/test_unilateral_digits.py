@@ -86,10 +86,10 @@ GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
 ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
 # Problems, schemes, rules and their order; a step hits a switch anywhere, which scatters a fitted order by some tenths.
 ORDERS = [
+    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
     (PAPER, (0.5, 1.0, "zero"), "newmark", 1),
     (ECCENTRIC, (0.5, 1.0, "zero"), "newmark", 1),
     (GLUED, (0.5, 1.0, "zero"), "newmark", 1),
-    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
     (ECCENTRIC, (0.25, 0.5, "consistent"), "newmark", 2),
     (PAPER, (0.25, 0.5, "zero"), "newmark", 1),
     (PAPER, (0.25, 0.5, "consistent"), "energy-conserving", 2),
@@ -104,7 +104,7 @@ def exact(problem, end):
     return exact_motion(problem, end)
 
 
-@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, 6))
+@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, len(ORDERS)))
 def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
     """Errors of v against the exact motion, over its largest value."""
     end = 0.03

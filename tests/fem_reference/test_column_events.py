@@ -84,11 +84,11 @@ def test_energy_is_conserved_with_what_friction_takes():
         energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 60)).energy
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
     problem = replace(COLUMNS["S3"].problem, base_motion=drives.still)
-    motion = solve(problem, 0.2)
-    assert len(motion.switches) > 4
-    state = motion.at(np.linspace(0, 0.2, 60))
+    motion = solve(problem, 0.1)
+    assert len(motion.switches) > 2
+    state = motion.at(np.linspace(0, 0.1, 60))
     np.testing.assert_allclose(state.energy, state.energy[0], rtol=1e-12)
-    assert state.friction[-1] > 0.5 * state.energy[0]
+    assert state.friction[-1] > 0.1 * state.energy[0]
 
 
 def test_blocks_in_common_flight_touch_without_force():
@@ -163,8 +163,8 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
     monkeypatch.setattr(report, "MOST_DIGITS", 30)
     monkeypatch.setattr(report, "PROMISED", 1e-29)
     with pytest.raises(LostDigitsError) as error:
-        solve(COLUMNS["A5"].problem, 0.2, digits=30)
-    assert 0.05 < error.value.time < 0.2
+        solve(COLUMNS["A5"].problem, 0.12, digits=30)
+    assert 0.05 < error.value.time < 0.12
     with pytest.raises(TooManySwitchesError):
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
 

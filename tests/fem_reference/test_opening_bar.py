@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Scheme
@@ -33,7 +34,7 @@ def test_closed_forms_to_the_last_digits(size):
 @pytest.mark.parametrize(
     ("scheme", "order"),
     # The fronts' widths, h^(1/2) and h^(2/3) for schemes of first and second order, leave d^(3/2) in the L2 norm.
-    [(CONSTANT, 0.75), (AVERAGE, 1.0)],
+    thinned([(CONSTANT, 0.75), (AVERAGE, 1.0)], 2),
 )
 def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
     errors, steps = [], [500, 1000, 2000, 4000]

@@ -32,7 +32,7 @@ def rest(scheme, steps, **parts):
     })  # fmt: skip
 
 
-@pytest.mark.parametrize(("case", "base"), thinned(product(EVERY, ["half-space", "prescribed"]), 9))
+@pytest.mark.parametrize(("case", "base"), thinned(product(EVERY, ["half-space", "prescribed"]), 14))
 def test_steps_settle_in_the_frequency_response(case, base):
     """A wave below and a pressure on top that vibrate; what begins dies in the half-space, or by gg."""
     name, options = case

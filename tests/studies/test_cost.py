@@ -47,6 +47,7 @@ def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
         assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
 
 
+@pytest.mark.long
 def test_filtered_modes_are_the_bar():
     fine = {"time.step": 2e-4, "time.steps": 40, "fem.elements": 128}
     modal = ModalFilter().solve(PAPER.with_values(fine)).history

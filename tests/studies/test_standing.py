@@ -1,16 +1,11 @@
-"""The study `standing`: limits and the truss against numbers of other programs; every gate is bitten by a fault."""
+"""The study `standing`: limits and the truss against numbers of other programs."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import thinned
-from faults.fault import Fault, told
-from faults.kill_matrix import check_study
-from faults.seams import Seam
 
-import dda
 from validation.models.plane import limits
 from validation.models.plane.canon import half_truss
 from validation.scenes.scene import load_scene
@@ -73,62 +68,3 @@ def test_half_a_truss_rests_and_moves_as_another_program_has_it():
     rows = truss.motion(np.array([0.0, *DROP]))
     moved = rows[1:] - [*rows[0][:3], 0.0, 0.0, 0.0]
     assert moved == pytest.approx(np.array([*DROP.values()]), rel=1e-7, abs=1e-12)
-
-
-def springs(**changes):
-    """Change the springs of all contacts, stated and found."""
-
-    def changed(law):
-        if law is None or isinstance(law, dda.ContactSprings):
-            return law and replace(law, **{name: change(law) for name, change in changes.items()})
-        return lambda first, second: changed(law(first, second))
-
-    def wrap(sound):
-        def model(blocks, *, contacts, found, **others):
-            stated = [replace(contact, springs=changed(contact.springs)) for contact in contacts]
-            return sound(blocks, contacts=stated, found=changed(found), **others)
-
-        return model
-
-    return wrap
-
-
-def weight(factor=1.0, turned=0.0):
-    """Multiply all weights, and turn them [deg]."""
-    turn = factor * np.array([[math.cos(math.radians(turned)), -math.sin(math.radians(turned))],
-                              [math.sin(math.radians(turned)), math.cos(math.radians(turned))]])  # fmt: skip
-
-    def wrap(sound):
-        def model(blocks, *, loads, gravity, **others):
-            changed = [replace(load, force=tuple(turn @ load.force)) for load in loads]
-            return sound(blocks, loads=changed, gravity=tuple(turn @ gravity), **others)
-
-        return model
-
-    return wrap
-
-
-def unbalanced(result):
-    return {"energy": {**result.energy, "balance": result.energy["balance"] + 1e-6 * result.energy["load"]}}
-
-
-DDA = ("dda",)
-MODEL = Seam(dda, dda.PlaneModel)
-FAULTS = [
-    Fault("weight upside down", DDA, MODEL, weight(-1.0)),
-    Fault("weight a hundredth high", DDA, MODEL, weight(1.01)),
-    Fault("weight turned up the dip", DDA, MODEL, weight(turned=-1.5)),
-    Fault("weight turned down the dip", DDA, MODEL, weight(turned=1.5)),
-    Fault("contacts that pull", DDA, MODEL, springs(tension=lambda law: 1e6, cohesion=lambda law: 1e7 * law.shear)),
-    Fault("friction a twentieth high", DDA, MODEL, springs(friction=lambda law: law.friction and 1.05 * law.friction)),
-    Fault("friction a twentieth low", DDA, MODEL, springs(friction=lambda law: law.friction and 0.95 * law.friction)),
-    Fault("nothing slips", DDA, MODEL, springs(friction=lambda law: None)),
-    Fault("springs a tenth stiff", DDA, MODEL, springs(stiffness=lambda law: 1.1 * law.stiffness)),
-    Fault("springs a tenth soft", DDA, MODEL, springs(stiffness=lambda law: 0.9 * law.stiffness)),
-    Fault("load in no account", DDA, Seam(dda, dda.solve_plane), told(unbalanced)),
-]  # fmt: skip
-
-
-@pytest.mark.long
-def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check_study("standing", FAULTS, tmp_path, finished_cases)
