@@ -50,8 +50,8 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
     for word in ("--set", value)
 ]
 # Long are scenes of seconds (an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has
-# tests of its own, columns of many switches, four claims of the paper), orders and the finest meshes of plates and of
-# beams whose coarse ones are short, other numbers of a family whose first ones are short (joints, schemes), and a second
+# tests of its own, columns of many switches, four claims of the paper), orders and the finest meshes of plates and
+# beams whose coarse ones are short, other numbers of a family whose first ones are short (joints, schemes), and another
 # process of the distributed solver.
 LONG_GATES = re.compile(
     r"(slope-quake-exact|subblocks-locking|cost-(granite|opening)|unlocked-constant|methods-cost|methods-rigid-impulses-euler"

@@ -50,6 +50,7 @@ def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
     assert fast.outcome == plain.outcome and fast.factorisations == plain.factorisations
 
 
+@pytest.mark.long
 def test_importing_costs_numpy_only_and_a_short_history_no_numba():
     code = (
         "import sys; from dda import *; "
