@@ -87,7 +87,7 @@ def test_the_folder_is_named_and_nothing_runs(name, place, installed):
     done = start(words, place, place, installed)
     output = done.stdout + done.stderr
     assert done.returncode == status, output
-    assert f"{folder} is {IN_THE_WAY} {package} of dda-validation" in output
+    assert f"{folder} is {IN_THE_WAY} {package}" in output
     assert "Traceback" not in output
 
 
