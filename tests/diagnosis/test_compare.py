@@ -166,10 +166,10 @@ def test_the_report_is_one_page_and_a_remedy_reads_the_history(tmp_path):
 
 def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch):
     """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
-    s = scene(time__steps=10).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
+    s = scene(time__steps=20).with_values({"fem.elements": 2, "fem.degree": 1, "block.poisson": 0.25})
     run_ = solve(s.with_values({"block.young": 0.9e9}), "fem")
     seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor"})
-    steps = Stepping(np.full(10, s.time.step), np.arange(10))
+    steps = Stepping(np.full(20, s.time.step), np.arange(20))
     search = SolverSearch(s, Reading(steps, np.array([run_.displacement, run_.contact_pressure])), "fem")
     best = search.explanations()[0]
     assert (best.id, best.value) == ("young-factor", pytest.approx(0.9, rel=1e-6))
