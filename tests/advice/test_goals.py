@@ -9,7 +9,7 @@ from conftest import typed
 
 from validation import load_scene, solve
 from validation.advice import goals
-from validation.advice.goals import recommend
+from validation.advice.goals import Question, recommend
 from validation.advice.overview import overview
 from validation.errors import InputError
 from validation.models.column.pages import recommended_cut as cut_column
@@ -38,7 +38,7 @@ def with_settings(scene, offer, **values):
 
 
 def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its_steps():
-    (offer,) = recommend(granite(), "static", 0.05)
+    (offer,) = recommend(granite(), "static", Question())
     case = with_settings(granite(), offer, **{"time.steps": offer.steps + 20})
     elements = get_solver("fem").static(case.with_values({"fem.elements": 12}))["displacement"]
     rest = solve(case, "dda").displacement[offer.steps - 1 :]
@@ -51,7 +51,7 @@ def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its
 
 @pytest.mark.parametrize("keep_springs", [pytest.param(False, marks=pytest.mark.long), True])
 def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs):
-    plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
+    plain, conserving = recommend(PAPER, "impact", Question(keep_springs=keep_springs))
     assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
     assert conserving.settings["contact.rule"] == "energy-conserving"
     assert plain.is_reached and conserving.is_reached and conserving.steps < plain.steps
@@ -73,7 +73,7 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_spring
 
 @pytest.mark.long
 def test_a_quake_is_followed_in_the_contact_force_too():
-    (offer,) = recommend(PAPER, "quake", 0.02)
+    (offer,) = recommend(PAPER, "quake", Question(error=0.02))
     assert offer.is_reached and offer.force_error is not None and offer.force_error <= 0.02
     assert "sideways" in offer.condition
 
@@ -84,9 +84,9 @@ def test_a_quake_is_followed_in_the_contact_force_too():
 )
 def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(scene, goal):
     with pytest.raises(InputError) as error:
-        recommend(scene, goal, 0.05)
+        recommend(scene, goal, Question())
     others = ("wave",) if goal == "static" else ()
-    answer = overview(scene, (goal, *others))
+    answer = overview(scene, Question(goals=(goal, *others)))
     assert answer.refused == {goal: error.value.rule}
     assert tuple(offer.goal for offer in answer.recommendations) == others
 
