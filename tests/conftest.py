@@ -50,14 +50,17 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
     for word in ("--set", value)
 ]
 # Long are scenes of seconds (an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has
-# tests of its own, columns of many switches, three claims of the paper), other numbers of a family whose first ones are
-# short (joints, schemes), and a second process of the distributed solver.
+# tests of its own, columns of many switches, four claims of the paper), orders and the finest meshes of plates and
+# beams whose coarse ones are short, other numbers of a family whose first ones are short (joints, schemes), and another
+# process of the distributed solver.
 LONG_GATES = re.compile(
     r"(slope-quake-exact|subblocks-locking|cost-(granite|opening)|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
+    r"|plates-glue|plates-(hole|disc)(?=:order)|beams-glue"
+    r"|beams-(supported|triangles|weight)(?=:order|\[plane\.subdivide=(64x8|8x64))"
     r"|columns-(slips|spall|spall-bars|shaken)|columns-joint-0\.(1|5|75|9)"
     r"|methods-(impact|locked|refined)-(?!constant|average|ch-0\.5|tr-bdf2)[\w.-]+"
     r"|methods-\w+-(ch-0|ch-0\.8|bathe-half|bathe-0\.5|implicit-euler|nine-sixteenths))(?=[:\[])"
-    r"|claims:C(14|16|20):|.*:fenicsx:2-"
+    r"|claims:C(14|15|16|20):|.*:fenicsx:2-"
 )
 GATE = re.compile(r"test_gate\[(?P<name>(?P<scene>[^\[:]+)(?:\[[^\]]*\])?:(?P<kind>.+))\]")
 
@@ -207,6 +210,7 @@ def typed(*arguments, cwd=None):
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):
         patch.setattr(sys, "argv", ["dda-validate", *words])
         patch.setattr(run, "default_jobs", lambda: 1)
+        patch.setattr("validation.advice.budget.POINTS", 13)  # of a curve that no command prints
         patch.setenv("COLUMNS", "160")
         patch.chdir(cwd or Path.cwd())
         with pytest.raises(SystemExit) as stopped:

@@ -6,10 +6,11 @@ take 0.1 us a step where loops over named tuples of arrays take 4. Where arrays 
 they are (`dda.march.structure`).
 
 Compiling takes some seconds, once an install: a history of `LONG` steps pays for it, and where compiled code is at hand
-one of `SHORT` steps pays for reading it. It is kept between processes in a directory of the user's cache, by the
-sources that it was made of; where nothing can be kept, every process would pay, and only histories of `ANEW` steps are
-compiled. Where numba is missing, or does not know this Python, the plain functions run. The numbers are the same:
-nothing is reordered or fused.
+one of `SHORT` steps pays for reading it. Histories of fewer steps pay when a process has made `OFTEN` times as many
+steps by the same loop: who has waited as long as compiling takes is likely to go on. Code is kept between processes in
+a directory of the user's cache, by the sources that it was made of; where nothing can be kept, every process would pay,
+and only `ANEW` steps are compiled. Where numba is missing, or does not know this Python, the plain functions run. The
+numbers are the same: nothing is reordered or fused.
 
 Compiled code stands for the very functions that it was made of. Where one of them, or a constant of theirs, has been
 replaced since, the plain functions run.
@@ -24,6 +25,7 @@ import logging
 import os
 import sys
 import threading
+from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import FunctionType
@@ -40,6 +42,9 @@ Parts = tuple[Any, ...]
 SHORT = 2_000  # steps from which a loop is run compiled where its code is at hand
 LONG = 20_000  # the same from which it is compiled and kept
 ANEW = 1_000_000  # the same from which it is compiled where code cannot be kept
+OFTEN = (
+    10  # times as many steps of all histories of a process: these take as long in plain Python as their code to come
+)
 INLINED = 100  # functions of a loop up to which calls of the upper ones are replaced by what they call: 89 of one that
 # turns, 126 of blocks in the plane, which compile a fifth longer with it and are no faster
 MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
@@ -47,6 +52,7 @@ PLAIN = "plain Python"
 COMPILED = "compiled"
 
 loops: dict[tuple[Loop, object], tuple[list[Use], Loop | None]] = {}  # by loop and types
+made: Counter[object] = Counter()  # steps in this process, by loop, and by loop and types where there are many
 _jitable: set[FunctionType] = set()
 logger = logging.getLogger("dda")
 
@@ -77,7 +83,7 @@ def run_loop(
         What does the same by whole arrays, and takes the place of plain Python on lists; without records.
     """
     with np.errstate(all="ignore"):
-        if steps >= SHORT:
+        if paying_steps(loop, steps) >= SHORT:  # else nothing is looked for, nor made, in the user's cache
             converted = tuple(as_record(part) for part in records)
             arguments = (*converted, *(as_structure(part) for part in series), *(as_structure(part) for part in rows))
             machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
@@ -103,7 +109,7 @@ def called_often(function: Loop, records: Parts, steps: int) -> tuple[Loop, Part
     steps
         Steps of one block that take as long.
     """
-    if steps < SHORT:
+    if paying_steps(function, steps) < SHORT:
         return None
     converted = tuple(as_record(part) for part in records)
     machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
@@ -115,28 +121,32 @@ def types_of(arguments: Parts) -> Parts:
     return tuple(getattr(argument, "dtype", type(argument)) for argument in arguments)
 
 
+def paying_steps(key: object, steps: int) -> int:
+    """Count the steps of a history; return them, or those of the whole process over `OFTEN` where these are more.
+
+    Parameters
+    ----------
+    key
+        What they are counted for: a loop, or a loop and types.
+    steps
+        Zero where plain Python is asked for.
+    """
+    made[key] += steps
+    return max(steps, made[key] // OFTEN) if steps else 0
+
+
 def is_worthwhile(loop: Loop, steps: int, types: Parts) -> bool:
     """Tell whether so many steps pay for compiled code: at hand, to be kept, or to be made each time."""
-    if steps < SHORT:  # and nothing is looked for, nor made, in the user's cache
-        return False
-    if steps < LONG:
-        return (loop, types) in loops or is_kept(loop, types)
-    return steps >= ANEW or cache_directory() is not None
+    paying = paying_steps((loop, types), steps)
+    if paying >= LONG:
+        return paying >= ANEW or cache_directory() is not None
+    return (loop, types) in loops or (paying >= SHORT and is_kept(loop, types))
 
 
 def is_kept(loop: Loop, types: Parts) -> bool:
     """Tell whether the user's cache holds a loop as its sources are now, for these types."""
-    from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
-
-    directory = cache_directory()
-    try:
-        numba_version = version("numba")
-    except PackageNotFoundError:
-        return False
-    if directory is None:
-        return False
-    kept = directory / _digest(functions_of(loop), numba_version) / _types_digest(types)
-    return any(kept.rglob("*.nbi"))
+    directory = code_directory(functions_of(loop), types)
+    return directory is not None and any(directory.rglob("*.nbi"))
 
 
 def as_lists(value: Any, known: dict[int, Any] | None = None) -> Any:
@@ -252,9 +262,7 @@ def _compile(loop: Loop, functions: list[FunctionType], arguments: Parts) -> Loo
         if function is not loop and function not in _jitable:
             register_jitable(forceinline=function in inner, **options)(function)
             _jitable.add(function)
-    directory = cache_directory()
-    if directory is not None:
-        directory = directory / _digest(functions, numba.__version__) / _types_digest(types_of(arguments))
+    directory = code_directory(functions, types_of(arguments))
     message = "compiling the loop over steps, " + ("once an install" if directory else "which no directory can keep")
     timer = threading.Timer(MESSAGE_DELAY, logger.warning, [message])
     timer.daemon = True
@@ -294,17 +302,27 @@ def compile_loop(numba: Any, loop: Loop, types: Parts, directory: Path | None) -
     return machine_code
 
 
-def _digest(functions: list[FunctionType], version: str) -> str:
-    """Return what changes with the sources of functions, with numba and with Python."""
-    digest = hashlib.sha256(f"{version} {sys.version}".encode())
-    for name in sorted({function.__code__.co_filename for function in functions}):
+def code_directory(functions: list[FunctionType], types: Parts) -> Path | None:
+    """Return the directory in which the code of functions for these types is kept; None where it cannot be."""
+    directory = cache_directory()
+    digest = _digest(tuple(sorted({function.__code__.co_filename for function in functions})))
+    if directory is None or digest is None:
+        return None
+    return directory / digest / hashlib.sha256(repr(types).encode()).hexdigest()[:16]
+
+
+@functools.cache
+def _digest(sources: tuple[str, ...]) -> str | None:
+    """Return what changes with sources, with numba and with Python; None without numba."""
+    from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
+
+    try:
+        digest = hashlib.sha256(f"{version('numba')} {sys.version}".encode())
+    except PackageNotFoundError:
+        return None
+    for name in sources:
         digest.update(Path(name).read_bytes())
     return digest.hexdigest()[:16]
-
-
-def _types_digest(types: Parts) -> str:
-    """Return what changes with the types of arguments."""
-    return hashlib.sha256(repr(types).encode()).hexdigest()[:16]
 
 
 @functools.cache

@@ -121,9 +121,13 @@ def test_no_damping_wanted_of_a_scheme_that_has_none():
     assert advise(undamped, damping=0.01, solve_for="dt").reachable is False
 
 
-@pytest.mark.parametrize(("wanted", "solve_for"), [(-0.1, "dt"), (math.nan, "dt"), (0.1, "p")])
-def test_bad_input_is_named(wanted, solve_for):
-    with pytest.raises(InputError, match=r"damping: must be|solve_for: must be one of"):
+@pytest.mark.parametrize(
+    ("wanted", "solve_for", "field"), [(-0.1, "dt", "damping"), (math.nan, "dt", "damping"), (0.1, "p", "solve_for")]
+)
+def test_bad_input_is_named(wanted, solve_for, field):
+    with pytest.raises(InputError) as refusal:
         advise(BASE, damping=wanted, solve_for=solve_for)
-    with pytest.raises(InputError, match="one value must be picked"):
+    assert refusal.value.field == field
+    with pytest.raises(InputError) as refusal:
         damping(load_scene("figures-3-4"))
+    assert refusal.value.field == "sweep"

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation.advice import columns
 from validation.scenes.scene import parse_scene
@@ -17,31 +18,28 @@ def stack(layer=RIGID, column=(), **time):
     return parse_scene(data | {"run": {"solvers": ["dda"]}}, "stack")
 
 
-def kinds(scene):
-    return [alarm.kind for alarm in columns.column_alarms(scene)]
-
-
-@pytest.mark.parametrize(("limit", "raised"), [(6, True), (10, True), (11, False)])
-def test_too_few_solves_are_an_alarm(limit, raised):
-    assert (columns.FEW_SOLVES in kinds(stack(column={"solve_limit": limit}))) == raised
-
-
-@pytest.mark.parametrize(("step", "raised"), [(1e-4, True), (1e-2, False)])
-def test_a_step_below_that_of_the_far_face_is_an_alarm(step, raised):
-    assert (columns.FAR_FACE in kinds(stack(RIGID | {"young": 1e9}, step=step))) == raised
+SLIPS = {"motion": "shear", "law": "frictional", "strength": 1e4, "layer": [RIGID | {"velocity": 1.0}]}
+ELASTIC = {"layer": [RIGID | {"young": 1e9}]}
 
 
 @pytest.mark.parametrize(
-    ("time", "raised"), [({"alpha": 0.25, "delta": 0.5}, True), ({}, False), ({"delta": 0.5, "gg": 0.99}, False)]
+    ("kind", "column", "time", "raised"),
+    [
+        (columns.FEW_SOLVES, {"solve_limit": 10}, {}, True),
+        (columns.FEW_SOLVES, {"solve_limit": 11}, {}, False),
+        (columns.FAR_FACE, ELASTIC, {"step": 1e-4}, True),
+        (columns.FAR_FACE, ELASTIC, {"step": 1e-2}, False),
+        (columns.GAINS, {}, {"alpha": 0.25, "delta": 0.5}, True),
+        (columns.GAINS, {}, {}, False),
+        (columns.GAINS, {}, {"delta": 0.5, "gg": 0.99}, False),
+        (columns.PATH, SLIPS, {}, True),
+        (columns.PATH, SLIPS, {"delta": 0.5}, False),
+        (columns.PATH, SLIPS, {"delta": 0.5, "gg": 0.9}, True),
+    ],
 )
-def test_gain_by_switching_is_an_alarm_of_average_acceleration(time, raised):
-    assert (columns.GAINS in kinds(stack(**time))) == raised
-
-
-@pytest.mark.parametrize(("time", "raised"), [({}, True), ({"delta": 0.5}, False), ({"delta": 0.5, "gg": 0.9}, True)])
-def test_damping_that_changes_what_slips_is_an_alarm(time, raised):
-    sheared = {"motion": "shear", "law": "frictional", "strength": 1e4, "layer": [RIGID | {"velocity": 1.0}]}
-    assert (kinds(stack(column=sheared, **time)) == [columns.PATH]) == raised
+def test_an_alarm_is_raised_where_it_should_be(kind, column, time, raised):
+    kinds = [alarm.kind for alarm in columns.column_alarms(stack(column=column, **time))]
+    assert (kind in kinds) == raised
 
 
 def test_advice_names_the_blocks_that_the_step_can_bear():
@@ -51,7 +49,7 @@ def test_advice_names_the_blocks_that_the_step_can_bear():
     for count, below in ((blocks, False), (blocks - 1, True)):
         finer = stack(RIGID | {"young": 1e9, "blocks": count}, step=1e-4, alpha=0.25, delta=0.5)
         assert (columns.limits(finer).far_face_step > 1e-4 * (1 + 1e-9)) == below
-    assert any(f"{blocks} blocks in the layers" in sentence for sentence in columns.advised(scene, known))
+    assert any(f"{blocks} blocks" in sentence for sentence in columns.advised(scene, known))
 
 
 STACKS = {  # blocks, w1 dt of rigid ones, velocity [m/s], gap [m], Young's modulus, a heavy block on top
@@ -63,9 +61,9 @@ STACKS = {  # blocks, w1 dt of rigid ones, velocity [m/s], gap [m], Young's modu
 }
 
 
-@pytest.mark.parametrize("numbers", STACKS.values(), ids=STACKS)
-def test_a_stack_comes_to_rest_when_a_long_run_of_it_does(numbers):
-    blocks, angle, velocity, gap, young, heavy = numbers
+@pytest.mark.parametrize("kind", thinned(STACKS, 2))
+def test_a_stack_comes_to_rest_when_a_long_run_of_it_does(kind):
+    blocks, angle, velocity, gap, young, heavy = STACKS[kind]
     layers = [{"thickness": 1.0 * blocks, "density": 2500.0, "young": young, "blocks": blocks, "velocity": velocity}]
     if heavy:
         layers.append({"thickness": 1.0, "density": 2.5e4, "young": young, "velocity": velocity})

@@ -1,4 +1,4 @@
-"""Alarms and advice of contact that opens: raised where they should be, silent where not, and true of runs."""
+"""Alarms and advice of contact that opens or slips: raised where they should be, silent where not, and true of runs."""
 
 import math
 import tomllib
@@ -8,31 +8,39 @@ import numpy as np
 import pytest
 
 from validation import load_scene
-from validation.advice import contact
-from validation.advice import contact_alarms as kinds
+from validation.advice import contact, contact_alarms, friction
 from validation.advice.alarms import alarms
 from validation.engine.case import Case
 from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.engine.study import Study
 from validation.runs.results import Results
+from validation.runs.row import Row
+from validation.runs.run import Outcome
 
 PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
-ROWS = tomllib.loads(Path(__file__).with_name("raised.toml").read_text(encoding="utf-8"))["contact"]
+STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
+SCENES = {"paper": PAPER, "slides": load_scene("slope-drag").expand()[0], "stands": STANDS}
+ROWS = tomllib.loads(Path(__file__).with_name("raised.toml").read_text(encoding="utf-8"))["row"]
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5}
 
 
-def raised(scene, directory, *solvers):
-    study = Study("test", "", "", [scene], solvers or ("dda",))
-    found = list(alarms([scene], finish(study.cases(), study, Results(directory))))
-    return {alarm.kind: alarm for alarm in found if alarm.kind in kinds.KINDS}
-
-
-@pytest.mark.parametrize("row", ROWS, ids=str)
+@pytest.mark.parametrize(
+    "row", [pytest.param(row, id=str(row), marks=[pytest.mark.long] * ("long" in row)) for row in ROWS]
+)
 def test_each_alarm_is_raised_where_it_should_be(row, tmp_path):
+    kinds = contact_alarms if row["scene"] == "paper" else friction
     expected = {getattr(kinds, name) for name in row["raised"]}
-    solvers = ("dda", "bar-events") if kinds.PENALTY in expected else ("dda",)
-    assert set(raised(PAPER.with_values(row["set"]), tmp_path, *solvers)) == expected
+    scene = SCENES[row["scene"]].with_values(row["set"])
+    study = Study("test", "", "", [scene], ("dda", "bar-events") if "PENALTY" in row["raised"] else ("dda",))
+    found = alarms([scene], finish(study.cases(), study, Results(tmp_path)))
+    assert {alarm.kind for alarm in found if alarm.kind in kinds.KINDS} == expected
+
+
+def test_a_run_without_states_is_told_what_to_do():
+    row = Row("", "", STANDS.name, "dda", Outcome.NO_CONTACT_STATE, {})
+    (alarm, *_) = friction.friction_alarms(STANDS, {"dda": row})
+    assert alarm.kind == friction.STATELESS and "time.step" in alarm.sentence
 
 
 @pytest.mark.parametrize("gg", [0.98, 0.5, 0.0])
@@ -41,20 +49,18 @@ def test_the_time_constant_of_the_drag_is_that_of_a_free_flight_of_dda(gg):
     flight = {"load.pressure": 0.0, "block.velocity": 1.0, "contact.gap": 1.0, "time.gg": gg, "time.steps": 40}
     scene = PAPER.with_values(flight | {"run.columns": ["displacement"]})
     row, history = execute(Case(scene, "dda"), "", "")
-    alarm = {alarm.kind: alarm for alarm in kinds.contact_alarms(scene, {"dda": row})}[kinds.DRAG]
-    assert history is not None
+    found = {alarm.kind: alarm for alarm in contact_alarms.contact_alarms(scene, {"dda": row})}
     first, later = np.diff(history.displacement)[[0, 10]]
     constant = 0.0 if later == 0 else -10 * scene.time.step / math.log(later / first)
-    assert alarm.values["constant"] == pytest.approx(constant, rel=1e-9)
+    assert found[contact_alarms.DRAG].values["constant"] == pytest.approx(constant, rel=1e-9)
 
 
 def test_a_landing_is_not_known_for_every_scene():
     found = contact.restitution(PAPER)
-    assert found is not None and found.low < found.mean < found.high < found.own
+    assert found.low < found.mean < found.high < found.own
     rules = {rule: PAPER.with_values(AVERAGE | {"contact.rule": rule}) for rule in ("implicit", "energy-conserving")}
-    assert contact.restitution(rules["implicit"]) is not None
+    assert contact.restitution(rules["implicit"]).mean > 0
     assert contact.restitution(rules["energy-conserving"]) is None
     assert contact.restitution(PAPER.with_values({"block.vertices": [[0, 0], [2, 0], [2.2, 2], [0, 2]]})) is None
     rigid = PAPER.with_values({"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0})
-    landed = contact.restitution(rigid)
-    assert landed is not None and landed.own == pytest.approx(0.8913, abs=1e-4)
+    assert contact.restitution(rigid).own == pytest.approx(0.8913, abs=1e-4)

@@ -32,7 +32,7 @@ def block_of(scene):
 
 @pytest.mark.parametrize(
     ("rectangle", "young", "over_mass"),
-    [([10.0, 0.2], math.inf, 4.0), ([2.0, 2.0], 1.0, 7.0)],
+    [pytest.param([10.0, 0.2], math.inf, 4.0, marks=pytest.mark.long), ([2.0, 2.0], 1.0, 7.0)],
     ids=["rigid rod", "soft square"],
 )
 def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(rectangle, young, over_mass):
@@ -40,12 +40,11 @@ def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(rectangle, yo
     frequency = highest_frequency(block_of(scene), P)
     mass = DENSITY * math.prod(rectangle)
     assert frequency == pytest.approx(math.sqrt(over_mass * P / mass), rel=1e-5), "the closed form"
-    step = 2 * math.pi / frequency / 2000
-    values = {"time.step": step, "time.steps": 1500, "time.alpha": 0.25, "time.delta": 0.5}
+    step = 2 * math.pi / frequency / 1000
+    values = {"time.step": step, "time.steps": 700, "time.alpha": 0.25, "time.delta": 0.5}
     history = solve(scene.with_values(values | {"run.columns": ["A.1-floor.2.normal"]}), "dda").history
-    assert history is not None
-    pressed = np.flatnonzero(history.columns["A.1-floor.2.normal"] > 0)
-    assert len(pressed) * step == pytest.approx(math.pi / frequency, rel=3e-3), "as dda has it"
+    pressed = np.sum(history.columns["A.1-floor.2.normal"] > 0)
+    assert pressed * step == pytest.approx(math.pi / frequency, rel=5e-3), "as dda has it"
 
 
 def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens():

@@ -1,5 +1,6 @@
 """The answer of `run`: failures in full, a line a study, alarms by kind, what comes next; bounded, and for machines."""
 
+import re
 from dataclasses import replace
 
 import pytest
@@ -18,6 +19,7 @@ from validation.suite.folders import get_study
 CASE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 50})
 GATE = Gate(CASE.name, ("dda", "bar"), "displacement.l2", 0.031, 0.042, "the reason " * 12)
 NOT_RUN = Verdict(GATE, None, Status.NOT_RUN, "fenicsx: needs the package dolfinx")
+MESSAGES = ["a: no case was measured"]
 ENDS = {"dda": Outcome.COMPLETED, "fem": Outcome.OVERFLOW, "bar": Outcome.TIMEOUT, "continuum": Outcome.NOT_APPLICABLE}
 
 
@@ -27,7 +29,7 @@ def run_of(name, verdicts, ends=None):
 
 
 def ran(results, runs, own=frozenset()):
-    return RunAnswer(runs, [1.25] * len(runs), results, ["a: no case was measured"], None, own, 1)
+    return RunAnswer(runs, [1.25] * len(runs), results, MESSAGES, None, own, 1)
 
 
 def said(what, width=80):
@@ -38,9 +40,8 @@ def said(what, width=80):
 def made(tmp_path):
     results = Results(tmp_path / "r")
     rows = [made_row(name, {}, CASE.name, outcome=end, notes=("at 3",)) for name, end in ENDS.items()]
-    alarms = [{"kind": kind, "scene": name, "sentence": text} for kind, name, text in
-              (("hidden tension", "a", "x"), ("hidden tension", "a", "y"), ("hidden tension", "b", "z"),
-               ("contact ringing", "a", "it rings"))]  # fmt: skip
+    told = (("tension", "a", "x"), ("tension", "a", "y"), ("tension", "b", "z"), ("ringing", "a", "it rings"))
+    alarms = [{"kind": kind, "scene": name, "sentence": text} for kind, name, text in told]
     kept_study(results, [(CASE, row, None) for row in rows], alarms=alarms)
     return results
 
@@ -59,18 +60,17 @@ def test_of_very_many_failures_the_rest_is_counted_by_metric(made):
     many = [judge(replace(GATE, until=float(i + 1)), 1.0) for i in range(FAILURES_SHOWN + 7)]
     lines = said(ran(made, [run_of("made", many)]), 200)
     assert sum(line.startswith(f"FAIL {CASE.name}") for line in lines) == FAILURES_SHOWN
-    assert "FAIL and 7 more gates: displacement.l2 7; --verbose shows every one" in lines
+    assert [line for line in lines if re.match("FAIL .* 7 .*: displacement.l2 7;", line)]
 
 
 def test_plain_data_hold_what_the_text_says(made):
     change = Change("made", GATE.id, "PASS", "FAIL", 0.035, 0.0512)
     data = answer.as_data(replace(ran(made, [run_of("made", [judge(GATE, 0.0512), NOT_RUN], ENDS)]), changes=[change]))
     (study,) = data["studies"]
-    assert study == {
-        "study": "made", "passed": 0, "failed": 1, "not_run": 1, "seconds": 1.25,
-        "outcomes": {"completed": 1, "overflow": 1, "timeout": 1, "not applicable": 1},
-    }  # fmt: skip
-    assert data["alarms"] == {"hidden tension": 2, "contact ringing": 1}
+    outcomes = {str(end): 1 for end in ENDS.values()}
+    counts = {"study": "made", "passed": 0, "failed": 1, "not_run": 1, "seconds": 1.25}
+    assert study == {**counts, "outcomes": outcomes}
+    assert data["alarms"] == {"tension": 2, "ringing": 1}
     assert (data["changes"][0]["before"], data["changes"][0]["after"]) == ("PASS", "FAIL")
     assert data["ended_badly"] == [f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3"]
-    assert data["messages"] == ["a: no case was measured"] and data["status"] == 1
+    assert (data["messages"], data["status"]) == (MESSAGES, 1)

@@ -3,6 +3,7 @@
 from conftest import typed
 
 from validation.cli.app import NUMERICAL_FAILURE
+from validation.runs.run import Outcome
 
 STACK = """
 [column]
@@ -33,4 +34,4 @@ def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path):
     path.write_text(STACK.format(more="solve_limit = 6"))
     done = typed("advise", "contact", path)
     assert done.returncode == NUMERICAL_FAILURE
-    assert "solve limit" in done.stdout
+    assert Outcome.SOLVE_LIMIT.sentence in done.stdout

@@ -31,7 +31,7 @@ def test_without_a_run_of_dda_the_status_is_that_of_a_failure(monkeypatch):
     monkeypatch.setattr(measure, "execute", lambda case, key, study: (ended, None))
     done = typed("advise", "contact", "unlocked-constant", *SHORT)
     assert done.returncode == 3
-    assert f"dda: {Outcome.NO_CONTACT_STATE.sentence} at step 3" in done.stdout
+    assert f"dda: {ended.outcome.sentence} {ended.notes[0]}" in done.stdout
 
 
 def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none():
@@ -41,7 +41,7 @@ def test_exact_motions_have_no_kinetic_damping_and_a_polygon_has_none():
         assert run["dda"].time.discount < 1 == run["block-events"].time.discount == run["bar-events"].time.discount
     turned = scene.with_values({"block.vertices": [[0, 0], [2, 0], [2.2, 2], [0, 2]]})
     row, _ = execute(Case(contact_page.scenes(turned)["block-events"], "block-events"), "", "")
-    assert row.outcome == "not applicable"
+    assert row.outcome is Outcome.NOT_APPLICABLE
 
 
 @pytest.mark.parametrize(

@@ -91,9 +91,9 @@ def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
     started = threading.Event()
 
     def work(*arguments, **options):
-        raise InputError("the bar is there" if started.wait(60) else "no bar")
+        raise InputError("shown" if started.wait(60) else "no bar")
 
     monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
     monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
     monkeypatch.setattr("validation.problems.pack.write_pack", work)
-    assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: the bar is there\n"
+    assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: shown\n"

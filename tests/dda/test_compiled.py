@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import threading
+from collections import Counter
 from typing import NamedTuple
 
 import numpy as np
@@ -49,6 +50,7 @@ def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
     assert fast.outcome == plain.outcome and fast.factorisations == plain.factorisations
 
 
+@pytest.mark.long
 def test_importing_costs_numpy_only_and_a_short_history_no_numba():
     code = (
         "import sys; from dda import *; "
@@ -116,6 +118,7 @@ def loop_of_series(series, kept):
 def fresh(always, monkeypatch, tmp_path):
     """Forget what was compiled; keep code in a directory of this test."""
     monkeypatch.setattr(compiled, "loops", {})
+    monkeypatch.setattr(compiled, "made", Counter())
     monkeypatch.setattr(compiled, "cache_directory", lambda: tmp_path)
     return tmp_path
 
@@ -158,6 +161,7 @@ def test_steps_decide_what_is_compiled_what_is_read_and_what_is_made_each_time(m
     steps = compiled.SHORT, compiled.LONG, compiled.ANEW
     assert steps[0] <= 2_000 and steps[1] <= 28_000 < steps[2]  # a slope of 28,000 steps is compiled
     monkeypatch.setattr(compiled, "loops", {})
+    monkeypatch.setattr(compiled, "OFTEN", 10**9)
     for directory, kept, worthwhile in (
         ("somewhere", False, [False, False, True, True]),
         ("somewhere", True, [False, True, True, True]),
@@ -176,6 +180,16 @@ def test_what_is_kept_is_read_for_shorter_histories_of_the_same_sizes_than_are_c
         monkeypatch.setattr(compiled, "loops", dict(loops))
         assert ran(20, numbers=MoreNumbers(5.0, np.ones(2)))[0] == compiled.PLAIN
         assert ran(20) == RAN
+
+
+def test_short_histories_pay_together_but_where_plain_python_is_asked_for(fresh, monkeypatch):
+    monkeypatch.setattr(compiled, "SHORT", 10)
+    monkeypatch.setattr(compiled, "LONG", 30)
+    monkeypatch.setattr(compiled, "OFTEN", 2)
+    # 20 steps of the loop to look for code, then 60 of the loop for these types to make it
+    assert [ran(9)[0] == compiled.COMPILED for _ in range(9)] == [False] * 8 + [True]
+    assert ran(9, numbers=MoreNumbers(5.0, np.ones(2)))[0] == compiled.PLAIN
+    assert ran(1) == RAN and ran(0) == (compiled.PLAIN, RAN[1])
 
 
 def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeypatch, caplog):

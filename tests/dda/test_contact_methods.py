@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -62,7 +63,7 @@ SCHEMES = {
 }
 
 
-@pytest.mark.parametrize(("name", "omega", "zeta"), thinned([(n, *x) for n in SCHEMES for x in RATES], 2))
+@pytest.mark.parametrize(("name", "omega", "zeta"), thinned([(n, *x) for n in SCHEMES for x in RATES], 4))
 def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, omega, zeta):
     scheme, table = SCHEMES[name]
     check_rebounds(scheme, spring_steps(table, omega, zeta=zeta), omega, zeta=zeta)
@@ -71,8 +72,7 @@ def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, ome
 # ---- impulses --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("theta", [0.5, 0.75, 1.0])
-@pytest.mark.parametrize("e", [0.0, 0.37, 1.0])
+@pytest.mark.parametrize(("e", "theta"), thinned(product([0.0, 0.37, 1.0], [0.5, 0.75, 1.0]), 4))
 def test_impulses_return_e_at_every_phase(theta, e):
     scheme = Scheme(theta**2, 2 * theta - 0.5, 1.0, 1e-3)
     given = {"rule": "impact", "restitution": e, "steps": 12}
@@ -99,7 +99,7 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
 # ---- forces that keep the energy, or act as at the end of a step -----------------------------------------------------
 
 
-@pytest.mark.parametrize("omega", [0.3, 1.0, 4.0, 1e3])
+@pytest.mark.parametrize("omega", thinned([0.3, 4.0, 1.0, 1e3], 2))
 def test_a_rigid_block_rebounds_as_fast_as_it_falls_or_as_under_constant_acceleration(omega):
     """Energy-conserving contact at every phase; Kane's force, which enters the velocity whole, as under (1/2, 1)."""
     returned = [rigid_rebound(average(1e-3), omega, float(theta), rule="energy-conserving") for theta in PHASES]

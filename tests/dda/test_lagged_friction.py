@@ -12,7 +12,7 @@ TURNED = math.radians(20)
 FORCE = (1e6 * math.sin(TURNED), 1e6 * math.cos(TURNED) + 10800 * 9.81)  # 1 MN through the centroid, and the weight
 # A third-party program (the Berkeley line of DDA for Windows), phi = 22 deg, dt = 2 ms: x of the centroid after
 # 10, 20, ... 50 steps; its base is a block on springs, 0.2 % softer than none.
-PROGRAM = {10: 1.583e-3, 20: 2.796e-3, 30: 3.521e-3, 40: 4.331e-3, 50: 5.154e-3, 250: 18.717e-3, 500: 35.094e-3}
+PROGRAM = {10: 1.583e-3, 20: 2.796e-3, 30: 3.521e-3, 40: 4.331e-3, 50: 5.154e-3, 250: 18.717e-3}
 
 
 def stable(phi, rules="lagged", band=BANDS):
@@ -22,7 +22,7 @@ def stable(phi, rules="lagged", band=BANDS):
     return UnilateralModel(square(), law, gravity=gravity, slope=slope)
 
 
-def creep(model, dt, time=1.0):
+def creep(model, dt, time=0.5):
     """Return the history of x."""
     result = solve_unilateral(model, Scheme(0.5, 1.0, 1.0, dt), round(time / dt), ["horizontal_displacement"])
     assert result.outcome == "completed"

@@ -1,10 +1,11 @@
-"""Blocks in the plane on contacts that a scene states: closed forms, invariants, accounts, bad input."""
+"""Blocks in the plane on contacts that a scene states: closed forms, invariants, accounts."""
 
 import math
 
 import numpy as np
 import pytest
-from oracles.plane_scenes import AVERAGE, CONSTANT, GRAVITY, SCHEMES, moved, rectangle, scheme, slope
+from conftest import thinned
+from oracles.plane_scenes import CONSTANT, GRAVITY, SCHEMES, moved, rectangle, scheme, slope
 
 from dda import (
     BaseMotion,
@@ -12,7 +13,6 @@ from dda import (
     CornerOnEdge,
     EdgeBond,
     PlaneBlock,
-    PlaneLoad,
     PlaneModel,
     solve_plane,
 )
@@ -20,26 +20,27 @@ from dda.plane.outcomes import contact_name
 from dda.plane.solution import PlaneContact
 
 
-@pytest.mark.parametrize(("friction", "speed"), [((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)])
+@pytest.mark.parametrize(("friction", "speed"), thinned([((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)], 2))
 def test_two_blocks_on_a_slope_slide_together(friction, speed):
-    result = solve_plane(slope(*friction), scheme(CONSTANT, 2e-3), 500, every=25, compiled=False)
+    result = solve_plane(slope(*friction), scheme(CONSTANT, 2e-3), 200, every=25, compiled=False)
     assert result.outcome == "completed"
-    # a = g (sin b - cos b mean tan(phi)) of equal masses, for 2 s; the first steps stress the springs
-    half = len(result.time) // 2
-    assert 4 * np.diff(result.velocity[[half, -1], 1:, 0], axis=0) == pytest.approx(speed, abs=1e-5)
+    # a = g (sin b - cos b mean tan(phi)) of equal masses; the first steps stress the springs
+    since = [len(result.time) // 2, -1]
+    gained = np.diff(result.velocity[since, 1:, 0], axis=0)
+    assert 2 * gained / np.diff(result.time[since]) == pytest.approx(speed, abs=1e-5)
     assert np.abs(result.energy["balance"]).max() <= 1e-10 * max(result.energy["kinetic"].max(), 1.0)
     assert np.abs(result.angle).max() < 1e-3
 
 
-@pytest.mark.parametrize("name", SCHEMES)
+@pytest.mark.parametrize("name", thinned(SCHEMES, 5))
 def test_mirrored_turned_and_shifted_scenes_move_alike(name):
     step = SCHEMES[name]
     model = slope(0.3, 0.6)
-    result = solve_plane(model, step, 40)
+    result = solve_plane(model, step, 25)
     angle = 0.7
     turned = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    for frame in (turned, np.diag([-1.0, 1.0]), turned @ np.diag([1.0, -1.0])):
-        other = solve_plane(moved(model, frame, np.array([3.0, -5.0])), step, 40)
+    for frame in (turned, turned @ np.diag([1.0, -1.0])):
+        other = solve_plane(moved(model, frame, np.array([3.0, -5.0])), step, 25)
         size = np.abs(result.displacement).max()
         assert other.displacement @ frame == pytest.approx(result.displacement, abs=1e-9 * size)
         assert other.normal == pytest.approx(result.normal, abs=1e-9 * result.normal.max())
@@ -94,56 +95,13 @@ def test_a_driven_floor_gives_its_work_to_what_stands_on_it():
     block = PlaneBlock(rectangle(0, 0, 1, 0.5), 2000.0, 1e8, 0.2)
     springs = ContactSprings(1e8, 4e7, 0.5)
     model = PlaneModel([base, block], [CornerOnEdge(1, k, 0, 2, springs) for k in (0, 1)], gravity=(0.0, -GRAVITY))
-    for numbers in (AVERAGE, (0.3025, 0.6, 0.999)):
-        result = solve_plane(model, scheme(numbers, 1e-3), 150)
-        assert result.outcome == "completed" and set(result.state.ravel()) >= {1, 2}
-        assert np.abs(result.energy["balance"]).max() <= 1e-10 * result.energy["kinetic"].max()
-        assert result.energy["friction"][-1] > 0
+    result = solve_plane(model, scheme((0.3025, 0.6, 0.999), 1e-3), 100)
+    assert result.outcome == "completed" and set(result.state.ravel()) >= {1, 2}
+    assert np.abs(result.energy["balance"]).max() <= 1e-10 * result.energy["kinetic"].max()
+    assert result.energy["friction"][-1] > 0
 
 
-BLOCK = PlaneBlock(rectangle(0, 0, 1, 1), 1000.0, name="upper")
-BASE = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0, fixed=True, name="base")
-SPRINGS = ContactSprings(1e8, 1e8, 0.5)
-BAD = {
-    "velocity: must be zero": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 1.0, fixed=True, velocity=(1.0, 0.0)),
-    "vertices: corners must run": lambda: PlaneBlock(rectangle(0, 0, 1, 1)[::-1], 1.0),
-    "density: must be": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 0.0),
-    "spin: must be": lambda: PlaneBlock(rectangle(0, 0, 1, 1), 1.0, spin=math.nan),
-    "stiffness: must be positive": lambda: ContactSprings(0.0),
-    "shear: must be positive": lambda: ContactSprings(1e8, friction=0.5),
-    "friction: must be given": lambda: ContactSprings(1e8, 1e8, cohesion=1.0),
-    "tension: must not exceed": lambda: ContactSprings(1e8, 1e8, 0.5, cohesion=1.0, tension=3.0),
-    "blocks: at least one": lambda: PlaneModel([BASE]),
-    "contacts[0].corner": lambda: PlaneModel([BASE, BLOCK], [CornerOnEdge(1, 4, 0, 2, SPRINGS)]),
-    "contacts[0].on: must be between": lambda: PlaneModel([BASE, BLOCK], [CornerOnEdge(1, 0, 2, 2, SPRINGS)]),
-    "contacts[0].on: must be another": lambda: PlaneModel([BASE, BLOCK], [CornerOnEdge(1, 0, 1, 2, SPRINGS)]),
-    "contacts[0].on: one of two": lambda: PlaneModel([BASE, BASE, BLOCK], [CornerOnEdge(0, 0, 1, 2, SPRINGS)]),
-    "bonds[0].second: must lie on one edge of base": lambda: PlaneModel(
-        [BLOCK, BASE], bonds=[EdgeBond(0, 1, (0.0, 1.0), (1.0, 1.0), 1e9, 1e9)]
-    ),
-    "end: must be finite and apart": lambda: EdgeBond(0, 1, (0.0, 1.0), (0.0, 1.0), 1e9, 1e9),
-    "loads[0].block: must move, got base": lambda: PlaneModel([BLOCK, BASE], loads=[PlaneLoad(1, (1.0, 0.0))]),
-    "edge: goes without": lambda: PlaneLoad(0, (1.0, 0.0), place=(0, 0), edge=((0, 0), (1, 0))),
-    "steps: must be": lambda: solve_plane(PlaneModel([BLOCK]), scheme(AVERAGE, 1e-3), 0),
-    "cut: must be": lambda: solve_plane(PlaneModel([BLOCK]), scheme(AVERAGE, 1e-3), 1, cut=1.0),
-    "contacts[0]: must not begin behind": lambda: solve_plane(
-        PlaneModel(
-            [PlaneBlock(rectangle(0, -0.1, 1, 1), 1.0), BASE], [CornerOnEdge(0, 0, 1, 2, ContactSprings(math.inf))]
-        ),
-        scheme(AVERAGE, 1e-3),
-        1,
-    ),
-}
-
-
-@pytest.mark.parametrize("message", BAD)
-def test_bad_input_is_refused_by_field_and_value(message):
-    with pytest.raises(ValueError) as error:
-        BAD[message]()
-    assert str(error.value).startswith(message) and ", got " in str(error.value)
-
-
-@pytest.mark.parametrize("young", [math.inf, 1e8])
+@pytest.mark.parametrize("young", thinned([math.inf, 1e8], 2))
 def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
     """The edge belongs to a block that turns: its turn is part of every row."""
     struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)
@@ -158,6 +116,7 @@ def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
 
 
 def test_contacts_are_named_by_their_blocks():
-    model = PlaneModel([BASE, BLOCK])
+    base = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0, fixed=True, name="base")
+    model = PlaneModel([base, PlaneBlock(rectangle(0, 0, 1, 1), 1000.0, name="upper")])
     assert contact_name(model, PlaneContact(1, 2, 0, 3)) == "corner 2 of upper on edge 3 of base"
     assert contact_name(model, PlaneContact(1, -1, 0, 0)) == "glue of upper and base"

@@ -232,7 +232,7 @@ def random_scene(seed):
     random = np.random.default_rng(seed)
     box = np.array([(-1, -1), (7, -1), (7, 6), (6, 6), (6, 0), (0, 0), (0, 6), (-1, 6)], float)
     polygons = [box]
-    for row in range(5):
+    for row in range(3):
         for column in range(6):
             angles = np.sort(random.uniform(0, 2 * np.pi / 6, 6)) + np.arange(6) * 2 * np.pi / 6
             ring = 0.505 * np.column_stack([np.cos(angles), np.sin(angles)])
@@ -256,7 +256,7 @@ def test_the_sweep_misses_no_pair(seed):
             part.detection = two
             by_pairs |= {((i, j)[a], b, (i, j)[c], d) for a, b, c, d in part.named(two.contacts, count)}
     assert found == by_pairs
-    assert len(found) > 10
+    assert len(found) > 5
 
 
 # least number of convex parts with cuts between corners only

@@ -126,9 +126,8 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
         assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
 
 
-@pytest.mark.parametrize(
-    ("count", "steps"), [(6, 200), pytest.param(200, 400, marks=pytest.mark.long)], ids=["some", "many"]
-)
+@pytest.mark.long
+@pytest.mark.parametrize(("count", "steps"), [(6, 200), (200, 400)], ids=["some", "many"])
 def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
     """Rounding, 1e-15 of places, grows with every impact: a thousand times in the first that each block has."""
     model = model_of(pile(count, 5), ContactSprings(1e8, 4e7, friction=0.5))
@@ -144,9 +143,10 @@ def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
 # least ratio of the errors of angular momentum, by steps of which one is a quarter of the other: 4^order is 16 and 4
 @pytest.mark.parametrize(
     ("alpha", "delta", "ratio"),
-    [(0.25, 0.5, 8), pytest.param(0.5, 1.0, 3, marks=pytest.mark.long)],
+    [(0.25, 0.5, 8), (0.5, 1.0, 3)],
     ids=["average", "constant"],
 )
+@pytest.mark.long
 def test_blocks_that_fly_at_each_other_keep_their_momentum(alpha, delta, ratio):
     polygons = pile(6, 3)[3:]
     places = np.array([block.block.section.centroid for block in polygons])

@@ -37,19 +37,19 @@ def test_a_rectangle_that_spins_has_the_motion_of_its_deformation_gradient():
     angle, _, U = polar(end.reshape(2, 2))
     exact = np.array([U[0, 0] - 1, U[1, 1] - 1, 2 * U[0, 1], angle])
     errors = []
-    for steps in (400, 800):
+    for steps in (200, 400):
         block = PlaneBlock(rectangle(-a / 2, -b / 2, a, b), 2700.0, 1e8, nu, spin=SPIN)
         result = solve_plane(PlaneModel([block]), scheme(AVERAGE, 0.05 / steps), steps)
         errors.append(np.abs([*result.strain[-1, 0], result.angle[-1, 0]] - exact))
-    assert np.all(np.abs(np.log2(errors[0] / errors[1]) - 2) < 0.15) and errors[1].max() < 1e-4
+    assert np.all(np.abs(np.log2(errors[0] / errors[1]) - 2) < 0.3) and errors[1].max() < 4e-4
 
 
 @pytest.mark.parametrize("name", SCHEMES)
 @pytest.mark.parametrize("young", [math.inf, 1e8])
 def test_a_free_block_keeps_its_momentum(name, young):
     block = PlaneBlock(QUADRILATERAL, 2700.0, young, 0.2, velocity=(1.0, 2.0), spin=7.0)
-    result = solve_plane(PlaneModel([block]), SCHEMES[name], 200)
-    assert result.outcome == "completed" and result.reached == 200
+    result = solve_plane(PlaneModel([block]), SCHEMES[name], 60)
+    assert result.outcome == "completed" and result.reached == 60
     size = np.abs(result.momentum[0]).max()
     assert np.ptp(result.momentum, axis=0).max() <= 1e-12 * size
     if name in ("average", "constant"):
@@ -66,13 +66,13 @@ def test_dead_loads_do_their_work_however_far_the_block_turns(young):
     ]
     model = PlaneModel([block], loads=loads, gravity=(0.0, -9.81))
     errors = []
-    for steps in (100, 200):
+    for steps in (50, 100):
         result = solve_plane(model, scheme(AVERAGE, 1.0 / steps), steps)
         total = result.energy["kinetic"] + result.energy["strain"]
         size = total.max()
         assert np.abs(result.energy["balance"]).max() <= 1e-12 * size
         errors.append(abs(result.energy["algorithmic"][-1]) / size)
-    assert errors[1] < 1e-4 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
+    assert errors[1] < 4e-4 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
 
 
 def test_a_load_in_the_plane_moves_a_block_as_its_closed_form_says():

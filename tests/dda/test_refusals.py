@@ -103,6 +103,31 @@ def column_history(columns=("displacement",), heights=(), settled=False, **given
     return solve_column(column(law=law, **given), scheme, Drive(*np.zeros((4, 2))), columns, heights, options)
 
 
+def plane_block(vertices=((0, 0), (1, 0), (1, 1), (0, 1)), density=1000.0, **given):
+    return dda.PlaneBlock(vertices, density, **given)
+
+
+def plane_springs(stiffness=1e8, **given):
+    return dda.ContactSprings(stiffness, **given)
+
+
+BLOCKS = {
+    "base": plane_block(((0, -1), (1, -1), (1, 0), (0, 0)), fixed=True, name="base"),
+    "upper": plane_block(name="upper"),
+    "sunk": plane_block(((0, -0.1), (1, -0.1), (1, 1), (0, 1))),
+}
+
+
+def plane(blocks=("base", "upper"), contacts=(), bonds=(), loads=(), steps=1, **given):
+    model = dda.PlaneModel(
+        [BLOCKS[name] for name in blocks],
+        [dda.CornerOnEdge(*numbers, plane_springs(np.inf)) for numbers in contacts],
+        bonds=[dda.EdgeBond(*ends, 1e9, 1e9) for ends in bonds],
+        loads=[dda.PlaneLoad(**{"block": 1, "force": (1.0, 0.0)} | load) for load in loads],
+    )
+    return dda.solve_plane(model, SCHEMES["average"], steps, **given)
+
+
 ASKED = {
     "polygon": lambda vertices: dda.Block(vertices, ROCK),
     "material": lambda **given: dda.Material(**{"density": 1.0, "young": 1.0, "poisson": 0.2} | given),
@@ -114,6 +139,7 @@ ASKED = {
     "system": lambda joint=0, observed=None: dda.BlockSystem([SQUARE], [globals()["joint"]()] * joint, observed),
     "column_options": ColumnOptions,
 } | {part.__name__: part for part in (history, cut, joint, glued, layer, spring, column, column_history)}
+ASKED |= {part.__name__: part for part in (plane_block, plane_springs, plane)}
 TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
 ROWS = [(asked, refusal, given) for asked, part in TABLE.items() for refusal in part for given in part[refusal]]
 

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from oracles.frictional import shaken
-from oracles.scheme_cases import every_scheme, few_schemes, scheme_of, truth_of
+from oracles.scheme_cases import few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
 from oracles.unilateral_checks import apart
 
@@ -38,10 +38,9 @@ def block(mu=0.0, height=2.0):
 # ---- one block -------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("gg", [pytest.param(1.0, marks=pytest.mark.long), 0.97])
-@every_scheme
-def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values, gg):
-    step, steps, p = 2e-4, 150, 2e9
+@few_schemes
+def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values):
+    step, steps, gg, p = 2e-4, 150, 0.97, 2e9
     model = UnilateralModel(block(0.25, 1.5), Unilateral(p, gap=2e-4), Load(3e6, 0.1), velocity=-0.3)
     form = model.reduced
     assert form.contacts == 2

@@ -26,13 +26,13 @@ def square(ratio, mu=0.0, side=2.0):
             (0.25, 0.5, 1e12, 9e-5, 9e-3),
             (0.25, 0.5, 1e15, 0.13, 13.0),
         ],
-        3,
+        7,
     ),
 )
 def test_it_loses_digits_with_stiff_springs(alpha, delta, ratio, low, high):
     model, scheme = square(ratio), Scheme(alpha, delta, 1.0, 1e-3)
-    _, exact = block_in_digits.locked_history(model, scheme, 300)
-    lost = block_in_digits.lost(solve_textbook(model, scheme, 300).columns["contact_pressure"], exact)
+    _, exact = block_in_digits.locked_history(model, scheme, 150)
+    lost = block_in_digits.lost(solve_textbook(model, scheme, 150).columns["contact_pressure"], exact)
     assert low <= lost < high
 
 

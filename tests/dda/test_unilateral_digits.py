@@ -1,5 +1,6 @@
 """Opening contact against 80-digit arithmetic, and against the exact motion as the step shrinks."""
 
+import functools
 from dataclasses import replace
 
 import numpy as np
@@ -85,10 +86,10 @@ GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
 ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
 # Problems, schemes, rules and their order; a step hits a switch anywhere, which scatters a fitted order by some tenths.
 ORDERS = [
+    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
     (PAPER, (0.5, 1.0, "zero"), "newmark", 1),
     (ECCENTRIC, (0.5, 1.0, "zero"), "newmark", 1),
     (GLUED, (0.5, 1.0, "zero"), "newmark", 1),
-    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
     (ECCENTRIC, (0.25, 0.5, "consistent"), "newmark", 2),
     (PAPER, (0.25, 0.5, "zero"), "newmark", 1),
     (PAPER, (0.25, 0.5, "consistent"), "energy-conserving", 2),
@@ -98,13 +99,18 @@ ORDERS = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, 6))
+@functools.cache
+def exact(problem, end):
+    return exact_motion(problem, end)
+
+
+@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, len(ORDERS)))
 def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
     """Errors of v against the exact motion, over its largest value."""
     end = 0.03
-    counts = [500, 1000, 2000]
+    counts = [250, 500, 1000]
     alpha, delta, start = scheme
-    motion = exact_motion(problem, end)
+    motion = exact(problem, end)
     errors = []
     for n in counts:
         options = UnilateralOptions(rule)
@@ -112,5 +118,5 @@ def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
         v = motion.at(np.minimum(result.time, end)).displacement[1]
         errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
     fitted = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert abs(fitted - order) < (0.15 if order == 2 else 0.1), errors
-    assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)
+    assert abs(fitted - order) < 0.15, errors
+    assert errors[-1] < (4.8e-4 if order == 2 else 4e-2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections import Counter
 from dataclasses import replace
 
@@ -61,43 +62,45 @@ def judged(scene, digits=DIGITS, pressure=True, **values):
 @pytest.mark.parametrize("scene", [DROPPED, SHEARED])
 def test_the_scene_s_own_history_is_the_scene_s(scene):
     answer = judged(scene)
-    assert answer.causes == []
-    assert not answer.departs
-    assert answer.departure is None
+    assert (answer.causes, answer.departs, answer.departure) == ([], False, None)
     assert answer.misfit < 1e-6
     assert all(stage.agrees for stage in answer.evidence)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("scene", "values", "cause", "number"),
     [
-        (DROPPED.with_values({"time.steps": 100}), {"column__stiffness": 0.8e9}, "springs-factor", 0.8),
-        *(
-            pytest.param(*case, marks=pytest.mark.long)
-            for case in [
-                (DROPPED, {"column__gravity": 0.0}, "gravity-factor", 0.0),
-                (SHEARED, {"column__strength": 1.5e4}, "strength-factor", 0.75),
-                (DROPPED, {"column__gap": 6e-4}, "gap-factor", 1.2),
-                (DROPPED, {"column__gap": 0.0}, "gap-factor", 0.0),
-                (DROPPED, {"time__gg": 0.99}, "gg", 0.99),
-                (DROPPED, {"time__start": "zero"}, "start", None),
-                (DROPPED, {"time__alpha": 0.5, "time__delta": 1.0}, "scheme", None),
-                (SHEARED, {"column__stiffness": 1e6}, "springs-factor", 1e-3),
-                (SHEARED, {"input__duration": 0.02}, "duration-factor", 2 / 3),
-                (SHEARED, {"column__strength": 2e-5}, "no-friction", None),  # and no factor of almost nothing
-                (DROPPED, {"column__joint": [SOFT_BASE]}, "springs-factor", 0.7),
-            ]
-        ),
+        (DROPPED, {"column__gravity": 0.0}, "gravity-factor", 0.0),
+        (SHEARED, {"column__strength": 1.5e4}, "strength-factor", 0.75),
+        (DROPPED, {"column__gap": 6e-4}, "gap-factor", 1.2),
+        (DROPPED, {"column__gap": 0.0}, "gap-factor", 0.0),
+        (DROPPED, {"time__start": "zero"}, "start", None),
+        (DROPPED, {"time__alpha": 0.5, "time__delta": 1.0}, "scheme", None),
+        (SHEARED, {"column__stiffness": 1e6}, "springs-factor", 1e-3),
+        (SHEARED, {"input__duration": 0.02}, "duration-factor", 2 / 3),
+        (SHEARED, {"column__strength": 2e-5}, "no-friction", None),  # and no factor of almost nothing
+        (DROPPED, {"column__gap": 0.5}, "contact-missing", None),  # which nothing closes
+        (DROPPED, {"column__joint": [SOFT_BASE]}, "springs-factor", 0.7),
     ],
 )
 def test_one_thing_changed_is_named_with_its_number(scene, values, cause, number):
     answer = judged(scene, **values)
+    is_named(answer, cause, number)
+    assert (" 0 m" in answer.sentence) == ("column__joint" in values)
+
+
+def is_named(answer, cause, number):
     assert answer.causes == [cause]
-    assert answer.departs
+    assert answer.departs and answer.departure.step >= 1
     assert answer.values.get(cause) == (number if number is None else pytest.approx(number, rel=1e-5))
-    assert answer.departure is not None
     assert answer.misfit < 1e-6
-    assert ("the contact at 0 m" in answer.sentence) == ("column__joint" in values)
+
+
+def test_one_of_few_candidates_is_named(monkeypatch):
+    few = [one for one in of_scene(DROPPED) if one.id in ("start", "gg")]
+    monkeypatch.setattr(columns, "of_scene", lambda scene: few)
+    is_named(judged(DROPPED.with_values({"time.steps": 40}), time__gg=0.99), "gg", 0.99)
 
 
 @pytest.mark.long
@@ -128,12 +131,10 @@ def beside(scene, foreign):
 @pytest.mark.long
 def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told():
     answer = judged(DROPPED, column__gap=6e-4, column__stiffness=0.9e9)
-    assert answer.causes == ["unexplained"]
-    assert answer.values == {}
+    assert (answer.causes, answer.values) == (["unexplained"], {})
     landed = int(2e-3 / DROPPED.time.step)  # up to which nothing but the weight acts
-    assert answer.departure is not None
     assert answer.departure.step > landed
-    assert f"the first {answer.departure.step - 1} rows agree" in answer.sentence
+    assert f" {answer.departure.step - 1} " in answer.sentence
     assert 0 < answer.unexplained <= 1
 
 
@@ -189,14 +190,13 @@ def test_a_file_that_ends_where_more_solves_are_needed_than_ever_before_says_so(
     )
     foreign = history(thrown, {"time.steps": 20}, DIGITS)
     (note,) = compare(thrown, foreign).notes
-    assert "step 20 of 40" in note
-    assert "a limit of 6 ends a run there" in note
+    assert {"20", "40", "6"} <= set(re.findall(r"\d+", note))
     assert compare(thrown, history(thrown, {"time.steps": 15}, DIGITS)).notes == ()
 
 
 def test_times_that_are_not_uniform_are_refused():
     foreign = history(DROPPED, {}, DIGITS)
-    with pytest.raises(InputError, match="not uniform"):
+    with pytest.raises(InputError, match="uniform"):
         compare(DROPPED, replace(foreign, time=foreign.time**1.01))
 
 
@@ -215,17 +215,13 @@ def test_every_candidate_is_in_the_catalogue_and_runs(kind):
 
 
 def test_numbers_of_contacts_are_those_that_are_stated():
-    assert places(DROPPED, "stiffness") == {
-        "everywhere": "all contacts",
-        "without a joint": "the contacts without a joint",
-        "0": "the contact at 0 m",
-    }
-    assert places(SHEARED, "strength") == {"without a joint": "all contacts"}
+    assert list(places(DROPPED, "stiffness")) == ["everywhere", "without a joint", "0"]
+    assert list(places(SHEARED, "strength")) == ["without a joint"]
     assert places(SHEARED, "gap") == {}
-    by_name = {number.name: number for number in numbers_of_column(DROPPED)}
-    assert "the modulus of the waves, by Young's modulus or Poisson's ratio," not in by_name  # of rigid blocks
-    halved = DROPPED.with_values(by_name["the stiffness of all contacts"].changed(DROPPED, 0.5)).column
-    assert halved is not None
+    numbers = list(numbers_of_column(DROPPED))
+    assert not any("modulus" in number.name for number in numbers)  # of rigid blocks
+    (springs,) = (number for number in numbers if number.id == "springs-factor" and "all" in number.name)
+    halved = DROPPED.with_values(springs.changed(DROPPED, 0.5)).column
     assert {contact.stiffness for contact in halved.contacts} == {5e8}
 
 

@@ -12,16 +12,16 @@ from oracles.sliding_block import Plain, run
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
-OPENS = Plain(steps=80, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
+OPENS = Plain(steps=36, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
 
 
 @pytest.mark.parametrize(
     ("slip", "cause"),
     [
-        ({"lags": "opening"}, "late-opening"),
-        ({"lags": "switching"}, "late-contact"),
+        pytest.param({"lags": "opening"}, "late-opening", marks=pytest.mark.long),
+        pytest.param({"lags": "switching"}, "late-contact", marks=pytest.mark.long),
         ({"tension": 1e6}, "opening-tension"),
-        ({"band": 1e-3}, "dead-band"),
+        pytest.param({"band": 1e-3}, "dead-band", marks=pytest.mark.long),
     ],
     ids=str,
 )

@@ -9,6 +9,7 @@ import pytest
 from faults import seams
 from oracles.sliding_block import Plain, history, write_measured_point
 
+from validation.diagnosis import reading
 from validation.diagnosis.reading import MOST_STEPS, Foreign, parse_columns, parse_scale, read, steppings
 from validation.errors import InputError
 
@@ -38,19 +39,12 @@ def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path):
     np.testing.assert_allclose(found.displacement, made.displacement, rtol=1e-6)
 
 
-def test_an_interrupted_measured_point_file(tmp_path):
-    text = EXAMPLE.read_text()
-    cut = tmp_path / "cut.m"
-    cut.write_text(text[: len(text) // 2])
-    assert 90 < len(read(cut).time) < 110
-
-
 def test_a_point_is_picked_by_name(tmp_path):
     text = EXAMPLE.read_text()
     both = tmp_path / "both.m"
     both.write_text(text + text.replace("measpoint1", "measpoint2").replace("1.839377e-03", "1.839900e-03"))
     assert read(both, {"displacement": "measpoint2"}).displacement[0] == -1.8399e-3
-    with pytest.raises(InputError, match="no measured point 'measpoint3'; it has measpoint1, measpoint2"):
+    with pytest.raises(InputError, match=r"'measpoint3'; .* measpoint1, measpoint2"):
         read(both, {"displacement": "measpoint3"})
 
 
@@ -63,31 +57,27 @@ def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     found = read(written(tmp_path, text), columns, scale)
     np.testing.assert_allclose(found.time, [0.002, 0.004, 0.006, 0.008])
     np.testing.assert_allclose(found.displacement, [-0.0015, -0.0025, -0.003, -0.0035])
-    assert found.pressure is not None
     np.testing.assert_allclose(found.pressure, [0.5e6, 1e6, 2e6, 2.5e6])
-    assert "the row at t = 0 is ignored" in found.notes
+    assert len(found.notes) == 1  # the row at t = 0 is ignored
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "field", "value"),
     [
-        ("", "empty"),
-        ("time,displacement\n1,2\n2,3\n3,4\n", "at least 4 rows after t = 0, got 3"),
-        ("time,uy\n1,2\n2,3\n3,4\n4,5\n", "no column 'displacement' for displacement; it has time, uy; name it with"),
-        ("time,displacement\n1,2\n1,3\n3,4\n4,5\n", "time: must increase from row to row, got 1 in row 2"),
-        (
-            "time,displacement\n1,2\n2,nan\n3,4\n4,5\n",
-            "displacement: must be finite numbers below 1e+100 in size, got nan",
-        ),
-        ("time,displacement\n1,2\n2,3\n3,4\n4,1e300\n", "got 1e+300 in row 4"),
-        ("time,displacement\n1,2\n2,3,4\n3,4\n4,5\n", "row 2: must be 2 numbers"),
-        ("measpoint1=[\n1 2 3\n4 5 6\n];", "must hold rows of 9 numbers"),
+        ("", None, "an empty file"),
+        ("time,displacement\n1,2\n2,3\n3,4\n", None, 3),
+        ("time,uy\n1,2\n2,3\n3,4\n4,5\n", None, None),
+        ("time,displacement\n1,2\n1,3\n3,4\n4,5\n", "time", "1 in row 2"),
+        ("time,displacement\n1,2\n2,nan\n3,4\n4,5\n", "displacement", "nan in row 2"),
+        ("time,displacement\n1,2\n2,3\n3,4\n4,1e300\n", "displacement", "1e+300 in row 4"),
+        ("time,displacement\n1,2\n2,3,4\n3,4\n4,5\n", None, "'2, 3, 4'"),
+        ("measpoint1=[\n1 2 3\n4 5 6\n];", "measpoint1", "2 other rows"),
     ],
 )
-def test_a_file_that_is_no_history(tmp_path, text, said):
+def test_a_file_that_is_no_history(tmp_path, text, field, value):
     with pytest.raises(InputError, match=r"h\.csv") as error:
         read(written(tmp_path, text))
-    assert said in str(error.value)
+    assert (error.value.field, error.value.value) == (field, value)
     assert "\n" not in str(error.value)
 
 
@@ -102,22 +92,18 @@ def history_at(times):
 
 
 def test_times_name_the_steps():
-    step = 0.002
-    every = steppings(history_at(step * np.arange(1, 9)), step)
+    step, eight = 0.002, np.arange(1, 9)
+    every = steppings(history_at(step * eight), step)
     assert [(len(s.steps), s.note) for s in every] == [(8, "")]
-    third = steppings(history_at(3 * step * np.arange(1, 9)), step)
-    assert "every 3 steps" in third[0].note
-    np.testing.assert_array_equal(third[0].rows, 3 * np.arange(1, 9) - 1)
-    assert "the program's step is 0.006" in third[1].note
-    some = steppings(history_at(step * np.array([1, 2, 4, 7, 9])), step)[0]
-    assert "non-uniform" in some.note
+    third = steppings(history_at(3 * step * eight), step)
+    np.testing.assert_array_equal(third[0].rows, 3 * eight - 1)
+    assert " 3 " in third[0].note and "0.006" in third[1].note
+    (some, *_) = steppings(history_at(step * np.array([1, 2, 4, 7, 9])), step)
     np.testing.assert_array_equal(some.rows, [0, 1, 3, 6, 8])
-    other = steppings(history_at(0.0005 * np.arange(1, 9)), step)[0]
-    np.testing.assert_allclose(other.steps, 0.0005)
-    assert "compared at the program's" in other.note
-    free = steppings(history_at([0.001, 0.0021, 0.0033, 0.0041]), step)[0]
-    np.testing.assert_allclose(free.steps, [0.001, 0.0011, 0.0012, 0.0008])
-    assert "each row is taken as one step" in free.note
+    for times, steps in ((0.0005 * eight, 0.0005), ([0.001, 0.0021, 0.0033, 0.0041], [0.001, 0.0011, 0.0012, 0.0008])):
+        (other, *_) = steppings(history_at(times), step)
+        np.testing.assert_allclose(other.steps, steps)
+        assert other.note != some.note != ""
 
 
 def test_times_in_milliseconds_are_a_slip_of_units():
@@ -135,13 +121,6 @@ def at_steps(*numbers):
     return Foreign(STEP * np.array(numbers), -np.ones(len(numbers)))
 
 
-def written_rows(path, rows):
-    with path.open("w") as stream:
-        stream.write("time,displacement\n")
-        stream.writelines(f"{STEP * i!r},-0.001\n" for i in range(rows + 1))
-    return path
-
-
 FAR = {
     "1e+06": at_steps(1, 2, 3, 4, 999_999),
     "one more": at_steps(1, 2, 3, 4, MOST_STEPS + 1),
@@ -154,7 +133,7 @@ FAR = {
 
 @pytest.mark.parametrize("name", FAR)
 def test_rows_too_many_steps_apart_are_refused(name):
-    with pytest.raises(InputError, match=r"must end within 10000 steps of (0.002|7e-05) s, got step \d+$") as caught:
+    with pytest.raises(InputError, match=r" 10000 .*, got step \d+$") as caught:
         steppings(FAR[name], 7e-5 if name == "late" else STEP)
     assert caught.value.field == "time"
 
@@ -170,21 +149,20 @@ def test_uniform_rows_far_apart_are_the_program_s_own_steps():
 
 
 def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path, monkeypatch):
-    read(written_rows(tmp_path / "most.csv", MOST_STEPS))
-    path = written_rows(tmp_path / "more.csv", 3 * MOST_STEPS)
+    monkeypatch.setattr(reading, "MOST_STEPS", 100)
+    rows = "".join(f"{STEP * i!r},-0.001\n" for i in range(301))
+    table, point = tmp_path / "table.csv", tmp_path / "point.m"
+    table.write_text("time,displacement\n" + "".join(rows.splitlines(keepends=True)[:101]))
+    assert len(read(table).time) == 100
+    table.write_text("time,displacement\n" + rows)
+    point.write_text("measpoint1 = [\n" + 199 * f"1 {STEP} {STEP} 0 1 0.001 0 -0.5 0.5\n" + "];\n")
     parsed = []
     seams.READING_NUMBERS.put(monkeypatch, lambda row: parsed.append(row) or [0.0, 0.0])
-    with pytest.raises(InputError, match=r"more.csv: must hold at most 10000 rows, got 30002; cut it, or keep"):
-        read(path)
+    for path, value in ((table, 302), (point, 199)):
+        with pytest.raises(InputError, match=path.name) as refusal:
+            read(path)
+        assert refusal.value.value == value
     assert not parsed
-
-
-def test_a_measured_point_of_so_many_rows_is_refused_too(tmp_path):
-    path = tmp_path / "long.m"
-    rows = "\n".join(f"{i} {STEP * i} {STEP} 0 1 0.001 0 -0.5 0.5" for i in range(1, 2 * MOST_STEPS))
-    path.write_text(f"measpoint1 = [\n{rows}\n];\n")
-    with pytest.raises(InputError, match="must hold at most 10000 rows, got 19999"):
-        read(path)
 
 
 def test_decimal_commas_beside_semicolons_are_read(tmp_path):

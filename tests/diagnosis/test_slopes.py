@@ -56,8 +56,7 @@ def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight():
     assert answer.values["base-compliance"] == pytest.approx(2e-3, rel=0.2)  # of its other history: 0.15 to 0.26 %
     held = answer.evidence[-1].numbers
     assert (held["lagged"] or 1.0) < 1e-3 < 0.1 < (held["consistent"] or 0.0)
-    assert answer.departure is not None and answer.departure.kind == "offset"
-    assert "friction lags" in answer.sentence
+    assert answer.departure.kind == "offset"
 
 
 CASES = [(1e-2, 30), (2e-3, 22), (2e-3, 15), (2e-4, 22), (2e-4, 30), (1e-3, 30), (1e-4, 15)]
@@ -94,7 +93,6 @@ def test_a_sound_program_is_the_same_model(step, phi):
     answer = judged(found, time__step=step, contact__friction=phi)
     assert answer.causes == []
     assert not answer.departs
-    assert answer.sentence.startswith("Same model, same scheme")
 
 
 AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
@@ -221,21 +219,18 @@ def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
     assert answer.departs
     assert answer.nearest is not None
     assert answer.slips == ()  # without friction it slides a thousand times as far, which is no unit
-    assert "not explained" in answer.sentence
 
 
 def test_displacements_in_millimetres_are_a_unit_of_both_columns():
     found = sound(steps=200)
+    both = ("displacement", "horizontal_displacement")
     answer = compare(scene(), Foreign(found.time, 1e3 * found.displacement, sideways=1e3 * found.sideways))
     assert answer.causes == ["unit"]
-    assert answer.remedy == "--scale displacement=0.001,horizontal_displacement=0.001"
+    assert answer.remedy.split()[1] == ",".join(f"{name}=0.001" for name in both)
+    assert [(slip.column, slip.factor) for slip in answer.slips] == [(name, 1e3) for name in both]
     swapped = compare(scene(), Foreign(found.time, found.sideways, sideways=found.displacement))
     assert swapped.causes == ["swapped"]
-    assert swapped.remedy == "--columns displacement=horizontal_displacement,horizontal_displacement=displacement"
-    assert [(slip.column, slip.factor) for slip in answer.slips] == [
-        ("displacement", 1e3),
-        ("horizontal_displacement", 1e3),
-    ]
+    assert swapped.remedy.split() == ["--columns", f"{both[0]}={both[1]},{both[1]}={both[0]}"]
 
 
 @pytest.mark.long
@@ -246,27 +241,31 @@ def test_another_factor_on_all_springs_and_a_turned_sign_are_named():
     assert answer.values["springs-factor"] == pytest.approx(2, rel=1e-6)
     turned = compare(scene(), Foreign(found.time, found.displacement, sideways=-found.sideways))
     assert turned.causes == ["sign", *answer.causes]
-    assert turned.departure is not None and turned.departure.step == 1
+    assert turned.departure.step == 1
 
 
 @pytest.mark.parametrize(
-    ("changes", "said"),
+    ("changes", "value"),
     [
-        ({"run__geometry": "updated"}, "takes an upright rectangle at rest"),
+        ({"run__geometry": "updated"}, "large rotation"),
         ({"time__alpha": 0.0, "time__delta": 0.5, "time__step": 1e-4}, "alpha = 0"),
-        ({"contact__gap": 1e-3}, "takes an upright rectangle at rest"),
+        ({"contact__gap": 1e-3}, "another scene"),
     ],
 )
-def test_scenes_that_it_does_not_take_are_refused(changes, said):
-    with pytest.raises(InputError, match=said):
+def test_scenes_that_it_does_not_take_are_refused(changes, value):
+    with pytest.raises(InputError) as refusal:
         judged(program(steps=20), **changes)
+    assert refusal.value.value == value
 
 
 def test_a_history_needs_both_directions_and_every_step():
     found = program(steps=40)
-    with pytest.raises(InputError, match="horizontal_displacement"):
-        compare(scene(), Foreign(found.time, found.displacement))
-    with pytest.raises(InputError, match="every step"):
-        compare(scene(), Foreign(found.time[::2], found.displacement[::2], sideways=found.sideways[::2]))
-    with pytest.raises(InputError, match=r"rows are 0\.002 s apart, the scene's step is 0\.001 s.*time\.step=0\.002"):
-        compare(scene(time__step=1e-3), foreign(found))
+    halved = Foreign(found.time[::2], found.displacement[::2], sideways=found.sideways[::2])
+    for changes, given, field in (
+        ({}, Foreign(found.time, found.displacement), "horizontal_displacement"),
+        ({}, halved, "time"),
+        ({"time__step": 1e-3}, foreign(found), "time"),
+    ):
+        with pytest.raises(InputError) as refusal:
+            compare(scene(**changes), given)
+        assert refusal.value.field == field

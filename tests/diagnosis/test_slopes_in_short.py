@@ -49,11 +49,10 @@ def test_few_steps_tell_the_law(theirs, sign, causes, first):
     answer = judged(program(**theirs), sign)
     assert answer.causes == causes
     assert answer.values == ({"springs-factor": pytest.approx(2, rel=1e-6)} if "springs-factor" in causes else {})
-    assert answer.departure is not None and answer.departure.step == first
-    assert f"from step {first} on" in answer.sentence
+    assert answer.departure.step == first
 
 
-@pytest.mark.parametrize("digits", [3, 6])
+@pytest.mark.parametrize("digits", [3, pytest.param(6, marks=pytest.mark.long)])
 def test_few_digits_tell_the_law(digits):
     found = program(lagged=True)
     u = np.array([float(f"{x:.{digits}e}") for x in found.sideways])
@@ -67,7 +66,6 @@ def test_few_digits_tell_the_law(digits):
 
 def own(scene):
     history = solve(scene.with_values({"run.columns": list(SlopeSearch.NAMES)}), "dda").history
-    assert history is not None
     return np.array([history.columns[name] for name in SlopeSearch.NAMES])
 
 
@@ -117,7 +115,8 @@ def test_weight_and_a_softer_base_are_run(along):
 def test_a_scene_of_many_values_or_another_unit_of_time_is_refused():
     found = program()
     many = SCENE.model_copy(update={"sweep": load_scene("slope-sliding").sweep})
-    with pytest.raises(InputError, match="one value must be picked"):
-        compare(many, Foreign(found.time, found.displacement, sideways=found.sideways))
-    with pytest.raises(InputError, match=r"in seconds, got 1000 times the scene's; use --scale time=0\.001$"):
-        compare(SCENE, Foreign(1e3 * found.time, found.displacement, sideways=found.sideways))
+    for scene, factor, field in ((many, 1, "sweep"), (SCENE, 1e3, "time")):
+        with pytest.raises(InputError) as refusal:
+            compare(scene, Foreign(factor * found.time, found.displacement, sideways=found.sideways))
+        assert refusal.value.field == field
+    assert "--scale time=0.001" in refusal.value.advice

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from validation import load_scene, solve
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
-from validation.diagnosis.stepping import histories
-from validation.diagnosis.variant import Variant, rectangle_of
 from validation.errors import InputError
 
 SCENE = load_scene("figures-3-4").with_values(
@@ -55,34 +51,7 @@ def test_a_dead_band_between_two_closings_is_named():
     assert low < 1e-3 < high
 
 
-# another datum of the scene, and the same in a candidate change
-CHANGES = [
-    ({}, {}),
-    ({"time.gg": 0.98, "load.gravity": 9.81 / 2}, {"gg": 0.98, "weight": 0.5}),
-    ({"contact.band": [1e-3, 1e-6]}, {"band": 1e-3, "reopening": 1e-3}),
-    ({"block.density": 2160.0, "block.young": 1.2e9}, {"density": 0.8, "young": 1.2}),
-]
-
-
-@pytest.mark.parametrize(("values", "changes"), CHANGES)
-@pytest.mark.parametrize("poisson", [0.0, 0.3])  # with which a closed contact is sheared from where it touched
-def test_candidate_changes_step_as_the_suite_s_solver_of_opening_contact(values, changes, poisson):
-    scene = SCENE.with_values({"time.steps": 80, "block.poisson": poisson})
-    run = solve(scene.with_values(values), "dda")
-    rectangle = rectangle_of(scene)
-    assert rectangle is not None
-    stepped = histories(rectangle, [replace(Variant(0.5, 1.0, 1.0, opens=True), **changes)], np.full(80, 5e-4))
-    # two formulations of one recursion over 80 steps, a contact that switches: hundreds of roundings at most
-    assert np.max(np.abs(stepped.displacement[:, 0] - run.displacement)) < 1e-12 * np.max(np.abs(run.displacement))
-    assert np.max(np.abs(stepped.pressure[:, 0] - run.contact_pressure)) < 1e-10 * np.max(run.contact_pressure)
-
-
-def test_a_scene_with_a_gap_is_refused_by_name():
-    with pytest.raises(InputError, match="unilateral contact"):
-        compare(SCENE.with_values({"contact.gap": 0.01}), Foreign(5e-4 * np.arange(1, 9), -np.ones(8)))
-
-
 def test_a_scene_with_a_gap_is_refused_for_its_gap_and_not_for_its_weight():
     scene = SCENE.with_values({"contact.gap": 1e-3, "load.gravity": 9.81})
-    with pytest.raises(InputError, match=r"that rest on unilateral contact, got contact.gap = 0.001$"):
+    with pytest.raises(InputError, match=r"contact\.gap = 0\.001$"):
         compare(scene, Foreign(np.arange(1, 9) * 5e-4, -np.ones(8)))

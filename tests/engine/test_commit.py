@@ -65,4 +65,4 @@ INSIDE = ".venv/site-packages"  # as an environment in a project's directory has
 def test_another_project_or_another_checkout_of_this_one_has_no_commit(place, name, tmp_path):
     inside = sources(tmp_path / "other" / place)
     project(tmp_path / "other", name)
-    assert said(inside) == "unknown (not a git checkout)"
+    assert said(inside).startswith("unknown (")

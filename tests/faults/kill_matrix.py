@@ -3,6 +3,8 @@
 Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
 """
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -57,19 +59,31 @@ def check_kill_matrix(
     directory,
     finished_cases,
 ):
-    """Run the cases sound and with every fault; no fault may pass unseen, no gate may stay unbitten.
+    """Run the cases sound, and with faults until every gate is bitten and every fault seen.
 
-    A gate that one fault has bitten is tried again only with faults that no other gate has seen.
+    Scene by scene the faults are tried that have bitten most, as long as a gate of it is unbitten; a fault that no gate
+    has seen then goes on through all other scenes. What runs once with a fault is kept.
     """
     sound = finish(cases, study, Results(finished_cases))
     assert not failed(sound, gates)
-    kills = {}
-    for number, fault in enumerate(faults):
-        bitten = set().union(*kills.values())
-        results = Overlay(directory / str(number), sound.results)
-        kills[fault.name] = next(
-            filter(None, killed(study, cases, groups(gates, bitten), fault, sound, results)), set()
-        )
+    scenes = {}
+    for gate in gates:
+        scenes.setdefault(gate.scene, []).append(gate)
+    kills = {fault.name: set() for fault in faults}
+    results = {fault.name: Overlay(directory / str(i), sound.results) for i, fault in enumerate(faults)}
+    tried = set()
+
+    def bite(fault, scene):
+        tried.add((fault.name, scene))
+        kills[fault.name] |= killed(study, cases, scenes[scene], fault, sound, results[fault.name])
+
+    for scene, some in scenes.items():
+        for fault in sorted(faults, key=lambda fault: -len(kills[fault.name])):
+            if not {gate.id for gate in some} <= set().union(*kills.values()):
+                bite(fault, scene)
+    for fault, scene in product(faults, scenes):
+        if not kills[fault.name] and (fault.name, scene) not in tried:
+            bite(fault, scene)
     print_matrix(kills, gates)
     unseen = [name for name, killed in kills.items() if not killed]
     unbitten = sorted({gate.id for gate in gates} - set().union(*kills.values()))
@@ -77,32 +91,17 @@ def check_kill_matrix(
     assert not unbitten, f"gates that no fault bites: {unbitten}"
 
 
-def groups(gates, bitten):
-    """Group gates in the order of trial: all that are not bitten yet, then the others scene by scene."""
-    others = {}
-    for gate in gates:
-        if gate.id in bitten:
-            others.setdefault(gate.scene, []).append(gate)
-    return [[gate for gate in gates if gate.id not in bitten], *others.values()]
-
-
-def killed(
-    study,
-    cases,
-    tried,
-    fault,
-    sound,
-    results,
-):
-    """Yield of each group the gates that fail with a fault; only the solvers that it reaches run again."""
-    for some in tried:
-        needed = {need for gate in some for need in study.needs(gate)}
-        reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
-        with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-            fault.seam.wrap(patch, fault.replacement)
-            faulty = finish(reached, study, results)
-        whole(fault.name, faulty)
-        yield failed(Finished(sound.rows | faulty.rows, results, sound.derived), some) if reached else set()
+def killed(study, cases, gates, fault, sound, results):
+    """Return the gates that fail with a fault; only the cases that it reaches run again."""
+    needed = {need for gate in gates for need in study.needs(gate)}
+    reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
+    if not reached:
+        return set()
+    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
+        fault.seam.wrap(patch, fault.replacement)
+        faulty = finish(reached, study, results)
+    whole(fault.name, faulty)
+    return failed(Finished(sound.rows | faulty.rows, results, sound.derived), gates)
 
 
 def print_matrix(kills, gates):

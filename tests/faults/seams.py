@@ -121,8 +121,6 @@ GLUED_EDGES = Seam(glued, glued.shared_edges)
 GLUED_LOAD = Seam(glued, glued._traction_of)
 PLANE_MATERIAL = Seam(dda, dda.Material)
 TRACTION = Seam(dda, dda.Traction)
-PLANE_SPRINGS = Seam(dda, dda.ContactSprings)  # of moving blocks
-PLANE_BLOCK = Seam(dda, dda.PlaneBlock)
 FEM_PLANE_STIFFNESS = Seam(plane_elements.BodyElements, plane_elements.BodyElements.elastic)
 
 # Blocks that move in the plane

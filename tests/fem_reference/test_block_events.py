@@ -62,7 +62,7 @@ HISTORIES = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), HISTORIES)
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 4))
 def test_a_pressed_block_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * travel(problem))
     assert motion.closed_at_start == (False, False)
@@ -80,15 +80,15 @@ def dashpot(seed, zeta):
     return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
 
 
-SLIPPING = [(seed, moved) for seed in (*range(1, 6), 8, 0) for moved in (False, True)]
+SLIPPING = [(seed, moved) for seed in (1, 2, 3, 8) for moved in (False, True)]
 INTEGRATED = [
-    *thinned([(random_problem(seed), 10) for seed in (5, 0, 2, 1, 3, 4)], 3),
-    *thinned([(dashpot(*one), 8) for one in [(50, 0.1), (51, 0.8), (52, 0.3), (53, 0.1), (54, 0.8)]], 2),
-    *(pytest.param(slipping_problem(*one), 5, marks=pytest.mark.long) for one in SLIPPING),
+    *((random_problem(seed), 10) for seed in (5, 0, 2, 1, 3, 4)),
+    *((dashpot(*one), 8) for one in [(50, 0.1), (51, 0.8), (52, 0.3)]),
+    *((slipping_problem(*one), 5) for one in SLIPPING),
 ]
 
 
-@pytest.mark.parametrize(("problem", "travels"), INTEGRATED)
+@pytest.mark.parametrize(("problem", "travels"), thinned(INTEGRATED, len(INTEGRATED)))
 def test_an_independent_integration_with_events_agrees(problem, travels):
     end = travels * travel(problem)
     motion = solve(problem, end)

@@ -52,7 +52,7 @@ def misprinted(known, motion):
     return wrong
 
 
-LONG = {"A3", "A5", "A6", "S1", "S2", "S3"}  # whose motions take seconds
+LONG = {"A3", "A5", "A6", "A8", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])
@@ -80,15 +80,15 @@ def test_random_columns_agree_with_an_integration_that_is_restarted_at_its_event
 
 
 def test_energy_is_conserved_with_what_friction_takes():
-    for name in ("A1", "A8"):
+    for name in ("A1", "A2"):
         energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 60)).energy
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
     problem = replace(COLUMNS["S3"].problem, base_motion=drives.still)
-    motion = solve(problem, 0.2)
-    assert len(motion.switches) > 4
-    state = motion.at(np.linspace(0, 0.2, 60))
+    motion = solve(problem, 0.1)
+    assert len(motion.switches) > 2
+    state = motion.at(np.linspace(0, 0.1, 60))
     np.testing.assert_allclose(state.energy, state.energy[0], rtol=1e-12)
-    assert state.friction[-1] > 0.5 * state.energy[0]
+    assert state.friction[-1] > 0.1 * state.energy[0]
 
 
 def test_blocks_in_common_flight_touch_without_force():
@@ -163,8 +163,8 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
     monkeypatch.setattr(report, "MOST_DIGITS", 30)
     monkeypatch.setattr(report, "PROMISED", 1e-29)
     with pytest.raises(LostDigitsError) as error:
-        solve(COLUMNS["A5"].problem, 0.2, digits=30)
-    assert 0.05 < error.value.time < 0.2
+        solve(COLUMNS["A5"].problem, 0.12, digits=30)
+    assert 0.05 < error.value.time < 0.12
     with pytest.raises(TooManySwitchesError):
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
 
@@ -243,7 +243,7 @@ def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(drive, size, sti
                 assert left_out <= segment.tail
 
 
-@pytest.mark.parametrize("base", ["rigid", "transmitting", "free"])
+@pytest.mark.parametrize("base", thinned(["transmitting", "rigid", "free"], 3))
 def test_the_forces_at_both_ends_make_the_momentum(base):
     """Between two instants the momentum changes by the integral of the force on the foot less that on the top."""
     joints = (ColumnJoint(1e9) if base == "rigid" else None, ColumnJoint(3e8, 1e-4))
@@ -255,12 +255,12 @@ def test_the_forces_at_both_ends_make_the_momentum(base):
         base_motion=drives.still if base == "free" else drives.integrated(drives.ricker(0.5, 60.0)),
         pressure=drives.half_sine(1e5, 0.02),
     )
-    time = np.linspace(0.0, 0.02, 4001)
+    time = np.linspace(0.0, 0.02, 801)
     state = solve(problem, time[-1]).at(time)
     momentum = np.array([2500.0, 1540.0]) @ state.velocity
     pushed = state.face_force[0] - state.face_force[-1]
     impulse = np.append(0.0, np.cumsum((pushed[1:] + pushed[:-1]) / 2)) * time[1]
-    assert momentum - momentum[0] == pytest.approx(impulse, abs=1e-5 * np.abs(momentum).max())
+    assert momentum - momentum[0] == pytest.approx(impulse, abs=3e-4 * np.abs(momentum).max())
 
 
 @pytest.mark.parametrize("seed", range(3))

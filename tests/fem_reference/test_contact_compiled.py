@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles import random_contact
 from oracles.elements import make
 
@@ -71,7 +72,7 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
         Unilateral(gap=1e-3, velocity=-0.2, shear="glued", rule="implicit"),
     ],
 )
-@pytest.mark.parametrize("young", [1e9, 1e15])
+@pytest.mark.parametrize("young", thinned([1e9, 1e15], 2))
 def test_natural_modes_are_the_same_block(long, contact, young):
     problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8, p=1e9)
     problem = replace(problem, young=young)

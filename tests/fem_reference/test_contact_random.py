@@ -73,10 +73,10 @@ def check_sliding(seed):
 @pytest.mark.parametrize(
     ("check", "seeds", "least"),
     [
-        (check_opening, range(8), [25]),
-        (check_sliding, range(3), [20, 20, 0]),
-        pytest.param(check_opening, range(8, 136), [500], marks=pytest.mark.long),
-        pytest.param(check_sliding, range(3, 64), [1200, 450, 20], marks=pytest.mark.long),
+        (check_opening, range(4), [10]),
+        (check_sliding, range(2), [10, 10, 0]),
+        pytest.param(check_opening, range(4, 68), [250], marks=pytest.mark.long),
+        pytest.param(check_sliding, range(2, 32), [600, 220, 10], marks=pytest.mark.long),
     ],
 )
 def test_what_holds_of_every_step(check, seeds, least):

@@ -209,8 +209,10 @@ def test_a_box_that_is_added_lies_in_the_set():
             assert reached.max() > 0.1
 
 
-@pytest.mark.parametrize(("problem", "states"), thinned(SYSTEMS, 4))
-@pytest.mark.parametrize("offset", [0.0, 1e-9])
+OFFSETS = [(*one, offset) for one in SYSTEMS for offset in (0.0, 1e-9)]
+
+
+@pytest.mark.parametrize(("problem", "states", "offset"), thinned(OFFSETS, 7))
 def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, offset):
     """Of any motion in the set, begun at any instant that the switch may be at; its first term comes near to it."""
     with precision(bits_of(50)):
@@ -305,7 +307,7 @@ def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off():
             assert (share, doubtful) == ((1.0, []) if clear else (0.0, functions))
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 72)], 6))
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 68)], 8))
 def test_the_balls_of_the_switches_hold_those_of_more_digits(seed, moved):
     problem = slipping_problem(seed, moved)
     end = 6 * problem.height * (problem.density / problem.young) ** 0.5
@@ -347,10 +349,10 @@ def test_a_locked_block_that_takes_too_many_steps_is_refused_before_the_first(mo
 
 def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch):
     stiff = replace(PAPER, stiffness=1e11)
-    assert solve(stiff, 0.02, digits=30).digits == 30
+    assert solve(stiff, 0.01, digits=30).digits == 30
     monkeypatch.setattr(report, "PROMISED", 1e-40)
-    assert solve(stiff, 0.02, digits=30).digits > 30
+    assert solve(stiff, 0.01, digits=30).digits > 30
     monkeypatch.setattr(report, "MOST_DIGITS", 30)
     with pytest.raises(LostDigitsError) as caught:
-        solve(stiff, 0.02, digits=30)
-    assert 0 <= caught.value.time < 0.02
+        solve(stiff, 0.01, digits=30)
+    assert 0 <= caught.value.time < 0.01

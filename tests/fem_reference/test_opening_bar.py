@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.elements import make
 
 from fem_reference import Scheme
@@ -33,10 +34,10 @@ def test_closed_forms_to_the_last_digits(size):
 @pytest.mark.parametrize(
     ("scheme", "order"),
     # The fronts' widths, h^(1/2) and h^(2/3) for schemes of first and second order, leave d^(3/2) in the L2 norm.
-    [(CONSTANT, 0.75), (AVERAGE, 1.0)],
+    thinned([(CONSTANT, 0.75), (AVERAGE, 1.0)], 2),
 )
 def test_refining_the_step_leads_to_the_exact_motion(scheme, order):
-    errors, steps = [], [1000, 2000, 4000, 8000]
+    errors, steps = [], [500, 1000, 2000, 4000]
     motion = exact(BarProblem(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6), 0.0301)
     truth = motion.at(0.03 / 250 * np.arange(1, 251)).displacement
     for count in steps:

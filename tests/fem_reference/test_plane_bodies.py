@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from conftest import thinned
 from skfem import MeshQuad
 
 from fem_reference import Friction, Motion, PatchContact, PlaneBody, PlaneModel, Problem, Scheme, Unilateral
@@ -44,7 +45,7 @@ SHAKEN = Motion((0.0, 0.05, 0.1, 0.15), (0.0, 1e-3, -1e-3, 0.0), (0.0, 0.0, 5e-4
 
 
 @pytest.mark.parametrize(
-    ("shear", "angle", "width", "degree"), [(0.0, None, 0.25, 2), (4e8, None, 0.5, 1), (4e8, 20.0, 1.0, 2)]
+    ("shear", "angle", "width", "degree"), thinned([(4e8, 20.0, 1.0, 2), (0.0, None, 0.25, 2), (4e8, None, 0.5, 1)], 3)
 )
 def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     """Dropped with a sideways traction: the same springs, points, friction and steps from two ways to a mesh."""
@@ -56,7 +57,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     friction = None if angle is None else Friction(angle, 1e4)
     start = Unilateral(1e-3, -0.1, "glued" if shear else "frictionless", friction=friction)
-    block = solve_unilateral(problem, CONSTANT, 200, start, full=True)
+    block = solve_unilateral(problem, CONSTANT, 100, start, full=True)
     law = {"friction": None, "cohesion": 0.0}
     if angle is not None:
         law = {"friction": math.tan(math.radians(angle)), "cohesion": 1e4 * side / 2}
@@ -67,7 +68,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     law |= {"stiffness": stiffness, "shear_stiffness": shear, "gap": 1e-3}
     model = PlaneModel([body], patches(0, None, 0.0, side, 0.0, width, **law), SHAKEN)
-    found = model.history(CONSTANT, 200, model.observer((1.0, 1.0), (1.0, 1.0)))
+    found = model.history(CONSTANT, 100, model.observer((1.0, 1.0), (1.0, 1.0)))
     columns = block.columns
     place = np.abs(columns["displacement"]).max()
     force = np.abs(columns["contact_pressure"]).max()
@@ -93,7 +94,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     model = PlaneModel(bodies, contacts)
     top = 2 * height + gap[1]
     scheme = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-    still = np.zeros(501)
+    still = np.zeros(251)
     faces = [ColumnContact(y, 2 * k / width, g) for y, k, g in zip((0.0, height), stiffness, gap, strict=True)]
     strata = (Stratum(height, DENSITY, YOUNG, 0.0),) * 2
     column = ContactColumn(Ground(strata, "pressure"), "unilateral", tuple(faces), (-1.0, -1.0), GRAVITY)
@@ -102,7 +103,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     if modal:
         in_modes(monkeypatch)
     rows = np.vstack([model.observer((0.0, top), (width, top), 1)[1], model.means(1)[[0, 2]]])
-    found = model.history(scheme, 500, rows)
+    found = model.history(scheme, 250, rows)
     assert apart(found.columns["0"], truth["displacement"]) < 1e-12
     for pair, name in (((0, 1), "force_1"), ((2, 3), "force_2")):
         assert apart(found.normal[:, pair].sum(axis=1) / width, truth[name]) < 1e-12
@@ -127,7 +128,7 @@ def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
 
 
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("degree", thinned([1, 2], 2))
 def test_two_bodies_pressed_on_patches_have_a_limit(degree):
     """At the ends of a patch the pressure jumps, at corners it is singular: order 1.5 to 2 whatever the degree."""
     places = []
@@ -181,12 +182,12 @@ def ring(cells):
 def test_a_plate_with_a_hole_opens_as_kirsch_says():
     """u(a, 0) = 3 s a / E and v(0, a) = -s a / E; straight sides round the hole leave order 2."""
     errors = []
-    for cells in (4, 8, 16):
+    for cells in (4, 8):
         model = PlaneModel([ring(cells)])
         u, v = (model.observer(place, place)[i] @ model.rest for i, place in enumerate(((1.0, 0.0), (0.0, 1.0))))
         errors.append((u / 3e-3 - 1, v / -1e-3 - 1))
     orders = np.log2(np.abs(np.array(errors[:-1]) / errors[1:]))
-    assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[-1]).max() < 2e-3
+    assert np.all((orders > 1.9) & (orders < 2.5)) and np.abs(errors[-1]).max() < 8e-3
 
 
 def test_bodies_that_begin_at_rest_stay_there():

@@ -28,6 +28,7 @@ def test_what_no_small_space_holds_is_stepped(change, scheme):
     assert result.estimate is None or off <= result.estimate
 
 
+@pytest.mark.long
 def test_the_stiffness_of_slow_modes_keeps_its_digits_through_many_steps():
     """1 - tau of the slowest mode, 5e-7, has lost 5e-10 of itself; half of that, over 11 rad, is a phase of 3e-9."""
     problem, scheme, steps = make(p=1e6, elements=2, degree=1, poisson=0.3), Scheme(0.25, 0.5, 1.0, 1e-4), 8000

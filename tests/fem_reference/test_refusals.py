@@ -1,10 +1,13 @@
-"""What cannot be is refused by its field, in one table for all problems, bodies, laws and schemes of the elements."""
+"""What the elements refuse, each by its field: `refusals.toml`, and below it what takes calls to ask for."""
 
 from __future__ import annotations
 
 import math
 import re
+import tomllib
 from dataclasses import replace
+from functools import partial
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -62,57 +65,44 @@ SLIDER = sliding_block.SlidingBlock(20.0, 30.0)
 STILL = sliding_block.moved([0.0], [0.0])
 ROCKER = rocking.RockingBlock(0.8, 2.0)
 
-VALUES = [  # a sound thing, and what each of its fields may not be
-    (WAVES, {"young": [-1e9]}),
-    (BAR, {"height": [0.0], "base_stiffness": [-1.0], "gap": [-1e-3], "pressure": [INF]}),
-    (BLOCK, {"width": [0.0], "young": [-1.0], "gap": [-1e-3], "poisson": [1.0], "hypothesis": ["plain"]}),
-    (BLOCK, {"eccentricity": [1.0], "pressure": [NAN], "damping": [NAN], "stiffness": [INF], "cohesion": [1e3]}),
-    (replace(BLOCK, **RUBBING), {"friction": [90.0, -1.0], "cohesion": [-1.0], "slope": [90.0]}),
-    (replace(BLOCK, **RUBBING), {"shear_stiffness": [0.0]}),
-    (replace(BLOCK, **RIGID), {"restitution": [-0.1, 1.01, NAN]}),
-    (STANDING, {"contacts": [(), STANDING.contacts[::-1], (ColumnContact(2.0, 1e9),)], "velocities": [(1.0,)]}),
-    (BLOCKS, {"gravity": [INF], "joints": [(None,)], "law": ["glued"]}),
-    (BLOCKS.blocks[0], {"density": [-1.0], "height": [INF], "velocity": [NAN]}),
-    (BLOCKS.joints[0], {"stiffness": [INF], "gap": [-0.1], "strength": [-1.0]}),
-    (WAVE, {"length": [0.0], "modulus": [INF], "velocity": [NAN]}),
-    (PAIR, {"joints": [()], "settled": [True]}),
-    (PAIR.joints[1], {"stiffness": [-1.0], "gap": [-0.1]}),
-    (BODY, {"poisson": [0.5], "density": [0.0], "hypothesis": ["bending"], "elements": [0], "degree": [3]}),
-    (BODY, {"mesh": [MeshTri()]}),
-    (FLOOR, {"normal": [(0.0, 2.0)], "second": [0], "stiffness": [0.0], "cohesion": [1.0]}),
-    (SLIDER, {"slope": [90.0], "friction": [-1.0], "gravity": [-1.0], "cohesion": [NAN]}),
-    (ROCKER, {"width": [0.0], "height": [-1.0], "gravity": [INF], "restitution": [1.1]}),
-    (make(), {"poisson": [-1.0], "stiffness": [0.0, NAN], "shear_stiffness": [-1.0], "hypothesis": ["stress"]}),
-    (make(), {"degree": [3], "elements": [0], "top": [0], "base": [4], "vertices": [SQUARE[::-1]]}),
-    (make(), {"patch_width": [0.5]}),
-    (make(foundation="patch", patch_width=0.5), {"patch_width": [None, 1.1]}),
-    (Unilateral(), {"gap": [-1e-3], "velocity": [INF], "shear": ["rough"], "limit": [0], "cut": [1.0]}),
-    (Unilateral(), {"shortest": [0.0], "rule": ["explicit"], "friction": [Friction(30.0)]}),
-    (Friction(30.0), {"cohesion": [-1.0]}),
-    (ALPHA, {"mass_damping": [1.0]}),
-]  # fmt: skip
-
-TOGETHER = [  # what is refused, and what it does not go with
-    (BLOCK, "damping", {"damping": 1e3, **RUBBING}),
-    (BLOCK, "damping", {"damping": 1e3, "locked": True}),
-    (BLOCK, "damping", {"damping": 1e3, **RIGID}),
-    (BLOCK, "stiffness", {"restitution": 0.5}),
-    *((BLOCK, "restitution", RIGID | other) for other in (RUBBING, {"eccentricity": 0.3}, {"traction": 1e5})),
-    *((BLOCK, "restitution", RIGID | other) for other in ({"slope": 5.0}, {"base": Motion((0.0,), (0.0,), (0.0,))})),
-    (STANDING, "contacts", {"unsupported": True}),
-    (STANDING.contacts[0], "contacts", {"stiffness": -1.0}),
+SOUND = {  # what `refusals.toml` changes
+    "waves": WAVES,
+    "bar": BAR,
+    "block": BLOCK,
+    "rubbing": replace(BLOCK, **RUBBING),
+    "rigid": replace(BLOCK, **RIGID),
+    "standing": STANDING,
+    "contact": STANDING.contacts[0],
+    "blocks": BLOCKS,
+    "one_block": BLOCKS.blocks[0],
+    "joint": BLOCKS.joints[0],
+    "wave": WAVE,
+    "pair": PAIR,
+    "wave_joint": PAIR.joints[1],
+    "body": BODY,
+    "floor": FLOOR,
+    "slider": SLIDER,
+    "rocker": ROCKER,
+    "problem": make(),
+    "patches": make(foundation="patch", patch_width=0.5),
+    "law": Unilateral(),
+    "friction": Friction(30.0),
+    "averages": ALPHA,
+}
+TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
+TOGETHER = [  # what is refused, and what it does not go with, of parts that no table holds
+    (BODY, "mesh", {"mesh": MeshTri()}),
+    (BLOCK, "restitution", RIGID | {"base": Motion((0.0,), (0.0,), (0.0,))}),
+    (STANDING, "contacts", {"contacts": STANDING.contacts[::-1]}),
+    (STANDING, "contacts", {"contacts": (ColumnContact(2.0, 1e9),)}),
     (STANDING, "joints", {"ground": replace(STANDING.ground, joints=((1.0, 1e9),))}),
-    (STANDING, "settled", {"law": "frictional", "settled": True}),
+    (BLOCKS, "joints", {"joints": (None,)}),
     (BLOCKS, "joints[0].strength", {"joints": (ColumnJoint(1e9, strength=1.0), None)}),
     (BLOCKS, "joints[0].gap", {"law": "frictional", "joints": (ColumnJoint(1e9, 0.1), None)}),
-    (BLOCKS, "joints[0]", {"base": "free"}),
     (BLOCKS, "impedance", {"base": "transmitting", "joints": (None, None)}),
-    (PAIR, "bars", {"bars": (), "joints": ()}),
-    (PAIR.joints[1], "gap", {"law": "frictional", "stiffness": INF, "gap": 0.1}),
-    (PAIR.joints[1], "strength", {"law": "frictional", "strength": 0.0}),
-    (FLOOR, "gap", {"bonded": True, "gap": 0.1}),
-    (BODY, "velocity", {"spin": 1.0, "clamps": (UP,)}),
-    (make(), "poisson", {"poisson": 0.5, "hypothesis": "plane strain"}),
+    (make(), "vertices", {"vertices": SQUARE[::-1]}),
+    (SOUND["patches"], "patch_width", {"patch_width": None}),
+    (Unilateral(), "friction", {"friction": Friction(30.0)}),
 ]
 
 
@@ -120,36 +110,15 @@ def rest(steps):
     return Excitation(*[np.zeros(steps + 1)] * 4)
 
 
-def scheme(name, **options):
-    return named_scheme(name, **{"step": 1e-3} | options)
-
-
 def lines(step=AVERAGE, column=STANDING, columns=()):
     return solve_contacts(column, [1, 1], 1, step, rest(1), columns, [0.5])
 
 
 ASKS = {
-    "alpha": [lambda: ContactScheme(0.0, 0.5)],
-    "delta": [lambda: ContactScheme(0.25, 0.8)],
-    "omega": [lambda: restitution(ContactScheme(0.5, 1.0), 0.0, 0.5)],
-    "theta": [lambda: restitution(ContactScheme(0.5, 1.0), 1.0, 1.5)],
     "gg": [
-        lambda: ContactScheme(0.5, 1.0, 0.0),
-        lambda: scheme("composite", gg=1.1),
         lambda: WAVES.continuum(replace(CONSTANT, gg=0.0), 10),
         lambda: solve_layers(ON_WAVES, replace(AVERAGE, gg=0.0), 10, rest, ("displacement",)),
     ],
-    "name": [lambda: scheme("bathe"), lambda: scheme("newmark")],
-    "rho_inf": [
-        lambda: scheme("chung-hulbert"),
-        lambda: scheme("wbz", rho_inf=1.01),
-        lambda: scheme("hht", rho_inf=0.49),
-        lambda: scheme("composite", rho_inf=NAN),
-        lambda: scheme("leapfrog", rho_inf=1.0),
-    ],
-    "split": [lambda: scheme("composite", split=1.0), lambda: scheme("chung-hulbert", rho_inf=0.5, split=0.5)],
-    "start": [lambda: scheme("leapfrog", start="zero")],
-    "step": [lambda: scheme("composite", step=0.0)],
     "scheme": [
         lambda: WAVES.solve(EXPLICIT, 10),
         lambda: WAVES.solve(replace(EXPLICIT, alpha=1 / 6, delta=0.5), 10),
@@ -171,20 +140,14 @@ ASKS = {
         lambda: solve_unilateral(make(elements=2), CONSTANT, 0),
     ],
     "columns": [
-        *(lambda name=name: lines(columns=(name,)) for name in ("force_1", "turn_1", "velocity_2", "velocity")),
         lambda: solve(make(elements=2), CONSTANT, 1, columns=("strain_x",)),
     ],
     "fields": [lambda: solve(make(elements=2), CONSTANT, 1, fields="block.txt")],
     "problem": [
-        lambda: OpeningBar.of(make(poisson=0.1)),
-        lambda: OpeningBar.of(make(traction=1.0)),
-        lambda: OpeningBar.of(make(foundation="corner")),
         lambda: OpeningBar.of(make(motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))),
-        lambda: OpeningBar.of(make(((0, 0), (2, 0), (2, 2), (0.1, 2)))),
     ],
     "gap": [lambda: OpeningBar.of(make(), gap=-1.0)],
     "velocity": [lambda: OpeningBar.of(make(), velocity=NAN)],
-    "friction": [lambda: Friction(-1.0), lambda: Friction(90.0)],
     "end": [
         lambda: bar_events.solve(BAR, INF),
         lambda: block_events.solve(BLOCK, 0.0),
@@ -206,16 +169,7 @@ ASKS = {
     ],
     "drive": [lambda: bars_events.solve(replace(PAIR, top=ricker(1.0, 2.0)), 1.0)],
     "tilt": [lambda: ROCKER.quarter_period(1.0), lambda: rocking.solve(ROCKER, 1.0, 2.0)],
-    "recorded": [lambda: sliding_block.recorded([0, 1], [1]), lambda: sliding_block.recorded([0.5, 1], [1, 1])],
-    "moved": [lambda: sliding_block.moved([0, 0], [1, 1])],
     "motion": [
-        lambda: Motion((), (), ()),
-        lambda: Motion((0.0, 1.0), (0.0,), (0.0, 0.0)),
-        lambda: Motion((0.0, 1.0), (0.0, NAN), (0.0, 0.0)),
-        lambda: Motion((0.0, 1.0), (0.0, 0.0), (INF, 0.0)),
-        lambda: Motion((0.0, NAN), (0.0, 0.0), (0.0, 0.0)),
-        lambda: Motion((0.0, 0.0), (0.0, 0.0), (0.0, 0.0)),
-        lambda: Motion((1.0, 0.0), (0.0, 0.0), (0.0, 0.0)),
         lambda: solve_unilateral(make(motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1),
     ],
     "vertices": [lambda: solve(make(((0, 0), (2, 0), (3, 1), (2, 2), (0, 2)), top=3), CONSTANT, 1)],
@@ -235,9 +189,24 @@ ASKS = {
     "rollers": [lambda: PlaneModel([replace(BODY, rollers=((UP, "z"),))])],
 }  # fmt: skip
 
+ASKED = {  # by the names and values of a row of `refusals.toml`
+    "scheme": lambda **given: named_scheme(**{"step": 1e-3} | given),
+    "motion": Motion,
+    "map": lambda omega=1.0, theta=0.5, **given: restitution(
+        ContactScheme(**{"alpha": 0.5, "delta": 1.0} | given), omega, theta
+    ),
+    "opening_bar": lambda **given: OpeningBar.of(make(**given)),
+    "angle": Friction,
+    "recorded": sliding_block.recorded,
+    "moved": sliding_block.moved,
+    "lines": lambda name: lines(columns=(name,)),
+}
 CASES = [(field, lambda t=t, change=change: replace(t, **change)) for t, field, change in TOGETHER]
-for sound, fields in VALUES:
-    CASES += [(f, lambda t=sound, f=f, v=v: replace(t, **{f: v})) for f, values in fields.items() for v in values]
+for asked, refused in TABLE.items():
+    ask = ASKED.get(asked) or partial(replace, SOUND[asked])
+    for field, rows in refused.items():  # rows of what is given, or values of the field
+        given = [row if isinstance(row, dict) else {field: row} for row in rows]
+        CASES += [(field, partial(ask, **one)) for one in given]
 CASES += [(field, ask) for field, asks in ASKS.items() for ask in asks]
 
 

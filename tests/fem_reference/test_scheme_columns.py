@@ -1,6 +1,7 @@
 """Columns under schemes of stages: steps settle in the frequency response."""
 
 import math
+from itertools import product
 
 import numpy as np
 import pytest
@@ -31,10 +32,10 @@ def rest(scheme, steps, **parts):
     })  # fmt: skip
 
 
-@pytest.mark.parametrize("base", ["half-space", "prescribed"])
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 5))
-def test_steps_settle_in_the_frequency_response(name, options, base):
+@pytest.mark.parametrize(("case", "base"), thinned(product(EVERY, ["half-space", "prescribed"]), 14))
+def test_steps_settle_in_the_frequency_response(case, base):
     """A wave below and a pressure on top that vibrate; what begins dies in the half-space, or by gg."""
+    name, options = case
     explicit = name == "leapfrog"
     if explicit and base == "half-space":
         return

@@ -3,7 +3,7 @@
 import json
 
 import pytest
-from conftest import SCENE, refused, typed
+from conftest import SCENE, typed
 
 from validation.errors import InputError
 from validation.gates.changes import changes, markdown, read_verdicts
@@ -69,8 +69,8 @@ def test_only_what_differs_is_told_and_the_worse_first():
 
 
 def test_a_summary_tells_why_a_gate_was_not_run_before_the_reason_of_its_band():
-    given = verdict("a", "NOT RUN", None) | {"why": "fenicsx is missing"}
-    assert "| `a` | - | 0 .. 1 | fenicsx is missing |" in markdown([given])
+    given = verdict("a", "NOT RUN", None) | {"why": "missing"}
+    assert "| `a` | - | 0 .. 1 | missing |" in markdown([given])
     assert "| `a` | 2 | 0 .. 1 | a \\| b |" in markdown([verdict("a", "FAIL", 2.0)])
 
 
@@ -78,12 +78,10 @@ def test_diff_is_a_table_and_a_status(tmp_path):
     a = write(tmp_path / "a.json", verdict("one", "PASS"), verdict("two", "FAIL"))
     b = write(tmp_path / "b.json", verdict("one", "FAIL"), verdict("two", "PASS"))
     done = typed("diff", a, b)
-    assert done.returncode == 1 and "2 gates differ: 1 worse, 1 better" in done.stdout
-    assert any(line.split()[:3] == ["worse", "s", "one"] for line in done.stdout.splitlines())
-    done = typed("diff", a, a)
-    assert (done.returncode, done.stdout.strip()) == (0, "no gate differs")
-    (tmp_path / "c.json").write_text('{"a": 1}')
-    assert "must be a list of verdicts" in refused("diff", a, tmp_path / "c.json")
+    assert done.returncode == 1
+    found = [line.split()[:3] for line in done.stdout.splitlines()]
+    assert ["worse", "s", "one"] in found and ["better", "s", "two"] in found
+    assert typed("diff", a, a).returncode == 0
     assert typed("diff", a, tmp_path / "absent.json").returncode == 2
 
 
@@ -97,14 +95,9 @@ def test_a_run_fails_only_on_what_got_worse_and_leaves_a_summary(scene_file, tmp
     assert "| `small:dda-bar:displacement.l2` |" in text and r"too \| tight" in text and "baseline" not in text
     base.write_bytes((tmp_path / "r/verdicts.json").read_bytes())
     done = typed("run", scene_file, *options, "--baseline", base)
-    assert done.returncode == 0 and "no gate differs" in done.stdout and "Nothing changed." in summary.read_text()
-    scene_file.write_text(SCENE + GATE + 'band = [0.0, 1.0]\nreason = "wide"\n')
+    assert done.returncode == 0 and "PASS →" not in summary.read_text()
+    write(base, json.loads(base.read_text())[0] | {"verdict": "PASS", "value": 0.0})
     done = typed("run", scene_file, *options, "--baseline", base)
-    assert done.returncode == 1 and "1 worse" in done.stdout, "a band that lets pass more is no better gate"
-    good = tmp_path / "good.json"
-    good.write_bytes((tmp_path / "r/verdicts.json").read_bytes())
-    scene_file.write_text(SCENE + GATE + 'band = [0.0, 1e-3]\nreason = "tight again"\n')
-    done = typed("run", scene_file, *options, "--baseline", good)
     assert done.returncode == 1 and "1 worse" in done.stdout
     assert "| worse | `small:dda-bar:displacement.l2` | PASS → FAIL |" in summary.read_text()
 
@@ -115,6 +108,9 @@ def test_other_studies_of_a_baseline_do_not_count_as_lost():
 
 
 def test_unreadable_verdicts_are_named(tmp_path):
-    (tmp_path / "verdicts.json").write_text("[")
-    with pytest.raises(InputError, match="must be JSON"):
-        read_verdicts(tmp_path)
+    path = tmp_path / "verdicts.json"
+    for text, rule in (("[", "JSON"), ('{"a": 1}', "list")):
+        path.write_text(text)
+        with pytest.raises(InputError, match=rule) as error:
+            read_verdicts(tmp_path)
+        assert error.value.source == path

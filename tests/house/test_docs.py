@@ -26,9 +26,11 @@ from validation.solvers.names import check_names
 from validation.suite.matrix import phenomena, phenomenon, verify
 
 DOCS = ROOT / "docs"
-PAGES = ("extending.md", "columns.md", "methods.md", "plane.md")
+PAGES = ("columns.md", "methods.md")
 # Pages that take seconds each.
 LONG = (
+    "extending.md",
+    "plane.md",
     "subblocks.md",
     "stacks.md",
     "contact.md",
@@ -207,13 +209,14 @@ def test_the_numbers_of_the_paper_are_those_of_the_pages_that_it_names():
     paper = " ".join((DOCS / "paper/paper.md").read_text(encoding="utf-8").split())
     verdicts = re.findall(r"^## C\d+: (confirmed(?: under a condition)?|refuted)", page_text("claims.md"), re.M)
     counts = [verdicts.count(word) for word in ("confirmed", "confirmed under a condition", "refuted")]
-    assert "of {} statements {} are confirmed, {} hold under a condition".format(len(verdicts), *counts[:2]) in paper
-    assert f"{counts[2]} are refuted" in paper
+    stated = r"of (\d+) statements (\d+) are confirmed, (\d+) hold under a condition.*? (\d+) are refuted"
+    assert [int(count) for count in re.search(stated, paper).groups()] == [len(verdicts), *counts]
     speeds = dict(re.findall(r"^\| ([^|]+) \|[^|]+\|[^|]+\|[^|]+\| \*\*(\d+)\*\*", page_text("speed.md"), re.M))
+    faster = re.findall(r"about (\d+) times faster", paper)
     for name in ("dda, 1,000,000 steps", "fem, 64 x 64, mu = 0.25, 10,000 steps"):  # measured anew by `make bench`
-        assert any(0.5 < int(times) / int(speeds[name]) < 2 for times in re.findall(r"about (\d+) times faster", paper))
+        assert any(0.5 < int(times) / int(speeds[name]) < 2 for times in faster)
     programs = {path.stem for path in (ROOT / "examples/peers/docs").glob("*.md")} - {"polygons"}
-    assert "adapters for fourteen" in paper and len(programs) == 14
+    assert "fourteen" in paper and len(programs) == 14
     differences = "by 18, 20 and 32 % in displacement and by 27, 90 and 189 % in contact pressure"
     assert differences in paper and differences in " ".join(page_text("exact.md").split())
 

@@ -19,20 +19,20 @@ def portable(monkeypatch):
 def test_the_lowest_versions_are_those_that_are_declared(portable):
     lowest, newest = portable.requirements(lowest=True), portable.requirements(lowest=False)
     assert len(lowest) == len(newest) > 12
-    assert all("==" in text and ">=" not in text for text in lowest), "a bound that the lowest round cannot read"
+    assert all("==" in text and ">=" not in text for text in lowest)
     assert any(text.startswith("numpy>=") for text in newest)
 
 
 @pytest.mark.long
 def test_the_rounds_reach_every_kernel_version_and_the_wheel(portable, tmp_path):
     names = [one.name for one in (*portable.versions(False, tmp_path), *portable.wheel(False, tmp_path))]
-    assert names[0].startswith("lowest versions") and names[1].startswith("newest versions") and "wheel" in names[-1]
+    assert [name.split()[0] for name in names[:2]] == ["lowest", "newest"] and "wheel" in names[-1]
     assert sys.version_info[:2] in portable.pythons()
 
 
 def test_a_red_round_is_named_logged_and_a_status(portable, tmp_path, monkeypatch, capsys):
     good = portable.Round("good", [[sys.executable, "-c", "print('fine')"]])
-    bad = portable.Round("bad", [[sys.executable, "-c", "print('ERROR why'); raise SystemExit(3)"], ["never"]])
+    bad = portable.Round("bad", [[sys.executable, "-c", "print('ERROR_WHY'); raise SystemExit(3)"], ["never"]])
     monkeypatch.setattr(portable, "kernels", lambda short: [good, portable.Round("same", [])])
     monkeypatch.setattr(portable, "versions", lambda short, work: [bad])
     monkeypatch.setattr(portable, "wheel", lambda short, work: [])
@@ -44,8 +44,8 @@ def test_a_red_round_is_named_logged_and_a_status(portable, tmp_path, monkeypatc
         statuses[only] = stopped.value.code
     assert statuses == {"": 1, "good": 0, "same": 1, "nothing": 1}
     printed = capsys.readouterr().out
-    assert "2 rounds, 1 red: bad" in printed and "ERROR why" in printed and str(tmp_path / "bad.log") in printed
-    assert "ERROR why" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
+    assert "1 red: bad" in printed and "ERROR_WHY" in printed and str(tmp_path / "bad.log") in printed
+    assert "ERROR_WHY" in (tmp_path / "bad.log").read_text() and "fine" in (tmp_path / "good.log").read_text()
 
 
 def commit(repository):
@@ -81,7 +81,7 @@ def test_a_release_with_placeholders_or_without_its_tag_is_refused(dist, tmp_pat
         dist.main()
     complained = capsys.readouterr().err
     assert stopped.value.code == 2 and not (tmp_path / "dist").exists()
-    assert "Repository is a placeholder" in complained and "no tag v3.2.1" in complained and "Issues" not in complained
+    assert "Repository" in complained and "v3.2.1" in complained and "Issues" not in complained
     tag = ["git", "-c", "user.name=x", "-c", "user.email=x@example.org", "tag", "-a", "v3.2.1", "-m", "x"]
     subprocess.run(tag, cwd=tmp_path, check=True)
     assert dist.release_problems("3.2.1", []) == []
@@ -97,9 +97,6 @@ def test_archives_that_lack_something_are_told(dist, tmp_path):
             wheel.writestr(f"{folder}/file", "x")
         for page in set(dist.ROOT.glob("docs/*.md")) - {dist.ROOT / "docs/judge.md"}:
             wheel.writestr(f"x-1.data/data/share/doc/dda-validation/{page.name}", "x")
-    assert dist.missing_files(tmp_path / "x.tar.gz", tmp_path / "x.whl") == [
-        f"x.tar.gz lacks {dist.REQUIRED[0]}",
-        "x.whl lacks judge.md",
-        "x.whl holds tests",
-        "x.whl lacks validation",
-    ]
+    missing = [f"x.tar.gz lacks {dist.REQUIRED[0]}"]
+    missing += ["x.whl lacks judge.md", "x.whl holds tests", "x.whl lacks validation"]
+    assert dist.missing_files(tmp_path / "x.tar.gz", tmp_path / "x.whl") == missing

@@ -11,6 +11,7 @@ from validation.entry.siblings import HOME, PACKAGES, shadowed
 
 ENTRY = HOME / "validation/entry"
 PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.plugin"]
+IN_THE_WAY = "in the way of the package"
 # What starts first, its status, and the package that a folder has the name of; each package is tried below as well.
 STARTS = {
     "command": (["-m", "dda_validation", "list"], 2, "dda"),
@@ -86,14 +87,14 @@ def test_the_folder_is_named_and_nothing_runs(name, place, installed):
     done = start(words, place, place, installed)
     output = done.stdout + done.stderr
     assert done.returncode == status, output
-    assert f"{folder} is in the way of the package {package} of dda-validation" in output
+    assert f"{folder} is {IN_THE_WAY} {package} of dda-validation" in output
     assert "Traceback" not in output
 
 
 def test_the_first_name_from_python_finds_out(place):
     folder = add_package(place, "fem_reference")
     done = start(["-c", "import validation\nfrom validation import solve"], place, place)
-    assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is in the way of")
+    assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is {IN_THE_WAY} ")
 
 
 @pytest.mark.parametrize("package", PACKAGES[:1])
@@ -101,7 +102,7 @@ def test_a_folder_without_code_hides_an_editable_install(package, place, install
     (place / package).mkdir()
     code = EDITABLE.format(home=str(HOME), place=str(place), entry=str(installed))
     done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.stdout.startswith(f"{place / package} is in the way of the package {package}"), done.stderr
+    assert done.stdout.startswith(f"{place / package} is {IN_THE_WAY} {package}"), done.stderr
 
 
 def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place, installed):

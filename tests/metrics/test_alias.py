@@ -2,6 +2,7 @@
 
 import cmath
 import math
+import re
 
 import pytest
 from conftest import typed
@@ -23,7 +24,6 @@ def figure(step, gg=1.0):
 def seen(scene, solver):
     prepared = get_solver(solver).prepare(scene)
     history = solve(scene, solver).history
-    assert history is not None
     return Measurable(history, scene.time.step, prepared.static(), prepared.modes())
 
 
@@ -57,8 +57,11 @@ def test_a_motion_that_does_not_swing_has_no_alias():
 
 def test_damping_and_the_reports_tables_say_so(tmp_path):
     assert damping(figure(0.01)).alias is None  # nothing of references was asked for
-    shown = typed("advise", "damping", "figures-3-4", "--set", "time.step=0.01", cwd=tmp_path).stdout
-    assert "alias: the continuum's first mode, 327.682 rad/s, lies beyond pi / dt = 314.159 rad/s" in shown
-    assert "300.636 rad/s instead" in shown
-    assert "alias" not in typed("advise", "damping", "figures-3-4", "--set", "time.step=0.002", cwd=tmp_path).stdout
+    shown, fine = (
+        typed("advise", "damping", "figures-3-4", "--set", f"time.step={step}", cwd=tmp_path).stdout
+        for step in (0.01, 0.002)
+    )
+    (line,) = (line for line in shown.splitlines() if line.startswith("alias"))
+    assert re.findall(r"\d+\.\d+", line) == ["327.682", "314.159", "300.636"]
+    assert "alias" not in fine
     assert cell(ALIAS) == "alias" and "beyond π/Δt" in word_notes([ALIAS])[0]

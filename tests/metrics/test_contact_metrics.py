@@ -13,6 +13,7 @@ from validation.engine.measure import execute
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
+from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.contact import ContactRecord, rebounds_of_steps
 from validation.runs.history import History
 from validation.runs.modes import Switch
@@ -92,11 +93,11 @@ def test_slip_and_changes_of_state_are_counted():
     found = measured(replace(MADE, slip=np.array([0.0, 1e-3, 2e-3, 5e-3])))
     assert found["contact.slip"] == 5e-3
     assert found["contact.slip_rate"] == pytest.approx(3e-3 / STEP)  # of the last of four steps alone
-    assert measured(MADE)["contact.slip"] == measured(MADE)["contact.slip_rate"] == "not reported"
+    assert measured(MADE)["contact.slip"] == measured(MADE)["contact.slip_rate"] == NOT_REPORTED
     states = {"state_m": np.array([1.0, 2.0, 2.0, 0.0]), "state_n": np.array([1.0, 1.0, -2.0, 1.0])}
     seen = solo(Measurable(History(np.arange(4.0), states), STEP, contact=MADE), ("switches",))
     assert seen["contact.state_changes"] == 4
-    assert measured(MADE)["contact.state_changes"] == "not reported"
+    assert measured(MADE)["contact.state_changes"] == NOT_REPORTED
 
 
 def test_what_a_slope_and_its_discount_give_by_hand():
@@ -113,7 +114,7 @@ def test_corners_that_switch_together_open_once():
     switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
     found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
     told = ("switches.count", "switches.first_opening", "switches.second_opening", "switches.second_closing")
-    assert [found[name] for name in told] == [4.0, 0.5, 1.5, "undefined"]
+    assert [found[name] for name in told] == [4.0, 0.5, 1.5, UNDEFINED]
 
 
 def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too():
@@ -124,12 +125,12 @@ def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too():
 
 
 def test_what_is_not_reported_or_has_no_meaning_says_so():
-    assert {measured(None)[key] for key in EXPECTED} == {"not reported"}
+    assert {measured(None)[key] for key in EXPECTED} == {NOT_REPORTED}
     bare = replace(MADE, velocity=None, energies={}, solves=None, cuts=None)
-    assert measured(bare)["contact.restitution"] == measured(bare)["energy.rise"] == "not reported"
+    assert measured(bare)["contact.restitution"] == measured(bare)["energy.rise"] == NOT_REPORTED
     flying = replace(MADE, force=0 * MADE.force, rebounds=())
-    assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == "undefined"
-    assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == "undefined"
+    assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == UNDEFINED
+    assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == UNDEFINED
 
 
 def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it():
@@ -173,7 +174,7 @@ def test_the_horizon_ends_where_switches_have_amplified_rounding():
 
 def test_histories_are_gated_up_to_the_horizon(tmp_path):
     rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
-            (("dda", 0.3), ("fem", 0.2), ("block-events", "not reported"))}  # fmt: skip
+            (("dda", 0.3), ("fem", 0.2), ("block-events", NOT_REPORTED))}  # fmt: skip
     finished = Finished(rows, Results(tmp_path))
     gate = Gate("s", ("dda", "fem"), "displacement.l2", 0.0, 1.0, "why")
     assert compared_until(gate, [("s", "dda"), ("s", "fem")], finished) == 0.2

@@ -1,6 +1,7 @@
 """Metrics against signals whose answers are known."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from validation.metrics.columns import first_peak, settling_step
 from validation.metrics.measurable import Measurable
 from validation.metrics.modes import operator_damping, operator_frequency
 from validation.metrics.pairs import relative_l2, relative_max
-from validation.metrics.values import NOT_REPORTED, ratio
+from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.run import Outcome
@@ -22,15 +23,15 @@ def test_norms_neither_overflow_nor_vanish():
     for scale in (1.0, 1e300, 1e-300):
         assert relative_l2(1.5 * x * scale, x * scale) == pytest.approx(0.5, rel=1e-15)
         assert relative_max(x * scale, 0.5 * x * scale) == pytest.approx(1.0, rel=1e-15)
-    assert relative_l2(x, y) == relative_max(y, y) == "undefined"
+    assert relative_l2(x, y) == relative_max(y, y) == UNDEFINED
 
 
 def test_settling_step_counts_from_one():
     x = np.array([0.5, 1.2, 1.005, 0.98, 1.009, 1.0])
     assert settling_step(x, 1.0) == 5
-    assert settling_step(x[:4], 1.0) == "undefined"
+    assert settling_step(x[:4], 1.0) == UNDEFINED
     assert settling_step(np.ones(3), 1.0) == 1
-    assert settling_step(x, 0.0) == "undefined"
+    assert settling_step(x, 0.0) == UNDEFINED
 
 
 def test_first_peak_is_the_top_of_the_first_excursion_beyond_static():
@@ -62,7 +63,7 @@ def test_a_swing_needs_twice_as_many_samples_as_powers():
     n = np.arange(40)
     signal = 2.0 + np.cos(0.3 * n)
     found = pencil.swing(signal[:16], 0.5)
-    assert found.pole is not None and found.pole.frequency == pytest.approx(0.6) and found.static == pytest.approx(2.0)
+    assert found.pole.frequency == pytest.approx(0.6) and found.static == pytest.approx(2.0)
     assert pencil.swing(signal[:15], 0.5) == pencil.swing(np.zeros(40), 0.5) == pencil.Swing(None, None)
 
 
@@ -73,18 +74,18 @@ def test_damping_of_an_operator_by_kind_of_roots():
     assert operator_frequency((root, root.conjugate()), 0.1) == pytest.approx(5.0, rel=1e-14)
     a, b = 0.3, 0.7  # decay rates of an overdamped mode: xi = (a + b) / (2 sqrt(a b))
     assert operator_damping((math.exp(-a), math.exp(-b))) == pytest.approx(0.5 / math.sqrt(0.21), rel=1e-14)
-    assert operator_damping((-0.5, 0.2)) == "undefined"
-    assert operator_frequency((-0.5, 0.2), 1.0) == "undefined"
+    assert operator_damping((-0.5, 0.2)) == UNDEFINED
+    assert operator_frequency((-0.5, 0.2), 1.0) == UNDEFINED
 
 
 def test_absent_and_undefined_are_different_things():
     flat = Measurable(History(np.arange(1.0, 9.0), {"displacement": np.zeros(8)}), 1.0, {"displacement": 0.0}, ())
     found = solo(flat)
-    assert found["displacement.settling_step"] == found["displacement.peak"] == "undefined"
-    assert found["pressure.final"] == found["mode1.frequency"] == "not reported"
-    assert pair("pressure.l2", flat.history, flat.history) == "not reported"
-    assert pair("displacement.l2", flat.history, flat.history) == "undefined"
-    assert ratio("undefined", 1.0) == "undefined"
+    assert found["displacement.settling_step"] == found["displacement.peak"] == UNDEFINED
+    assert found["pressure.final"] == found["mode1.frequency"] == NOT_REPORTED
+    assert pair("pressure.l2", flat.history, flat.history) == NOT_REPORTED
+    assert pair("displacement.l2", flat.history, flat.history) == UNDEFINED
+    assert ratio(UNDEFINED, 1.0) == UNDEFINED
 
 
 @pytest.mark.parametrize(
@@ -151,6 +152,19 @@ def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps():
     history = History(n + 1.0, {"displacement": 1 + 0.1 * growth**n * np.cos(0.5 * n)})
     m = Measurable(history, 1.0, {"displacement": 1.0}, (Mode(0.5, 1.0, (root, root.conjugate())),))
     assert solo(m, ("energy",))["energy.drift"] == pytest.approx(2 * 6000e-6, rel=1e-2)  # 6000 steps between the two
+    short = History(n[:3000] + 1.0, {"displacement": np.cos(0.5 * n[:3000])})
+    assert solo(replace(m, history=short), ("energy",))["energy.drift"] == UNDEFINED
+    assert solo(replace(m, modes=()), ("energy",))["energy.drift"] == NOT_REPORTED
+
+
+@pytest.mark.parametrize(
+    ("pressure", "when", "total"),
+    [([1.0, -0.5, -2.0, 3.0], 1.5, 1.0), ([1.0, -1e-16, 2.0, 4.0], UNDEFINED, UNDEFINED), (None, *2 * [NOT_REPORTED])],
+)
+def test_tension_has_an_instant_and_a_duration(pressure, when, total):
+    columns = {"displacement": np.ones(4)} if pressure is None else {"contact_pressure": np.array(pressure)}
+    found = solo(Measurable(History(0.5 * np.arange(1.0, 5.0), columns), 0.5))
+    assert (found["pressure.minimum_time"], found["pressure.tension_time"]) == (when, total)
 
 
 def test_the_horizon_is_the_last_step_that_two_codes_agree_at():

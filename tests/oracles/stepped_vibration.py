@@ -67,3 +67,10 @@ def fit(seen, w, times):
     wave = np.column_stack([np.cos(w * times), -np.sin(w * times), np.ones_like(times)])
     real, imaginary, _ = np.linalg.lstsq(wave, seen, rcond=None)[0]
     return np.asarray(real + 1j * imaginary)
+
+
+def two_unknowns(block, stiffness):
+    """Return both axial frequencies [rad/s] of a rectangle at mu = 0, of (v, ey): springs stretch by v - h ey / 2."""
+    (w, h), m, p = block.rectangle, block.mass, stiffness
+    K = np.array([[2 * p, -p * h], [-p * h, block.young * w * h + p * h * h / 2]])
+    return np.sqrt(eigh(K, m * np.diag([1, h * h / 12]), eigvals_only=True))

@@ -24,10 +24,12 @@ from validation.suite.judging import judged_sets
 
 
 def defects_of(root, **options):
-    """Return the defects of a directory, by the path below it."""
+    """Return the defects of a directory: the place, by the path below it, the field and the value."""
     with pytest.raises(InputError) as caught:
         read_sets(root, **options)
-    return [str(one).replace(f"{root}/", "") for one in DefectsError.of(caught.value).defects]
+    defects = DefectsError.of(caught.value).defects
+    assert not any("\n" in str(one) for one in defects)
+    return [(str(one.source).removeprefix(f"{root}/"), one.field, one.value) for one in defects]
 
 
 def names_of(sets):
@@ -52,8 +54,8 @@ def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
     answered(tmp_path, names=("locked",))
     rows = [line.rsplit(",", 1)[0] for line in (tmp_path / "locked.csv").read_text().splitlines()]
     (tmp_path / "locked.csv").write_text("\n".join(rows))
-    (line,) = defects_of(tmp_path)
-    assert line.startswith("locked.csv:1:22: header: contact_pressure_Pa is required")
+    ((place, field, _),) = defects_of(tmp_path)
+    assert (place, field) == ("locked.csv:1:22", "header")
     (tmp_path / FILE).write_text(json.dumps(STATED | {"not_reported": {"locked": ["contact_pressure_Pa"]}}))
     ((answer,),) = [one.answers for one in read_sets(tmp_path)]
     assert list(answer.history.columns) == ["displacement"]
@@ -66,7 +68,7 @@ def test_an_answer_to_a_problem_that_changed_is_stale_and_the_others_stand(tmp_p
     answered(tmp_path, pack="1.9")
     (tmp_path / "locked.csv").write_text("what it asked then is not known")
     ((stale, *others),) = [one.answers for one in read_sets(tmp_path)]
-    assert stale.name == "locked" and stale.history is None and "it answers pack 1.9" in stale.reason
+    assert stale.name == "locked" and stale.history is None and "1.9" in stale.reason
     assert [answer.status for answer in others] == [None, None]
 
 
@@ -86,30 +88,27 @@ MISTAKES = {
     "not a number": (
         "locked.csv",
         by_lines(lambda lines: [*lines[:3], "0.006,nan,0", *lines[4:]]),
-        "locked.csv:4:7: displacement_m: must be a finite number, got nan",
+        ("locked.csv:4:7", "displacement_m", "nan"),
     ),
     "a comma after the last entry": (
         FILE,
         lambda text: text.replace('"CC0-1.0"', '"CC0-1.0",'),
-        f"{FILE}:14:1: must be JSON: ",
+        (f"{FILE}:14:1", None, None),
     ),
     "a table that is missing": (
         FILE,
         lambda text: text.replace("0.002", '{"spall": 0.002}'),
-        f"{FILE}:9:13: step_s: spall: must have a table spall.csv, got no such file",
+        (f"{FILE}:9:13", "step_s", "no such file"),
     ),
 }
 
 
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_is_named_with_line_and_character(mistake, tmp_path):
-    file, change, said = MISTAKES[mistake]
+    file, change, defect = MISTAKES[mistake]
     answered(tmp_path, names=("locked",))
-    read_sets(tmp_path)
     spoilt(tmp_path, file, change)
-    lines = defects_of(tmp_path)
-    assert any(said in line for line in lines), lines
-    assert all("\n" not in line for line in lines)
+    assert defect in defects_of(tmp_path)
 
 
 def test_all_defects_of_all_files_are_listed_at_once(tmp_path):
@@ -121,19 +120,18 @@ def test_all_defects_of_all_files_are_listed_at_once(tmp_path):
     (other / "Locked.csv").write_text("")
     (tmp_path / "forgotten").mkdir()
     (tmp_path / "forgotten" / "locked.csv").write_text("")
-    lines = defects_of(tmp_path)
-    starts = ("coarse/locked.csv:4:7", "coarse/rocking.csv:1:8", f"fine/{FILE}:1:1: who", "fine/Locked.csv: ")
-    for start in (*starts, f"forgotten/{FILE}: is required"):
-        assert sum(line.startswith(start) for line in lines) == 1, (start, lines)
-    assert len(lines) == len(starts) + 1  # `again` is the same as `coarse` only where that can be read
+    expected = {"coarse/locked.csv:4:7", "coarse/rocking.csv:1:8", f"fine/{FILE}:1:1", "fine/Locked.csv"}
+    found = [place for place, *_ in defects_of(tmp_path)]
+    assert set(found) == expected | {f"forgotten/{FILE}"}
+    assert len(found) == len(expected) + 1  # `again` is the same as `coarse` only where that can be read
 
 
 def test_a_layout_is_where_its_metadata_say(tmp_path):
     answered(tmp_path / "bob-s-code-co/1.0/default", names=("locked",))
     assert len(read_sets(tmp_path, in_layout=True)) == 1
     answered(tmp_path / "bob-s-code-co/1.1/default", names=("locked",), version="1.2")
-    (line,) = defects_of(tmp_path, in_layout=True)
-    assert line.startswith("bob-s-code-co/1.1/default: must lie in bob-s-code-co/1.2/default")
+    ((place, *_),) = defects_of(tmp_path, in_layout=True)
+    assert place == "bob-s-code-co/1.1/default"
 
 
 @pytest.mark.parametrize(
@@ -157,7 +155,7 @@ def test_an_answer_is_kept_once_and_not_overwritten(tmp_path):
     kept = (place / "locked.csv").read_bytes()
     answered(tmp_path / "another", settings_name="another", names=QUICK[:1])
     answered(mine, factor=1.02, names=QUICK[:1])
-    with pytest.raises(InputError, match="holds another answer, which is not overwritten"):
+    with pytest.raises(InputError, match="another"):
         keep([*read_sets(tmp_path / "another"), *read_sets(mine)], layout)
     assert (place / "locked.csv").read_bytes() == kept
     assert [path.name for path in place.parent.iterdir()] == ["default"]  # neither is half of them written
@@ -187,28 +185,28 @@ def scaled(column, factor):
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "place", "field", "value"),
     [
-        (lambda r: [[*r[0][:2], "speed"], *r[1:]], "1:23: header: must be among time_s, displacement_m,"),
-        (lambda r: [[*row, row[1]] for row in r], "1:43: header: displacement_m must appear once"),
-        (lambda r: r[1:], "1:1: header: must be the header time_s,displacement_m,contact_pressure_Pa, got numbers"),
-        (lambda r: [r[0], *([repr(float(row[0]) + 1e-3), *row[1:]] for row in r[1:])], "all are 0.001 s late"),
-        (lambda r: [r[0], ["0.002", "", "0"], *r[2:]], "2:7: displacement_m: must be a number, got nothing"),
-        (lambda r: [r[0], ["0.002", "1_0", "0"], *r[2:]], "2:7: displacement_m: must be a number, got '1_0'"),
-        (lambda r: [r[0], ["0.002", "1e400", "0"], *r[2:]], "2:7: displacement_m: must be a finite number, got 1e400"),
-        (lambda r: [*r, *r[1:]], "52:1: time: must have 50 rows, 0.002 s apart, got 52 or more"),
-        (lambda r: [r[0], *r[:0:-1]], "2:1: time: must be 0.002, got 0.1"),
-        (lambda r: r[:-1], "got 49; t = 0.1 s is the first that is missing"),
-        (lambda r: [*r[:3], r[3][:2], *r[4:]], "4:28: must have 3 cells, got 2"),
-        (lambda r: [], "must be a table of numbers under a header, got an empty file"),
-        (scaled(1, 1e3), "1:8: displacement_m: wrong units: it is 1000 times what is expected in SI, mm?"),
-        (scaled(2, 1e-6), "1:23: contact_pressure_Pa: wrong units: it is 1e-06 times what is expected in SI, MPa?"),
-        (scaled(1, -1.0), "1:8: displacement_m: wrong sign: it is the negative of what is expected"),
+        (lambda r: [[*r[0][:2], "speed"], *r[1:]], ":1:23", "header", "'speed'"),
+        (lambda r: [[*row, row[1]] for row in r], ":1:43", "header", None),
+        (lambda r: r[1:], ":1:1", "header", "numbers"),
+        (lambda r: [r[0], *([repr(float(row[0]) + 1e-3), *row[1:]] for row in r[1:])], ":2:1", "time", "0.003"),
+        (lambda r: [r[0], ["0.002", "", "0"], *r[2:]], ":2:7", "displacement_m", "nothing"),
+        (lambda r: [r[0], ["0.002", "1_0", "0"], *r[2:]], ":2:7", "displacement_m", "'1_0'"),
+        (lambda r: [r[0], ["0.002", "1e400", "0"], *r[2:]], ":2:7", "displacement_m", "1e400"),
+        (lambda r: [*r, *r[1:]], ":52:1", "time", "52 or more"),
+        (lambda r: [r[0], *r[:0:-1]], ":2:1", "time", "0.1"),
+        (lambda r: r[:-1], ":50:1", "time", "49"),
+        (lambda r: [*r[:3], r[3][:2], *r[4:]], ":4:28", None, 2),
+        (lambda r: [], "", None, "an empty file"),
+        (scaled(1, 1e3), ":1:8", "displacement_m", None),
+        (scaled(2, 1e-6), ":1:23", "contact_pressure_Pa", None),
+        (scaled(1, -1.0), ":1:8", "displacement_m", None),
     ],
-)  # fmt: skip
-def test_a_wrong_table_is_named(change, said, tmp_path):
+)
+def test_a_wrong_table_is_named(change, place, field, value, tmp_path):
     (stated(tmp_path) / "locked.csv").write_text(text_of(change(rows_of())))
-    assert said in defects_of(tmp_path)[0]
+    assert defects_of(tmp_path)[0] == (f"locked.csv{place}", field, value)
 
 
 def in_other_units(rows):
@@ -260,29 +258,37 @@ def test_what_other_programs_write_is_read(written, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("fields", "said"),
+    ("fields", "field", "value"),
     [
-        ({"pack": "99.0"}, f"pack: must be one of 4.0, 5.0, {PACK}, this pack and earlier ones"),
-        ({"pack": ...}, "pack: is required, got nothing"),
-        ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings: must be filled in, got"),
-        ({"wo": "x"}, "wo: unknown key, got 'x'"),
-        ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked: must be among displacement_m, contact_pr"),
-        ({"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}}, "must leave a column to judge"),
+        ({"pack": "99.0"}, "pack", "'99.0'"),
+        ({"pack": ...}, "pack", "nothing"),
+        ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings", ANSWERS_TEMPLATE["settings"]),
+        ({"wo": "x"}, "wo", "'x'"),
+        ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked", "'pressure'"),
+        (
+            {"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}},
+            "not_reported.locked",
+            "all of displacement_m, contact_pressure_Pa",
+        ),
     ],
-)  # fmt: skip
-def test_a_wrong_field_is_named(fields, said, tmp_path):
-    (line,) = defects_of(answered(tmp_path, names=("locked",), **fields))
-    assert line.startswith(f"{FILE}:") and said in line
+)
+def test_a_wrong_field_is_named(fields, field, value, tmp_path):
+    ((place, found, shown),) = defects_of(answered(tmp_path, names=("locked",), **fields))
+    assert place.startswith(f"{FILE}:") and found == field
+    assert shown.strip("'")[:50] == value.strip("'")[:50]
 
 
-def test_files_that_are_no_such_files(tmp_path):
-    for content, said in (
-        ("[1]", "must be an object, got list"),
-        ("{", f"{FILE}:1:2: must be JSON: "),
-        (json.dumps(STATED).replace('{"format"', '{"pack": "1.0", "format"'), "pack: must appear once"),
-    ):
-        (answered(tmp_path, names=("locked",)) / FILE).write_text(content)
-        assert any(said in line for line in defects_of(tmp_path))
+@pytest.mark.parametrize(
+    ("content", "defect"),
+    [
+        ("[1]", (f"{FILE}:1:1", None, "list")),
+        ("{", (f"{FILE}:1:2", None, None)),
+        (json.dumps(STATED).replace('{"format"', '{"pack": "1.0", "format"'), (f"{FILE}:1:55", "pack", None)),
+    ],
+)
+def test_files_that_are_no_such_files(content, defect, tmp_path):
+    (answered(tmp_path, names=("locked",)) / FILE).write_text(content)
+    assert defect in defects_of(tmp_path)
 
 
 def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
@@ -304,12 +310,14 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------
 
 
-def boxes_answered(place, name, changed=None):
-    """Answer a problem of boxes with boxes that stay where they are, columns times factors."""
+POSE = ("x", "y", "angle")
+
+
+def boxes_answered(place, name):
+    """Answer a problem of boxes with boxes that stay where they are."""
     asked = problem(name)
-    boxes = boxes_of(asked.scene).boxes
-    poses = {f"{box.name}.{part}": getattr(box, part) for box in boxes for part in ("x", "y", "angle")}
-    columns = {c: np.full(len(asked.instants), (changed or {}).get(c, 1.0) * poses[c]) for c in asked.columns}
+    poses = {f"{box.name}.{part}": getattr(box, part) for box in boxes_of(asked.scene).boxes for part in POSE}
+    columns = {c: np.full(len(asked.instants), poses[c]) for c in asked.columns}
     (place / f"{name}.csv").write_text(table_of(asked, History(asked.instants, columns)))
 
 
@@ -321,5 +329,5 @@ def test_positions_of_boxes_are_measured(tmp_path):
     words = {name: str(one.judgement.status) for name, one in judged.judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
     # Forces are not asked: what is measured on them alone is not among the numbers.
-    assert [one.name for one in judged.judged["pile"].judgement.criteria] == ["drift of the top", "sinking of the top"]
-    assert judged.judged["standing-friction-19-deg"].judgement.deciding.name == "distance slid"
+    assert len(judged.judged["pile"].judgement.criteria) == 2
+    assert "slid" in judged.judged["standing-friction-19-deg"].judgement.deciding.name

@@ -9,7 +9,7 @@ from validation.diagnosis.hooks import DiagnosisHooks
 from validation.gates.gate import Status
 from validation.problems import cause as module
 from validation.problems import models
-from validation.problems.bands import changes, standard
+from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import judge
 from validation.problems.problem import problem
@@ -19,7 +19,6 @@ from validation.solvers.registry import get_solver
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 IDS = {
     "contact.stiffness": "springs-factor",
-    "block.density": "density-factor",
     "block.young": "young-factor",
     "load.pressure": "load-factor",
 }
@@ -31,11 +30,11 @@ def datum(name, key):
     return getattr(getattr(problem(name).scene, section), entry)
 
 
-def fine(name, values, times=32):
+def fine(name, values, times=32, scheme=AVERAGE):
     """Return another scene's motion at the steps of a problem."""
-    scene = problem(name).scene
-    steps = {"time.step": scene.time.step / times, "time.steps": scene.time.steps * times}
-    found = get_solver("dda").solve(scene.with_values(AVERAGE | steps | values)).history
+    scene = problem(name).scene.with_values(scheme | values)
+    finer = {"time.step": scene.time.step / times, "time.steps": scene.time.steps * times}
+    found = get_solver("dda").solve(scene.with_values(finer)).history
     return History(found.time[times - 1 :: times], {k: x[times - 1 :: times] for k, x in found.columns.items()})
 
 
@@ -55,31 +54,34 @@ def without_compare(monkeypatch):
 def test_ddas_habit_and_another_integrator():
     asked = problem("locked")
     habit = named("locked", get_solver("dda").solve(asked.scene).history)
-    assert habit.sentence.startswith("DDA's usual scheme, constant acceleration (alpha = 0.5, delta = 1, gg = 1)")
-    assert habit.sentence.endswith("at this step: numerical damping")
-    every = round(asked.scene.time.step / habit.passing_step)
-    finer = {"time.step": asked.scene.time.step / every, "time.steps": every * asked.scene.time.steps}
-    passing = get_solver("dda").solve(asked.scene.with_values(finer)).history
-    at_steps = History(passing.time[every - 1 :: every], {k: x[every - 1 :: every] for k, x in passing.columns.items()})
-    assert judge(asked, at_steps).status is Status.PASS
+    assert (habit.ids, habit.values["alpha"]) == (("scheme",), 0.5)
+    passing = fine("locked", {}, round(asked.scene.time.step / habit.passing_step), scheme={})
+    assert judge(asked, passing).status is Status.PASS
     interchanged = asked.scene.with_values({"time.alpha": 1.0, "time.delta": 0.5})
     slip = named("locked", get_solver("dda").solve(interchanged).history)
     assert slip.ids == ("scheme",) and models.INTERCHANGED in slip.sentence
     average = named("locked", fine("locked", {}, 1))
-    assert average.ids == ("scheme",)
-    assert "another integrator, average acceleration" in average.sentence
+    assert (average.ids, average.values["alpha"]) == (("scheme",), 0.25)
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("key", "factor"), [("contact.stiffness", 1.05), ("block.density", 1.2)])
-def test_a_wrong_datum_in_an_exact_program(key, factor):
-    found = named("locked", fine("locked", {key: factor * datum("locked", key)}))
-    if found.ids == ("time-factor",):  # the same motion as that of another density, which it says
-        assert key == "block.density" and found.values["time-factor"] == pytest.approx(factor**-0.5, rel=2e-3)
-        assert "as a density of 1.2 times the scene's does" in found.sentence
-        return
-    assert found.ids == (IDS[key],)
-    assert found.values[IDS[key]] == pytest.approx(factor, rel=2e-3)
+@pytest.mark.parametrize(
+    ("key", "factor", "times"),
+    [
+        ("contact.stiffness", 1.05, 32),
+        ("block.density", 1.2, 32),
+        ("block.young", 1e-3, 128),
+        # steps so fine that the motion of stiffer springs or of less mass is exact as well
+        ("contact.stiffness", 1e3, 128),
+        ("load.pressure", 1e-3, 128),
+    ],
+)
+def test_a_wrong_datum_in_an_exact_program(key, factor, times):
+    found = named("locked", fine("locked", {key: factor * datum("locked", key)}, times))
+    # another density has the motion of another time, which is said
+    cause = "time-factor" if key == "block.density" else IDS[key]
+    assert found.ids == (cause,)
+    assert found.values[cause] == pytest.approx(factor**-0.5 if key == "block.density" else factor, rel=2e-3)
 
 
 def test_what_gives_the_same_rows_has_one_name():
@@ -99,9 +101,10 @@ def test_what_gives_the_same_rows_has_one_name():
 def test_columns_that_are_still_or_no_numbers():
     exact = standard(problem("locked")).exact
     still = named("locked", History(exact.time, {k: 0 * x for k, x in exact.columns.items()}))
-    assert still.sentence == "nothing moves"
     holes = {k: np.where(exact.time > 0.05, math.nan, x) for k, x in exact.columns.items()}
-    assert "is not a number from step 26 on" in named("locked", History(exact.time, holes)).sentence
+    broken = named("locked", History(exact.time, holes))
+    assert " 26 " in broken.sentence  # the first step that has none
+    assert (still.ids, broken.ids) == (("nothing-moves",), ("not-finite",))
 
 
 @pytest.mark.long
@@ -126,19 +129,6 @@ def test_a_discount_beside_the_usual_scheme_is_named():
     found = named("locked", get_solver("dda").solve(problem("locked").scene.with_values({"time.gg": 0.97})).history)
     assert found.ids == ("scheme", "gg")
     assert found.values["gg"] == pytest.approx(0.97, rel=1e-4)
-    assert "gg = 0.97 where the scene has 1" in found.sentence
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("key", "factor"), [("block.young", 1e-3), ("contact.stiffness", 1e3), ("load.pressure", 1e-3)]
-)
-def test_a_datum_in_other_units_is_named(key, factor):
-    """Steps so fine that the motion of stiffer springs or of less mass is exact as well."""
-    found = named("locked", fine("locked", {key: factor * datum("locked", key)}, 128))
-    assert found.ids == (IDS[key],)
-    assert found.values[IDS[key]] == pytest.approx(factor, rel=2e-3)
-    assert "other units" in found.sentence
 
 
 UNITS = [
@@ -155,8 +145,9 @@ def test_a_column_in_other_units_is_named(name, column, factor):
     assert (found.ids, found.values) == (("unit",), {column: factor})
 
 
-@pytest.mark.parametrize(("name", "column", "factor"), UNITS[1:2])
-def test_a_unit_is_not_named_where_something_else_is_wrong(name, column, factor):
+@pytest.mark.long
+def test_a_unit_is_not_named_where_something_else_is_wrong():
+    name, column, factor = UNITS[1]
     exact = standard(problem(name)).exact
     late = {key: np.append(0.0, x[:-1]) * (factor if key == column else 1.0) for key, x in exact.columns.items()}
     assert "unit" not in named(name, History(exact.time, late)).ids
@@ -187,7 +178,11 @@ def of_layers(name, key, factor):
 
 @pytest.mark.parametrize(
     ("name", "values"),
-    [("stack", AVERAGE), ("mass-ratio", {}), *(pytest.param(name, {}, marks=pytest.mark.long) for name in OF_BARS)],
+    [
+        ("mass-ratio", {}),
+        pytest.param("stack", AVERAGE, marks=pytest.mark.long),
+        *(pytest.param(name, {}, marks=pytest.mark.long) for name in OF_BARS),
+    ],
 )
 def test_schemes_of_columns_on_contacts_are_named(name, values):
     posed = problem(name)
@@ -196,7 +191,7 @@ def test_schemes_of_columns_on_contacts_are_named(name, values):
         identified = cause(posed, run, standard(posed))
         assert identified.ids == ("scheme",)
         assert identified.values["alpha"] == values.get("time.alpha", 0.5)
-        assert ("of so many blocks" in identified.sentence) is (name in OF_BARS)  # rigid ones have no such error
+        assert (" blocks" in identified.sentence) is (name in OF_BARS)  # rigid ones have no error of their number
 
 
 @pytest.mark.long
@@ -234,12 +229,3 @@ def test_columns_on_contacts_in_millimetres_are_named(name):
     scaled = {key: x * (1e3 if key in lengths else 1.0) for key, x in exact.columns.items()}
     identified = named(name, History(exact.time, scaled))
     assert (identified.ids, identified.values) == (("unit",), dict.fromkeys(lengths, 1e3))
-
-
-def test_the_modulus_of_rigid_blocks_is_no_cause():
-    posed = problem("stack")
-    runs = models.runs_of(posed.scene, standard(posed))
-    base = runs.exact()
-    assert base is not None and base.solver == posed.truth.name
-    assert "young-factor" not in {change.id for change in module.of_data(runs, base, cheap=True)}
-    assert "Young's modulus" not in changes(posed.scene)

@@ -11,6 +11,7 @@ import pytest
 from validation import exact
 from validation.problems.problem import problem
 from validation.problems.truth import exact as motion_of
+from validation.scenes.drive import motion_at
 
 ROOT = Path(__file__).parents[2]
 BLOCK = {"width": 2.0, "height": 2.0, "density": 2700.0, "young": 1e9, "stiffness": 1e9}
@@ -28,6 +29,7 @@ print(*{name.partition(".")[0] for name in sys.modules})
 """
 
 
+@pytest.mark.long
 def test_the_blocks_ones_load_numpy_and_scipy_only():
     done = subprocess.run([sys.executable, "-c", CALLED], capture_output=True, text=True, check=True, cwd=ROOT)
     third = {"pydantic", "skfem", "meshio", "matplotlib", "mpmath", "typer", "dda"}
@@ -56,19 +58,14 @@ def test_a_block_slides_as_a_rigid_mass_but_for_its_springs():
 def test_a_column_lets_a_pulse_pass():
     asked = problem("column")
     wanted, layer = motion_of(asked.scene, asked.truth), asked.scene.column.layer[0]
-
-    def ricker(t):
-        from validation.scenes.drive import motion_at
-
-        return motion_at(asked.scene, t).pressure
-
     made = {"thickness": [layer.thickness], "density": [layer.density], "young": [layer.young]}
-    t, found = exact.layered_column(0.0005, 200, ricker, **made, heights=[3.5, 8.5], impedance=2e6)
+    places = {"heights": [3.5, 8.5], "impedance": 2e6}
+    t, found = exact.layered_column(0.0005, 200, lambda t: motion_at(asked.scene, t).pressure, **made, **places)
     assert t == pytest.approx(wanted.time)
     assert found[0] == pytest.approx(wanted.columns["displacement_1"], abs=1e-9)
 
 
 @pytest.mark.parametrize("time", [[-1.0], [0.0], [0.2, 0.1], [math.nan]])
 def test_instants_that_do_not_rise_from_zero_are_refused(time):
-    with pytest.raises(ValueError, match="time: must be finite instants that rise"):
+    with pytest.raises(ValueError, match=r"^time: "):
         exact.locked_block(time, **BLOCK, pressure=5e6)

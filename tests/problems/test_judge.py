@@ -58,19 +58,21 @@ def test_a_wrong_history_fails(name, wrong):
 def test_the_error_is_within_what_is_allowed_up_to_where_it_would_pass_were_it_exact_from_there_on(name):
     asked = short(name)
     held = standard(asked)
-    column = next(iter(held.bands))
-    wanted, time = held.exact.columns[column], held.exact.time
-    seen = wanted * np.where(time > time[-1] / 3, 1.3, 1.0)
-    found = judge(asked, History(time, {column: seen}))
-    rows = int(np.flatnonzero(time == found.within)[0]) + 1
-    assert time[-1] / 3 < found.within < held.bands[column].until
-    for more, word in ((0, Status.PASS), (1, Status.FAIL)):
-        mended = np.where(np.arange(len(time)) < rows + more, seen, wanted)
-        judged = {one.name: one.status for one in judge(asked, History(time, {column: mended})).criteria}
+    column, band_ = next(iter(held.bands.items()))
+    time, late = held.exact.time, held.exact.time > held.exact.time[-1] / 3
+
+    def seen(wrong, as_seen):
+        wanted = held.exact.columns[column]
+        return judge(asked, History(time, {column: np.where(wrong, as_seen(wanted), wanted)}))
+
+    found = seen(late, lambda wanted: 1.3 * wanted)
+    assert time[-1] / 3 < found.within < band_.until
+    for ends, word in ((time <= found.within, Status.PASS), (np.r_[True, time[:-1] <= found.within], Status.FAIL)):
+        judged = {one.name: one.status for one in seen(late & ends, lambda wanted: 1.3 * wanted).criteria}
         assert judged[column] is word
     assert judge(asked, held.exact).within == pytest.approx(min(b.until for b in held.bands.values()))
-    assert judge(asked, History(time, {column: 9 + wanted})).within == 0.0
-    assert judge(asked, History(time, {column: np.where(time >= time[5], np.nan, wanted)})).within == time[4]
+    assert seen(True, lambda wanted: 9 + wanted).within == 0.0
+    assert seen(time >= time[5], lambda wanted: np.nan * wanted).within == time[4]
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -101,13 +103,14 @@ def test_both_sides_of_the_band(name, times, word):
 def test_a_column_that_is_absent_is_told():
     asked = short("locked")
     exact = standard(asked).exact
-    found = judge(asked, History(exact.time, {DISPLACEMENT: exact.displacement}))
-    assert (found.status, found.withheld) == (Status.PARTIAL, (PRESSURE,))
-    assert found.verdict == "PARTIAL: PASS on displacement; contact_pressure not reported"
-    whole = judge(asked, exact)
-    assert (whole.status, whole.withheld) == (Status.PASS, ())
-    failed = judge(asked, History(exact.time, {DISPLACEMENT: 2 * exact.displacement}))
-    assert failed.verdict == "FAIL; contact_pressure not reported" and failed.withheld == (PRESSURE,)
+    for columns, status, withheld in (
+        (exact.columns, Status.PASS, ()),
+        ({DISPLACEMENT: exact.displacement}, Status.PARTIAL, (PRESSURE,)),
+        ({DISPLACEMENT: 2 * exact.displacement}, Status.FAIL, (PRESSURE,)),
+    ):
+        found = judge(asked, History(exact.time, columns))
+        assert (found.status, found.withheld) == (status, withheld)
+        assert (PRESSURE in found.verdict) is bool(withheld)
     assert judge(asked, History(exact.time, {})).status is Status.NOT_JUDGED
 
 
@@ -116,43 +119,39 @@ def test_numbers_that_people_understand():
     told = {number.name: number for number in judge(asked, standard(asked).exact).quantities}
     assert told["openings"].value == told["openings"].exact == 5
     landing = judge(short("rocking"), standard(short("rocking")).exact).quantities[1]
-    assert landing.name == "instant of landing"
     assert landing.value == pytest.approx(short("rocking").truth.until, rel=1e-4)
-    swings = judge(short("locked"), history(short("locked"), lambda t, x: x)).quantities
+    swings = judge(short("locked"), standard(short("locked")).exact).quantities
     assert swings[0].value == pytest.approx(54.84, rel=1e-3)
     assert PRESSURE not in {number.name for number in swings}
 
 
 def test_a_band_ends_where_the_data_do_not_determine_the_motion_any_more():
     t = 0.01 * np.arange(1.0, 401)
-    found = band(t, np.sin(30 * t), {"the density": np.sin(30.3 * t)})
+    found = band(t, np.sin(30 * t), {"density": np.sin(30.3 * t)})
     assert found.high <= LARGEST
     assert 10 < found.rows < 400
-    assert band(t, 0.0 * t, {"the density": 0.0 * t}) is None
+    assert band(t, 0.0 * t, {"density": 0.0 * t}) is None
 
 
 @pytest.mark.parametrize(
-    "values",
+    ("values", "pull"),
     [
-        {"contact.gap": 1.0, "load.pressure": 0.0, "load.gravity": 9.81, "run.columns": ["displacement"]},
-        {
-            "contact.friction": 0.0,
-            "load.pressure": 0.0,
-            "load.gravity": 9.81,
-            "load.slope": -30.0,
-            "run.columns": ["horizontal_displacement"],
-        },
+        ({"contact.gap": 1.0, "run.columns": ["displacement"]}, -9.81),
+        (
+            {"contact.friction": 0.0, "load.slope": -30.0, "run.columns": ["horizontal_displacement"]},
+            -9.81 * math.sin(math.radians(30.0)),
+        ),
     ],
 )
-def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values):
+def test_a_motion_that_no_datum_changes_is_judged_to_one_per_cent(values, pull):
     """Free fall, and sliding without friction: g t^2 / 2 to seven digits passes, one half a step late does not."""
-    asked = problem_of(load_scene("field-opening").with_values({"time.steps": 12, **values}))
+    weight = {"time.steps": 12, "load.pressure": 0.0, "load.gravity": 9.81}
+    asked = problem_of(load_scene("field-opening").with_values(weight | values))
     (name,), held = asked.scene.run.columns, standard(asked)
     assert held.bands[name].high == 0.01
-    assert "in proportion to what drives it" in held.bands[name].reason
-    t, g = held.exact.time, -9.81 if name == DISPLACEMENT else -9.81 * math.sin(math.radians(30.0))
+    t = held.exact.time
     for late, word in ((1e-7, Status.PASS), (0.5 * t[0], Status.FAIL)):
-        assert judge(asked, History(t, {name: g * (t - late) ** 2 / 2})).status is word
+        assert judge(asked, History(t, {name: pull * (t - late) ** 2 / 2})).status is word
 
 
 @pytest.mark.parametrize(
@@ -183,13 +182,16 @@ def test_one_per_cent_of_contacts_is_of_each_of_them(name, values, stiffness, st
     scene = load_scene(name).with_values(values)
     data = changes(scene)
     before = scene.column.contacts
-    for datum, key, expected in (("stiffness", "stiffness", stiffness), ("strength", "strength", strength)):
-        if f"the contacts' {datum}" in data:
-            after = scene.with_values(data[f"the contacts' {datum}"]).column.contacts
-            assert [getattr(contact, key) for contact in after] == pytest.approx(expected)
-            assert [(one.height, one.gap) for one in after] == [(one.height, one.gap) for one in before]
-        else:
-            assert not any(map(math.isfinite, expected))
+    for datum, expected in (("stiffness", stiffness), ("strength", strength)):
+        changed = data.get(f"the contacts' {datum}", {})
+        after = scene.with_values(changed).column.contacts
+        assert bool(changed) is any(map(math.isfinite, expected))
+        assert not changed or [getattr(contact, datum) for contact in after] == pytest.approx(expected)
+        assert [(one.height, one.gap) for one in after] == [(one.height, one.gap) for one in before]
+
+
+def test_the_modulus_of_rigid_blocks_is_no_datum():
+    assert ["Young's modulus" in changes(problem(name).scene) for name in ("stack", "cradle")] == [False, True]
 
 
 # ---- boxes on a ground -----------------------------------------------------------------------------------------------
@@ -206,26 +208,14 @@ def test_boxes_are_judged_by_their_numbers(name):
     assert all(one.allowed is not None and one.allowed <= 0.026 for one in judgement.criteria)
 
 
-def test_a_box_that_creeps_fails_by_so_much_of_its_width_in_a_minute():
-    one = problem("standing")
-    exact = standard(one).exact
-    creeping = History(exact.time, dict(exact.columns) | {"box.x": exact.time * 0.03 / 60})
-    judgement = judge(one, creeping)
-    assert judgement.status is Status.FAIL
-    assert judgement.deciding is not None
-    assert judgement.deciding.error == pytest.approx(0.03)
-    assert judgement.deciding.allowed == pytest.approx(0.01)
-    assert judgement.quantities[0].value == pytest.approx(0.5)
-
-
 def test_a_number_of_a_withheld_column_is_not_reported():
     one = problem("tumbling")
     exact = standard(one).exact
     fewer = History(exact.time, {name: exact.columns[name] for name in ("box.x", "box.y")})
     judgement = judge(one, fewer)
     assert judgement.status is Status.PARTIAL
-    assert "energy in the end over that at the start" in judgement.withheld
-    assert "change of the speed along the ground" not in judgement.withheld
+    assert any("energy" in name for name in judgement.withheld)
+    assert not any("speed" in name for name in judgement.withheld)
 
 
 @pytest.mark.parametrize(
@@ -245,5 +235,5 @@ def test_boxes_whose_numbers_would_mean_something_else_are_refused(name, values,
 def test_the_question_of_boxes_may_be_asked_with_another_friction():
     steeper = problem_of(load_scene("rigid-standing").with_values({"plane.contact.friction": 19.0}))
     judgement = judge(steeper, standard(steeper).exact)
-    assert [one.name for one in judgement.criteria] == ["distance slid"]
-    assert judgement.status is Status.PASS
+    (one,) = judgement.criteria
+    assert "slid" in one.name and judgement.status is Status.PASS

@@ -44,7 +44,7 @@ def test_another_question_has_another_digest(values):
 def test_other_words_are_the_same_question():
     one = problem("locked")
     other = one.scene.with_values({"title": "another title", "run.solvers": ["dda"]})
-    assert digest(replace(one, scene=other, asks="In other words?")) == digest(one)
+    assert digest(replace(one, scene=other, asks="WORDS")) == digest(one)
 
 
 def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monkeypatch):
@@ -52,5 +52,5 @@ def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monk
     earlier = {"1.9": {"locked": "0" * 16, "opening": now["opening"], "gone": "1" * 16}, PACK: now}
     monkeypatch.setattr(packs, "packs", lambda: earlier)
     assert stale("1.9", "opening") is None
-    assert "its data, instants or columns are others" in str(stale("1.9", "locked"))
-    assert f"pack {PACK} has no such problem any more" in str(stale("1.9", "gone"))
+    changed, gone = stale("1.9", "locked"), stale("1.9", "gone")
+    assert "1.9" in changed and PACK in gone and changed != gone

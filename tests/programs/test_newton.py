@@ -41,7 +41,7 @@ def test_refuses_what_a_solver_cannot_express(solver, rigid, field):
 @pytest.mark.parametrize("package", ["newton", "warp"])
 def test_a_program_that_is_absent_is_named(package, monkeypatch):
     monkeypatch.setitem(sys.modules, package, None)
-    with pytest.raises(NotImplementedError, match="is not installed: pip install"):
+    with pytest.raises(NotImplementedError, match="pip install"):
         XPBD().solve(box_scene())
 
 

@@ -91,7 +91,7 @@ def test_the_forces_do_the_work_of_the_loads():
 @pytest.mark.parametrize("solver", [OpenSees, AsItComes])
 def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver):
     monkeypatch.setattr(opensees, "program", Told)
-    with pytest.raises(NotConverged, match=r"did not converge after t = 0\.25 s"):
+    with pytest.raises(NotConverged, match=r"0\.25 s"):
         solver().solve(load_scene("field-creep"))
 
 

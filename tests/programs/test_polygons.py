@@ -10,12 +10,6 @@ from validation.models.plane.tables import PlaneSection
 from validation.scenes.outline import area
 from validation.scenes.scene import load_scene
 
-PROGRAMS = {
-    "pymunk": (pymunk.Pymunk, "pymunk"),
-    "box2d": (box2d.Box2D, "pyb2d3"),
-    "mujoco": (mujoco.MuJoCo, "mujoco"),
-}
-
 
 @pytest.mark.parametrize("name", ["wedges", "columns", "touch-pentagon"])
 def test_bodies_have_the_mass_the_inertia_and_the_outline_of_their_blocks(name):
@@ -45,14 +39,13 @@ def test_friction_is_that_of_the_pair():
 
 
 @pytest.mark.parametrize("name", ["spinning", "truss"])
-@pytest.mark.parametrize("program", PROGRAMS)
-def test_what_is_no_rigid_polygon_is_refused(program, name):
-    solver, _ = PROGRAMS[program]
-    with pytest.raises(NotImplementedError, match=r"touch|finite young|friction alone"):
+@pytest.mark.parametrize("solver", [pymunk.Pymunk, box2d.Box2D, mujoco.MuJoCo])
+def test_what_is_no_rigid_polygon_is_refused(solver, name):
+    with pytest.raises(NotImplementedError, match=r"touch|young|friction"):
         solver().solve(load_scene(f"rigid-{name}"))
 
 
 @pytest.mark.parametrize("solver", [box2d.Box2D, mujoco.AsItComes])
 def test_friction_by_pair_is_refused_where_it_follows_from_two_surfaces(solver):
-    with pytest.raises(NotImplementedError, match="friction by pair"):
+    with pytest.raises(NotImplementedError, match="pair"):
         solver().solve(load_scene("rigid-pushing"))

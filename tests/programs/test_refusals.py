@@ -48,7 +48,7 @@ def test_what_a_program_cannot_express_is_refused_by_name(name, problem, values,
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_a_program_that_is_absent_is_named_with_its_recipe(name, problem):
     columns = {} if problem == "column" else {"run.columns": ["rotation"] if problem == "rocking" else ["displacement"]}
-    with pytest.raises(NotImplementedError, match=r"not installed: (pip install|apt-get install|Debian: apt-get)"):
+    with pytest.raises(NotImplementedError, match=r"(pip|apt-get) install"):
         PROGRAMS[name]().solve(load_scene(f"field-{problem}").with_values(columns))
 
 

@@ -1,13 +1,15 @@
 """What tests of the report share."""
 
 import os
+import textwrap
+from dataclasses import fields
 from pathlib import Path
-from pprint import pformat
 
 import pytest
 from oracles import made_results as made
 from oracles.made_results import figure_text
 
+from validation.report.blocks import TableColumn
 from validation.report.figures import histories
 
 
@@ -34,9 +36,26 @@ def kept():
     """Hold blocks of made rows to a page in `pages`, word by word; with ``KEEP_PAGES=1`` it is written anew."""
 
     def check(name, blocks):
-        _held(name, "\n".join(pformat(block, width=120) for block in blocks) + "\n")
+        _held(name, "\n".join(line for block in blocks for line in lines_of(block)) + "\n")
 
     return check
+
+
+def lines_of(block):
+    """Return the kind of a block and what of it is not the default, a line for each row; `~` is a space that holds."""
+    if isinstance(block, str):
+        return textwrap.wrap(block.replace("\xa0", "~"), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
+    if isinstance(block, TableColumn):
+        return [f"{block.kind}: {block.group} / {block.title}"]
+    if isinstance(block, tuple):
+        return lines_of(" | ".join(block))
+    lines = [f"{type(block).__name__}"]
+    for field in fields(block):
+        value = getattr(block, field.name)
+        if value != field.default:
+            inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
+            lines += lines_of(f"{field.name}: {'' if inner else value}") + inner
+    return [lines[0], *(f"  {line}" for line in lines[1:])]
 
 
 @pytest.fixture

@@ -82,7 +82,7 @@ def test_names_of_lines_never_overlap_nor_leave_the_figure(count):
 def test_gaps_are_magnified_to_a_part_of_the_lowest_block(lift, times):
     time, faces = np.linspace(0.0, 0.1, 11), np.array([0.0, 1.0, 3.0])
     assert SpaceTime("", time, faces, np.array([0 * time, lift * time / 0.1]), np.zeros((2, 11))).magnification == times
-    with pytest.raises(ValueError, match="must be of shape"):
+    with pytest.raises(ValueError, match="shape"):
         SpaceTime("", time, faces, np.zeros((3, 11)), np.zeros((2, 11)))
 
 

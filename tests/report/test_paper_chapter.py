@@ -1,5 +1,7 @@
 """The chapter of the study `paper`: the register of claims, and figures from results made by hand."""
 
+from functools import cache
+
 import numpy as np
 import pytest
 from oracles.made_cases import kept_study, made_history, made_row
@@ -12,6 +14,12 @@ from validation.scenes.scene import load_scene
 from validation.suite.folders import get_study
 
 BASE = load_scene("figures-3-4")
+
+
+@cache
+def curves():
+    """Return what the figures draw beside histories."""
+    return dict(get_study("paper").data())
 
 
 def named(scene, **values):
@@ -28,8 +36,9 @@ def page(place, *cases, claims=None, **kept):
         for solver in metrics
     ]
     rows = [{"scene": "claims", "name": name, "metrics": metrics} for name, metrics in (claims or {}).items()]
-    data = dict(get_study("paper").data()) | kept.pop("data", {})
-    manifest = kept_study(results, triples, study="paper", data=data, derived=[*rows, *kept.pop("derived", ())], **kept)
+    manifest = kept_study(
+        results, triples, study="paper", data=curves(), derived=[*rows, *kept.pop("derived", ())], **kept
+    )
     return chapter_of("paper")(results, manifest, place)
 
 

@@ -37,5 +37,5 @@ def test_a_verdict_that_its_value_does_not_bear_out_is_refused(verdict, value):
 def test_two_verdicts_of_one_gate_are_refused():
     two = [judged("PASS", 1.5), judged("PASS", 1.5, name="h")]
     assert unique(two) == two
-    with pytest.raises(ValueError, match="g appears twice in the study s"):
+    with pytest.raises(ValueError, match=r"^g .* s$"):
         unique([*two, judged("FAIL", 3.0)])

@@ -1,6 +1,7 @@
 """What is no regular file is refused at once; what begins with a byte-order mark is read everywhere."""
 
 import os
+import re
 import signal
 from pathlib import Path
 
@@ -58,23 +59,24 @@ def limited():
 )
 def test_a_pipe_is_refused_and_not_waited_for(command, field, pipe, scene_file, limited):
     words = [word.format(pipe=pipe, scene=scene_file) for word in command.split()]
-    assert f"{field}{pipe}: must be a regular file, got a pipe" in refused(*words, cwd=pipe.parent)
+    assert re.search(rf"{field}{pipe}: .*, got a pipe$", refused(*words, cwd=pipe.parent))
 
 
 def test_devices_and_directories_are_named(tmp_path):
     for place, kind in ((Path("/dev/zero"), "device"), (tmp_path, "directory")):
-        with pytest.raises(InputError, match=f"must be a regular file, got a {kind}"):
-            regular(place)
-        for reader in (read_record, read_table, read, load_scene, *([read_verdicts] if kind == "device" else [])):
-            with pytest.raises(InputError, match=f"must be a regular file, got a {kind}"):
+        readers = (regular, read_record, read_table, read, load_scene)
+        for reader in (*readers, *([read_verdicts] if kind == "device" else [])):
+            with pytest.raises(InputError) as error:
                 reader(place)
+            assert (error.value.source, error.value.value) == (place, f"a {kind}")
 
 
 def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe, tmp_path):
     path = tmp_path / "swept.toml"
     path.write_text(SCENE + f'[sweep]\n"load.base_motion" = ["{pipe.name}"]\n')
-    with pytest.raises(InputError, match=r"base_motion: .*must be a regular file, got a pipe"):
+    with pytest.raises(InputError) as error:
         load_scene(path).expand()
+    assert (error.value.field, error.value.value) == ("load", "a pipe")
 
 
 def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path):
@@ -94,7 +96,7 @@ def test_a_large_file_is_refused_before_it_is_read(tmp_path):
     with path.open("wb") as stream:
         stream.truncate(10**9)
     for reader, largest in ((load_scene, 1_000_000), (read, 100_000_000)):
-        with pytest.raises(InputError, match=rf"^{path}: must be at most {largest} bytes, got 1000000000"):
+        with pytest.raises(InputError, match=rf"^{path}: .* {largest} .* got 1000000000$"):
             reader(path)
 
 
@@ -110,7 +112,7 @@ def test_an_output_keeps_the_kind_of_what_stands_there(tmp_path, limited):
     os.mkfifo(pipe)
     with pytest.raises(InputError) as error:
         write(pipe)
-    assert error.value.rule == "is a pipe that no program reads"
+    assert error.value.source == pipe
     reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
     write(pipe)
     assert pipe.is_fifo() and os.read(reader, 9) == b"new"

@@ -4,7 +4,6 @@ import copy
 import functools
 import operator
 import tomllib
-from pathlib import Path
 
 import pytest
 from conftest import SCENE
@@ -26,12 +25,6 @@ def parse(**changes):
     return parse_scene(changed(**changes), "x.toml")
 
 
-REFUSED = [
-    (row["keys"], row["says"])
-    for row in tomllib.loads(Path(__file__).with_name("refused.toml").read_text(encoding="utf-8"))["refused"]
-]
-
-
 def test_a_scheme_refuses_the_numbers_of_newmarks():
     time = parse(time__scheme="chung-hulbert", time__rho_inf=0.8).time
     for weight in ("alpha", "delta"):
@@ -39,16 +32,6 @@ def test_a_scheme_refuses_the_numbers_of_newmarks():
             getattr(time, weight)
         assert caught.value.field == f"time.{weight}"
     assert (parse().time.alpha, parse().time.delta) == (0.5, 1.0)
-
-
-@pytest.mark.parametrize(("changes", "words"), REFUSED, ids=lambda value: str(value)[:50])
-def test_refusals_name_file_field_rule_and_value(changes, words):
-    with pytest.raises(InputError) as caught:
-        parse(**changes)
-    text = str(caught.value)
-    assert text.startswith("x.toml: ")
-    assert words in text
-    assert "\n" not in text and ", got " in text
 
 
 @pytest.mark.parametrize(
@@ -72,31 +55,36 @@ def test_keys_of_tables_in_tables_are_swept_by_short_names(name, field, place, v
 )
 def test_what_is_no_key_of_a_table_is_not_swept(field):
     data = load_scene("rigid-impact").definition()
-    with pytest.raises(InputError, match="sweep: must name a key of a table"):
+    with pytest.raises(InputError) as error:
         parse_scene(data | {"sweep": {field: [1.0]}}, "x")
+    assert (error.value.field, error.value.value) == ("sweep", repr(field))
 
 
-def test_a_swept_value_is_checked_like_any_other():
-    with pytest.raises(InputError, match=r"time.step: must be greater than 0, got -1"):
-        parse(sweep={"time.step": [0.1, -1]}).expand()
-    with pytest.raises(InputError, match=r"sweep.time.stop: unknown key"):
-        parse(sweep={"time.stop": [0.1]}).expand()
+@pytest.mark.parametrize(
+    ("sweep", "field", "value"),
+    [
+        ({"time.step": [0.1, -1]}, "time.step", "-1"),
+        ({"time.stop": [0.1]}, "sweep.time.stop", "[0.1]"),
+        ({"time.step": [0.1, 0.1]}, "sweep", "scene[time.step=0.1] twice"),
+        ({"time.step": [1, 1.0]}, "sweep", "scene[time.step=1] twice"),
+        ({"time.gg": [0.9, 1.0], "time.gg_rate": [3.0]}, None, "both"),
+    ],
+)
+def test_a_swept_value_is_checked_like_any_other_and_once(sweep, field, value):
+    with pytest.raises(InputError) as error:
+        parse(sweep=sweep).expand()
+    assert (error.value.field, error.value.value) == (field, value)
 
 
-def test_swept_values_that_agree_to_six_digits_are_two_cases_and_equal_ones_are_refused():
+def test_swept_values_that_agree_to_six_digits_are_two_cases():
     close = parse(sweep={"time.step": [0.1, 0.1 + 1e-9]}).expand()
     assert [case.name for case in close] == ["scene[time.step=0.1]", "scene[time.step=0.100000001]"]
-    for repeated in ([0.1, 0.1], [1, 1.0]):
-        with pytest.raises(InputError, match="sweep: must not repeat a case"):
-            parse(sweep={"time.step": repeated}).expand()
 
 
 def test_keys_that_exclude_each_other_are_not_set_or_swept_together():
     for values in ({"time.gg": 0.9, "time.gg_rate": 3.0}, {"block.side": 1.0, "block.width": 2.0, "block.height": 1.0}):
-        with pytest.raises(InputError, match="exclude each other, got both"):
+        with pytest.raises(InputError, match=r"got both$"):
             parse().with_values(values)
-    with pytest.raises(InputError, match="exclude each other, got both"):
-        parse(sweep={"time.gg": [0.9, 1.0], "time.gg_rate": [3.0]}).expand()
     rate = parse(time__gg=0.9, sweep={"time.gg_rate": [3.0, 4.0]}).expand()
     assert [(case.time.gg, case.time.gg_rate) for case in rate] == [(None, 3.0), (None, 4.0)]
     (left,) = parse(sweep={"time.gg": [0.9, 1.0]}).with_values({"time.gg_rate": 3.0}).expand()
@@ -105,8 +93,9 @@ def test_keys_that_exclude_each_other_are_not_set_or_swept_together():
 
 @pytest.mark.parametrize("field", ["name", "sweep", "gate", 'sweep."time.step"', "gate.0.band"])
 def test_what_is_no_value_of_a_scene_is_not_set(field):
-    with pytest.raises(InputError, match="must be a key as in"):
+    with pytest.raises(InputError) as error:
         parse().with_values({field: [0.1]})
+    assert error.value.field == field
 
 
 def test_files_stand_beside_the_scene_and_a_byte_order_mark_is_no_text(tmp_path):
@@ -122,5 +111,5 @@ def test_assignments_are_toml_or_words():
     assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
     assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
-    with pytest.raises(InputError, match="must be key=value"):
+    with pytest.raises(InputError, match="key=value"):
         parse_assignment("time.step")

@@ -1,5 +1,6 @@
 """Unknown keys of a scene: all of them first, in one error, each with the key that was probably meant."""
 
+import re
 import tomllib
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from validation.scenes.scene import load_scene, parse_scene
 
 BLOCK = {"block": {"side": 2.0, "density": 2700.0, "young": 1e9}, "contact": {"stiffness": 1e9}}
 SCENE = BLOCK | {"load": {"pressure": 5e6}, "time": {"step": 0.002, "steps": 100}}
+UNKNOWN = "unknown key"
 MEANT = tomllib.loads(Path(__file__).with_name("meant_keys.toml").read_text(encoding="utf-8"))
 
 
@@ -27,9 +29,9 @@ def with_key(field):
 def test_the_key_that_was_meant_is_named(field, meant):
     with pytest.raises(InputError) as refused:
         parse_scene(with_key(field), "x.toml")
-    assert refused.value.rule == "unknown key" and refused.value.source == "x.toml"
+    assert (refused.value.rule, refused.value.source) == (UNKNOWN, "x.toml")
     assert refused.value.field == field or field.startswith(f"{refused.value.field}.")  # of a table, the table
-    assert refused.value.advice == f"did you mean {meant}?"
+    assert refused.value.advice.split()[-1] == f"{meant}?"
 
 
 def test_all_of_them_come_in_one_error_before_any_other(tmp_path):
@@ -40,12 +42,12 @@ def test_all_of_them_come_in_one_error_before_any_other(tmp_path):
     )
     with pytest.raises(InputError) as refused:
         load_scene(path)
-    assert refused.value.rule == "unknown keys"
+    assert refused.value.rule == f"{UNKNOWN}s"
     assert refused.value.field == "name, block.dt, time.stepp, sweep.time.gama, gate.0.pear, nonsense"
-    assert refused.value.advice == (
-        "did you mean title for name, time.step for block.dt, time.step for time.stepp, "
-        "time.delta for sweep.time.gama, gate.pair for gate.0.pear? dda-validate list keys names all"
-    )
+    assert re.findall(r"(\S+) for ([\w.]+)", refused.value.advice) == [
+        *(("title", "name"), ("time.step", "block.dt"), ("time.step", "time.stepp")),
+        *(("time.delta", "sweep.time.gama"), ("gate.pair", "gate.0.pear")),
+    ]
 
 
 @pytest.mark.parametrize(("field", "meant"), MEANT["plane"].items())
@@ -58,4 +60,4 @@ def test_the_key_of_blocks_in_the_plane_that_was_meant_is_named(field, meant):
     {"plane": plane, "plane.block": block, "plane.contact": contact}[place][key] = 1.0
     with pytest.raises(InputError) as refused:
         parse_scene(data, "boxes")
-    assert refused.value.advice == f"did you mean {meant}?"
+    assert refused.value.advice.split()[-1] == f"{meant}?"

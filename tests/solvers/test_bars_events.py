@@ -55,22 +55,23 @@ def test_every_shape_of_a_base_motion_moves_both(shape):
     column = WELDED | {"joint": [{"height": 2.0, "stiffness": 1e9}], "settled": True, "layer": layers}
     drive = {"at": "base", "shape": shape, "velocity": -0.3, **size}
     columns = ["displacement", "displacement_2", "force_4"]
-    scene = scene_of(column, columns, input=drive, time={"steps": 100})
+    scene = scene_of(column, columns, input=drive, time={"steps": 60})
     exact = history(scene, "bars-events")
-    time = {"step": 1e-4 / 16, "steps": 1600}
+    time = {"step": 1e-4 / 8, "steps": 480}
     fine = scene_of(column, columns, 16, input=drive, time=time)
-    assert distance(fine, 16, exact, *SMOOTH[:2]) < 0.01
-    assert distance(fine, 16, exact) < 0.12
+    assert distance(fine, 8, exact, *SMOOTH[:2]) < 0.01
+    assert distance(fine, 8, exact) < 0.12
 
 
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch):
     scene = scene_of(OPENS, ["displacement"], input=PULSE)
     monkeypatch.setattr(BarsOfColumn, "most_terms", 2e4)
     run = solve(scene, "bars-events")
-    assert run.outcome is Outcome.HORIZON and "the scene may have" in run.notes[0]
+    assert run.outcome is Outcome.HORIZON
     assert solve(scene, "bars-events", full=True).outcome is Outcome.COMPLETED
     monkeypatch.setattr(BarsOfColumn, "most_terms", 10.0)  # less than it takes for certain
-    assert "would have at least" in solve(scene, "bars-events").notes[0]
+    early = solve(scene, "bars-events")
+    assert early.outcome is Outcome.HORIZON and early.notes != run.notes
 
 
 def test_the_elements_count_their_solves_and_end_at_their_limit():

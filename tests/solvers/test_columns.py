@@ -1,9 +1,11 @@
 """Columns on every base: blocks, elements and the exact layers agree; a height is the top but for rounding."""
 
+import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import load_scene, response, solve
 from validation.scenes.scene import parse_scene
@@ -71,9 +73,11 @@ def test_fine_columns_vibrate_as_the_exact_layers(site, base, top):
 # ---- what is refused ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem", "layers", "column-events", "bars-events"])
-@pytest.mark.parametrize("top", [0.3, (0.1 + 0.2) * (1 + 5e-10)])
-def test_a_height_that_is_the_top_but_for_rounding_is_the_top(solver, top):
+TOPS = itertools.product((0.3, (0.1 + 0.2) * (1 + 5e-10)), ("dda", "fem", "layers", "column-events", "bars-events"))
+
+
+@pytest.mark.parametrize(("top", "solver"), thinned(TOPS, 3))
+def test_a_height_that_is_the_top_but_for_rounding_is_the_top(top, solver):
     layers = [{"thickness": 0.1, "density": 2000.0, "young": 1e8}, {"thickness": 0.2, "density": 2000.0, "young": 1e8}]
     column = {"motion": "pressure", "layer": layers, "heights": [top]}
     if solver.endswith("events"):
@@ -82,7 +86,7 @@ def test_a_height_that_is_the_top_but_for_rounding_is_the_top(solver, top):
         {
             "column": column,
             "input": {"shape": "half-sine", "velocity": 0.1, "duration": 1e-3},
-            "time": {"step": 1e-5, "steps": 100, "alpha": 0.25, "delta": 0.5},
+            "time": {"step": 1e-5, "steps": 20, "alpha": 0.25, "delta": 0.5},
             "run": {"solvers": [solver], "columns": ["displacement", "displacement_1"]},
         },
         "top",

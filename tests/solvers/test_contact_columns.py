@@ -42,22 +42,6 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(monkeypat
     assert asked[0] is kept
 
 
-def test_a_settled_column_stays_where_its_weight_has_put_it():
-    scene = scene_of(
-        {"gravity": 9.81, "settled": True, "layer": [LAYER | {"velocity": 0.0, "young": 1e9}]},
-        ["displacement", "contact_pressure"],
-    )
-    prepared = get_solver("dda").prepare(scene)
-    history = prepared.run().history
-    forces = 2500 * 9.81 * np.arange(5, 0, -1.0)
-    top = -(forces / 1e9 + (forces + np.append(forces[1:], 0.0)) / 2e9).sum()
-    np.testing.assert_allclose(history.columns["displacement"], top, rtol=1e-10)
-    np.testing.assert_allclose(history.columns["contact_pressure"], forces[0], rtol=1e-10)
-    record = prepared.contact_record()
-    assert np.abs(sum(record.energies.values())).max() < 1e-9
-    assert prepared.switches() == ()
-
-
 @pytest.mark.parametrize("solver", thinned(["dda", "fem"], 2))
 def test_a_pressure_that_is_there_at_once_acts_on_a_column_at_rest_under_its_weight(solver):
     """Each of the three takes the state at rest for that of the weight alone."""

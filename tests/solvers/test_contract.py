@@ -10,6 +10,7 @@ from validation.engine.run import run_study
 from validation.errors import InputError
 from validation.gates.gate import Gate
 from validation.metrics.catalogue import CATALOGUE
+from validation.metrics.values import NOT_REPORTED
 from validation.results import Results
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
@@ -22,10 +23,6 @@ from validation.solvers.registry import by_role, get_solver, role
 from validation.suite import Study
 
 JOINTS = "rusty joints"
-OWN = (  # a solver that is added leaves the roles of these as they are
-    *("dda", "dda-textbook", "fem", "fenicsx", "bar", "continuum", "layers", "block-events", "bar-events"),
-    "dda-60",
-)
 
 
 class Jointed(Solver):
@@ -69,13 +66,13 @@ def test_no_metric_and_no_gate_on_modes_or_statics_of_a_scene_that_is_not_linear
     assert {"displacement.final", "pressure.minimum"} <= judged
     assert not {name for name in judged if CATALOGUE[name].linear}
     row = next(row for row in Results(tmp_path).rows().values() if row.solver == "jointed")
-    assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == "not reported"
+    assert row.metrics["mode1.frequency"] == row.metrics["displacement.static"] == NOT_REPORTED
 
 
 def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed):
     gate = {"pair": ["jointed"], "metric": "mode1.frequency", "band": [0.0, 1e9], "reason": "a test"}
     asked = parse_scene(jointed.definition() | {"run": {"solvers": ["jointed"]}, "gate": [gate]}, "mine.toml")
-    with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .* linear scenes only, .* {JOINTS}"):
+    with pytest.raises(InputError, match=rf"gate\.0\.metric: mode1\.frequency .*{JOINTS}"):
         check_names(asked, "mine.toml")
     swept = parse_scene(
         asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml"
@@ -85,12 +82,11 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed):
 
 def test_roles_and_ranks_are_the_solvers_own(jointed):
     for word in Role:
-        found = by_role(word)
-        assert set(found) == {name for name in registry.BUILT_IN if role(name) == word}
-        assert [*map(registry.rank, found)] == sorted(map(registry.rank, found), reverse=True)
-    assert {name for name in OWN if role(name) == "judged"} == {"dda"}
-    assert [name for name in by_role("reference") if name in OWN] == ["bar", "fem"]
-    assert [name for name in by_role("truth") if name in OWN] == ["layers", "bar-events", "continuum"]
-    assert role("fem:full") == "repeat" and role("jointed") == "other"
+        names = by_role(word)
+        assert set(names) == {name for name in registry.BUILT_IN if role(name) == word}
+        assert [*map(registry.rank, names)] == sorted(map(registry.rank, names), reverse=True)
+    assert by_role("judged") == ["dda"] and {"bar", "fem"} <= {*by_role("reference")}
+    assert {"layers", "bar-events", "continuum"} <= {*by_role("truth")} and "jointed" in by_role("other")
+    assert role("fem:full") == "repeat"
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.rank("jointed") < registry.rank("dda")

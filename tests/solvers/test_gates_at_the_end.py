@@ -16,8 +16,10 @@ SAID = GateReport(
 )
 
 
-def ended(monkeypatch, user, verbose, when="call"):
-    """Return the lines that pytest writes and what the block was asked."""
+@pytest.mark.parametrize(("user", "when", "verbose"), [("mine:solve", "call", 0), ("mine:solve", "call", 1),
+                                                     ("mine:solve", "setup", 0), (None, "call", 0)])  # fmt: skip
+def test_what_gates_said_ends_what_pytest_writes_all_of_it_where_it_is_verbose(user, when, verbose, monkeypatch):
+    """Nothing is told without a solver, or of what no gate said."""
     lines, asked = list[str](), list[Any]()
     told = [(plugin.STATEMENT, json.dumps(asdict(SAID))), ("other", "x")]
     report = pytest.TestReport("t", ("t", 1, "t"), {}, "passed", None, when, user_properties=told)
@@ -26,24 +28,10 @@ def ended(monkeypatch, user, verbose, when="call"):
     options = {"--dda-solver": user, "verbose": verbose}
     plugins = SimpleNamespace(get_plugin=lambda name: reporter)
     config = SimpleNamespace(getoption=lambda name, default=None: options.get(name, default), pluginmanager=plugins)
-
-    def written(said, every):
-        asked.append((said, every))
-        return ["first\n  second"]
-
-    monkeypatch.setattr(block, "block", written)
+    monkeypatch.setattr(block, "block", lambda said, every: asked.append((said, every)) or ["first\n  second"])
     steps = plugin.pytest_terminal_summary(reporter, config)
     next(steps)
     assert next(steps, "done") == "done"
-    return lines, asked
-
-
-@pytest.mark.parametrize(("verbose", "every"), [(-1, False), (0, False), (1, True)])
-def test_every_gate_is_told_where_pytest_is_verbose(monkeypatch, verbose, every):
-    lines, asked = ended(monkeypatch, "mine:solve", verbose)
-    assert asked == [([SAID], every)]
-    assert lines == ["mine:solve: what the gates tell", "first", "  second"]
-
-
-def test_nothing_is_told_without_a_solver_or_of_what_no_gate_said(monkeypatch):
-    assert ended(monkeypatch, None, 0) == ended(monkeypatch, "mine:solve", 0, "setup") == ([], [])
+    is_told = user is not None and when == "call"
+    assert asked == [([SAID], verbose > 0)] * is_told
+    assert lines[1:] == ["first", "  second"] * is_told and len(lines) == 3 * is_told

@@ -4,6 +4,7 @@ The units of length, mass and time are free; what is asked for later does not ch
 goes with its load; to ask again, for less, or without savings gives the same numbers.
 """
 
+import itertools
 import tomllib
 from pathlib import Path
 
@@ -24,7 +25,8 @@ from validation.solvers.registry import BUILT_IN, get_solver
 
 TIME = {"step": 2e-3, "steps": 12}
 USUAL = ("displacement", "contact_pressure")
-SCENES = tomllib.loads(Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8"))
+TABLES = tomllib.loads(Path(__file__).with_name("invariants.toml").read_text(encoding="utf-8"))
+SCENES = TABLES["scenes"]
 NOT_LINEAR = (
     *("opening in a ramp", "adaptive", "opening", "opening sub-blocks", "landing", "sliding", "lagged", "turning"),
     *("dashpots", "impact"),
@@ -33,23 +35,10 @@ NOT_LINEAR = (
 OF_CONTACTS = NOT_LINEAR[-4:]  # columns
 RECORD = ((0.0, 7e-4, -9e-4), (0.011, -2e-3, 1e-3), (0.02, 3e-3, -2e-3), (0.05, -4e-4, 5e-4))  # s, m, m
 
-# what the numbers of a scene and of a history are, and how each goes with the units of length, mass and time, of a
-# slice of unit thickness
-EXPONENTS = {
-    "length": (1, 0, 0), "time": (0, 0, 1), "rate": (0, 0, -1), "velocity": (1, 0, -1), "acceleration": (1, 0, -2),
-    "density": (-2, 1, 0), "bedding": (-1, 1, -2), "stress": (0, 1, -2), "number": (0, 0, 0),
-}  # fmt: skip
-KINDS = {
-    "ramp": "time", "duration": "time",
-    "side": "length", "width": "length", "height": "length", "vertices": "length", "eccentricity": "length",
-    "gap": "length", "band": "length", "thickness": "length", "density": "density", "base_density": "density",
-    "young": "stress", "pressure": "stress", "traction": "stress", "shear_stiffness": "stress",
-    "velocity": "velocity", "base_speed": "velocity", "gravity": "acceleration", "step": "time", "mass": "rate",
-    "frequency": "rate", "strength": "stress", "contact_pressure": "stress",
-    "displacement": "length", "horizontal_displacement": "length",
-}  # fmt: skip
-# N/m of a slice of unit thickness, a1 of the damping tables, Pa/m
-STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}
+# of a slice of unit thickness: how each kind of number goes with the units of length, mass and time, and which has it
+EXPONENTS = TABLES["exponents"]
+KINDS = {name: kind for kind, names in TABLES["kinds"].items() for name in names}
+STIFFNESS = {"contact": "stress", "damping": "time", "column": "bedding"}  # N/m, a1 of the damping tables, Pa/m
 UNITS = (2.0**-9, 2.0**-12, 2.0**-5)  # powers of two round nothing: an absolute tolerance shows, and nothing else does
 
 
@@ -156,18 +145,19 @@ TAKES = {solver: [name for name, scene in SCENES.items() if solver in scene["sol
 
 
 def pairs(solver):
-    """Return a solver with its scenes; FEniCSx is another program, which is started for its tests alone."""
-    marks = [pytest.mark.fenicsx] if solver == "fenicsx" else []
+    """Return a solver with its scenes; FEniCSx is another program, which is started for few short tests."""
+    marks = [pytest.mark.fenicsx, pytest.mark.long] if solver == "fenicsx" else []
     return [pytest.param(solver, name, id=f"{solver}-{name}", marks=marks) for name in TAKES[solver]]
 
 
-EVERY = pytest.mark.parametrize(("solver", "name"), [pair for solver in BUILT_IN for pair in pairs(solver)])
-SOME = pytest.mark.parametrize(("solver", "name"), thinned(EVERY.args[1], 3))
+EVERY = [pair for solver in BUILT_IN for pair in pairs(solver)]
+LINEAR = [param for param in EVERY if param.values[1] not in NOT_LINEAR]
+OF_BLOCKS = [param for param in EVERY if "column" not in SCENES[param.values[1]]]
 
 
-LINEAR = [param for solver in BUILT_IN for param in pairs(solver) if param.values[1] not in NOT_LINEAR]
-
-OF_BLOCKS = [param for solver in BUILT_IN for param in pairs(solver) if "column" not in SCENES[param.values[1]]]
+def some(params, every):
+    """Parametrise a test by all solvers and scenes of a list, every n-th of them in the short tests."""
+    return pytest.mark.parametrize(("solver", "name"), thinned(params, every))
 
 
 @pytest.mark.parametrize("solver", BUILT_IN)
@@ -176,7 +166,7 @@ def test_a_solver_takes_its_scenes_and_no_others(solver, records):
     assert [name for name in SCENES if adapter.refusal(made(name, records)) is None] == TAKES[solver]
 
 
-@EVERY
+@some(EVERY, 3)
 def test_units_are_free(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
@@ -185,7 +175,7 @@ def test_units_are_free(solver, name, records):
     assert_same(other, expected, 1e-9)
 
 
-@SOME
+@some(EVERY[1:], 7)
 def test_what_comes_later_changes_nothing(solver, name, records):
     scene = asked(solver, made(name, records))
     longer = solved(solver, scene.with_values({"time.steps": 3 * scene.time.steps}))
@@ -193,7 +183,7 @@ def test_what_comes_later_changes_nothing(solver, name, records):
     assert_same(solved(solver, scene), beginning, 1e-9)
 
 
-@SOME
+@some(EVERY[2:], 7)
 def test_asked_again_for_one_column_it_gives_the_same(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
@@ -203,16 +193,13 @@ def test_asked_again_for_one_column_it_gives_the_same(solver, name, records):
     assert_same(solved(solver, scene.with_values({"run.columns": [last]})), {last: columns[last]}, 1e-12)
 
 
-WITH_SAVINGS = [param for solver in ("dda", "dda-textbook", "fem") for param in pairs(solver)]
-
-
-@pytest.mark.parametrize(("solver", "name"), WITH_SAVINGS)
+@some([param for param in EVERY if param.values[0] in ("dda", "dda-textbook", "fem")], 3)
 def test_without_savings_it_gives_the_same(solver, name, records):
     scene = asked(solver, made(name, records))
     assert_same(solved(solver, scene, full=True), solved(solver, scene), 1e-8)
 
 
-@pytest.mark.parametrize(("solver", "name"), LINEAR)
+@some(LINEAR, 3)
 def test_a_linear_motion_goes_with_its_load(solver, name, records):
     """The negative of twice the load, the negative of twice the motion and of what it ends at; of no load none."""
     scene = asked(solver, made(name, records))
@@ -225,7 +212,7 @@ def test_a_linear_motion_goes_with_its_load(solver, name, records):
         assert not any(np.any(value) for value in answer(solver, still).values())
 
 
-@pytest.mark.parametrize(("solver", "name"), OF_BLOCKS)
+@some(OF_BLOCKS, 3)
 def test_left_is_the_mirror_image_of_right(solver, name, records):
     """Even are v and the pressure, odd are u and the rotation."""
     scene = asked(solver, made(name, records))
@@ -234,7 +221,7 @@ def test_left_is_the_mirror_image_of_right(solver, name, records):
     assert_same(other, {column: values if column in USUAL else -values for column, values in columns.items()}, 1e-9)
 
 
-OPENED = [param for param in EVERY.args[1] if param.values[1] in NOT_LINEAR and param.values[1] != "adaptive"]
+OPENED = [param for param in EVERY if param.values[1] in NOT_LINEAR and param.values[1] != "adaptive"]
 
 
 def carried(scene):
@@ -245,7 +232,7 @@ def carried(scene):
     return mass, mass * scene.column.gravity
 
 
-@pytest.mark.parametrize(("solver", "name"), OPENED)
+@some(OPENED, 3)
 def test_what_a_contact_does_keeps_momentum_and_energy(solver, name, records):
     """Momentum: m (V - V0) and the loads' impulse are the contact's; energy: stored and lost are those of the start."""
     scene = asked(solver, made(name, records))
@@ -282,8 +269,10 @@ TRUTHS += [("column-events", name) for name in OF_CONTACTS]
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
 
 
-@pytest.mark.parametrize(("truth", "name"), TRUTHS)
-@pytest.mark.parametrize(("scheme", "ratio"), [({}, 2.0), (AVERAGE, 4.0)], ids=["constant", "average"])
+@pytest.mark.parametrize(
+    ("truth", "name", "scheme", "ratio"),
+    thinned(((*truth, *scheme) for scheme in (({}, 2.0), (AVERAGE, 4.0)) for truth in TRUTHS), 4),
+)
 def test_steps_tend_to_the_exact_motion_by_their_order(truth, name, scheme, ratio, records):
     """Half the step leaves a half of the error of order one, a quarter of order two: in size, in sign, in every column.
 
@@ -306,7 +295,7 @@ RESTING = [param for param in LINEAR if param.values[0] in ("dda", "fem", "fenic
 RESTING = [param for param in RESTING if param.values[1] not in ("column", "explicit")]
 
 
-@pytest.mark.parametrize(("solver", "name"), RESTING)
+@some(RESTING, 3)
 def test_a_damped_run_comes_to_rest_where_static_says(solver, name, records):
     """55 steps after the load's course has ended, of which each leaves 0.41 of the slowest motion."""
     damped = {"time.alpha": 0.5625, "time.gg": 0.3, "time.step": 1e-2, "time.steps": 60}
@@ -320,9 +309,9 @@ def test_a_damped_run_comes_to_rest_where_static_says(solver, name, records):
 LINEAR_STEPS = ("locked", "explicit", "lateral", "sub-blocks", "damped", "adaptive")
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
-@pytest.mark.parametrize("name", LINEAR_STEPS)
-@pytest.mark.parametrize("scheme", [{}, AVERAGE], ids=["constant", "average"])
+@pytest.mark.parametrize(
+    ("name", "solver", "scheme"), thinned(itertools.product(LINEAR_STEPS, ("dda", "fem"), ({}, AVERAGE)), 5)
+)
 def test_a_history_is_that_of_the_printed_scheme(name, solver, scheme, records):
     """Newmark's steps on full matrices, with C = a0 M + a1 K, with gg as it is stated or as kinetic damping sets it."""
     scheme = scheme | ({} if name == "adaptive" else {"time.gg": 0.97})
@@ -362,8 +351,7 @@ def adaptively(M, K, F, rows, rule, floor, steps):
     return np.array(found).T
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem"])
-@pytest.mark.parametrize("name", [name for name in LINEAR_STEPS if name != "adaptive"])
+@some(itertools.product(("dda", "fem"), (name for name in LINEAR_STEPS if name != "adaptive")), 3)
 def test_a_response_is_where_stepped_vibrations_end(name, solver, records):
     """Steps of full matrices in their modes, under the load as cos(wt), until what begins has gone by gg."""
     scene = made(name, records).with_values({"time.gg": 0.97, "run.columns": USUAL})

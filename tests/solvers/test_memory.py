@@ -74,5 +74,5 @@ def test_models_of_the_advice_must_fit_as_well(scene_file):
     options = ["--set", "block.poisson=0.2", "--set", "fem.elements=100000"]
     done = typed("advise", "damping", scene_file, *options)
     assert "Traceback" not in done.stderr
-    assert "fem.elements: must fit into memory, fem needs about" in done.stderr
+    assert done.stderr.startswith("error: ") and "fem.elements" in done.stderr
     assert done.returncode == 2

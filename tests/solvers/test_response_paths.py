@@ -35,7 +35,7 @@ def moving(path, scene, along, w):
 @pytest.mark.parametrize(("solver", "values", "along"), thinned(MOVING, 2))
 def test_stepped_histories_on_a_vibrating_base_end_where_the_closed_form_says(tmp_path, solver, values, along):
     w = 2 * np.pi * 43.0
-    time = {"time.step": 0.003, "time.steps": 900, "time.alpha": 0.7, "time.gg": 0.97, "contact.stiffness": 4e8}
+    time = {"time.step": 0.003, "time.steps": 700, "time.alpha": 0.7, "time.gg": 0.97, "contact.stiffness": 4e8}
     scene = moving(tmp_path / "base.csv", BLOCK.with_values(values | time), along, w)
     history = solve(scene, solver).history
     last = slice(-60, None)
@@ -64,14 +64,6 @@ def test_a_small_space_answers_as_eliminations_do(monkeypatch, damped):
         for column in COLUMNS:
             size = np.max(np.abs(band.columns[column]))
             assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
-
-
-def test_at_rest_and_at_a_load_that_turns_every_step():
-    for solver in ("dda", "fem", "bar"):
-        found = response(BLOCK, [0.0, 250.0], solver)
-        assert found.displacement[0] == pytest.approx(-0.01, rel=1e-9)
-        assert found.contact_pressure[0] == pytest.approx(5e6, rel=1e-9)
-        assert abs(found.displacement[1]) < 1e-12  # (1/2, 1): W2 has no bound at half the sampling frequency
 
 
 def rational(poles):

@@ -80,7 +80,10 @@ solvers = ["bar-events"]
 
 @pytest.mark.parametrize(
     ("name", "module", "limit", "most", "horizon"),
-    [("bar-events", BarMotion, "most_terms", 7e5, 0.0088), ("block-events", block_march, "STEPS", 27, 0.0049)],
+    [
+        pytest.param("bar-events", BarMotion, "most_terms", 7e5, 0.0088, marks=pytest.mark.long),
+        ("block-events", block_march, "STEPS", 27, 0.0049),
+    ],
 )
 def test_a_motion_of_too_much_work_ends_at_a_named_horizon(tmp_path, monkeypatch, name, module, limit, most, horizon):
     monkeypatch.setattr(module, limit, most)

@@ -10,6 +10,7 @@ from conftest import SCENE, cli
 from validation.engine.case import Case
 from validation.engine.measure import completed, execute
 from validation.errors import InputError
+from validation.metrics.values import NOT_REPORTED
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -30,7 +31,7 @@ def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene, 
     """DDA takes no base that is elsewhere than at zero where contact opens; another program's answer stands."""
     (tmp_path / "base.csv").write_text("time,x,y\n0,0.001,0\n1,0.001,0\n")
     moved = load_scene("field-opening").with_values({"load.base_motion": str(tmp_path / "base.csv"), "time.steps": 3})
-    with pytest.raises(InputError, match="must be zero at t = 0"):
+    with pytest.raises(InputError, match="motion"):
         get_solver("dda").solve(moved)
     run = get_solver("named:Named").solve(moved.with_values({"title": "hostile:sound"}))
     assert run.outcome is Outcome.COMPLETED, run.notes
@@ -40,7 +41,7 @@ def test_no_answer_is_refused_for_what_the_built_in_solver_does_not_take(scene, 
 def test_a_solver_that_hangs_is_ended_with_what_it_started(scene, monkeypatch):
     monkeypatch.setenv(VARIABLE, "1.5")
     run = completed(get_solver("my_solver:hangs"), scene)
-    assert (run.outcome, run.notes) == (Outcome.TIMEOUT, ("no history within 1.75 s, the time limit for 50 steps",))
+    assert run.outcome is Outcome.TIMEOUT and "1.75" in run.notes[0]
     shown = subprocess.run(["ps", "-eo", "args"], capture_output=True, text=True, check=True).stdout
     assert "time.sleep(60)" not in shown and "my_solver:hangs" not in shown
 
@@ -48,8 +49,8 @@ def test_a_solver_that_hangs_is_ended_with_what_it_started(scene, monkeypatch):
 def test_what_is_not_reported_is_not_made_up(scene):
     scenes = [scene.with_values({"title": f"my_solver:{name}"}) for name in ("displacement_only", "Reporting")]
     row, _ = execute(Case(scenes[0], "named:Named"), "key", "study")
-    assert row.metrics["displacement.static"] == row.metrics["mode1.damping"] == "not reported"
-    assert row.metrics["pressure.final"] == "not reported"
+    assert row.metrics["displacement.static"] == row.metrics["mode1.damping"] == NOT_REPORTED
+    assert row.metrics["pressure.final"] == NOT_REPORTED
     assert row.metrics["displacement.settling_step"] == 44.0  # measured from the block's own static value
     row, _ = execute(Case(scenes[1], "named:Named"), "key", "study")
     assert row.metrics["displacement.static"] == -0.01
@@ -58,8 +59,9 @@ def test_what_is_not_reported_is_not_made_up(scene):
 def test_names(scene):
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
-    with pytest.raises(InputError, match=r"must be one of dda, .* module:attribute, .*, got 'femm:2'"):
+    with pytest.raises(InputError) as told:
         get_solver("femm:2")
+    assert told.value.field == "solver" and "femm:2" in str(told.value.value)
 
 
 @pytest.mark.parametrize("name", ["nowhere:solve", "nowhere.py:solve", "my_solver.py:solve", "my_solver.inner:solve"])
@@ -80,7 +82,7 @@ def test_a_user_solver_always_runs_afresh(scene, tmp_path):
     seen = []
     for _ in range(2):
         run_study(scene_study(str(path)), Results(tmp_path / "r"), progress=lambda d, t, label: seen.append(label))
-    assert sorted(seen) == ["own dda", "own named:Named", "own named:Named"]
+    assert sorted(label.split()[-1] for label in seen) == ["dda", "named:Named", "named:Named"]
 
 
 @pytest.mark.long

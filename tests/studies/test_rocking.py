@@ -1,126 +1,15 @@
-"""The studies of rocking and toppling: gates that faults bite, closed forms against scipy, numbers of the text."""
+"""The studies of rocking and toppling: closed forms against scipy, numbers of the text."""
 
 import math
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
-from faults import seams
-from faults.fault import Fault, of_first, scaled
-from faults.kill_matrix import check_study
 from scipy.integrate import solve_ivp
 
-from dda.bodies import turning_step as step
-from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
-from dda.march.step import steps_by
 from validation.studies.toppling import formulas as toppling
 from validation.suite.bands import cases
 from validation.theory.rocking import Rectangle
-
-DDA = ("dda",)
-
-
-def read_as(change):
-    """Return a wrapper that changes what a property tells."""
-    return lambda sound: property(lambda model: change(sound.__get__(model)))
-
-
-def heavy(sound):
-    def faulty(M, block):
-        heavier = M.copy()
-        heavier[2, 2] *= 1.02
-        return sound(heavier, block)
-
-    return faulty
-
-
-def quicker(share):
-    """Add a share to the velocities in every step."""
-
-    def wrap(sound):
-        def faulty(march, stage, start, before, after, *given):
-            outcome, solves = step.make_stage(march, stage, start, before, after, *given)
-            after.p[:] = [(1 + share) * p for p in after.p]
-            return outcome, solves
-
-        return steps_by(faulty, step.account, step.keep)
-
-    return wrap
-
-
-def turning_by(rotation):
-    return lambda sound: lambda Q, r, exact, out: sound(Q, r, rotation == EXACT, out)
-
-
-def grown_twice(sound):
-    def faulty(Q, r, exact, out):
-        sound(Q, r, exact, out)
-        if not exact:
-            out.end[:] = [[math.sqrt(1 + r * r) * x for x in row] for row in out.end]
-
-    return faulty
-
-
-def further(share):
-    """Return a wrapper that makes the base move further by a share."""
-    return lambda sound: (
-        lambda model: (motion := sound(model)) and replace(motion, displacement=(1 + share) * motion.displacement)
-    )
-
-
-def doubled(sound):
-    def faulty(*given):
-        columns = sound(*given)
-        return columns | {"rotation": 2 * columns["rotation"]}
-
-    return faulty
-
-
-LIGHT = Fault("weight 1 % less", DDA, seams.ROLLING_WEIGHT, read_as(lambda g: 0.99 * g))
-STEEP = Fault("slope 0.5 deg more", DDA, seams.ROLLING_WEIGHT, read_as(lambda g: turned(math.radians(0.5)) @ g))
-HEAVY = Fault("moment of inertia 2 % more", DDA, seams.ROLLING_MODES, heavy)
-SOFT = Fault("springs a tenth", DDA, seams.ROLLING_LAWS, scaled(stiffness=0.1))
-QUICK = Fault("velocities 1 % more in every step", DDA, seams.ROLLING_STEPS, quicker(0.01))
-TILTED = Fault("tilt 1 % more", DDA, seams.ROLLING_START, scaled(tilt=1.01))
-FAULTS = {
-    "rocking": [
-        LIGHT,
-        HEAVY,
-        SOFT,
-        QUICK,
-        Fault("velocities 5 % more in every step", DDA, seams.ROLLING_STEPS, quicker(0.05)),
-        TILTED,
-        Fault("rotation reported twice its size", DDA, seams.ROLLING_OBSERVED, doubled),
-        Fault("forces at the end of the step", DDA, seams.ROLLING_LATE, lambda sound: lambda delta: 1.0),
-        Fault("base moves 2 % more", DDA, seams.ROLLING_BASE, further(0.02)),
-        Fault("base moves 30 % more", DDA, seams.ROLLING_BASE, further(0.3)),
-    ],
-    "toppling": [
-        LIGHT,
-        STEEP,
-        HEAVY,
-        SOFT,
-        TILTED,
-        Fault(
-            "friction 1 % less",
-            DDA,
-            seams.ROLLING_LAWS,
-            of_first(lambda law: {"friction": law.friction and 0.99 * law.friction}),
-        ),
-        Fault("first-order rotation", DDA, seams.ROLLING_TURN, turning_by(FIRST_ORDER)),
-        Fault("exact rotation where first-order is asked for", DDA, seams.ROLLING_TURN, turning_by(EXACT)),
-        Fault("the outline grows twice", DDA, seams.ROLLING_TURN, grown_twice),
-        Fault("velocities a thousandth more in every step", DDA, seams.ROLLING_STEPS, quicker(1e-3)),
-    ],
-}
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("study", FAULTS)
-def test_every_gate_is_bitten_and_every_fault_is_seen(study, tmp_path, finished_cases):
-    check_study(study, FAULTS[study], tmp_path, finished_cases)
-
 
 PRECISELY = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14, "dense_output": True}
 

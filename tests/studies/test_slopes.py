@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, scaled, told
 from faults.kill_matrix import check_study
@@ -142,7 +141,7 @@ def oracle(case, lagged):
 
 
 CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n
-    (40.0, 45.0, 0.4, 12.4),  # the shortest, of the short tests
+    (40.0, 45.0, 0.4, 12.4),
     (20.0, 30.0, 0.4, 0.811),
     (20.0, 22.0, 0.4, 1.210),
     (5.0, 30.0, 0.4, 0.0276),
@@ -152,7 +151,8 @@ CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, s
 ]
 
 
-@pytest.mark.parametrize(("slope", "phi", "shear", "factor"), thinned(CREEP_FACTORS, len(CREEP_FACTORS)))
+@pytest.mark.long
+@pytest.mark.parametrize(("slope", "phi", "shear", "factor"), CREEP_FACTORS)
 def test_the_creep_of_the_exact_block_scales_with_g_over_w_n_by_a_factor_of_slope_friction_and_springs(
     slope, phi, shear, factor
 ):

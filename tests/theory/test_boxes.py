@@ -68,6 +68,7 @@ def test_the_slip_on_shaken_ground_is_that_of_small_steps(box):
     largest = float(np.max(np.abs(box.slip(time))))
     assert largest > 0.005
     np.testing.assert_allclose(box.displacement(time), expected, atol=2e-3 * largest)
+    np.testing.assert_allclose(box.slip(time) + box.ground(time), expected, atol=2e-3 * largest)
 
 
 @pytest.mark.parametrize("impact", [SpringImpact(1700.0, 4e5, 9.81, 1.3), SpringImpact(20.0, 9e4, 1.62, 0.4)])

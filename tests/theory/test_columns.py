@@ -48,12 +48,5 @@ def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step
     )
 
 
-@pytest.mark.parametrize(("delta", "gg"), [(1.0, 1.0), (0.5, 0.999), (0.6, 0.9999)])
-def test_a_small_step_takes_what_the_closed_form_says(delta, gg):
-    omega, step = 10.0, 1e-3
-    rate = omega**2 * (delta - 0.5) * step / 2 + (1 - gg) / (2 * step)
-    assert columns.ring_down(omega, Stepping(step, 0.5, delta, gg)) == pytest.approx(math.log(1e3) / rate, rel=0.01)
-
-
 def test_every_contact_at_rest_carries_what_is_above():
     assert columns.static_forces([3.0, 2.0, 1.0]) == [6.0, 3.0, 1.0]

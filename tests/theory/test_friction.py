@@ -24,23 +24,6 @@ def scene(**changes):
     return load_scene("figures-3-4").with_values(SLOPE | base | {k.replace("__", "."): v for k, v in changes.items()})
 
 
-@pytest.mark.parametrize(
-    ("gg", "step", "way", "average"),
-    [
-        (0.98, 0.01, 0.689234, False),
-        (0.99, 0.001, 0.218502, True),
-    ],
-)
-def test_a_discount_shortens_the_run_out(gg, step, way, average):
-    """Numbers of an independent program; its average acceleration is from A0 = 0 and still rings by the offset."""
-    scheme = {"time__alpha": 0.25, "time__delta": 0.5} if average else {"time__start": "consistent"}
-    case = scene(time__gg=gg, time__step=step, time__steps=round(1 / step), **scheme)
-    moved, speed = friction.free_motion(case, friction.sliding_acceleration(case))
-    offset = friction.penalty_offset(case)
-    assert moved[-1] + offset == pytest.approx(way, abs=offset if average else 5e-7)
-    assert speed[-1] < friction.sliding_acceleration(case) * friction.time_constant(case)
-
-
 @pytest.mark.parametrize("gg", [1.0, 0.97])
 @pytest.mark.parametrize(
     ("start", "numbers"),
@@ -74,7 +57,8 @@ def test_at_the_threshold_the_forces_balance(changes):
     assert forces[0] == pytest.approx(forces[1] + forces[2], rel=1e-12)
     assert at.block.mass * forces[2] == pytest.approx(at.contact.cohesion * at.block.base_length, rel=1e-12)
     assert friction.run_out(case.with_values({"load.slope": limit - 1e-3}), 1.0) == 0
-    assert friction.run_out(case.with_values({"load.slope": limit + 1e-3}), 1.0) > 0
+    steeper = case.with_values({"load.slope": limit + 1.0})
+    assert 0 < friction.run_out(steeper, 3.0) == pytest.approx(4.5 * friction.sliding_acceleration(steeper))
 
 
 @pytest.mark.parametrize("changes", [OTHER, {"contact.stiffness": 1e10, "load.slope": 11.0}])
@@ -100,10 +84,7 @@ def test_a_rate_is_what_a_discount_takes_in_a_second():
         case = scene(time__gg=gg, time__step=step)
         assert math.exp(-friction.drag_rate(case) * step) == pytest.approx(gg, rel=1e-12)
         assert friction.time_constant(case) == pytest.approx(step / (1 - gg), rel=1e-12)
-    assert friction.drag_rate(scene()) == 0
-    assert friction.time_constant(scene()) == math.inf
-    many = friction.free_motion(scene(time__gg=0.9, time__steps=2000), 2.0)[1]
-    assert np.max(np.abs(many[1000:] / (2.0 * friction.time_constant(scene(time__gg=0.9))) - 1)) < 1e-12
+    assert (friction.drag_rate(scene()), friction.time_constant(scene())) == (0, math.inf)
 
 
 @pytest.mark.parametrize(

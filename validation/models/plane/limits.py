@@ -46,17 +46,18 @@ def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
         for on, others in enumerate(rings):
             if block == on or np.any(lows[block] > highs[on]) or np.any(lows[on] > highs[block]):
                 continue
-            for start, end in zip(others, np.roll(others, -1), strict=True):
-                length = abs(end - start)
-                along = (end - start) / length
-                apart = (ring - start) * along.conjugate()
-                opposite = faces * along.conjugate()
-                lies_on = (np.abs(opposite.imag) < PARALLEL) & (opposite.real < 0)
-                lies_on |= np.roll(lies_on, 1)  # of the faces that meet in a corner either
-                inside = (apart.real > NEAR) & (apart.real < length - NEAR)
-                over = (apart.real >= -NEAR) & (apart.real <= length + NEAR)
-                for number in np.flatnonzero((np.abs(apart.imag) <= NEAR) & over & (inside | lies_on)):
-                    yield ContactPoint(block, on, complex(ring[number]), complex(-1j * along))
+            starts = others[:, None]  # edges of the other block along the first axis, corners of this along the second
+            edges = np.roll(starts, -1, axis=0) - starts
+            lengths = np.abs(edges)
+            along = edges / lengths
+            apart = (ring - starts) * along.conjugate()
+            opposite = faces * along.conjugate()
+            lies_on = (np.abs(opposite.imag) < PARALLEL) & (opposite.real < 0)
+            lies_on |= np.roll(lies_on, 1, axis=1)  # of the faces that meet in a corner either
+            inside = (apart.real > NEAR) & (apart.real < lengths - NEAR)
+            over = (apart.real >= -NEAR) & (apart.real <= lengths + NEAR)
+            for edge, number in np.argwhere((np.abs(apart.imag) <= NEAR) & over & (inside | lies_on)):
+                yield ContactPoint(block, on, complex(ring[number]), complex(-1j * along[edge, 0]))
 
 
 def can_rest(

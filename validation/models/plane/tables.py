@@ -78,7 +78,7 @@ class PlaneSection(PlaneContents):
                 raise ValueError("contact: is required with touch, got none")
             if not self.block and not self.generators:
                 raise ValueError(f"needs blocks, [[plane.block]] or one of {', '.join(GENERATORS)}, got none")
-            assembly.check(self, self.assembly)
+            _ = self.assembly  # is checked when it is made, once: a scene that states no solvers is validated twice
         return self
 
     def _check_glued(self, stated: list[str]) -> None:
@@ -147,8 +147,10 @@ class PlaneSection(PlaneContents):
 
     @cached_property
     def assembly(self) -> Assembly:
-        """Moving blocks with their names resolved."""
-        return assembly.assembled(self)
+        """Moving blocks with their names resolved, checked."""
+        found = assembly.assembled(self)
+        assembly.check(self, found)
+        return found
 
     @property
     def rectangle(self) -> tuple[float, float] | None:

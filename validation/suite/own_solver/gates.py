@@ -118,9 +118,21 @@ def gates() -> Mapping[str, tuple[str, Gate]]:
 
 @functools.cache
 def applying() -> Mapping[str, tuple[str, Gate]]:
-    """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone."""
-    on_start = {gate.id: (START.name, gate) for gate in START.gates()}
-    return {name: study_and_gate for name, study_and_gate in gates().items() if applies(*study_and_gate)} | on_start
+    """Return the gates on the two-block model of `dda`, and those on the start, which are for users' solvers alone.
+
+    Bands are formulas, of seconds where a limit is searched: those of studies without such a case are not computed.
+    """
+    by_id: dict[str, tuple[str, Gate]] = {}
+    for study in judged_studies():
+        if _has_blocks(study) and any(map(_is_two_blocks, cases(study).values())):
+            by_id |= {gate.id: (study, gate) for gate in get_study(study).gates() if applies(study, gate)}
+    return by_id | {gate.id: (START.name, gate) for gate in START.gates()}
+
+
+def _has_blocks(study: str) -> bool:
+    """Whether a study has a scene of a block, whose kind has no feature, before its cases are made."""
+    scenes = (load_scene(declared) if isinstance(declared, str) else declared for declared in study_of(study).scenes)
+    return any(not scene.kind.feature for scene in scenes)
 
 
 @functools.cache
@@ -150,11 +162,15 @@ def applies(study: str, gate: Gate) -> bool:
 
     What a user's solver has no way to report, such as the solves of a step, is not asked of it.
     """
-    if gate.pair[0] != JUDGED or gate.cases[0] not in cases(study) or not CATALOGUE[gate.metric].needs <= REPORTABLE:
-        return False
-    case = cases(study)[gate.cases[0]]
+    case = cases(study).get(gate.cases[0])
+    return case is not None and _is_two_blocks(case) and CATALOGUE[gate.metric].needs <= REPORTABLE
+
+
+def _is_two_blocks(case: Case) -> bool:
+    """Whether a case is one of the two-block model of `dda`: one block, a centred pressure, a sound history."""
     beyond = features.FIRST | {case.scene.kind.feature}  # a block, whose kind has none, under a centred pressure
-    return beyond.isdisjoint(features.of(case.scene)) and "stability" not in case.measures
+    is_sound = "stability" not in case.measures
+    return case.solver == JUDGED and is_sound and beyond.isdisjoint(features.of(case.scene))
 
 
 def group(gate: Gate, scene: Scene) -> str:
