@@ -1,4 +1,4 @@
-"""Gates for a disagreement are not proposed."""
+"""Gates for a disagreement are not proposed; modes are told where samples show an alias of them."""
 
 import pytest
 from conftest import typed
