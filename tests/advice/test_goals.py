@@ -5,7 +5,7 @@ import pytest
 
 from validation import load_scene, solve
 from validation.advice import goals
-from validation.advice.goals import recommend
+from validation.advice.goals import Question, recommend
 from validation.advice.overview import overview
 from validation.errors import InputError
 from validation.models.column.pages import recommended_cut as cut_column
@@ -30,7 +30,7 @@ def with_settings(scene, offer, **values):
 
 def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its_steps():
     granite = PAPER.with_values(GRANITE)
-    (offer,) = recommend(granite, "static", 0.05)
+    (offer,) = recommend(granite, "static", Question())
     case = with_settings(granite, offer, **{"time.steps": offer.steps + 20})
     elements = get_solver("fem").static(case.with_values({"fem.elements": 8}))["displacement"]
     rest = solve(case, "dda").displacement[offer.steps - 1 :]
@@ -43,7 +43,7 @@ def test_a_static_block_is_as_far_from_elements_as_it_says_and_at_rest_after_its
 @pytest.mark.long
 @pytest.mark.parametrize("keep_springs", [False, True])
 def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_springs):
-    plain, conserving = recommend(PAPER, "impact", 0.05, keep_springs=keep_springs)
+    plain, conserving = recommend(PAPER, "impact", Question(keep_springs=keep_springs))
     assert (plain.settings["contact.stiffness"] == PAPER.contact.stiffness) is keep_springs
     assert conserving.settings["contact.rule"] == "energy-conserving"
     assert plain.is_reached and conserving.is_reached and conserving.steps < plain.steps
@@ -62,7 +62,7 @@ def test_an_impact_keeps_the_rebound_of_the_theory_wherever_it_lands(keep_spring
 
 @pytest.mark.long
 def test_a_quake_is_followed_in_the_contact_force_too():
-    (offer,) = recommend(PAPER, "quake", 0.02)
+    (offer,) = recommend(PAPER, "quake", Question(error=0.02))
     assert offer.is_reached and offer.force_error is not None and offer.force_error <= 0.02
     assert "sideways" in offer.condition
 
@@ -73,8 +73,8 @@ def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered():
         (load_scene("quadrilateral"), "impact", ()),
     ):
         with pytest.raises(InputError) as error:
-            recommend(scene, goal, 0.05)
-        answer = overview(scene, (goal, *others))
+            recommend(scene, goal, Question())
+        answer = overview(scene, Question(goals=(goal, *others)))
         assert answer.refused == {goal: error.value.rule}
         assert tuple(offer.goal for offer in answer.recommendations) == others
 

@@ -42,6 +42,13 @@ def test_the_plain_list_fits_a_screen_and_counts_what_the_others_hold(monkeypatc
     assert {name: counts[name] for name in known} == {name: len(names) for name, names in known.items()}
 
 
+def test_a_page_of_advice_keeps_its_lines_in_a_terminal(monkeypatch):
+    monkeypatch.setattr(output, "terminal_width", lambda: 60)
+    page = typed("advise", "rigid-impact").stdout.splitlines()
+    assert max(map(len, page)) <= 60
+    assert sum(line.startswith("  ") for line in page) == 7  # five facts, two settings
+
+
 def test_every_key_of_a_scene_is_described_once():
     names = set()
     for place, table in tables_of_scenes().items():

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -19,10 +19,10 @@ from validation.advice import overshoot
 from validation.advice.coarse import closed
 from validation.advice.limits import Limit, check_ratio
 from validation.advice.plain import PlainAnswer
-from validation.advice.spectra import dda_modes, highest_frequency
+from validation.advice.spectra import dda_modes, highest_frequency, number, rate_of
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.runs.modes import Mode
-from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory import landing
@@ -46,6 +46,7 @@ LEAST_IMPACT = 0.05  # w_c dt below which a contact is followed in so many steps
 LEAST_RATIO = 1e-5  # of critical damping
 STEPS = 8  # of a period of the requested frequency, below which a scheme is not recommended
 GAIN = 1e-3  # of the speed: what a rebound may have above 1
+LATE = 0.02  # of a period, by which one that is told is off
 KEEPS = 0.9  # modulus from which on a contact mode counts as hardly damped
 
 
@@ -155,7 +156,7 @@ def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Steppin
     units = [Stepping(1.0, alpha, delta) for alpha, delta in dict.fromkeys(weights) if delta > 0.5]
     for scheme, radii in LADDER.items():
         units += [Stepping.named(scheme, rho_inf=radius) for radius in radii]
-    steppings: list[Stepping | None] = []
+    steppings: list[Stepping] = []
     unreachable: dict[str, float] = {}
     for unit in units:
         ratios = _ratios(unit)
@@ -166,34 +167,32 @@ def _candidates(scene: Scene, target: float, omega: float) -> tuple[list[Steppin
         W = _root(unit.damping_ratio, target, OMEGAS[max(i - 1, 0)], OMEGAS[i])
         steppings.append(unit.at(float(OMEGAS[i] if W is None else W) / omega))
     unreachable["leapfrog"] = 0.0  # which damps nothing
+    # Families of one parameter, at the present step; average acceleration damps nothing of its own, so that a rate of
+    # gg is all there is: xi = c / (2 w).
+    short = min(present.step, RESOLVED / omega)
+    families: list[tuple[Callable[[float], Stepping], float, float]] = [
+        (lambda delta: Stepping(present.step, (0.5 + delta) ** 2 / 4, delta), 0.5, 1.5)
+    ]
+    for scheme in LADDER:
+        member = functools.partial(_of_radius, scheme, present.step)
+        families.append((member, 0.5 if scheme == "hht" else 0.0, 1.0))
+    discounted = functools.partial(Stepping, short, *AVERAGE)
+    families.append((discounted, math.exp(-4 * target * omega * short), 1.0))
+    for family, low, high in families:
 
-    # the families of one parameter at the present step
-    def boundary(delta: float) -> Stepping:
-        return Stepping(present.step, (0.5 + delta) ** 2 / 4, delta)
+        def ratio(value: float, family: Callable[[float], Stepping] = family) -> float:
+            stepping = family(value)
+            return stepping.damping_ratio(omega * stepping.step)
 
-    steppings.append(_member(boundary, target, omega, (0.5, 1.5)))
-    for scheme, radii in LADDER.items():
-        family = functools.partial(_of_radius, scheme, present.step)
-        member = _member(family, target, omega, (0.5 if scheme == "hht" else 0.0, 1.0))
-        if member is not None and all(abs((member.rho_inf or 0.0) - radius) > 1e-6 for radius in radii):
-            steppings.append(member)
-    # average acceleration damps nothing of its own, so that a rate of gg is all there is: xi = c / (2 w)
-    step = min(present.step, RESOLVED / omega)
-    discounted = functools.partial(Stepping, step, *AVERAGE)
-    steppings.append(_member(discounted, target, omega, (math.exp(-4 * target * omega * step), 1.0)))
-    return [stepping for stepping in steppings if stepping is not None], unreachable
+        value = _root(ratio, target, low, high)
+        listed = LADDER.get(family(high).scheme, ())
+        if value is not None and all(abs(value - radius) > 1e-6 for radius in listed):
+            steppings.append(family(value))
+    return steppings, unreachable
 
 
 def _of_radius(scheme: str, step: float, radius: float) -> Stepping:
     return Stepping.named(scheme, step, rho_inf=radius)
-
-
-def _member(
-    family: Callable[[float], Stepping], target: float, omega: float, ends: tuple[float, float]
-) -> Stepping | None:
-    """Return the scheme of a family that has the target at a frequency; None where the ends do not bracket it."""
-    number = _root(lambda value: family(value).damping_ratio(omega * family(value).step), target, *ends)
-    return None if number is None else family(number)
 
 
 @functools.lru_cache(maxsize=64)
@@ -214,11 +213,8 @@ def _root(ratio: Callable[[float], float], target: float, low: float, high: floa
 
 def _named(stepping: Stepping) -> str:
     """Name a scheme with its numbers."""
-    if stepping.scheme == "newmark":
-        name = f"Newmark ({stepping.alpha:.6g}, {stepping.delta:.6g})"
-    else:
-        name = f"{stepping.scheme} (rho_inf = {stepping.rho_inf:.6g})"
-    return name if stepping.gg == 1 else f"{name} with gg = {stepping.gg:.6g}"
+    name = say("newmark" if stepping.scheme == "newmark" else "of one number", stepping)
+    return name if stepping.gg == 1 else say("with gg", stepping, name=name)
 
 
 # ---- one offer ------------------------------------------------------------------------------------------------------
@@ -237,30 +233,40 @@ def _offer(
         settings |= {"time.alpha": stepping.alpha, "time.delta": stepping.delta}
         settings |= {} if present.scheme == "newmark" else {"time.scheme": "newmark"}
     rebound = rebound_of(stepping.stages, min(max(impact * dt, LEAST_IMPACT), IMPACTS[-1]))
+    ratios = {share * omega: number(stepping.damping_ratio(share * omega * dt)) for share in OTHERS}
     offer = Offer(
-        _named(stepping),
-        settings,
-        dt,
-        stepping.gg,
-        stepping.damping_ratio(omega * dt),
-        stepping.period_error(omega * dt),
-        {f"{share * omega / (2 * math.pi):.6g}": _number(stepping, share * omega * dt) for share in OTHERS},
-        _number(stepping, modes[0].frequency * dt),
-        _number(stepping, highest * dt),
-        stepping.spectral_radius(highest * dt),
-        stepping.solves / dt / (present.solves / present.step) if present.solves else None,
-        {"mean": rebound.mean, "least": rebound.least, "most": rebound.most},
-        max(rebound_of(stepping.stages, W).most for W in IMPACTS),
-        rebound.most > 1 + GAIN,
-        overshoot.rise_of(stepping, modes),
-        (),
+        name=_named(stepping),
+        settings=settings,
+        step=dt,
+        gg=stepping.gg,
+        damping=stepping.damping_ratio(omega * dt),
+        period_error=stepping.period_error(omega * dt),
+        hidden={f"{frequency / (2 * math.pi):.6g}": ratio for frequency, ratio in ratios.items()},
+        first_mode=number(stepping.damping_ratio(modes[0].frequency * dt)),
+        contact_mode=number(stepping.damping_ratio(highest * dt)),
+        contact_radius=stepping.spectral_radius(highest * dt),
+        cost=stepping.solves / dt / (present.solves / present.step) if present.solves else None,
+        rebound={"mean": rebound.mean, "least": rebound.least, "most": rebound.most},
+        greatest_rebound=max(rebound_of(stepping.stages, W).most for W in IMPACTS),
+        gains=rebound.most > 1 + GAIN,
+        start_rise=overshoot.rise_of(stepping, modes),
+        fears=(),
     )
-    return replace(offer, fears=tuple(_fears(offer, omega)))
-
-
-def _number(stepping: Stepping, omega_dt: float) -> float | None:
-    xi = stepping.damping_ratio(omega_dt)
-    return xi if math.isfinite(xi) else None
+    steps = 2 * math.pi / (omega * dt)
+    fears = {
+        "gains": offer.gains,
+        "gains elsewhere": not offer.gains and offer.greatest_rebound > 1 + GAIN,
+        "raises": (offer.start_rise or 0.0) > overshoot.NOTABLE,
+        "rings": offer.contact_radius > KEEPS,
+        "drags": offer.gg < 1,
+        "no oscillation": offer.first_mode is None,
+        "damps the first mode": (offer.first_mode or 0.0) > 2 * offer.damping,
+        "period too long": offer.period_error > LATE,
+        "period too short": offer.period_error < -LATE,
+        "few steps": steps < STEPS,
+    }
+    words = {"drag": rate_of(offer.gg, dt), "late": abs(offer.period_error), "steps": steps}
+    return replace(offer, fears=tuple(say(name, offer, **words) for name, is_feared in fears.items() if is_feared))
 
 
 @functools.lru_cache(maxsize=4096)
@@ -269,40 +275,10 @@ def rebound_of(stages: Stages, omega: float) -> ReboundStatistics:
     return rebound_statistics(spring_steps(stages, omega))
 
 
-def _fears(offer: Offer, omega: float) -> Iterator[str]:
-    """Yield what is to be feared of an offer."""
-    if offer.gains:
-        yield f"an impact at this step gives back up to {offer.rebound['most']:.3g} times its speed"
-    elif offer.greatest_rebound > 1 + GAIN:
-        yield f"at longer steps or stiffer contact impacts give back up to {offer.greatest_rebound:.3g} times the speed"
-    if offer.start_rise is not None and offer.start_rise > overshoot.NOTABLE:
-        rise = share_text(offer.start_rise)
-        yield f"from a consistent start under a load at once the first step adds {rise} of the energy it gives"
-    if offer.contact_radius > KEEPS:
-        yield f"the contact mode keeps {share_text(offer.contact_radius)} of its amplitude a step"
-    if offer.gg < 1:
-        drag = -math.log(offer.gg) / offer.step
-        yield f"the discount is a drag of {drag:.3g} 1/s in flight and in sliding, and damps slow motion most"
-    if offer.first_mode is None:
-        yield "the block's first axial mode no longer oscillates"
-    elif offer.first_mode > 2 * offer.damping:
-        yield f"the block's first axial mode is damped at {share_text(offer.first_mode)}"
-    if abs(offer.period_error) > 0.02:
-        size = "long" if offer.period_error > 0 else "short"
-        yield f"the period at the requested frequency is {share_text(abs(offer.period_error))} too {size}"
-    steps = 2 * math.pi / (omega * offer.step)
-    if steps < STEPS:
-        yield f"only {steps:.2g} steps a period of the requested frequency"
-
-
 def _sentence(advice: SchemeAdvice) -> str:
     """Return the answer in one sentence."""
-    wish = f"{share_text(advice.target)} at {advice.frequency:.4g} Hz"
-    if advice.no_gain:
-        wish += " and nothing gained on contact"
+    wish = say("wish without gain" if advice.no_gain else "wish", advice)
     fitting = [offer for offer in advice.offers if not (advice.no_gain and offer.gains)]
     if not fitting:
-        nothing = "no scheme has it" if not advice.offers else "every scheme that has the damping gains on contact"
-        return f"{wish}: {nothing}; take another damping ratio, or a smaller step with a contact dashpot."
-    answers = [f"{offer.name} at dt = {offer.step:.4g} s" for offer in fitting[:2]]
-    return f"{wish}: {', or '.join(answers)}."
+        return say("all gain" if advice.offers else "no scheme", wish)
+    return say("schemes", wish, ", or ".join(say("scheme", offer) for offer in fitting[:2]))

@@ -1,4 +1,4 @@
-"""The adviser: which time step, discount or scheme gives a target damping.
+"""Which time step, discount or scheme gives a target damping.
 
 The target is the total damping ratio xi (algorithmic and kinetic) of the DDA block's first axial mode by the scheme's
 closed form. Over dt, gg or delta xi is cut at its extrema into monotone pieces, and each piece that brackets the
@@ -9,38 +9,31 @@ searched: the boundary of the paper's (14), with |lambda| at infinity from 1 dow
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
-from dda.scheme.spectral import damping_ratio, spectral_radius
+from dda.scheme.spectral import Number, damping_ratio, spectral_radius
 from validation.advice.friction import left_of_a_distance
 from validation.advice.limits import check_choice, check_ratio
 from validation.advice.plain import PlainAnswer
-from validation.advice.search import FLAT, Search
-from validation.advice.spectra import (
-    CONTACT,
-    ModeDamping,
-    dda_modes,
-    highest_frequency,
-    mode_damping,
-    mode_names,
-    runs,
-    steps_to,
-)
+from validation.advice.spectra import CONTACT, ModeDamping, dda_modes, highest_frequency, rate_of, runs, steps_to
+from validation.advice.spectra import damping as damping_of
+from validation.advice.words import say
 from validation.metrics.columns import settling_step
-from validation.runs.history import Array
-from validation.runs.numbers import share_text
+from validation.runs.history import Array, ArrayPair
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 
-KINDS = {"dt": "time step", "gg": "discount gg", "scheme": "delta with alpha = (1/2 + delta)^2 / 4"}
+FLAT = 1e-12  # relative; smaller turns of xi are rounding, not extrema
+HALVINGS = 100  # of an interval in which xi ends to be defined: to the last bit
 FLAT_RATE = 1e-9  # turns of xi that are rounding where gg = exp(-c dt), whose logarithm has lost digits
 NO_STATIC = "no static displacement"  # in place of where a settling is from
 LONGEST = 10_000  # steps that are run for the settling time; beyond, the envelope is used
-Reach = tuple[float | None, float | None, float | None, float | None]  # least xi and where, greatest xi and where
 GAIN = 3.0  # a mode's amplitude over its static share, at most: 1 at rest, more where roots collide
 
 
@@ -71,72 +64,133 @@ class Advice(PlainAnswer):
     scene: str
     solve_for: str
     target: float  # xi [1]
-    reachable: bool
-    solutions: tuple[Solution, ...]
-    least: float | None  # smallest xi that can be reached [1], None where none is defined
-    least_at: float | None  # dt [s], gg [1] or delta [1] there
-    greatest: float | None  # greatest xi [1]
-    greatest_at: float | None  # dt [s], gg [1] or delta [1] there
-    sentence: str
+    reachable: bool = False
+    solutions: tuple[Solution, ...] = ()
+    least: float | None = None  # smallest xi that can be reached [1], None where none is defined
+    least_at: float | None = None  # dt [s], gg [1] or delta [1] there
+    greatest: float | None = None  # greatest xi [1]
+    greatest_at: float | None = None  # dt [s], gg [1] or delta [1] there
+    sentence: str = ""
 
 
-def _over_dt(scene: Scene, frequency: float, highest: float) -> Search:
-    """Search over ln Omega, at fixed gg or at fixed rate."""
+class Sought(NamedTuple):
+    """What is varied."""
+
+    words: str
+    name: str
+    key: str  # of scenes
+    unit: str = ""
+
+
+KINDS = {
+    "dt": Sought("time step", "dt", "time.step", " s"),
+    "gg": Sought("discount gg", "gg", "time.gg"),
+    "scheme": Sought("delta with alpha = (1/2 + delta)^2 / 4", "delta", "time.delta"),
+}
+
+
+@dataclass(frozen=True)
+class Search:
+    """A search for all values of one parameter that give xi its target: a root between two samples around it."""
+
+    grid: Array  # coordinates s, increasing
+    numbers: Callable[[Array], tuple[Number, Number, Number, Number]]  # Omega, alpha, delta and gg there
+    settings: Callable[[float], dict[str, float]]  # for Scene.with_values
+    key: str  # of them, that is looked for
+    highest: float  # frequency of the highest mode over that of the first
+    flat: float = FLAT  # relative size of turns that are rounding
+
+    @cached_property
+    def samples(self) -> ArrayPair:
+        """Coordinates and xi: the grid, its extrema refined, and the last ones at which xi is defined."""
+        ratios = self.xi(self.grid)
+        slopes = np.diff(ratios)
+        bends = np.abs(np.diff(slopes)) > self.flat * np.abs(ratios[1:-1]) + np.finfo(float).eps
+        turns = 1 + np.flatnonzero((slopes[1:] * slopes[:-1] <= 0) & bends)
+        cuts = np.flatnonzero(np.diff(np.isfinite(ratios)))
+        refined = [*map(self._extremum, turns.tolist()), *map(self._edge, cuts.tolist())]
+        coordinates = np.unique([*self.grid, *refined])
+        return coordinates, self.xi(coordinates)
+
+    def xi(self, s: Array) -> Array:
+        """Return xi, NaN wherever it is not finite or the highest mode grows."""
+        omega, *scheme = self.numbers(s)
+        radius = spectral_radius(omega * self.highest, *scheme)
+        ratios = damping_ratio(omega, *scheme)
+        return np.where((radius <= 1 + 1e-12) & np.isfinite(ratios), ratios, np.nan)
+
+    def _edge(self, i: int) -> float:
+        """Return the last coordinate between two neighbours of the grid at which xi is defined."""
+        inside, outside = self.grid[i : i + 2] if np.isfinite(self.at(self.grid[i])) else self.grid[i : i + 2][::-1]
+        for _ in range(HALVINGS):
+            middle = (inside + outside) / 2
+            inside, outside = (middle, outside) if np.isfinite(self.at(middle)) else (inside, middle)
+        return float(inside)
+
+    def _extremum(self, i: int) -> float:
+        """Return where xi turns next to a point of the grid."""
+        from scipy.optimize import minimize_scalar
+
+        sign = np.sign(self.at(self.grid[i - 1]) - self.at(self.grid[i])) or 1.0
+        bounds = self.grid[[i - 1, i + 1]]
+        best = minimize_scalar(lambda s: sign * self.at(s), bounds=bounds, method="bounded", options={"xatol": 1e-14})
+        return float(min(best.x, self.grid[i], key=lambda s: sign * self.at(s)))
+
+    def value(self, s: float) -> float:
+        """Return dt [s], gg [1] or delta [1] at one coordinate."""
+        return self.settings(s)[self.key]
+
+    def at(self, s: float) -> float:
+        """Return xi at one coordinate."""
+        return float(self.xi(np.array([s]))[0])
+
+    def solutions(self, target: float) -> list[float]:
+        """Return all coordinates at which xi is the target."""
+        from scipy.optimize import brentq
+
+        coordinates, ratios = self.samples
+        excess = ratios - target
+        is_passed = (excess[1:] * excess[:-1] <= 0) & (np.abs(excess[1:]) + np.abs(excess[:-1]) > 0)
+        roots: list[float] = []
+        for i in np.flatnonzero(is_passed):
+            ends = coordinates[i : i + 2]
+            root = brentq(lambda s: self.at(s) - target, *ends, xtol=1e-300, rtol=4 * np.finfo(float).eps)
+            # a root at a sample belongs to both of its neighbours
+            if not roots or not math.isclose(self.value(root), self.value(roots[-1]), rel_tol=1e-12):
+                roots.append(root)
+        return roots
+
+
+def _search(scene: Scene, solve_for: str, frequency: float) -> Search:
+    """Return the search over ln Omega, over -gg, or over delta on the family alpha = (1/2 + delta)^2 / 4."""
     t = scene.time
-    rate = t.gg_rate
-
-    def gg(omega: Array) -> Array | float:
-        return t.discount if rate is None else np.exp(-rate / frequency * omega)
-
-    # below c dt = 1e-6 xi at a fixed rate is c / (2 w) to the digits that gg = exp(-c dt) keeps
-    lowest = min(1e-4, 1e-6 * frequency / rate) if rate else 1e-12
-    flat = FLAT if rate is None else FLAT_RATE
-    return Search(
-        np.linspace(math.log(lowest), math.log(1e8), 4000),
-        lambda s: _stable(np.exp(s), t.alpha, t.delta, gg(np.exp(s)), highest / frequency),
-        lambda s: math.exp(s) / frequency,
-        lambda s: {"time.step": math.exp(s) / frequency},
-        flat,
-    )
-
-
-def _stable(omega: Array, alpha: float, delta: float, gg: Array | float, highest: float) -> Array:
-    """Return xi over Omega, NaN where the highest mode grows."""
-    radius = spectral_radius(omega * highest, alpha, delta, gg)
-    return np.where(radius <= 1 + 1e-12, damping_ratio(omega, alpha, delta, gg), np.nan)
-
-
-def _over_gg(scene: Scene, frequency: float, highest: float) -> Search:
-    """Search over -gg, at the scene's time step; close to 1 the grid follows 1 - gg."""
-    t = scene.time
+    key = KINDS[solve_for].key
     omega = frequency * t.step
-    away = np.geomspace(1e-15, 1 - 1e-12, 3000)
-    grid = np.unique(np.concatenate([[-1.0], away - 1, -np.geomspace(1e-12, 1e-3, 300)]))
+    highest = highest_frequency(scene) / frequency  # of sub-blocks the modes are the lowest only
+    if solve_for == "dt":
+        rate = t.gg_rate
+        # below c dt = 1e-6 xi at a fixed rate is c / (2 w) to the digits that gg = exp(-c dt) keeps
+        lowest = min(1e-4, 1e-6 * frequency / rate) if rate else 1e-12
 
-    def xi(s: Array) -> Array:
-        return _stable(np.full_like(s, omega), t.alpha, t.delta, -s, highest / frequency)
+        def numbers(s: Array) -> tuple[Number, Number, Number, Number]:
+            turn = np.exp(s)
+            return turn, t.alpha, t.delta, np.exp(-rate / frequency * turn) if rate else t.discount
 
-    return Search(grid, xi, lambda s: -s, lambda s: {"time.gg": -s})
-
-
-def _over_scheme(scene: Scene, frequency: float, highest: float) -> Search:
-    """Search over delta on the family alpha = (1/2 + delta)^2 / 4, at the scene's dt and gg."""
-    omega = frequency * scene.time.step
-    gg = scene.time.discount
+        grid = np.linspace(math.log(lowest), math.log(1e8), 4000)
+        flat = FLAT_RATE if rate else FLAT
+        return Search(grid, numbers, lambda s: {"time.step": math.exp(s) / frequency}, key, highest, flat)
+    if solve_for == "gg":  # close to 1 the grid follows 1 - gg
+        away = np.geomspace(1e-15, 1 - 1e-12, 3000)
+        grid = np.unique(np.concatenate([[-1.0], away - 1, -np.geomspace(1e-12, 1e-3, 300)]))
+        return Search(grid, lambda s: (omega, t.alpha, t.delta, -s), lambda s: {"time.gg": -s}, key, highest)
     grid = np.unique(np.concatenate([[0.5], 0.5 + np.geomspace(1e-14, 1, 2000), np.linspace(0.5, 1.5, 1000)]))
-
-    def alpha(delta: Array | float) -> Array | float:
-        return (0.5 + delta) ** 2 / 4
-
     return Search(
         grid,
-        lambda s: damping_ratio(np.full_like(s, omega), alpha(s), s, gg),
-        lambda s: s,
-        lambda s: {"time.alpha": float(alpha(s)), "time.delta": s},
+        lambda s: (omega, (0.5 + s) ** 2 / 4, s, t.discount),
+        lambda s: {"time.alpha": (0.5 + s) ** 2 / 4, "time.delta": s},
+        key,
+        highest,
     )
-
-
-SEARCHES = {"dt": _over_dt, "gg": _over_gg, "scheme": _over_scheme}
 
 
 def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
@@ -167,52 +221,49 @@ def advise(scene: Scene, damping: float, solve_for: str = "dt") -> Advice:
     check_ratio(damping, 0.0)
     check_choice("solve_for", solve_for, KINDS)
     features.refuse_damping(scene, "advise")
-    modes = dda_modes(scene)
-    highest = highest_frequency(scene)  # of sub-blocks the modes are the lowest only
-    search = SEARCHES[solve_for](scene, modes[0].frequency, highest)
+    frequency = dda_modes(scene)[0].frequency
+    search = _search(scene, solve_for, frequency)
     values = search.solutions(damping)
     coordinates, ratios = search.samples
-    reach: Reach = (None, None, None, None)
+    answer = Advice(scene.name, solve_for, float(damping))
     if np.isfinite(ratios).any():
-        least, greatest = float(np.nanmin(ratios)), float(np.nanmax(ratios))
+        least = int(np.nanargmin(ratios))
+        greatest = int(np.nanargmax(ratios))
         # average acceleration without discount has xi = 0 at any dt: the present one will do
-        if not values and max(abs(least - damping), abs(greatest - damping)) < 1e-15:
-            present = {"dt": math.log(modes[0].frequency * scene.time.step), "gg": -scene.time.discount}
+        if not values and np.max(np.abs(ratios[[least, greatest]] - damping)) < 1e-15:
+            present = {"dt": math.log(frequency * scene.time.step), "gg": -scene.time.discount}
             values = [present.get(solve_for, scene.time.delta)]
-        at_least, at_greatest = coordinates[[np.nanargmin(ratios), np.nanargmax(ratios)]]
-        reach = (least, search.value(float(at_least)), greatest, search.value(float(at_greatest)))
-    solutions = sorted((_solution(scene, search, s) for s in values), key=lambda solution: solution.value)
-    text = _sentence(scene, solve_for, damping, solutions, reach)
-    return Advice(scene.name, solve_for, float(damping), bool(solutions), tuple(solutions), *reach, text)
+        answer = replace(
+            answer,
+            least=float(ratios[least]),
+            least_at=search.value(float(coordinates[least])),
+            greatest=float(ratios[greatest]),
+            greatest_at=search.value(float(coordinates[greatest])),
+        )
+    found = (_solution(scene, solve_for, search.settings(s)) for s in values)
+    solutions = tuple(sorted(found, key=lambda solution: solution.value))
+    answer = replace(answer, reachable=bool(solutions), solutions=solutions)
+    return replace(answer, sentence=_sentence(scene, answer))
 
 
-def _solution(scene: Scene, search: Search, s: float) -> Solution:
-    settings = search.settings(s)
+def _solution(scene: Scene, solve_for: str, settings: dict[str, float]) -> Solution:
     case = scene.with_values(settings)
-    modes = dda_modes(case)
-    names = mode_names(modes)
-    first = mode_damping(case, names[0], modes[0].frequency)
-    contact = None
-    if CONTACT in names:
-        contact = mode_damping(case, CONTACT, modes[names.index(CONTACT)].frequency)
+    first, *others = damping_of(case).modes
     t = case.time
     steps, source = _settling(case)
-    seconds = None if steps is None else steps * t.step
-    rate = -math.log(t.discount) / t.step + 0.0 if t.discount > 0 else None
-    damping = math.nan if first.damping is None else first.damping
     return Solution(
-        value=search.value(s),
-        damping=damping,
+        value=settings[KINDS[solve_for].key],
+        damping=math.nan if first.damping is None else first.damping,
         settling_steps=steps,
-        settling_seconds=seconds,
+        settling_seconds=None if steps is None else steps * t.step,
         settling_from=source,
         alpha=t.alpha,
         delta=t.delta,
         step=t.step,
         gg=t.discount,
-        gg_rate=rate,
+        gg_rate=rate_of(t.discount, t.step),
         settings=settings,
-        contact=contact,
+        contact=next((mode for mode in others if mode.name == CONTACT), None),
     )
 
 
@@ -238,57 +289,44 @@ def _settling(case: Scene) -> tuple[int | None, str]:
 # ---- the sentence -------------------------------------------------------------------------------------------------
 
 
-def _sentence(scene: Scene, solve_for: str, target: float, solutions: Sequence[Solution], reach: Reach) -> str:
+def _sentence(scene: Scene, answer: Advice) -> str:
     """Return the answer in one sentence: what to set, and what follows from it."""
+    kind = KINDS[answer.solve_for]
+    solutions = answer.solutions
     if not solutions:
-        least, least_at, greatest, greatest_at = reach
-        refusal = (
-            f"No {KINDS[solve_for]} damps the first axial mode of the DDA block at {share_text(target)} of critical"
+        if answer.greatest is None or answer.least is None:
+            why = "no ratio anywhere"
+        elif answer.greatest - answer.least < FLAT:
+            why = "flat"
+        elif answer.least < answer.target < answer.greatest:
+            why = "gap"
+        else:
+            why = "too much" if answer.target > answer.greatest else "too little"
+        return say(
+            "none damps", kind=kind, answer=answer, why=say(why, abs(answer.greatest or 0.0), kind=kind, answer=answer)
         )
-        if greatest is None or least is None or greatest_at is None or least_at is None:
-            return f"{refusal}: the mode has no damping ratio here, since a root of the step is not positive."
-        unit = " s" if solve_for == "dt" else ""
-        name = {"dt": "dt", "gg": "gg", "scheme": "delta"}[solve_for]
-        if greatest - least < FLAT:
-            return f"{refusal}: the largest attainable value is {share_text(abs(greatest))}, at any {name}."
-        if least < target < greatest:
-            return f"{refusal}: it lies in a gap between attainable values."
-        if target > greatest:
-            largest = share_text(greatest)
-            return f"{refusal}: the largest attainable value is {largest}, at {name} = {greatest_at:.6g}{unit}."
-        return f"{refusal}: the smallest attainable value is {share_text(least)}, at {name} = {least_at:.6g}{unit}."
-    first = solutions[0]
-    answers = " or ".join(_answer(solve_for, s) for s in solutions)
-    text = f"Set {answers}: the first axial mode of the DDA block is then damped at {share_text(target)} of critical"
+    text = say("damps", answers=" or ".join(map(_answer, solutions)), answer=answer)
     if len(solutions) > 1:
         text += " in each case"
-    settles = [f"{s.settling_steps} steps ({s.settling_seconds:.4g} s)" for s in solutions if s.settling_steps]
+    settles = [say("settles", solution) for solution in solutions if solution.settling_steps]
     if settles:
         text += f" and the displacement settles within {' or '.join(settles)}"
-    flips = [s for s in solutions if s.contact is not None and s.contact.flips]
+    flips = [(solution, solution.contact) for solution in solutions if solution.contact and solution.contact.flips]
     if flips:
-        at = "" if len(flips) == len(solutions) else f" at {_answer(solve_for, flips[-1])}"
-        text += f", but the contact mode {runs(flips[-1].contact)}{at}"  # type: ignore[arg-type]
-    return text + _fixed_settings(scene, solve_for, first) + "."
+        last, contact = flips[-1]
+        at = "" if len(flips) == len(solutions) else f" at {_answer(last)}"
+        text += f", but the contact mode {runs(contact)}{at}"
+    # which settings are fixed, where it matters
+    first = solutions[0]
+    if "time.gg" in first.settings:
+        text += say("valid gg", first, left=left_of_a_distance(first.value, first.step))
+    elif "time.step" in first.settings and scene.time.gg_rate is not None:
+        text += say("kept rate", scene.time)
+    elif "time.step" in first.settings and scene.time.discount < 1:
+        text += say("kept gg", scene.time)
+    return text + "."
 
 
-def _answer(solve_for: str, solution: Solution) -> str:
-    if solve_for == "dt":
-        return f"dt = {solution.value:.6g} s"
-    if solve_for == "gg":
-        rate = "" if solution.gg_rate is None else f" (c = {solution.gg_rate:.4g} 1/s)"
-        return f"gg = {solution.value:.6g} per step{rate}"
-    return f"delta = {solution.value:.6g}, alpha = {solution.alpha:.6g}"
-
-
-def _fixed_settings(scene: Scene, solve_for: str, solution: Solution) -> str:
-    """Say which settings are fixed, where it matters."""
-    t = scene.time
-    if solve_for == "dt" and t.gg_rate is not None:
-        return f"; the discount is kept as a rate, c = {t.gg_rate:g} 1/s"
-    if solve_for == "dt" and t.discount < 1:
-        return f"; gg = {t.discount:g} acts per step, so that refining dt at this gg does not converge"
-    if solve_for == "gg":
-        left = left_of_a_distance(solution.value, solution.step)
-        return f"; this gg is valid at dt = {solution.step:g} s only, at another dt keep the rate c; {left}"
-    return ""
+def _answer(solution: Solution) -> str:
+    key = next(iter(solution.settings))
+    return say("gg without rate" if key == "time.gg" and solution.gg_rate is None else key, solution)

@@ -10,6 +10,7 @@ from validation.runs.beside import table_beside
 from validation.runs.numbers import significant
 from validation.runs.records import AlarmRecord
 from validation.runs.row import Row, RowsBySolver
+from validation.runs.texts import FILLED
 from validation.solvers.contract import Role
 from validation.solvers.registry import by_role
 
@@ -33,9 +34,9 @@ class Alarm:
 
 def alarm(kind: str, scene: str, values: Mapping[str, float] | None = None, **words: object) -> Alarm:
     """Return an alarm with the sentence of its kind, made of its numbers and of further words."""
-    numbers = dict(values or {})
-    finite = {name: value for name, value in numbers.items() if math.isfinite(value)}
-    return Alarm(kind, scene, SENTENCES[kind].format(**numbers, **words), finite)
+    numbers = values or {}
+    sentence = FILLED.vformat(SENTENCES[kind], (), {**numbers, **words})
+    return Alarm(kind, scene, sentence, {name: value for name, value in numbers.items() if math.isfinite(value)})
 
 
 def first_row(rows: RowsBySolver, role: Role) -> Row | None:

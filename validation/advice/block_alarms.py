@@ -43,18 +43,13 @@ def block_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
             parts.append(f"in {solver} by {-minimum / 1e6:.3g} MPa at t = {time:.4g} s, for {duration:.3g} s in total")
     if parts:
         yield alarm(TENSION, scene.name, values, solvers="; ".join(parts))
-    yield from _ringing(scene, rows)
+    judged = first_row(rows, Role.JUDGED)
+    root = number(judged, "contact.least_root")
+    radius = number(judged, "contact.spectral_radius")
+    if root is not None and radius is not None and root <= FLIPPING:
+        steps = steps_to(0.01, radius)
+        decay = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
+        yield alarm(RINGING, scene.name, {"root": root, "radius": radius}, decay=decay)
     yield from contact_alarms(scene, rows)
     yield from overshoot_alarms(scene, rows)
     yield from friction_alarms(scene, rows)
-
-
-def _ringing(scene: Scene, solvers: RowsBySolver) -> Iterator[Alarm]:
-    row = first_row(solvers, Role.JUDGED)
-    root = number(row, "contact.least_root")
-    radius = number(row, "contact.spectral_radius")
-    if root is None or radius is None or root > FLIPPING:
-        return
-    steps = steps_to(0.01, radius)
-    decay = f"takes {steps:.0f} steps to fall to 1 %" if steps < 1e6 else "hardly decays"
-    yield alarm(RINGING, scene.name, {"root": root, "radius": radius}, decay=decay)

@@ -24,7 +24,9 @@ import numpy as np
 
 from validation.advice.alarm import Alarm, alarm
 from validation.advice.contact_alarms import gained
-from validation.models.column.tables import MOST_HEIGHTS, ColumnSection, LayerSection
+from validation.advice.hooks import AdviceHooks, ColumnLimits
+from validation.advice.words import say
+from validation.models.column.tables import MOST_HEIGHTS, ColumnSection
 from validation.runs.history import DISPLACEMENT
 from validation.runs.row import Row
 from validation.runs.run import Outcome
@@ -44,18 +46,6 @@ LONGEST = 400_000  # steps times blocks: some two seconds
 
 
 @dataclass(frozen=True)
-class ColumnLimits:
-    """What follows of a scene with a column whose contacts open or slip, before anything is run."""
-
-    contacts: int
-    solves: int | None  # that a step can need; None where no bound is proven
-    far_face_step: float  # below which some block's far face moves the wrong way [s]
-    blocks: tuple[int, ...]  # of each layer with which it does not at the present step
-    lowest: float | None  # lowest frequency of a stack of equal rigid blocks [rad/s]
-    ring_down: float | None  # in which that vibration falls to a thousandth while no contact opens or slips [s]
-
-
-@dataclass(frozen=True)
 class Rest:
     """When a stack comes to rest under its weight, as `dda` runs it."""
 
@@ -71,16 +61,26 @@ def limits(scene: Scene) -> ColumnLimits | None:
         return None
     t = scene.time
     stepping = Stepping.of(scene)
-    turned = far_face_step(column, stepping.spring_weight)
+    layers = AdviceHooks.of(scene).layers(scene)
+    weight = stepping.spring_weight
+    turned = max(columns.far_face_step(layer.speed, layer.height, weight) for layer in layers)
     proven = column.law == "unilateral" and t.step >= turned
     count = len(column.contacts)
-    lowest = _lowest(column)
-    ring_down = None if lowest is None else columns.ring_down(lowest, stepping)
     solves = columns.greatest_solves(count) if proven else None
+    # The lowest frequency of equal rigid blocks on a base; of another column it is not told.
+    masses = {layer.density * layer.height for layer in layers}
+    stiffnesses = {contact.stiffness for contact in column.contacts}
+    rigid = all(math.isinf(layer.modulus) for layer in layers)
+    based = count == sum(layer.blocks for layer in layers)
+    lowest = None
+    if rigid and based and len(masses) == len(stiffnesses) == 1:
+        stiffness = min(stiffnesses)
+        lowest = columns.lowest_frequency(stiffness, min(masses), count) if math.isfinite(stiffness) else None
+    ring_down = None if lowest is None else columns.ring_down(lowest, stepping)
     # The blocks of each layer, the present ones at least, whose far faces move the right way at a step.
     counts = []
-    for layer in column.layer:
-        whole = columns.far_face_step(_speed(column, layer), layer.thickness, stepping.spring_weight)
+    for layer in layers:
+        whole = columns.far_face_step(layer.speed, layer.thickness, weight)
         counts.append(max(layer.blocks, math.ceil(whole / t.step * (1 - ROUNDING))) if math.isfinite(whole) else 0)
     return ColumnLimits(count, solves, turned, tuple(counts), lowest, ring_down)
 
@@ -93,7 +93,9 @@ def rest(scene: Scene) -> Rest | None:
     """
     column = scene.table(ColumnSection)
     stepping = Stepping.of(scene)
-    if not _comes_to_rest(scene) or (not stepping.damps and stepping.gg == 1):
+    driven = scene.stated_input is not None or column.law != "unilateral" or column.base not in ("rigid", "springs")
+    by_weight = column.gravity > 0 and not column.settled
+    if driven or not by_weight or (not stepping.damps and stepping.gg == 1):
         return None
     middles, at_rest, settlement = _at_rest(column)
     if settlement == 0:
@@ -115,14 +117,6 @@ def rest(scene: Scene) -> Rest | None:
         if steps >= longest:
             return Rest(None, steps * stepping.step, settlement)
         steps = min(2 * steps, longest)
-
-
-def _comes_to_rest(scene: Scene) -> bool:
-    """Whether a scene is a stack that its weight alone brings to rest from another state."""
-    column = scene.table(ColumnSection)
-    if column.law != "unilateral" or scene.stated_input is not None:
-        return False
-    return column.base in ("rigid", "springs") and column.gravity > 0 and not column.settled
 
 
 def _at_rest(column: ColumnSection) -> tuple[list[float], list[float], float]:
@@ -151,67 +145,18 @@ def _at_rest(column: ColumnSection) -> tuple[list[float], list[float], float]:
     return [middles[i] for i in chosen], [at_rest[i] for i in chosen], -foot - gaps
 
 
-def far_face_step(column: ColumnSection, alpha: float) -> float:
-    """Return the step below which a block of a column answers a push at one face the wrong way at the other [s]."""
-    return max(
-        columns.far_face_step(_speed(column, layer), layer.thickness / layer.blocks, alpha) for layer in column.layer
-    )
-
-
-def _speed(column: ColumnSection, layer: LayerSection) -> float:
-    return math.sqrt(column.modulus(layer) / layer.density)
-
-
-def _lowest(column: ColumnSection) -> float | None:
-    """Return the lowest frequency of a stack of equal rigid blocks on a base [rad/s], None of another column."""
-    masses = {layer.density * layer.thickness / layer.blocks for layer in column.layer}
-    stiffnesses = {contact.stiffness for contact in column.contacts}
-    blocks = sum(layer.blocks for layer in column.layer)
-    rigid = all(math.isinf(layer.young) for layer in column.layer)
-    if not rigid or len(masses) + len(stiffnesses) > 2 or len(column.contacts) != blocks:
-        return None
-    (stiffness,) = stiffnesses
-    (mass,) = masses
-    return None if math.isinf(stiffness) else columns.lowest_frequency(stiffness, mass, blocks)
-
-
-ADVICE = {
-    "slips": "Cut no step: the joints have one solution at any step; where all states change at once no known column "
-    "took more than {most} solves.",
-    "solves": "Allow {bound.solves} solves of the open-close iteration in a step, one more than there are contacts, "
-    "and cut no step: more are never needed, and a shorter step does not spare them where blocks touch.",
-    "unproven": "Cut no step: the contacts have one solution at any step. How many solves it takes is proven only "
-    "above dt = {bound.far_face_step:.3g} s; no known column took more than {most}.",
-    "far face": "At dt = {step:g} s a block of one strain answers a push with its far face moving the wrong way; "
-    "{blocks} blocks in the layers, or dt >= {bound.far_face_step:.3g} s, do not.",
-    "rests": "Under its weight the stack comes to rest in {rest.seconds:.3g} s, as dda runs it: from then on its "
-    "blocks stay within a thousandth of its settlement, {rest.settlement:.3g} m.",
-    "rests late": "As dda runs it, it is not at rest to a thousandth of its settlement, {rest.settlement:.3g} m, "
-    "within {half:.3g} s.",
-    "rings down": "While {contacts} its lowest vibration, w1 = {bound.lowest:.4g} rad/s, falls to a thousandth in "
-    "{bound.ring_down:.3g} s.",
-    "never rests": "The stack never comes to rest: while {contacts} neither the scheme nor a discount takes energy.",
-}
-
-
 def advised(scene: Scene, bound: ColumnLimits, resting: Rest | None = None) -> Iterator[str]:
     """Yield in words what to allow and to choose for a column whose contacts open or slip."""
-    step = scene.time.step
-    slips = scene.table(ColumnSection).law == "frictional"
-    if slips:
-        yield ADVICE["slips"].format(most=2 * bound.contacts + 1)
-    else:
-        kind = "unproven" if bound.solves is None else "solves"
-        yield ADVICE[kind].format(bound=bound, most=bound.contacts + 1)
-    if bound.far_face_step > step and all(bound.blocks):
-        yield ADVICE["far face"].format(bound=bound, step=step, blocks=", ".join(map(str, bound.blocks)))
+    law = scene.table(ColumnSection).law
+    kind = "solves of slips" if law == "frictional" else "solves unproven"
+    yield say(kind if bound.solves is None else "solves", bound, bound.contacts + 1, 2 * bound.contacts + 1)
+    if bound.far_face_step > scene.time.step and all(bound.blocks):
+        yield say("far face", bound, scene.time, ", ".join(map(str, bound.blocks)))
     if resting is not None:
-        kind = "rests late" if resting.seconds is None else "rests"
-        yield ADVICE[kind].format(rest=resting, half=resting.run / 2)
+        yield say("rests late" if resting.seconds is None else "rests", resting, resting.run / 2)
     if bound.ring_down is not None:
-        kind = "rings down" if math.isfinite(bound.ring_down) else "never rests"
-        contacts = "no contact slips" if slips else "all contacts are closed"
-        yield ADVICE[kind].format(bound=bound, contacts=contacts)
+        kind = "stack rings down" if math.isfinite(bound.ring_down) else "never rests"
+        yield say(kind, bound, "no contact slips" if law == "frictional" else "all contacts are closed")
 
 
 def column_alarms(scene: Scene, row: Row | None = None) -> Iterator[Alarm]:

@@ -10,12 +10,14 @@ from typing import Any
 
 from validation.advice import columns, contact, friction
 from validation.advice.contact_alarms import contact_alarms
+from validation.advice.hooks import ColumnLimits
 from validation.advice.overshoot import overshoot_alarms
 from validation.advice.plain import Line, in_columns
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.runs.beside import table_beside
-from validation.runs.numbers import number_text, share_text
-from validation.runs.row import Metrics, Row, RowsBySolver, Value
+from validation.runs.numbers import number_text
+from validation.runs.row import Metrics, RowsBySolver
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import opened
@@ -30,6 +32,7 @@ MEAN_RATE = "contact.restitution_mean"
 APART = 0.01  # of the run-out of a rigid block, from which on that of the exact block is said beside it
 MODERATE = 10.0  # p/E beyond which the page says what asks for springs so stiff
 
+TITLES = {"contact of a block": "contact that opens", "contacts of a column": "a column whose contacts open or slip"}
 NONE = "-"  # in place of a number that a run has not
 
 LINES: dict[str, list[dict[str, Any]]] = table_beside(__file__)
@@ -56,14 +59,24 @@ def elements() -> str:
     return max(by_role(Role.REFERENCE), key=lambda name: len(get_solver(name).handles))
 
 
-def scenes(scene: Scene) -> dict[str, Scene]:
+def scenes(scene: Scene, bound: ColumnLimits | None = None) -> dict[str, Scene]:
     """Return the scene that each solver runs: the exact motions have no kinetic damping.
+
+    Parameters
+    ----------
+    bound
+        What is known of a column whose contacts open or slip.
 
     Raises
     ------
     InputError
-        The contact is locked, or the scene has a column.
+        The contact is locked, or the scene has another column.
     """
+    free = {"time.gg": 1.0} if scene.time.discount < 1 else {}
+    if bound is not None:
+        handled = {name for name in features.OF_MOVING_COLUMN if name in features.of(scene)}
+        exact_ones = [name for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles]
+        return {own(): scene} | dict.fromkeys(exact_ones, scene.with_values(free))
     features.refuse_column(scene, "advise contact")
     if features.UNILATERAL not in features.of(scene):
         raise InputError(
@@ -75,8 +88,7 @@ def scenes(scene: Scene) -> dict[str, Scene]:
         )
     along = ["horizontal_displacement"] if features.FRICTION in features.of(scene) else []
     plain = scene.with_values({"run.columns": ["displacement", "contact_pressure", *along]})
-    free = plain.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else plain
-    return {own(): plain, exact(): free, of_role(Role.TRUTH): free}
+    return {own(): plain} | dict.fromkeys([exact(), of_role(Role.TRUTH)], plain.with_values(free))
 
 
 def answer(
@@ -84,6 +96,7 @@ def answer(
     rows: RowsBySolver,
     penetration: float | None = None,
     probe: Callable[[float], float | None] | None = None,
+    bound: ColumnLimits | None = None,
 ) -> dict[str, Any]:
     """Return everything as plain data.
 
@@ -98,8 +111,21 @@ def answer(
         landings to a block that slides.
     probe
         How deep the exact block goes on springs p [m], None where there is no answer.
+    bound
+        What is known of a column.
     """
-    speed = landing_speed(scene, rows)
+    prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
+    runs = {}
+    for name, row in rows.items():
+        runs[name] = {metric: value for metric, value in row.metrics.items() if metric.startswith(prefixes)}
+    if bound is not None:
+        alarms = columns.column_alarms(scene)
+        return {"scene": scene.name, "limits": asdict(bound), "runs": runs, "alarms": [a.record() for a in alarms]}
+    # The greatest speed at which the base lands: the exact block's, else that of the scene's start.
+    speeds = [_number(runs.get(name, {}), "contact.landing_speed") for name in (exact(), own())]
+    fallen = max(0.0, 2 * scene.load.gravity * scene.contact.gap)
+    of_start = math.sqrt(scene.block.velocity**2 + fallen)
+    speed = next((value for value in speeds if not math.isnan(value)), of_start)
     stepped_landing = contact.restitution(scene)
     slides = friction.sliding(scene)
     depth = DEFAULT_PENETRATION if penetration is None else penetration
@@ -117,82 +143,45 @@ def answer(
         "asked": {"penetration": depth, "stated": penetration is not None},
         "needed": None if need is None else need._asdict(),
         "hidden_from": landing.hidden_from(scene),
-        "runs": {name: measured(row) for name, row in rows.items()},
+        "runs": runs,
         "sliding": None if slides is None else slides.as_dict(),
         "alarms": [alarm.record() for alarm in alarms],
     }
 
 
-def measured(row: Row) -> dict[str, Value]:
-    """Return what was measured of the contact."""
-    prefixes = ("switches.", "contact.", "energy.", "horizon.", ALONG)
-    return {name: value for name, value in row.metrics.items() if name.startswith(prefixes)}
-
-
-def landing_speed(scene: Scene, rows: RowsBySolver) -> float:
-    """Return the greatest speed at which the base lands [m/s]: the exact block's, else that of the scene's start."""
-    for name in (exact(), own()):
-        value = rows[name].metrics.get("contact.landing_speed") if name in rows else None
-        if isinstance(value, float):
-            return value
-    fallen = 2 * scene.load.gravity * scene.contact.gap
-    return math.sqrt(scene.block.velocity**2 + max(0.0, fallen))
-
-
-def page(scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str]) -> Iterator[str]:
+def page(
+    scene: Scene, data: Mapping[str, Any], absent: Mapping[str, str], bound: ColumnLimits | None = None
+) -> Iterator[str]:
     """Yield the lines of one page of text; `absent` says why a solver has no column."""
-    springs = f"p = {scene.contact.stiffness:.4g} N/m"
-    yield from _heading(scene, "contact that opens", springs, f": w_c dt = {data['omega']:.3g}")
-    yield in_columns(table(scene, data["runs"]))
+    kind = "contact of a block" if bound is None else "contacts of a column"
+    yield say(kind, scene, title=scene.title or TITLES[kind], stepping=Stepping.of(scene), **data)
+    yield ""
+    yield in_columns(table(scene, data["runs"], kind))
     yield from (f"{name}: {why}" for name, why in absent.items())
     yield ""
-    if any(_number(run, MEAN_RATE) > 1 for run in data["runs"].values()):
-        yield (
-            "A gap may open faster than it closed without any gain of energy: strain, load and the other corner drive "
-            "the base too; gains are the lines of energy."
-        )
-        yield ""
-    slides = friction.sliding(scene)
-    if slides is not None:
-        yield from friction.lines(scene, slides)
-        yield from _hops(slides, data["runs"])
-        yield ""
-    if data["needed"] is not None:
-        yield from _needed(scene, data)
-    for alarm in data["alarms"]:
-        yield f"ALARM {alarm['kind']}: {alarm['sentence']}"
+    yield from columns.advised(scene, bound) if bound is not None else _of_block(scene, data)
+    yield from (f"ALARM {alarm['kind']}: {alarm['sentence']}" for alarm in data["alarms"])
 
 
-def _heading(scene: Scene, untitled: str, contact_words: str, remainder: str = "") -> Iterator[str]:
-    """Yield the name of a scene and its numbers, with an empty line after them."""
-    t = scene.time
-    yield f"{scene.name}: {scene.title or untitled}"
-    yield f"{contact_words}, dt = {t.step:g} s, {Stepping.of(scene).numbers}, gg = {t.discount:.6g}{remainder}"
-    yield ""
-
-
-def table(scene: Scene, runs: Mapping[str, Metrics]) -> list[Line]:
-    """Return the runs side by side."""
+def table(scene: Scene, runs: Mapping[str, Metrics], kind: str) -> list[Line]:
+    """Return the runs side by side; a line of a column's contacts that no run has a number for is left out."""
     lines = [(f"over {scene.time.duration:.4g} s", *runs)]
-    for words, opens in (("first opening", True), ("first landing", False)):
-        lines.append((words, *(first(scene, run, opens) for run in runs.values())))
-    with_friction = features.FRICTION in features.of(scene)
-    kinds = ("block", "slips", "losses", "friction_loss") if with_friction else ("block", "losses")
-    for kind in kinds:
-        lines += measured_lines(kind, runs)
-    lines.append(("solves per step, mean and most", *(_solves(run) for run in runs.values())))
-    return [*lines, *measured_lines("repeatable", runs)]
-
-
-def measured_lines(kind: str, runs: Mapping[str, Metrics]) -> list[Line]:
-    """Return a line of each metric of a kind of `LINES`, with its number in every run."""
-    lines = []
     for line in LINES[kind]:
-        numbers = (
-            number_text(run.get(line["metric"]), factor=line["factor"], unit=line["unit"]) for run in runs.values()
-        )
-        lines.append((line["words"], *numbers))
+        cells = [_cell(scene, line, run) for run in runs.values()]
+        of_friction = line.get("friction", False)
+        is_empty = line.get("optional", False) and {*cells} == {NONE}
+        if not is_empty and (not of_friction or features.FRICTION in features.of(scene)):
+            lines.append((line["words"], *cells))
     return lines
+
+
+def _cell(scene: Scene, line: Mapping[str, Any], run: Metrics) -> str:
+    """Return the numbers of a run in a line, a dash where it has not all of them."""
+    if "opens" in line:
+        return first(scene, run, line["opens"])
+    metrics = line["metric"].split(", ")
+    numbers = [number_text(run.get(metric), factor=line["factor"], unit=line["unit"]) for metric in metrics]
+    return NONE if NONE in numbers else ", ".join(numbers)
 
 
 def first(scene: Scene, run: Metrics, opens: bool) -> str:
@@ -206,92 +195,43 @@ def first(scene: Scene, run: Metrics, opens: bool) -> str:
     return f"{value:.7g} s" if isinstance(value, float) else "never"
 
 
-def _solves(run: Metrics) -> str:
-    mean, most = (run.get(f"contact.{name}_solves") for name in ("mean", "most"))
-    return f"{mean:.4g}, {most:.0f}" if isinstance(mean, float) and isinstance(most, float) else "-"
-
-
 def _number(run: Metrics, metric: str) -> float:
     """Return a number of a run, NaN where it has none."""
     value = run.get(metric)
     return value if isinstance(value, float) else math.nan
 
 
-def _hops(slides: friction.Sliding, runs: Mapping[str, Metrics]) -> Iterator[str]:
-    """Say where the exact block moves otherwise than a rigid one that stays on the slope."""
-    run = runs.get(exact(), {})
-    distance = abs(_number(run, ALONG))
-    share = _number(run, "contact.open_share")
-    if slides.stands or not share > 0 or not abs(distance - slides.run_out) > APART * slides.run_out:
-        return
-    yield (
-        f"  hops        the exact block is open for {share_text(share)} of the time and moves {distance:.4g} m: the "
-        "run-out above is that of a block that stays on the slope and never sticks"
-    )
-
-
-def _needed(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
+def _of_block(scene: Scene, data: Mapping[str, Any]) -> Iterator[str]:
+    """Yield what friction makes of a block, and which springs keep a penetration."""
+    if any(_number(run, MEAN_RATE) > 1 for run in data["runs"].values()):
+        yield say("rate above one")
+        yield ""
+    slides = friction.sliding(scene)
+    if slides is not None:
+        yield from friction.lines(scene, slides)
+        # where the exact block moves otherwise than a rigid one that stays on the slope
+        run = data["runs"].get(exact(), {})
+        distance = abs(_number(run, ALONG))
+        share = _number(run, "contact.open_share")
+        is_apart = abs(distance - slides.run_out) > APART * slides.run_out
+        if not slides.stands and share > 0 and is_apart:
+            yield say("hops", share=share, distance=distance)
+        yield ""
     need = data["needed"]
+    if need is None:
+        return
     depth = data["asked"]["penetration"]
     load = abs(opened.resultant_load(scene))
-    why = "Asked for" if data["asked"]["stated"] else "For an accuracy that is usual (set --penetration)"
-    landing_at = f"landing at {data['landing_speed']:.4g} m/s under {load:.4g} N"
-    yield f"{why}: a penetration below {depth:g} m, {landing_at}."
-    yield f"  springs     p >= {need['stiffness']:.4g} N/m (now {scene.contact.stiffness:.4g}){_depth(need, depth)}"
+    yield say("penetration stated" if data["asked"]["stated"] else "penetration", depth=depth, load=load, **data)
+    kept = "landing only"
+    if need["depth"] is not None:
+        kept = "goes deep" if need["depth"] <= depth else "goes too deep"
+    yield say("springs needed", kept=say(kept, **need), contact=scene.contact, **need)
     ratio = need["stiffness"] / scene.block.young
     if ratio > MODERATE:
-        yield (
-            f"              that is {ratio:.4g} E, for the penetration of a landing, p ~ (V / x)^2; at rest springs of "
-            f"{MODERATE:g} E give way by {load / (2 * MODERATE * scene.block.young):.2g} m"
-        )
-    stepped = data["restitution_now"]
-    if data["landing_speed"] > 0 and stepped is not None:
-        yield (
-            f"  at present  an unloaded landing leaves the centre of mass {stepped['mean']:.3g} of its speed, "
-            f"{stepped['low']:.3g} to {stepped['high']:.3g} by phase; the block's own is {stepped['own']:.3g}"
-        )
-    if scene.time.gg_rate is None and scene.time.discount < 1:
-        loses = "the smaller dt, the more speed a landing loses"
-        left = friction.left_of_a_distance(scene.time.discount, scene.time.step)
-        yield f"  gg = {scene.time.discount:g} acts per step: {loses}; {left}"
-
-
-def _depth(need: Mapping[str, Any], penetration: float) -> str:
-    if need["depth"] is None:
-        return ", for the load at rest and one unloaded landing"
-    reservation = "" if need["depth"] <= penetration else ", and no stiffer ones were tried"
-    return f": the exact block then penetrates {need['depth']:.3g} m{reservation}"
-
-
-# ---- a column whose contacts open or slip ---------------------------------------------------------------------------
-
-
-def column_scenes(scene: Scene) -> dict[str, Scene]:
-    """Return the scene that each solver runs: the exact motion has no kinetic damping."""
-    handled = {name for name in features.OF_MOVING_COLUMN if name in features.of(scene)}
-    free = scene.with_values({"time.gg": 1.0}) if scene.time.discount < 1 else scene
-    return {own(): scene} | {name: free for name in by_role(Role.LIMIT) if handled <= get_solver(name).handles}
-
-
-def column_answer(scene: Scene, rows: RowsBySolver, bound: columns.ColumnLimits) -> dict[str, Any]:
-    """Return everything as plain data."""
-    return {
-        "scene": scene.name,
-        "limits": asdict(bound),
-        "runs": {name: measured(row) for name, row in rows.items()},
-        "alarms": [alarm.record() for alarm in columns.column_alarms(scene)],
-    }
-
-
-def column_page(
-    scene: Scene, bound: columns.ColumnLimits, data: Mapping[str, Any], absent: Mapping[str, str]
-) -> Iterator[str]:
-    """Yield the lines of one page of text; a line of the table that no run has a number for is left out."""
-    yield from _heading(scene, "a column whose contacts open or slip", f"{bound.contacts} contacts")
-    lines = [*measured_lines("column", data["runs"]), *measured_lines("repeatable", data["runs"])]
-    reported = [line for line in lines if {*line[1:]} != {NONE}]
-    yield in_columns([(f"over {scene.time.duration:.4g} s", *data["runs"]), *reported])
-    yield from (f"{name}: {why}" for name, why in absent.items())
-    yield ""
-    yield from columns.advised(scene, bound)
-    yield from (f"ALARM {alarm['kind']}: {alarm['sentence']}" for alarm in data["alarms"])
+        yield say("stiff", ratio=ratio, moderate=MODERATE, rest=load / (2 * MODERATE * scene.block.young))
+    if data["landing_speed"] > 0 and data["restitution_now"] is not None:
+        yield say("landing now", **data["restitution_now"])
+    t = scene.time
+    if t.gg_rate is None and t.discount < 1:
+        yield say("landing loses", t, left=friction.left_of_a_distance(t.discount, t.step))

@@ -23,6 +23,7 @@ BLOCKS_OF_WAVELENGTH = 10
 STEPS_OF_PERIOD = 40
 SINK_SHARE = 1e-3  # of a block's height, by which one spring gives way under the weight of all blocks
 RADIANS_OF_STEP = 1.0  # of a block on one spring
+DIGITS = {"stiffness": 2, "step": 2, "speed": 4}  # of what follows; places have six
 GRAVITY = 9.81  # m/s2
 MOST_BLOCKS = 100  # of a wall's rows, so that 10,000 are drawn
 LIMITS = {  # of the numbers that may be no arbitrary positive ones
@@ -65,7 +66,9 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
         numbers["blocks"] = round(numbers["blocks"])
     material = ROCKS[rock]
     derived = _of_moving_blocks if kind in MOVING else _derived
-    numbers |= material | derived(kind, numbers, material)
+    for name, value in derived(kind, numbers, material).items():
+        numbers[name] = significant(value, DIGITS.get(name, 6)) if isinstance(value, float) else value
+    numbers |= material
     words = {name: _written(value) for name, value in numbers.items()}
     text: str = TABLES["text"][kind]
     if kind in MOVING:
@@ -77,24 +80,23 @@ def draft(options: Mapping[str, Any], ask: Callable[[str, float], float]) -> str
 def _derived(kind: str, numbers: Mapping[str, float], material: Mapping[str, float]) -> dict[str, Any]:
     """Return what follows of size and material: springs, blocks and steps."""
     young = material["young"]
+    density = material["density"]
+    width = numbers.get("width", 0.0)
+    height = numbers.get("height", 0.0)
     if kind in GLUED_BODIES:
-        travel = max(numbers["width"], numbers.get("height", 0.0)) * math.sqrt(material["density"] / young)
-        return {"radius": significant(numbers["width"] / 2, 6), "step": significant(STATIC_TRAVELS * travel, 2)}
-    height = numbers["height"]
+        return {"radius": width / 2, "step": STATIC_TRAVELS * max(width, height) * math.sqrt(density / young)}
     if kind == "column":
-        speed = math.sqrt(young / (2 * (1 + material["poisson"]) * material["density"]))
+        speed = math.sqrt(young / (2 * (1 + material["poisson"]) * density))
         frequency = numbers["frequency"]
         step = significant(1 / (STEPS_OF_PERIOD * frequency), 2)
         duration = 4 / frequency + 4 * height / speed  # the pulse, and its way up and down
         blocks = max(4, math.ceil(BLOCKS_OF_WAVELENGTH * height * frequency / speed))
         return {"speed": significant(speed, 4), "blocks": blocks, "step": step, "steps": math.ceil(duration / step)}
-    width = numbers["width"]
     if kind == "beam":
         shorter = min(width, height)
         return {"subdivide": [4 * max(1, round(length / shorter)) for length in (width, height)]}
-    first = math.sqrt(3 * young / material["density"]) / height  # of one strain on a rigid base
-    stiffness = young * width / (height * SPRING_SHARE)
-    return {"stiffness": significant(stiffness, 2), "step": significant(FIRST_OMEGA_DT / first, 2)}
+    first = math.sqrt(3 * young / density) / height  # of one strain on a rigid base
+    return {"stiffness": young * width / (height * SPRING_SHARE), "step": FIRST_OMEGA_DT / first}
 
 
 def _of_moving_blocks(kind: str, numbers: Mapping[str, Any], material: Mapping[str, float]) -> dict[str, Any]:
@@ -104,23 +106,19 @@ def _of_moving_blocks(kind: str, numbers: Mapping[str, Any], material: Mapping[s
     blocks = numbers["blocks"]
     count = blocks**2 if kind == "wall" else blocks
     size = width * height
-    places = {}
-    ramp = 0.1
-    steps = 500
-    if kind == "stack":
-        places = {"floor": 4 * width, "middle": height / 2}
-    elif kind == "wall":
-        places = {"floor": (blocks + 4) * width, "centre": blocks * width / 2, "middle": height / 2}
-    elif kind == "arch":
-        places = {"radius": width / 2}
+    inner = math.ceil(math.sqrt(blocks)) * width  # of a box so wide that the pile is about as high
+    if kind == "arch":
         size = math.pi * width / 2 * height / blocks
-    elif kind == "blocks-on-slope":
-        places = {"length": (blocks + 3) * width, "rectangles": [[width, height]] * blocks}
-    else:  # a box so wide that the pile is about as high, in whose lower half the blocks begin
-        across = math.ceil(math.sqrt(blocks))
-        inner = across * width
-        places = {
-            "across": across,
+    mass = material["density"] * size
+    stiffness = significant(count * mass * GRAVITY / (SINK_SHARE * height), 2)
+    falls = kind == "pile"  # in whose lower half the blocks begin
+    places = {
+        "stack": {"floor": 4 * width, "middle": height / 2},
+        "wall": {"floor": (blocks + 4) * width, "centre": blocks * width / 2, "middle": height / 2},
+        "arch": {"radius": width / 2},
+        "blocks-on-slope": {"length": (blocks + 3) * width, "rectangles": [[width, height]] * blocks},
+        "pile": {
+            "across": math.ceil(math.sqrt(blocks)),
             "least": 0.35 * width,
             "middle": width / 2,
             "floor": inner + 2 * width,
@@ -128,14 +126,14 @@ def _of_moving_blocks(kind: str, numbers: Mapping[str, Any], material: Mapping[s
             "box": 2 * inner,
             "inside": inner,
             "right": inner + width / 2,
-        }
-        ramp = 0.0
-        steps = 2000
-    mass = material["density"] * size
-    stiffness = significant(count * mass * GRAVITY / (SINK_SHARE * height), 2)
-    step = significant(RADIANS_OF_STEP * math.sqrt(mass / stiffness), 1)
-    rounded = {name: significant(value, 6) if isinstance(value, float) else value for name, value in places.items()}
-    return rounded | {"stiffness": stiffness, "step": step, "steps": steps, "ramp": ramp}
+        },
+    }
+    return places[kind] | {
+        "stiffness": stiffness,
+        "step": significant(RADIANS_OF_STEP * math.sqrt(mass / stiffness), 1),
+        "steps": 2000 if falls else 500,
+        "ramp": 0.0 if falls else 0.1,
+    }
 
 
 def _written(value: Any) -> str:

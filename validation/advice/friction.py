@@ -22,7 +22,8 @@ from dataclasses import dataclass
 
 from validation.advice.alarm import Alarm, alarm, first_row, number
 from validation.advice.plain import PlainAnswer
-from validation.runs.row import Row, RowsBySolver
+from validation.advice.words import say
+from validation.runs.row import RowsBySolver
 from validation.runs.run import Outcome
 from validation.scenes import features
 from validation.scenes.scene import Scene
@@ -36,6 +37,7 @@ HIDES = "slip hidden by the step"
 STATELESS = "no contact state"
 BRAKES = "drag on a sliding block"
 KINDS = (CREEPS, LAGS, HIDES, STATELESS, BRAKES)
+COHESION = ", cohesion acting at both corners"
 SLOW = 0.01  # of g / w_n: a slower creep is not worth an alarm
 STOPPING = 4.0  # times the time in which friction takes the speed g / w_n
 COARSE = 0.3  # w_n dt from which on the ringing is not followed
@@ -71,8 +73,7 @@ class Sliding(PlainAnswer):
 
 def left_of_a_distance(gg: float, step: float) -> str:
     """Say what a discount leaves of the distance that is covered in a second."""
-    share = 100 * friction.distance_share(gg, step, 1.0)
-    return f"in flight or sliding it leaves {share:.3g} % of the distance covered from rest in a second"
+    return say("left of a distance", friction.distance_share(gg, step, 1.0))
 
 
 def sliding(scene: Scene) -> Sliding | None:
@@ -101,30 +102,20 @@ def sliding(scene: Scene) -> Sliding | None:
 
 def lines(scene: Scene, slides: Sliding) -> Iterator[str]:
     """Yield the lines on a block with friction."""
-    t = scene.time
-    slope = abs(scene.load.slope)
-    side = "below" if slides.stands else "above"
-    both = ", cohesion acting at both corners" if scene.contact.cohesion else ""
-    yield f"Slope {slope:g} deg, {side} the threshold of {slides.threshold:.4g} deg{both}:"
+    slope = "slope below" if slides.stands else "slope above"
+    yield say(slope, slides, slope=abs(scene.load.slope), both=COHESION if scene.contact.cohesion else "")
+    words = {
+        "time": scene.time,
+        "creep": 1e3 * slides.creep,
+        "w_dt": friction.normal_frequency(scene) * scene.time.step,
+    }
+    words |= {"fastest": slides.acceleration * slides.constant}
     if slides.stands:
-        words = (
-            f"undamped springs ring, and with p_s = {slides.shear_ratio:.3g} p it may creep by the order of g / w_n = "
-            f"{1e3 * slides.creep:.3g} mm/s"
-        )
-        if slides.rings_alike:
-            words = "undamped springs ring, those of shear like the normal ones, and it stands"
-        yield f"  stable      {words}; w_n dt = {friction.normal_frequency(scene) * t.step:.3g}"
-    else:
-        yield (
-            f"  slides      if rigid, at rest and touching at t = 0: by {slides.run_out:.5g} m in {t.duration:.4g} s "
-            f"at {slides.acceleration:.4g} m/s2; springs put it tan(phi) x settlement = {slides.offset:.3g} m ahead"
-        )
-        if t.discount < 1:
-            yield (
-                f"  gg          {t.discount:g} per step of {t.step:g} s {slides.drag}: it cuts "
-                f"{slides.run_out:.3g} m to {slides.braked:.3g} m, in flight as well; no speed beyond "
-                f"{slides.acceleration * slides.constant:.3g} m/s"
-            )
+        yield say("rings alike" if slides.rings_alike else "may creep", slides, **words)
+        return
+    yield say("slides", slides, **words)
+    if scene.time.discount < 1:
+        yield say("brakes", slides, **words)
 
 
 def friction_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
@@ -132,35 +123,30 @@ def friction_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     row = first_row(rows, Role.JUDGED)
     if row is None or features.FRICTION not in features.of(scene):
         return
-    gg = scene.time.discount
+    t = scene.time
     if row.outcome in STATES:
         yield alarm(STATELESS, scene.name, outcome=row.outcome.value)
-    slides = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
     if scene.contact.rules == "lagged":
         yield alarm(LAGS, scene.name)
-    if slides is not None and slides.stands:
-        yield from _creeps(scene, row, slides)
-        yield from _hides(scene, slides)
-    elif slides is not None and slides.braked < (1 - NOTABLE) * slides.run_out and gg < 1:
-        rate = {} if slides.rate is None else {"rate": slides.rate}
-        values = {**rate, "run_out": slides.run_out, "braked": slides.braked}
-        yield alarm(BRAKES, scene.name, values, gg=gg, drag=slides.drag)
-
-
-def _creeps(scene: Scene, row: Row, slides: Sliding) -> Iterator[Alarm]:
-    """Alarm where slip goes on after friction has had the time to stop a speed of g / w_n."""
-    rate = number(row, "contact.slip_rate")
+    slides = None if scene.block.tilt else sliding(scene)  # a block that is let go on a corner does not stand
+    if slides is None:
+        return
+    if not slides.stands:
+        if t.discount < 1 and slides.braked < (1 - NOTABLE) * slides.run_out:
+            rate = {} if slides.rate is None else {"rate": slides.rate}
+            values = {**rate, "run_out": slides.run_out, "braked": slides.braked}
+            yield alarm(BRAKES, scene.name, values, gg=t.discount, drag=slides.drag)
+        return
+    # Slip that goes on after friction has had the time to stop a speed of g / w_n.
+    rate_of_slip = number(row, "contact.slip_rate") or 0.0
     stopped = STOPPING * slides.creep / -slides.acceleration if slides.acceleration < 0 else math.inf
-    if rate is not None and rate > SLOW * slides.creep > 0 and scene.time.duration / 2 > stopped:
-        words = {"slope": abs(scene.load.slope), "threshold": slides.threshold, "speed": 1e3 * rate}
-        yield alarm(CREEPS, scene.name, {"rate": rate, "scale": slides.creep}, share=rate / slides.creep, **words)
-
-
-def _hides(scene: Scene, slides: Sliding) -> Iterator[Alarm]:
-    """Alarm where a slope stands because its ringing is not followed."""
-    t = scene.time
+    if rate_of_slip > SLOW * slides.creep > 0 and t.duration / 2 > stopped:
+        values = {"rate": rate_of_slip, "scale": slides.creep}
+        words = {"slope": abs(scene.load.slope), "speed": 1e3 * rate_of_slip, "share": rate_of_slip / slides.creep}
+        yield alarm(CREEPS, scene.name, values, slides=slides, **words)
+    # A slope that stands because its ringing is not followed.
     phase = friction.normal_frequency(scene) * t.step
-    damps = Stepping.of(scene).damps or t.discount < 1
-    if scene.load.slope and damps and phase > COARSE and slides.creep > 0 and not slides.rings_alike:
+    is_hidden = phase > COARSE and slides.creep > 0 and not slides.rings_alike
+    if scene.load.slope and is_hidden and (Stepping.of(scene).damps or t.discount < 1):
         values = {"phase": phase, "scale": slides.creep, "ratio": slides.shear_ratio}
         yield alarm(HIDES, scene.name, values, period=2 * math.pi * t.step / phase, speed=1e3 * slides.creep)

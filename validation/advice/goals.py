@@ -35,18 +35,21 @@ from validation.advice.friction import sliding
 from validation.advice.limits import Limit, check_choice
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.metrics.columns import settling_step
 from validation.metrics.pairs import relative_l2
 from validation.metrics.values import as_number
 from validation.runs import extras
-from validation.runs.history import DISPLACEMENT, PRESSURE, Array, History
+from validation.runs.history import DISPLACEMENT, PRESSURE, History
 from validation.runs.numbers import significant
+from validation.runs.progress import Progress
 from validation.scenes.scene import Scene
 from validation.solvers.registry import get_solver, solve
 from validation.theory import friction, landing, spectra, statics
 
 GOALS = ("static", "wave", "impact", "quake")
+ERROR = 0.05  # of displacement and contact force, that is allowed where nothing else is said
 CONSTANT = {"time.scheme": "newmark", "time.alpha": 0.5, "time.delta": 1.0, "time.gg": 1.0}
 AVERAGE = {"time.scheme": "newmark", "time.alpha": 0.25, "time.delta": 0.5, "time.gg": 1.0}
 CONSERVING = AVERAGE | {"contact.rule": "energy-conserving"}
@@ -59,6 +62,7 @@ REFINEMENTS = 6
 WAVELENGTHS = 20.0  # heights of the block in the wave that is taken where none is requested
 ALONG = "horizontal_displacement"  # along the base
 RIGID_BLOCK = "a rigid block on its slope"
+AXES = {"wave": ("y",), "quake": ("x", "y")}  # along which the base moves
 QUAKE = 5.0  # Hz of the wavelet of a quake where none is requested
 ONSET = 1.5  # periods after which the wavelet peaks: it begins with less than 1e-8 of its height
 DURATION = 4.0  # periods of a run
@@ -71,6 +75,7 @@ FINEST_OF_CONTACT = 512  # and of the finest
 ELEMENTS = 8  # per side of the reference, of degree two
 RULE_DIGITS = 2  # of springs, frequency and step, as much as a rule of thumb has
 SHORT = 60  # steps of the shorter of two runs that are timed; the longer has four times as many
+Errors = tuple[float, float] | None  # of displacement and contact force [-]; None of a run that did not complete
 NO_LOADS = {f"load.{name}": 0.0 for name in ("gravity", "pressure", "traction", "eccentricity", "slope", "ramp")}
 
 
@@ -98,7 +103,7 @@ class Candidate:
     settings: dict[str, Any]
     steps: int
     displacement_error: float
-    force_error: float | None
+    force_error: float | None = None
 
     @property
     def work(self) -> int:
@@ -112,43 +117,81 @@ class Candidate:
         return max(self.displacement_error, self.force_error or 0.0)
 
 
-def springs(scene: Scene, error: float) -> float:
-    """Return the p at which springs give way by a share of what the block shortens down to its centroid [N/m].
+@dataclass(frozen=True)
+class Trials:
+    """Settings that are run at multiples of a step."""
 
-    Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid.
+    settings: Mapping[str, Any]
+    finest: float  # step [s]
+    steps: int  # of it
+    errors: Callable[[dict[str, Any], int, int], Errors]  # of settings, multiple and steps
+
+    def candidate(self, every: int) -> Candidate:
+        """Return what a multiple of the finest step does."""
+        settings = {**self.settings, "time.step": every * self.finest}
+        steps = self.steps // every
+        return Candidate(settings, steps, *(self.errors(settings, every, steps) or (math.inf, math.inf)))
+
+    def longest_step(self, coarsest: int, error: float) -> Candidate:
+        """Return the candidate with the longest step that keeps the error and keeps it at half that step too.
+
+        An error of the step and one of the blocks may cancel at one step and at no other. `coarsest` is the multiple to
+        begin with, a power of two.
+        """
+        candidate = self.candidate(coarsest)
+        while coarsest > 1:
+            coarsest //= 2
+            finer = self.candidate(coarsest)
+            if max(candidate.error, finer.error) <= error:
+                return candidate
+            candidate = finer
+        return candidate
+
+
+def yielding(scene: Scene, stiffness: float) -> float:
+    """Return what springs p give way by, over what the block shortens down to its centroid: E a / (p h) [-].
+
+    Under a force F the springs give way by F / (2 p), and the block of one strain by F h / (2 E a) at its centroid. Of
+    a share it returns the p [N/m].
     """
     modulus, _ = statics.moduli(scene)
-    return significant(modulus * scene.block.base_length / (statics.height(scene) * error), RULE_DIGITS)
+    return modulus * scene.block.base_length / (statics.height(scene) * stiffness)
 
 
-def yielding(scene: Scene) -> float:
-    """Return what the present springs give way by, over what the block shortens down to its centroid [-]."""
-    modulus, _ = statics.moduli(scene)
-    return modulus * scene.block.base_length / (statics.height(scene) * scene.contact.stiffness)
-
-
-def default_frequency(scene: Scene) -> float:
-    """Return the frequency of a wave `WAVELENGTHS` heights of the block long [Hz]."""
-    return significant(1 / (WAVELENGTHS * spectra.transit(scene)), RULE_DIGITS)
-
-
-def check(goal: str | None, error: float, frequency: float | None) -> None:
-    """Refuse a goal, an error or a frequency that is none, by the options of the command line.
+@dataclass(frozen=True)
+class Question:
+    """What is asked of a scene.
 
     Raises
     ------
     InputError
-        With the rule.
+        A goal, an error or a frequency is none, by the options of the command line.
     """
-    if goal is not None:
-        check_choice("--goal", goal, GOALS)
-    Limit("--error", "must be above 0 and below 1", below=1.0).check(error)
-    Limit("--frequency").check(frequency)
+
+    source: str = ""  # the words of the scene on a command line
+    error: float = ERROR  # of displacement and contact force, that is allowed [-]
+    goals: tuple[str, ...] = GOALS
+    frequency: float | None = None  # of the wave or the quake [Hz]
+    keep_springs: bool = False  # whether the springs are those of a real joint, and stay
+    progress: Progress = lambda *_: None  # is told what has been done, of how much, what is next
+
+    def __post_init__(self) -> None:
+        """Refuse what is none."""
+        for goal in self.goals:
+            check_choice("--goal", goal, GOALS)
+        Limit("--error", "must be above 0 and below 1", below=1.0).check(self.error)
+        Limit("--frequency").check(self.frequency)
+
+    @property
+    def stated(self) -> str:
+        """The options that all goals are asked for with, as one goal takes them."""
+        options = "" if self.error == ERROR else f" --error {self.error:g}"
+        if self.frequency is not None:
+            options += f" --frequency {self.frequency:g}"
+        return options + " --keep-springs" * self.keep_springs
 
 
-def recommend(
-    scene: Scene, goal: str, error: float, frequency: float | None = None, keep_springs: bool = False
-) -> tuple[Recommendation, ...]:
+def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendation, ...]:
     """Return what a block should be run with for a goal; of an impact also with energy-conserving contact.
 
     Parameters
@@ -157,49 +200,42 @@ def recommend(
         A scene of a block, without a sweep.
     goal
         One of `GOALS`.
-    error
-        Requested relative error of displacement and contact force [-].
-    frequency
-        Of the wave or the quake [Hz].
-    keep_springs
-        Whether the springs are those of a real joint, and stay.
+    question
+        Error, frequency, and whether springs stay.
 
     Raises
     ------
     InputError
         The goal does not apply to the scene, in words; or its exact motion needs a library that is not installed.
     """
+    error = question.error
     values: dict[str, Any] = {}
-    if not keep_springs or math.isinf(scene.contact.stiffness):  # a rigid stop has none to keep
-        values = {"contact.stiffness": springs(scene, error)}
+    if not question.keep_springs or math.isinf(scene.contact.stiffness):  # a rigid stop has none to keep
+        values = {"contact.stiffness": significant(yielding(scene, error), RULE_DIGITS)}
     values |= {"time.start": "zero", "run.columns": [DISPLACEMENT, PRESSURE]}
     if scene.time.scheme != "newmark":
         values |= CONSTANT  # explicit steps have a start of their own
     sprung = scene.with_values(values)
     block = closed(at_rest(sprung))
-    slides = sliding(scene)
-    if goal == "static" and slides is not None and not slides.stands:
-        # The longest step with which a block slides as far as a rigid one, on its own springs.
-        duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
-        finest = duration / FINEST_SLIDE
-        plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
-
-        def run(every: int) -> Candidate:
-            settings = CONSTANT | {"time.step": every * finest}
-            steps = FINEST_SLIDE // every
-            errors = slide_errors(plain.with_values(settings | {"time.steps": steps})) or (math.inf, math.inf)
-            return Candidate(settings, steps, *errors)
-
-        best = _longest_step(run, FINEST_SLIDE // FEWEST_SLIDE, error)
-        condition = "slides under its own loads, on its own springs; displacement: at the end; force: its mean"
-        return (recommendation(plain, "slide", condition, best, error, (RIGID_BLOCK, 0.0), duration),)
-    if goal == "static":
-        return (_static(sprung, block, error),)
     if goal == "impact":
         return _impacts(block, error, abs(scene.block.velocity))
-    if goal == "quake":
-        return (_driven(block, goal, error, frequency or QUAKE, ("x", "y")),)
-    return (_driven(block, goal, error, frequency or default_frequency(scene), ("y",)),)
+    if goal != "static":
+        usual = QUAKE if goal == "quake" else significant(1 / (WAVELENGTHS * spectra.transit(scene)), RULE_DIGITS)
+        return (_driven(block, goal, error, question.frequency or usual),)
+    slides = sliding(scene)
+    if slides is None or slides.stands:
+        return (_static(sprung, block, error),)
+    # The longest step with which a block slides as far as a rigid one, on its own springs.
+    duration = min(scene.time.duration, LONGEST_SLIDE * scene.time.step)
+    plain = scene.with_values(CONSTANT | {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+    trials = Trials(
+        CONSTANT,
+        duration / FINEST_SLIDE,
+        FINEST_SLIDE,
+        lambda settings, _, steps: slide_errors(plain.with_values(settings | {"time.steps": steps})),
+    )
+    best = trials.longest_step(FINEST_SLIDE // FEWEST_SLIDE, error)
+    return (recommendation(plain, "slide", say("slide condition"), best, error, (RIGID_BLOCK, 0.0), duration),)
 
 
 def at_rest(scene: Scene) -> Scene:
@@ -225,10 +261,9 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
         Requested.
     """
     if block.load.base_motion is not None or not get_solver(own()).static(block)[DISPLACEMENT]:
-        raise InputError("needs a load with a static answer", source=block.name, field="--goal", value="static")
+        raise _refusal("needs a load with a static answer", block, "static")
     coarse, fine = (get_solver(elements()).static(meshed) for meshed in _meshes(block))
-    for pieces in _pieces(block):
-        cut = _cut(block, pieces)
+    for cut in _cuts(block):
         limits = get_solver(own()).static(block.with_values(cut))
         errors = [abs(limits[name] / fine[name] - 1) for name in (DISPLACEMENT, PRESSURE)]
         if max(errors) <= error:
@@ -245,16 +280,18 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
         if len(steps) == len(rests):
             candidates.append(Candidate(settings, int(max(steps)), *errors))
     if not candidates:
-        rule = f"comes to rest in {MOST_SETTLING} steps at none of those that were tried"
-        raise InputError(rule, source=block.name, field="--goal", value="static")
+        raise _refusal(say("no rest", MOST_SETTLING), block, "static")
     best = min(candidates, key=lambda candidate: candidate.steps)
-    condition = "loads at once; at rest when displacement and force stay within 1 % of their limits"
     reference = ("static elements", abs(coarse[DISPLACEMENT] / fine[DISPLACEMENT] - 1))
     duration = best.steps * float(best.settings["time.step"])
-    return recommendation(scene, "static", condition, best, error, reference, duration)
+    return recommendation(scene, "static", say("static condition"), best, error, reference, duration)
 
 
-def slide_errors(scene: Scene) -> tuple[float, float] | None:
+def _refusal(rule: str, scene: Scene, goal: str) -> InputError:
+    return InputError(rule, source=scene.name, field="--goal", value=goal)
+
+
+def slide_errors(scene: Scene) -> Errors:
     """Return how far `dda` is from a rigid block that slides: of the distance, and of the mean contact pressure [-].
 
     Undamped stiff springs may let the exact block hop, which then slides farther; a rigid block stays on its slope.
@@ -271,9 +308,10 @@ def slide_errors(scene: Scene) -> tuple[float, float] | None:
 # ---- wave and quake -------------------------------------------------------------------------------------------------
 
 
-def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple[str, ...]) -> Recommendation:
+def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommendation:
     duration = DURATION / frequency
     finest = 1 / (frequency * COARSEST * 2 ** (REFINEMENTS - 1))
+    axes = AXES[goal]
     with tempfile.TemporaryDirectory() as folder:
         record = Path(folder) / "wavelet.csv"
         # Write Ricker's wavelet (1 - 2 a^2) exp(-a^2), a = pi f (t - t0), as a record of the base.
@@ -287,61 +325,31 @@ def _driven(block: Scene, goal: str, error: float, frequency: float, axes: tuple
         fine = AVERAGE | {"time.step": finest, "time.steps": round(duration / finest)}
         coarser, exact = (_history(meshed, elements(), fine) for meshed in _meshes(driven))
         if exact is None or coarser is None:
-            raise InputError("the elements have no motion to compare with", source=block.name, field="goal", value=goal)
-        best = _cheapest(driven, error, exact, finest)
-        uncertainty = difference(coarser, exact, DISPLACEMENT)
-        along = "upwards" if axes == ("y",) else "upwards and sideways"
-        condition = f"base moves {along} as Ricker's wavelet of {frequency:.4g} Hz, contact closed"
-        reference = ("elements, fine in time", uncertainty)
+            raise _refusal("the elements have no motion to compare with", block, goal)
+
+        def errors(settings: dict[str, Any], every: int, steps: int) -> Errors:
+            history = _history(driven, own(), settings | {"time.steps": steps})
+            if history is None:
+                return None
+            return difference(history, exact, DISPLACEMENT, every), difference(history, exact, PRESSURE, every)
+
+        # The fewest steps times blocks that keep the error, or the least error.
+        tried: list[Candidate] = []
+        good: list[Candidate] = []
+        for cut in _cuts(driven):
+            for scheme in (AVERAGE, CONSTANT):
+                trials = Trials(scheme | cut, finest, len(exact.time), errors)
+                tried.append(trials.candidate(1))
+                if tried[-1].error <= error:
+                    good.append(trials.longest_step(2 ** (REFINEMENTS - 1), error))
+            if good:
+                break
+        best = min(
+            good, key=lambda candidate: candidate.work, default=min(tried, key=lambda candidate: candidate.error)
+        )
+        condition = say(f"{goal} condition", frequency)
+        reference = ("elements, fine in time", difference(coarser, exact, DISPLACEMENT))
         return recommendation(driven, goal, condition, best, error, reference, duration)
-
-
-def _cheapest(driven: Scene, error: float, exact: History, finest: float) -> Candidate:
-    """Return the candidate with the fewest steps times blocks that keeps the error, or that with the least error."""
-    tried: list[Candidate] = []
-    for pieces in _pieces(driven):
-        good = []
-        for scheme in (AVERAGE, CONSTANT):
-
-            def run(every: int, scheme: Mapping[str, Any] = scheme, pieces: int = pieces) -> Candidate:
-                steps = len(exact.time) // every
-                settings = {**scheme, **_cut(driven, pieces), "time.step": every * finest}
-                history = _history(driven, own(), settings | {"time.steps": steps})
-                if history is None:
-                    return Candidate(settings, steps, math.inf, math.inf)
-                errors = [difference(history, exact, name, every) for name in (DISPLACEMENT, PRESSURE)]
-                return Candidate(settings, steps, *errors)
-
-            tried.append(run(1))
-            if tried[-1].error <= error:
-                good.append(_longest_step(run, 2 ** (REFINEMENTS - 1), error))
-        if good:
-            return min(good, key=lambda candidate: candidate.work)
-    return min(tried, key=lambda candidate: candidate.error)
-
-
-def _longest_step(run: Callable[[int], Candidate], coarsest: int, error: float) -> Candidate:
-    """Return the candidate with the longest step that keeps the error and keeps it at half that step too.
-
-    An error of the step and one of the blocks may cancel at one step and at no other.
-
-    Parameters
-    ----------
-    run
-        Returns the candidate of a multiple of the finest step.
-    coarsest
-        Multiple to begin with, a power of two.
-    error
-        Requested.
-    """
-    candidate = run(coarsest)
-    while coarsest > 1:
-        coarsest //= 2
-        finer = run(coarsest)
-        if max(candidate.error, finer.error) <= error:
-            return candidate
-        candidate = finer
-    return candidate
 
 
 # ---- impact ---------------------------------------------------------------------------------------------------------
@@ -350,7 +358,7 @@ def _longest_step(run: Callable[[int], Candidate], coarsest: int, error: float) 
 def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendation, ...]:
     extras.require("the exact motion of an impact", *extras.EXACT)
     if block.block.rectangle is None:
-        raise InputError("needs an upright rectangle", source=block.name, field="--goal", value="impact")
+        raise _refusal("needs an upright rectangle", block, "impact")
     speed = own_speed or 1.0
     transit = spectra.transit(block)
     contact_time = landing.own_landing(landing.stiffness_ratio(block)).duration * transit
@@ -361,61 +369,53 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
     steps = math.ceil(duration / finest)
     exact = _history(falling, exact_solver(), AVERAGE | {"time.step": finest, "time.steps": steps})
     if exact is None:
-        raise InputError("has no exact motion of a landing", source=block.name, field="--goal", value="impact")
-    flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])
-    speed_in_words = "its own speed" if own_speed else "any speed"
-    condition = f"lands flat at {speed_in_words} without load, anywhere in a step; force: its restitution"
-    reference = ("block-events, one strain", 0.0)
+        raise _refusal("has no exact motion of a landing", block, "impact")
+    flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])  # from the landing on
+
+    def errors(settings: dict[str, Any], every: int, steps: int) -> Errors:
+        """Return the errors of displacement and restitution, the worst of all phases of the first step."""
+        step = settings["time.step"]
+        worst = np.zeros(2)
+        for phase in PHASES:
+            before = round(phase * every)  # instants of the exact motion until the landing
+            count = (len(flight) - 1) // every
+            gap = before / every * step * speed
+            history = _history(falling, own(), {**settings, "contact.gap": gap, "time.steps": count})
+            if history is None:
+                return None
+            displacement = history.columns[DISPLACEMENT]
+            reference = flight[every - before :: every][:count] - gap
+            rebounds = [float(motion[-1] - motion[-2]) / (step * speed) for motion in (displacement, reference)]
+            worst = np.maximum(worst, [as_number(relative_l2(displacement, reference)), abs(rebounds[0] - rebounds[1])])
+        return float(worst[0]), float(worst[1])
+
+    condition = say("impact condition", "its own speed" if own_speed else "any speed")
     offers = []
     for method in (CONSTANT, CONSERVING):
         if method is CONSERVING and block.block.poisson != 0:
             continue  # its base slides, which the rule does not take with springs of shear
-
-        def run(every: int, method: Mapping[str, Any] = method) -> Candidate:
-            settings = {**method, "time.step": every * finest}
-            errors = [_landing_errors(falling, settings, flight, every, phase, speed) for phase in PHASES]
-            return Candidate(settings, steps // every, *np.max(errors, axis=0).tolist())
-
-        best = _longest_step(run, FINEST_OF_CONTACT // FEWEST_OF_CONTACT, error)
-        offers.append(recommendation(falling, "impact", condition, best, error, reference, duration))
+        trials = Trials(method, finest, steps, errors)
+        best = trials.longest_step(FINEST_OF_CONTACT // FEWEST_OF_CONTACT, error)
+        offers.append(
+            recommendation(falling, "impact", condition, best, error, ("block-events, one strain", 0.0), duration)
+        )
     return tuple(offers)
-
-
-def _landing_errors(
-    falling: Scene, settings: Mapping[str, Any], flight: Array, every: int, phase: float, speed: float
-) -> tuple[float, float]:
-    """Return the errors of displacement and restitution of a block that lands at a phase of its first step.
-
-    `flight` is the exact displacement at every `every`-th part of a step from the landing on.
-    """
-    before = round(phase * every)  # instants of the exact motion until the landing
-    step = settings["time.step"]
-    count = (len(flight) - 1) // every
-    gap = before / every * step * speed
-    history = _history(falling, own(), {**settings, "contact.gap": gap, "time.steps": count})
-    if history is None:
-        return math.inf, math.inf
-    displacement = history.columns[DISPLACEMENT]
-    exact = flight[every - before :: every][:count] - gap
-    rebounds = [float(motion[-1] - motion[-2]) / (step * speed) for motion in (displacement, exact)]
-    return as_number(relative_l2(displacement, exact)), abs(rebounds[0] - rebounds[1])
 
 
 # ---- what all share -------------------------------------------------------------------------------------------------
 
 
-def _pieces(scene: Scene) -> list[int]:
-    """Return into how many pieces each side of a block may be cut; a block of another outline stays whole."""
-    return [1, 2, 4] if scene.block.rectangle is not None else [1]
+def _cuts(scene: Scene) -> list[dict[str, Any]]:
+    """Return settings that leave a block whole or cut each side in two or four; of a rectangle, another stays whole.
 
-
-def _cut(scene: Scene, pieces: int) -> dict[str, Any]:
-    """Return the settings that cut each present block upwards, and sideways where it strains sideways."""
-    if pieces == 1:
-        return {}
+    Each present block is cut upwards, and sideways where it strains sideways.
+    """
     across, upwards = scene.block.subdivide or (1, 1)
-    sideways = pieces if scene.block.poisson else 1
-    return {"block.subdivide": [across * sideways, upwards * pieces]}
+    cuts: list[dict[str, Any]] = [{}]
+    for pieces in (2, 4) if scene.block.rectangle is not None else ():
+        sideways = pieces if scene.block.poisson else 1
+        cuts.append({"block.subdivide": [across * sideways, upwards * pieces]})
+    return cuts
 
 
 def _history(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from validation.advice.alarm import Alarm
-from validation.advice.columns import ColumnLimits
 from validation.errors import InputError
 from validation.runs.history import Complex
 from validation.runs.row import RowsBySolver
@@ -49,6 +48,18 @@ class Layer:
     def wavenumber(self, w2: Complex) -> Complex:
         """Return k [rad/m] of the blocks at squared frequencies."""
         return Column(self.height, self.density, self.modulus, self.glue).wavenumber(w2)
+
+
+@dataclass(frozen=True)
+class ColumnLimits:
+    """What follows of a scene with a column whose contacts open or slip, before anything is run."""
+
+    contacts: int
+    solves: int | None  # that a step can need; None where no bound is proven
+    far_face_step: float  # below which some block's far face moves the wrong way [s]
+    blocks: tuple[int, ...]  # of each layer with which it does not at the present step
+    lowest: float | None  # lowest frequency of a stack of equal rigid blocks [rad/s]
+    ring_down: float | None  # in which that vibration falls to a thousandth while no contact opens or slips [s]
 
 
 class AdviceHooks(Hooks):

@@ -34,7 +34,7 @@ def overshoot_alarms(scene: Scene, rows: RowsBySolver) -> Iterator[Alarm]:
     if first_row(rows, Role.JUDGED) is None or (rise := start_rise(scene)) is None:
         return
     if rise > NOTABLE:
-        yield alarm(OVERSHOOT, scene.name, {"rise": rise}, scheme=Stepping.of(scene).name, percent=100 * rise)
+        yield alarm(OVERSHOOT, scene.name, {"rise": rise}, scheme=Stepping.of(scene).name)
 
 
 def start_rise(scene: Scene) -> float | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import shlex
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -17,18 +17,17 @@ from validation.advice.contact_page import elements, own
 from validation.advice.contact_page import exact as exact_solver
 from validation.advice.friction import left_of_a_distance, sliding
 from validation.advice.friction import lines as friction_lines
-from validation.advice.goals import AVERAGE, Recommendation
+from validation.advice.goals import AVERAGE, Question, Recommendation
 from validation.advice.plain import Line, PlainAnswer, in_columns
-from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to
+from validation.advice.spectra import CONTACT, damping, first_mode, runs, steps_to, truth_of
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.runs import extras
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.runs.numbers import share_text
-from validation.runs.progress import Progress
+from validation.runs.numbers import number_text, share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role, get_solver, solve
+from validation.solvers.registry import get_solver, solve
 from validation.theory import landing
 from validation.theory.stepping import Stepping
 
@@ -39,6 +38,10 @@ PARTS = {  # what shows more: the command, and the options that it needs
     "contact": ("advise contact", " --set contact.law=unilateral"),
     "schemes": ("advise schemes", " --damping 0.05"),
 }
+HEADS = (
+    *("", "dt [s]", "alpha, delta", "gg", "p [N/m]", "blocks"),
+    *("displacement", "force", "steps", "dda [s]", "fem [s]"),
+)
 STILL = 1e-14  # of the height: a displacement that is rounding
 FADED = 0.01  # of an amplitude that has rung down
 
@@ -73,30 +76,8 @@ class Overview(PlainAnswer):
     refused: dict[str, str]  # goal -> why there is nothing to take for it
 
 
-def overview(
-    scene: Scene,
-    chosen: tuple[str, ...] = goals.GOALS,
-    error: float = 0.05,
-    frequency: float | None = None,
-    progress: Progress = lambda *_: None,
-    keep_springs: bool = False,
-) -> Overview:
+def overview(scene: Scene, question: Question) -> Overview:
     """Return what the settings of a block do, and what to take for goals.
-
-    Parameters
-    ----------
-    scene
-        A scene of a block, without a sweep.
-    chosen
-        Goals among `goals.GOALS`.
-    error
-        Relative error of displacement and contact force that is allowed [-].
-    frequency
-        Of the wave and the quake [Hz].
-    progress
-        Is told what has been done, how much there is, and what comes next.
-    keep_springs
-        Whether the springs are those of a real joint, and stay.
 
     Raises
     ------
@@ -105,18 +86,19 @@ def overview(
     """
     features.refuse_sweep(scene)
     features.refuse_column(scene, "advise")
-    progress(0, len(chosen) + 1, "the present settings")
+    count = len(question.goals) + 1
+    question.progress(0, count, "the present settings")
     present = _present_error(scene)
     facts = tuple(_facts(scene))
     recommendations: list[Recommendation] = []
     refused: dict[str, str] = {}
-    for number, goal in enumerate(chosen, 1):
-        progress(number, len(chosen) + 1, goal)
+    for number, goal in enumerate(question.goals, 1):
+        question.progress(number, count, goal)
         try:
-            recommendations += goals.recommend(scene, goal, error, frequency, keep_springs)
+            recommendations += goals.recommend(scene, goal, question)
         except InputError as reason:
             refused[goal] = reason.rule
-    return Overview(scene.name, error, facts, present, tuple(recommendations), refused)
+    return Overview(scene.name, question.error, facts, present, tuple(recommendations), refused)
 
 
 def _facts(scene: Scene) -> Iterator[Fact]:
@@ -124,34 +106,28 @@ def _facts(scene: Scene) -> Iterator[Fact]:
     block = closed(goals.at_rest(scene))
     if scene.load.slope:
         block = block.with_values({"load.slope": 0.0})  # the modes that its weight across the base reaches
-    analysis = damping(block)
-    first = analysis.modes[0]
-    yield Fact("first mode", f"{first.frequency:.4g} rad/s, w dt = {first.omega_dt:.3g}: {runs(first)}", "damping")
-    for mode in analysis.modes:
+    first, *others = damping(block).modes
+    yield Fact("first mode", say("first mode", first, runs=runs(first)), "damping")
+    for mode in others:
         if mode.name == CONTACT:
-            sentence = f"{mode.frequency:.4g} rad/s: {runs(mode)}"
             steps = steps_to(FADED, mode.spectral_radius)
-            if math.isfinite(steps):
-                sentence += f"; rings down to 1 % in {math.ceil(steps)} steps"
-            yield Fact("contact mode", sentence, "damping")
+            decay = say("rings down", math.ceil(steps)) if math.isfinite(steps) else ""
+            yield Fact("contact mode", say("contact mode", mode, runs=runs(mode), decay=decay), "damping")
     finer = first_mode(block, elements()).get("frequency")
     if finer:
         off = first.frequency / finer - 1
-        side = "above" if off >= 0 else "below"
-        sentence = f"its first frequency is {share_text(abs(off))} {side} that of elements on the same springs"
+        sentence = say("above elements" if off >= 0 else "below elements", abs(off))
         yield Fact("one strain" if scene.block.subdivide is None else "strains", sentence, "damping")
-    if math.isfinite(scene.contact.stiffness):
-        share = share_text(goals.yielding(scene))
-        sentence = f"p = {scene.contact.stiffness:.4g} N/m give way by {share} of what the block shortens to its middle"
-        yield Fact("springs", sentence, "contact")
+    is_sprung = math.isfinite(scene.contact.stiffness)
+    if is_sprung:
+        share = goals.yielding(scene, scene.contact.stiffness)
+        yield Fact("springs", say("springs give way", scene.contact, share=share), "contact")
     t = scene.time
     if t.discount < 1:
-        sentence = f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"
-        yield Fact("discount", sentence, "damping")
-    if scene.block.rectangle is not None and math.isfinite(scene.contact.stiffness):
+        yield Fact("discount", say("discount", t, left=left_of_a_distance(t.discount, t.step)), "damping")
+    if scene.block.rectangle is not None and is_sprung:
         most = rebound_of(Stepping.of(scene).stages, landing.contact_frequency(scene) * t.step).most
-        may = "may gain energy" if most > 1 + GAIN else "gains nothing"
-        yield Fact("switching", f"a landing on these springs at this step {may}: rebound at most {most:.3g}", "schemes")
+        yield Fact("switching", say("may gain" if most > 1 + GAIN else "gains nothing", most), "schemes")
 
 
 def _present_error(scene: Scene) -> PresentError | None:
@@ -163,13 +139,13 @@ def _present_error(scene: Scene) -> PresentError | None:
         slid = goals.slide_errors(case)
         return None if slid is None else PresentError(goals.RIGID_BLOCK, case.time.duration, *slid)
     every = 1
-    truths = [name for name in by_role(Role.TRUTH) if get_solver(name).refusal(case) is None]
+    truth = truth_of(case)
     if not features.linear(scene):
         name, exact = exact_solver(), case.with_values({"time.gg": 1.0})
         if extras.missing(*extras.EXACT):
             return None
-    elif truths:
-        name, exact = truths[0], case
+    elif truth:
+        name, exact = truth, case
     else:
         name, every = elements(), FINER
         exact = case.with_values(AVERAGE | {"time.step": case.time.step / FINER, "time.steps": FINER * steps})
@@ -188,86 +164,68 @@ def _present_error(scene: Scene) -> PresentError | None:
 # ---- in words -------------------------------------------------------------------------------------------------------
 
 
-def lines(scene: Scene, source: str, answer: Overview, stated: str = "") -> Iterator[str]:
-    """Yield the lines of one page of text on a block.
-
-    Parameters
-    ----------
-    scene, answer
-        The block and what was found.
-    source, stated
-        The words of the scene on a command line, and the options that its goals were asked for with.
-    """
-    t = scene.time
-    width, height = scene.block.extent
-    numbers = f"{Stepping.of(scene).numbers}, gg = {t.discount:.6g}"
-    yield f"{scene.name}: {width:g} x {height:g} m, {scene.block.mass:.4g} kg, dt = {t.step:g} s, {numbers}"
+def lines(scene: Scene, question: Question, answer: Overview) -> Iterator[str]:
+    """Yield the lines of one page of text on a block."""
+    yield say("block", scene, size=scene.block.extent, stepping=Stepping.of(scene))
     yield ""
     yield "What these settings do"
     yield in_columns([(f"  {fact.subject}", fact.sentence) for fact in answer.facts])
     slides = sliding(scene)
     if slides is not None:
         yield from friction_lines(scene, slides)
-    present = answer.present
-    if present is not None:
-        errors = f"displacement {share_text(present.displacement)}, contact force {share_text(present.force)}"
-        yield f"  error: {errors} over {present.window:.4g} s, against {present.reference}"
+    if answer.present is not None:
+        yield say("present error", answer.present)
     for part, (command, options) in PARTS.items():
         subjects = [fact.subject for fact in answer.facts if fact.part == part]
         if part == "damping" and not features.linear(scene):
             command = "show"  # which closes the contact, without which there are no modes
         if subjects:
-            yield f"  more on {', '.join(subjects)}: dda-validate {command} {source}{options}"
+            yield say("more", ", ".join(subjects), command=command, source=question.source, options=options)
     yield ""
-    yield from recommended(source, answer, stated)
+    yield from recommended(question, answer)
 
 
-def recommended(source: str, answer: Overview, stated: str = "") -> Iterator[str]:
+def recommended(question: Question, answer: Overview) -> Iterator[str]:
     """Yield what to take, its conditions, and what to type next."""
-    if answer.recommendations:
-        how = "each as run by dda, seconds estimated; for springs of a real joint add --keep-springs"
-        yield f"What to take for an error of {share_text(answer.error)}, {how}"
-        yield in_columns(_table(answer))
-    for goal, offer in {offer.goal: offer for offer in answer.recommendations}.items():
-        known = f" (itself within {share_text(offer.uncertainty)})" if offer.uncertainty > 1e-6 else ""
-        yield f"{goal}: {offer.condition}; against {offer.reference}{known}"
+    offers = answer.recommendations
+    if offers:
+        yield say("what to take", answer)
+        yield in_columns(_table(offers))
+    for offer in {offer.goal: offer for offer in offers}.values():
+        yield say("offer" if offer.uncertainty <= 1e-6 else "offer by an uncertain reference", offer)
     yield from (f"{goal}: {why}" for goal, why in answer.refused.items())
-    if missed := [offer.goal for offer in answer.recommendations if not offer.is_reached]:
-        yield f"{', '.join(dict.fromkeys(missed))}: nothing that was tried keeps the error; the least is shown"
-    if len(answer.recommendations) == 1:
-        settings = answer.recommendations[0].settings
+    if missed := [offer.goal for offer in offers if not offer.is_reached]:
+        yield say("missed", ", ".join(dict.fromkeys(missed)))
+    if len(offers) == 1:
+        settings = offers[0].settings
         sets = " ".join(f"--set {shlex.quote(f'{key}={_written(value)}')}" for key, value in settings.items())
-        yield f"next: dda-validate run {source} {sets}"
-    elif answer.recommendations:
-        yield f"next: dda-validate advise {source}{stated} --goal {'|'.join(goals.GOALS)}, which names what to --set"
+        yield say("next run", question.source, sets)
+    elif offers:
+        yield say("next goal", question, "|".join(goals.GOALS))
 
 
-def _table(answer: Overview) -> list[Line]:
-    inputs = ("", "dt [s]", "alpha, delta", "gg", "p [N/m]", "blocks")
-    rows: list[Line] = [(*inputs, "displacement", "force", "steps", "dda [s]", "fem [s]")]
-    for offer in answer.recommendations:
+def _table(offers: Sequence[Recommendation]) -> list[Line]:
+    rows: list[Line] = [HEADS]
+    for offer in offers:
         values = offer.settings
         scheme = "as is"
         if "time.alpha" in values:
-            rule = values.get("contact.rule", "")
-            scheme = f"{values['time.alpha']:g}, {values['time.delta']:g} {rule}".rstrip()
-        cut = values.get("block.subdivide") or values.get("plane.subdivide") or ["as is"]
+            scheme = f"{values['time.alpha']:g}, {values['time.delta']:g} {values.get('contact.rule', '')}".rstrip()
+        cut = " x ".join(map(str, values.get("block.subdivide") or values.get("plane.subdivide") or ["as is"]))
         if "column.layer" in values:
-            cut = [layer["blocks"] for layer in values["column.layer"]]
-        separator = ", " if "column.layer" in values else " x "
-        stiffness = values.get("contact.stiffness")
+            cut = ", ".join(str(layer["blocks"]) for layer in values["column.layer"])
         numbers = (
             f"{values.get('time.step', math.nan):.4g}",
             scheme,
             f"{values['time.gg']:g}" if "time.gg" in values else "as is",
-            "-" if stiffness is None else f"{stiffness:.3g}",
-            separator.join(map(str, cut)),
+            number_text(values.get("contact.stiffness"), 3),
+            cut,
             _share(offer.displacement_error),
             _share(offer.force_error),
             str(offer.steps),
+            *(number_text(value, 2) for value in offer.seconds.values()),
         )
-        seconds = ("-" if value is None else f"{value:.2g}" for value in offer.seconds.values())
-        rows.append((offer.goal, *numbers, *seconds))
+        rows.append((offer.goal, *numbers))
     return rows
 
 

@@ -3,30 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
-from validation.advice.goals import GOALS, Recommendation
+from validation.advice.goals import Question, Recommendation
 from validation.advice.overview import Overview, recommended
 from validation.errors import InputError
-from validation.runs.progress import Progress
 from validation.scenes.kinds import Hooks
 from validation.scenes.scene import Scene
 
 Page = tuple[dict[str, Any], Iterable[str]]  # plain data, and the lines that say it
-
-
-@dataclass(frozen=True)
-class Question:
-    """What is asked of a scene."""
-
-    source: str  # the words of the scene on a command line
-    error: float  # of displacement and contact force, that is allowed [-]
-    stated: str = ""  # the options that all goals are asked for with, as one goal takes them
-    goals: tuple[str, ...] = GOALS
-    frequency: float | None = None  # of the wave or the quake [Hz]
-    keep_springs: bool = False  # whether the springs are those of a real joint, and stay
-    progress: Progress = lambda *_: None  # is told what has been done, of how much, what is next
 
 
 class PageHooks(Hooks):
@@ -48,4 +33,4 @@ class PageHooks(Hooks):
 def page_of_cut(scene: Scene, question: Question, sentence: str, offer: Recommendation) -> Page:
     """Return the page on what is made of blocks: in words what the present ones do, and which to take."""
     answer = Overview(scene.name, question.error, (), None, (offer,), {})
-    return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(question.source, answer))
+    return {"sentence": sentence, **answer.as_dict()}, (sentence, "", *recommended(question, answer))

@@ -20,9 +20,9 @@ from dda.scheme import spectral
 from dda.scheme.newmark import Scheme
 from dda.scheme.spectral import ComplexArray
 from validation.advice.plain import PlainAnswer
+from validation.advice.words import say
 from validation.metrics.modes import operator_damping
 from validation.runs.modes import Mode, contact_index
-from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers import memory
@@ -75,23 +75,6 @@ def number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def damping_ratio(scene: Scene, frequency: float) -> float:
-    """Return xi of the scene's scheme at a frequency [rad/s]; NaN where a root is not positive."""
-    if scene.damping.present:
-        return scheme_roots.damping_ratio(_viscous_scheme(scene), frequency * scene.time.step)
-    t = scene.time
-    if t.scheme != "newmark":
-        return Stepping.of(scene).damping_ratio(frequency * t.step)
-    return float(spectral.damping_ratio(frequency * t.step, t.alpha, t.delta, t.discount))
-
-
-def _viscous_scheme(scene: Scene) -> Scheme:
-    """Return the scheme of a scene with its damping tables."""
-    t = scene.time
-    tables = scene.damping
-    return Scheme(t.alpha, t.delta, t.discount, t.step, mass_damping=tables.mass, stiffness_damping=tables.stiffness)
-
-
 def mode_names(modes: Sequence[Mode]) -> list[str]:
     """Name modes: the first axial one, the contact mode (see `runs.modes.contact_index`), the others by number."""
     names = [f"mode {i + 1}" for i in range(len(modes))]
@@ -106,7 +89,6 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
     """Return the damping of a mode of the given frequency [rad/s] under the scheme of a scene."""
     t = scene.time
     omega = frequency * t.step
-    gg = t.discount
     if t.scheme != "newmark":
         stepping = Stepping.of(scene)
         numerical = stepping.damping_ratio(omega)
@@ -115,15 +97,20 @@ def mode_damping(scene: Scene, name: str, frequency: float) -> ModeDamping:
         radius = stepping.spectral_radius(omega)
         elongation = stepping.period_error(omega)
     else:
-        numerical = float(spectral.damping_ratio(omega, t.alpha, t.delta, gg))
+        numbers = (omega, t.alpha, t.delta, t.discount)
+        numerical = float(spectral.damping_ratio(*numbers))
         algorithmic = float(spectral.damping_ratio(omega, t.alpha, t.delta))
-        roots = spectral.eigenvalues(omega, t.alpha, t.delta, gg)
-        radius = float(spectral.spectral_radius(omega, t.alpha, t.delta, gg))
-        elongation = float(spectral.period_elongation(omega, t.alpha, t.delta, gg))
+        roots = spectral.eigenvalues(*numbers)
+        radius = float(spectral.spectral_radius(*numbers))
+        elongation = float(spectral.period_elongation(*numbers))
     total = numerical
-    if scene.damping.present:
-        total = damping_ratio(scene, frequency)
-        roots = np.array(scheme_roots.eigenvalues(_viscous_scheme(scene), omega))
+    tables = scene.damping
+    if tables.present:
+        viscous = Scheme(
+            t.alpha, t.delta, t.discount, t.step, mass_damping=tables.mass, stiffness_damping=tables.stiffness
+        )
+        total = scheme_roots.damping_ratio(viscous, omega)
+        roots = np.array(scheme_roots.eigenvalues(viscous, omega))
         radius = float(np.max(np.abs(roots)))
         elongation = _elongation(omega, roots)
     return ModeDamping(
@@ -154,23 +141,18 @@ def _elongation(omega: float, roots: ComplexArray) -> float:
     return omega / math.sqrt(abs(np.prod(np.log(roots)))) - 1
 
 
-def single(scene: Scene) -> Scene:
-    """Return the scene, or refuse it where it still has a sweep or its motion is not linear.
+def dda_modes(scene: Scene) -> tuple[Mode, ...]:
+    """Return the modes of the DDA block that the load reaches, the first axial one first.
 
     Raises
     ------
     InputError
         One value must be picked for a swept field, or there are no modes.
     """
+    features.refuse_column(scene, "damping")
     features.refuse_sweep(scene)
     features.refuse_nonlinear(scene, "modes and damping ratios exist")
-    return scene
-
-
-def dda_modes(scene: Scene) -> tuple[Mode, ...]:
-    """Return the modes of the DDA block that the load reaches, the first axial one first."""
-    features.refuse_column(scene, "damping")
-    return checked("dda", single(scene)).modes(scene)
+    return checked("dda", scene).modes(scene)
 
 
 def checked(solver: str, scene: Scene) -> Solver:
@@ -197,11 +179,7 @@ def stable_step(scene: Scene) -> float:
     InputError
         DDA refuses the scene, or its model does not fit into memory.
     """
-    t = scene.time
-    if t.scheme == "newmark":
-        critical = spectral.critical_omega(t.alpha, t.delta, t.discount)
-    else:
-        critical = Stepping.of(scene).critical_omega
+    critical = Stepping.of(scene).critical_omega
     return critical if math.isinf(critical) else critical / highest_frequency(scene)
 
 
@@ -243,25 +221,34 @@ def damping(scene: Scene, references: bool = False) -> Damping:
     """
     dda = dda_modes(scene)
     modes = [mode_damping(scene, name, mode.frequency) for name, mode in zip(mode_names(dda), dda, strict=True)]
-    gg = scene.time.discount
-    rate = -math.log(gg) / scene.time.step + 0.0 if gg > 0 else None
+    t = scene.time
     reference_modes = {}
     sampled = None
     if references:
         first_modes = {name: first_mode(scene, name) for name in ("fem", "bar")}
         reference_modes = {name: values for name, values in first_modes.items() if values}
         sampled = alias(scene)
-    return Damping(
-        scene.name, scene.time.step, gg, rate, tuple(modes), reference_modes, sentence(scene, modes), sampled
-    )
+    rate = rate_of(t.discount, t.step)
+    text = say("modes", step=t.step, first=modes[0], runs=runs(modes[0]))
+    text += "".join(say("modes, contact", runs=runs(mode)) for mode in modes if mode.name == CONTACT)
+    return Damping(scene.name, t.step, t.discount, rate, tuple(modes), reference_modes, f"{text}.", sampled)
+
+
+def rate_of(gg: float, step: float) -> float | None:
+    """Return the rate c of gg = exp(-c dt) [1/s]; None where the discount takes all."""
+    return -math.log(gg) / step + 0.0 if gg > 0 else None
+
+
+def truth_of(scene: Scene) -> str | None:
+    """Return the exact solution that takes a scene, None where none does."""
+    return next((name for name in by_role(Role.TRUTH) if not get_solver(name).refusal(scene)), None)
 
 
 def alias(scene: Scene) -> float | None:
     """Return what samples show of the continuum's first mode [rad/s]; None below pi / dt or without a solution."""
-    for name in by_role(Role.TRUTH):
-        with contextlib.suppress(NotReported):
-            if not get_solver(name).refusal(scene):
-                return checked(name, scene).modes(scene)[0].alias(scene.time.step)
+    name = truth_of(scene)
+    with contextlib.suppress(NotReported):
+        return checked(name, scene).modes(scene)[0].alias(scene.time.step) if name else None
     return None
 
 
@@ -277,42 +264,29 @@ def first_mode(scene: Scene, solver: str) -> dict[str, float | None]:
 # ---- sentences ----------------------------------------------------------------------------------------------------
 
 
-def sentence(scene: Scene, modes: Sequence[ModeDamping]) -> str:
-    """Return one sentence on the damping that a scene has."""
-    first = modes[0]
-    text = f"At dt = {scene.time.step:g} s the first axial mode ({first.frequency:.4g} rad/s) {runs(first)}"
-    for mode in modes:
-        if mode.name == CONTACT:
-            text += f"; the contact mode {runs(mode)}"
-    return f"{text}."
-
-
 def runs(mode: ModeDamping) -> str:
     """Say in words how a mode is damped."""
-    keeps = f"keeps {share_text(mode.spectral_radius)} of its amplitude per step"
     if mode.spectral_radius > 1 + 1e-12:
-        return f"grows by a factor of {mode.spectral_radius:.4g} per step"
-    if mode.flips:
-        return f"flips sign every step and {keeps} (w dt = {mode.omega_dt:.3g})"
-    if mode.damping is None:
-        return f"has no damping ratio (a root is not positive) and {keeps}"
-    if mode.damping < 5e-16:
-        return "is not damped"
-    over = "is overdamped at" if mode.damping >= 1 else "is damped at"
-    return f"{over} {share_text(mode.damping)} of critical, {parts(mode)}"
+        kind = "grows"
+    elif mode.flips:
+        kind = "flips"
+    elif mode.damping is None:
+        kind = "no ratio"
+    elif mode.damping < 5e-16:
+        kind = "undamped"
+    else:
+        return say("overdamped" if mode.damping >= 1 else "damped", parts=parts(mode), damping=mode.damping)
+    return say(kind, mode)
 
 
 def parts(mode: ModeDamping) -> str:
-    """Say which part of the damping is algorithmic and which is kinetic."""
-    if mode.algorithmic is None or mode.kinetic is None or mode.viscous is None or mode.damping is None:
+    """Say which part of the damping is algorithmic, which is kinetic, and which is of damping tables."""
+    shares = {name: getattr(mode, name) for name in ("algorithmic", "kinetic", "viscous")}
+    if mode.damping is None or None in shares.values():
         return "kinetic and algorithmic"
-    if mode.viscous:
-        shares = (("algorithmic", mode.algorithmic), ("kinetic", mode.kinetic), ("viscous", mode.viscous))
-        texts = [f"{share_text(value)} {name}" for name, value in shares if abs(value) > 1e-9 * mode.damping]
-        return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"
-    small = 1e-9 * mode.damping
-    if abs(mode.kinetic) <= small:
-        return "all of it algorithmic"
-    if abs(mode.algorithmic) <= small:
-        return "all of it kinetic"
-    return f"{share_text(mode.algorithmic)} algorithmic and {share_text(mode.kinetic)} kinetic"
+    least = 1e-9 * mode.damping
+    there = [name for name, share in shares.items() if abs(share) > least]
+    if len(there) == 1 and not mode.viscous:
+        return f"all of it {there[0]}"
+    texts = [say("share", share=shares[name], name=name) for name in there]
+    return " and ".join(filter(None, [", ".join(texts[:-1]), texts[-1]]))

@@ -9,8 +9,8 @@ solver's own model of these blocks, whose glue, joints and contact springs may b
 
 from __future__ import annotations
 
+import functools
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,10 +20,9 @@ from validation.advice.limits import Limit
 from validation.advice.plain import PlainAnswer
 from validation.advice.response import check_scene
 from validation.advice.spectra import highest_frequency
-from validation.errors import InputError
+from validation.advice.words import say
 from validation.models.column.tables import NEAR
 from validation.runs.history import ArrayPair, Complex
-from validation.runs.numbers import share_text
 from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.theory.edges import edge
@@ -67,8 +66,8 @@ class WaveAdvice(PlainAnswer):
     blocks: tuple[int, ...]  # advised number for each layer, empty where none is enough
     limits_height: str
     limits_step: str
-    sentence: str  # what the present ones do
-    advice: str  # what is advised, or why nothing is
+    sentence: str = ""  # what the present ones do
+    advice: str = ""  # what is advised, or why nothing is
 
 
 @dataclass(frozen=True)
@@ -98,9 +97,10 @@ class _WavePath:
         return -np.expm1(-self.times * decay), self.times * phase / (2 * math.pi)
 
     def passage(self, stepping: Stepping) -> Passage:
-        loss, delay = self.passed(stepping.squared_frequency([self.omega]))
-        # The damping ratio xi = -Im W / |W| of a vibration that a load keeps up, at a frequency in Hz.
-        W = np.sqrt(stepping.squared_frequency(2 * np.pi * np.asarray(self.frequency, float)))
+        w2 = stepping.squared_frequency([self.omega])
+        loss, delay = self.passed(w2)
+        # The damping ratio xi = -Im W / |W| of a vibration that a load keeps up.
+        W = np.sqrt(w2[0])
         values = (loss[0], delay[0], float(-W.imag / np.abs(W)))
         rounded = (0.0 if abs(value) < ROUNDING else float(value) for value in values)
         return Passage(stepping.step, stepping.gg, tuple(layer.height for layer in self.layers), *rounded)
@@ -145,7 +145,11 @@ def advise_wave(
     for limit, value in zip(LIMITS, (frequency, wavelengths, loss, phase_error), strict=True):
         limit.check(value)
     check_scene(scene)
-    _check_sampled(frequency, scene.time.step)
+    # Beyond half the sampling rate the steps see an alias, a lower frequency.
+    step = scene.time.step
+    beyond = say("alias of a wave", limit=0.5 / step, step=step)
+    cure = "take a lower frequency or a smaller step"
+    Limit("--fmax", beyond, below=0.5 / step * (1 + 2e-12), advice=cure).check(frequency)
     features.refuse_damping(scene, "advise")
     layers = AdviceHooks.of(scene).layers(scene)
     path = _WavePath(layers, frequency, 1.0)
@@ -161,21 +165,20 @@ def advise_wave(
         if largest.step is not None:
             advised = cut.passage(Stepping.of(scene).at(largest.step))
             blocks = tuple(layer.blocks for layer in cut.layers)
-    return WaveAdvice(
-        scene.name,
-        frequency,
-        loss,
-        phase_error,
-        path.times * sum(layer.thickness for layer in layers),
-        path.wavelengths,
-        present,
-        advised,
-        blocks,
-        limits_height,
-        largest.limit,
-        _sentence(scene, path, present),
-        _advised(scene, advised, limits_height, largest),
+    advice = WaveAdvice(
+        scene=scene.name,
+        frequency=frequency,
+        loss=loss,
+        phase_error=phase_error,
+        distance=path.times * sum(layer.thickness for layer in layers),
+        wavelengths=path.wavelengths,
+        present=present,
+        advised=advised,
+        blocks=blocks,
+        limits_height=limits_height,
+        limits_step=largest.limit,
     )
+    return replace(advice, sentence=_sentence(scene, advice), advice=_advised(scene, advice, largest))
 
 
 def _cut(path: _WavePath, allowed: float) -> tuple[_WavePath | None, str]:
@@ -224,11 +227,21 @@ def _fewest(path: _WavePath, allowed: float) -> int | None:
 
 
 def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) -> _LargestStep:
-    """Return the largest step with which the wave arrives, and what limits it."""
-    is_stable = _stability(scene, path)
+    """Return the largest step with which the wave arrives, and what limits it.
+
+    Stable is what DDA's solver takes on the advised blocks, with glue, joints and springs. A discount that keeps its
+    rate changes with the step, and with it the critical w dt of the scheme.
+    """
+    scheme = Stepping.of(scene)
+    blocks = [layer.blocks for layer in path.layers]
+    highest = functools.cache(lambda: highest_frequency(AdviceHooks.of(scene).cut(scene, blocks)))
+
+    def is_stable(step: float) -> bool:
+        critical = scheme.at(step).critical_omega
+        return math.isinf(critical) or step * highest() <= critical
 
     def passed(step: float) -> tuple[float, float]:
-        lost, delay = path.passed(Stepping.of(scene).at(step).squared_frequency([path.omega]))
+        lost, delay = path.passed(scheme.at(step).squared_frequency([path.omega]))
         return float(lost[0]), float(abs(delay[0]))
 
     def arrives(step: float) -> bool:
@@ -257,38 +270,7 @@ def _largest_step(scene: Scene, path: _WavePath, loss: float, allowed: float) ->
     return _LargestStep(step, limit)
 
 
-def _stability(scene: Scene, path: _WavePath) -> Callable[[float], bool]:
-    """Return whether a step is stable on the advised blocks, as DDA's solver has them with glue, joints and springs.
-
-    A discount that keeps its rate changes with the step, and with it the critical w dt of the scheme.
-    """
-    scheme = Stepping.of(scene)
-    # without a limit at any discount: Newmark's with 2 alpha >= delta >= 1/2, and every other implicit scheme
-    is_newmark = scheme.scheme == "newmark"
-    if 2 * scheme.alpha >= scheme.delta >= 0.5 if is_newmark else scheme.scheme != "leapfrog":
-        return lambda step: True
-    highest = highest_frequency(AdviceHooks.of(scene).cut(scene, [layer.blocks for layer in path.layers]))
-
-    def is_stable(step: float) -> bool:
-        return step * highest <= scheme.at(step).critical_omega
-
-    return is_stable
-
-
-def _check_sampled(frequency: float, step: float) -> None:
-    """Refuse a frequency that a time step samples less than twice a period: the steps see its alias, a lower one."""
-    limit = 0.5 / step
-    if frequency > limit * (1 + 1e-12):
-        raise InputError(
-            f"must be at most {limit:.6g} Hz, 1 / (2 dt) of the time step {step:g} s, "
-            "beyond which the steps see an alias",
-            field="--fmax",
-            value=f"{frequency:g}",
-            advice="take a lower frequency or a smaller step",
-        )
-
-
-def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:
+def _sentence(scene: Scene, advice: WaveAdvice) -> str:
     """Say what the present blocks and step do to the wave."""
     kinetic, algorithmic = Stepping.of(scene).rayleigh()
     kind = "algorithmic and kinetic"
@@ -296,36 +278,23 @@ def _sentence(scene: Scene, path: _WavePath, present: Passage) -> str:
         kind = "algorithmic"
     elif algorithmic == 0:
         kind = "kinetic"
-    distance = path.times * sum(layer.thickness for layer in path.layers)
-    late = "late" if present.delay >= 0 else "early"
-    damping = f"has a steady ratio of {share_text(present.damping)}, {kind}," if present.damping else "damps nothing"
-    return (
-        f"Your dt = {present.step:g} s {damping} at {path.frequency:g} Hz: "
-        f"{share_text(1 - present.loss)} of a wave arrives after {distance:.4g} m, {path.wavelengths:.3g} wavelengths, "
-        f"{abs(present.delay):.3g} periods {late}."
-    )
+    damps = say("steady", advice.present, kind=kind) if advice.present.damping else "damps nothing"
+    return say("present wave", advice, damps=damps, arrives=1 - advice.present.loss, late=_late(advice.present))
 
 
-def _advised(scene: Scene, advised: Passage | None, height: str, largest: _LargestStep) -> str:
+def _advised(scene: Scene, advice: WaveAdvice, largest: _LargestStep) -> str:
     """Say what is advised and what limits it, or why nothing is."""
-    if advised is not None:
-        heights = ", ".join(f"{h:.4g}" for h in advised.heights)
-        late = "late" if advised.delay >= 0 else "early"
-        return (
-            f"Blocks of {heights} m and dt = {advised.step:.4g} s lose {share_text(advised.loss)} of it and bring it "
-            f"{abs(advised.delay):.3g} periods {late}; "
-            f"the blocks are limited by the {height}, the step by the {largest.limit}."
-        )
-    if height == "glue":
-        return "No block height does: the glue between them is too soft for the phase error; raise block.glue_ratio."
-    unconditional = "choose 2 alpha >= delta >= 1/2, which is stable at every step"
+    if advice.advised is not None:
+        heights = ", ".join(f"{h:.4g}" for h in advice.advised.heights)
+        return say("advised wave", advice, heights=heights, late=_late(advice.advised))
+    if advice.limits_height == "glue":
+        return say("glue too soft")
     if largest.least_loss_at is None:
-        return f"No time step does: none above a millionth of a period is stable; {unconditional}."
-    gg = "gg_rate" if scene.time.gg_rate is not None else "gg"
-    cures = {
-        "gg": f"{gg} takes the rest, choose it nearer {0 if gg == 'gg_rate' else 1}",
-        "stability": f"larger steps are unstable, {unconditional}",
-        "scheme": "choose another scheme",
-    }
-    best = f"{share_text(largest.least_loss)} is lost, at dt = {largest.least_loss_at:.3g} s"
-    return f"No time step does: at best {best}; {cures[largest.limit]}."
+        return say("no stable step")
+    gg = "rate takes the rest" if scene.time.gg_rate is not None else "gg takes the rest"
+    cures = {"gg": gg, "stability": "larger steps unstable", "scheme": "another scheme"}
+    return say("no step", largest, cure=say(cures[largest.limit]))
+
+
+def _late(passage: Passage) -> str:
+    return f"{abs(passage.delay):.3g} periods {'late' if passage.delay >= 0 else 'early'}"

@@ -6,12 +6,13 @@ import itertools
 import math
 import shlex
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from validation.cli.app import JsonOption, SceneArgument, SetOption, _progress, one_case, parts
-from validation.cli.printing.output import broken, columns, echo_answer
+from validation.cli.printing.output import columns, echo_answer
 from validation.runs.numbers import number_text, share_text
 
 if TYPE_CHECKING:
@@ -55,29 +56,15 @@ def everything(
     Of a column whose contacts open or slip it says which solves to allow, and the step: advise columns-weight; of
     blocks that move in the plane springs and step of their contacts: advise rigid-impact
     """
-    from validation.advice.goals import GOALS, check
-    from validation.advice.pages import PageHooks, Question
+    from validation.advice.goals import GOALS, Question
+    from validation.advice.pages import PageHooks
 
-    check(goal, error, frequency)
+    goals = GOALS if goal is None else (goal,)
+    question = Question(_words(scene, assignments), error, goals, frequency, keep_springs)
     case = one_case(scene, assignments)
     with _progress("advise") as progress:
-        # The options that a page on all goals was asked for with, as one on a goal takes them.
-        options = [] if error == ERROR else ["--error", f"{error:g}"]
-        if frequency is not None:
-            options += ["--frequency", f"{frequency:g}"]
-        if keep_springs:
-            options.append("--keep-springs")
-        question = Question(
-            source=_words(scene, assignments),
-            error=error,
-            stated=" ".join(["", *options]),
-            goals=GOALS if goal is None else (goal,),
-            frequency=frequency,
-            keep_springs=keep_springs,
-            progress=progress,
-        )
-        data, text = PageHooks.of(case).page(case, question)
-    echo_answer(data, map(broken, text), as_json)
+        data, text = PageHooks.of(case).page(case, replace(question, progress=progress))
+    echo_answer(data, text, as_json)
 
 
 def _words(scene: str, assignments: list[str] | None) -> str:
@@ -121,7 +108,7 @@ def step(
     case = one_case(scene, assignments)
     with _progress("advise"):
         advice = solve_for_damping(case, target, solve_for)
-    lines = [broken(advice.sentence)]
+    lines = [advice.sentence]
     for solution in advice.solutions:
         lines.append("\n" + ", ".join(f"{key} = {value:.9g}" for key, value in solution.settings.items()))
         lines.append(columns([(f"  {key}", value) for key, value in _facts(solution)]))
@@ -161,7 +148,7 @@ def schemes(
     notes = [f"{offer.name}: {'; '.join(offer.fears)}" for offer in offers if offer.fears]
     notes += [f"{name}: has {_percent(most)} there at most, at any step" for name, most in advice.unreachable.items()]
     legend = "\nsolves: a second, over those of the scene; rebound: the greatest, 1 returns the speed"
-    lines = [f"{broken(advice.sentence)}\n", columns(rows), legend, *map(broken, notes)]
+    lines = [f"{advice.sentence}\n", columns(rows), legend, *notes]
     echo_answer(advice, lines, as_json)
 
 
@@ -194,44 +181,41 @@ def wave(
             heights = ", ".join(f"{height:.5g}" for height in passage.heights)
             shares = share_text(passage.loss, 4), f"{passage.delay:+.4g}", _percent(passage.damping)
             rows.append((name, heights, f"{passage.step:.6g}", *shares))
-    lines = [f"{broken(advice.sentence)}\n{broken(advice.advice)}\n", columns(rows)]
+    lines = [f"{advice.sentence}\n{advice.advice}\n", columns(rows)]
     echo_answer(advice, lines, as_json)
 
 
 def _damping_lines(analysis: Damping) -> Iterator[str]:
     """Yield the damping of every mode, and the first modes of the references."""
-    yield f"{broken(analysis.sentence)}\n\ngg = {analysis.gg:.6g} per step{_rate(analysis.gg_rate)}"
+    from validation.advice.words import say
+
+    yield f"{analysis.sentence}\n\ngg = {analysis.gg:.6g} per step{_rate(analysis.gg_rate)}"
     has_tables = any(mode.viscous for mode in analysis.modes)
     shares = ("algorithmic", "kinetic", "viscous") if has_tables else ("algorithmic", "kinetic")
     rows = [("mode", "w [rad/s]", "w dt", "xi [%]", *shares, "|lambda|", "w/w' - 1")]
     for mode in analysis.modes:
         ratios = [number_text(getattr(mode, part), factor=100) for part in ("damping", *shares)]
-        elongation = number_text(mode.period_elongation, 3)
-        radius = f"{mode.spectral_radius:.6g}"
-        rows.append((mode.name, f"{mode.frequency:.6g}", f"{mode.omega_dt:.4g}", *ratios, radius, elongation))
+        numbers = (f"{mode.frequency:.6g}", f"{mode.omega_dt:.4g}", *ratios, f"{mode.spectral_radius:.6g}")
+        rows.append((mode.name, *numbers, number_text(mode.period_elongation, 3)))
     for name, values in analysis.references.items():
         ratio = number_text(values["damping"], factor=100)
         rows.append((f"{name}, first", f"{values['frequency']:.6g}", "", ratio, *[""] * (len(shares) + 2)))
     yield columns(rows)
-    if analysis.alias is not None:
-        first = analysis.references["bar"]["frequency"] or 0.0
-        alias_note = (
-            f"alias: the continuum's first mode, {first:.6g} rad/s, lies beyond pi / dt = "
-            f"{math.pi / analysis.step:.6g} rad/s; samples every dt show {analysis.alias:.6g} rad/s instead"
-        )
-        yield f"\n{broken(alias_note)}"
+    exact = analysis.references.get("bar")
+    if analysis.alias is not None and exact:
+        yield say("alias", analysis, first=exact["frequency"], limit=math.pi / analysis.step)
 
 
 def _facts(solution: Solution) -> Iterator[tuple[str, str]]:
     from validation.advice.advice import NO_STATIC
     from validation.advice.spectra import runs
+    from validation.advice.words import say
 
     settles = f"never (from the {solution.settling_from})"
     if solution.settling_from == NO_STATIC:
         settles = f"nowhere: the loads have {NO_STATIC}"
     elif solution.settling_steps is not None:
-        steps = f"{solution.settling_steps} steps = {solution.settling_seconds:.4g} s"
-        settles = f"{steps} (from the {solution.settling_from})"
+        settles = say("settles from", solution)
     yield "damping ratio", share_text(solution.damping, 6)
     yield "discount", f"gg = {solution.gg:.6g} per step{_rate(solution.gg_rate)}"
     yield "displacement settles", settles

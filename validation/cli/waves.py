@@ -113,31 +113,29 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
     limit = 0.5 / case.time.step * (1 + 1e-12)
     heads = "", "peak [Hz]", f"displacement [m{unit}]", "peak [Hz]", f"contact pressure [Pa{unit}]"
     rows: list[tuple[str, ...]] = [heads]
-    has_unbounded = False
-    left_out = 0
+    listed: list[list[Peak]] = []
     for name, answer in answers.items():
-        label = name if name == EXACT else "as stepped"
         if name != EXACT and all(np.array_equal(answer.columns[c], exact_response.columns[c]) for c in answer.columns):
             continue  # of a solver that takes no steps
         highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
-        peak_cells: list[list[tuple[str, str]]] = []
-        for column in (DISPLACEMENT, PRESSURE):
-            visible = [peak for peak in answer.peaks(column) if peak.frequency <= highest]
-            left_out = max(left_out, len(visible) - PEAKS)
-            peaks = visible[:PEAKS]
-            has_unbounded |= not all(peak.is_bounded for peak in peaks)
-            peak_cells.append([(f"{peak.frequency:.6g}", _amplitude(peak)) for peak in peaks])
-        for displacement, pressure in itertools.zip_longest(*peak_cells, fillvalue=("", "")):
-            rows.append((label, *displacement, *pressure))
+        both = [_up_to(highest, answer.peaks(column)) for column in (DISPLACEMENT, PRESSURE)]
+        listed += both
+        cells = [[(f"{peak.frequency:.6g}", _amplitude(peak)) for peak in peaks[:PEAKS]] for peaks in both]
+        for displacement, pressure in itertools.zip_longest(*cells, fillvalue=("", "")):
+            rows.append((name if name == EXACT else "as stepped", *displacement, *pressure))
     if len(rows) == 1:
         rows = [(f"no peak from {exact_response.frequency[0]:g} to {exact_response.frequency[-1]:g} Hz",)]
     echo(columns(rows))
-    if left_out > 0:
+    if any(len(peaks) > PEAKS for peaks in listed):
         echo(f"note: {PEAKS} peaks of each at most, unbounded ones before the highest others")
-    if has_unbounded:
+    if any(not peaks[0].is_bounded for peaks in listed if peaks):  # which come first
         echo("note: unbounded: no damping; the amplitude has no limit at this natural frequency")
     if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
+
+
+def _up_to(highest: float, peaks: list[Peak]) -> list[Peak]:
+    return [peak for peak in peaks if peak.frequency <= highest]
 
 
 def _amplitude(peak: Peak) -> str:

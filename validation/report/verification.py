@@ -15,10 +15,10 @@ from validation.report.blocks import Blocks, Heading, Listing, Paragraph, Table,
 from validation.report.chapters.gates import band_cell, value_cell
 from validation.report.chapters.text import some
 from validation.report.references import named
-from validation.report.texts import Texts
 from validation.runs.numbers import DASH, decimal, power, short, significant
 from validation.runs.records import VerdictRecord
 from validation.runs.row import Value
+from validation.runs.texts import Texts
 from validation.solvers.registry import is_solver
 from validation.suite.matrix import JUDGED, Phenomenon, phenomena
 

@@ -158,6 +158,7 @@ FORMS: Mapping[str, Callable[[float, int], str]] = {  # how a number is written 
     "power": lambda value, _: bounded(value, power(value)),
     "share": lambda value, digits: short(value, digits) if abs(value) > 1e-10 else "0",  # of what is rounding none
     "g": lambda value, _: f"{value:g}",
+    "per cent": share_text,  # in plain text
     "brief": lambda value, _: _brief(value),
     "signed": lambda value, _: _signed(value),
     "decade": lambda value, _: _decade(value),  # on an axis

@@ -51,7 +51,7 @@ def echo_answer(answer: PlainAnswer | dict[str, Any], lines: Iterable[str], as_j
         echo_json(plain(answer.as_dict() if isinstance(answer, PlainAnswer) else answer))
         return
     for line in lines:
-        echo(line)
+        echo(broken(line))
 
 
 def columns(lines: Sequence[Line]) -> str:
@@ -125,9 +125,15 @@ def width() -> int:
 
 
 def broken(text: str) -> str:
-    """Return a sentence in lines of the terminal; in one line where the output is none."""
+    """Return text with its long lines broken at the width of the terminal; as it is where the output is none."""
     columns = terminal_width()
-    return text if columns is None else "\n".join(wrap(text, columns, break_long_words=False, break_on_hyphens=False))
+    if columns is None:
+        return text
+    lines = []
+    for line in text.split("\n"):
+        is_long = len(line) > columns
+        lines += wrap(line, columns, break_long_words=False, break_on_hyphens=False) if is_long else [line]
+    return "\n".join(lines)
 
 
 def terminal_width() -> int | None:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from validation.advice.goals import Question
 from validation.advice.overview import lines, overview
-from validation.advice.pages import Page, PageHooks, Question
+from validation.advice.pages import Page, PageHooks
 from validation.scenes.scene import Scene
 
 
@@ -12,7 +13,5 @@ class HOOKS(PageHooks):
 
     def page(self, scene: Scene, question: Question) -> Page:
         """Return facts on the present settings, and recommendations as they were run."""
-        answer = overview(
-            scene, question.goals, question.error, question.frequency, question.progress, question.keep_springs
-        )
-        return answer.as_dict(), lines(scene, question.source, answer, question.stated)
+        answer = overview(scene, question)
+        return answer.as_dict(), lines(scene, question, answer)

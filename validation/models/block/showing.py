@@ -15,7 +15,7 @@ from validation.errors import InputError
 from validation.report.chapters.text import range_of
 from validation.report.scene.drawing import BESIDE, body_height, body_width, box_rows
 from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
-from validation.report.texts import Texts
+from validation.runs.texts import Texts
 from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
 from validation.solvers import opened

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 
 from validation.advice.alarm import Alarm, first_row
-from validation.advice.columns import ColumnLimits, column_alarms, limits
-from validation.advice.hooks import AdviceHooks, Layer, Motion
+from validation.advice.columns import column_alarms, limits
+from validation.advice.hooks import AdviceHooks, ColumnLimits, Layer, Motion
 from validation.models.column.tables import ColumnSection
 from validation.runs.row import Row
 from validation.scenes.scene import Scene

@@ -8,16 +8,17 @@ from typing import Any
 
 from validation.advice.columns import advised, column_alarms, limits, rest
 from validation.advice.contact_page import elements, own
-from validation.advice.goals import AVERAGE, Candidate, Recommendation, difference, recommendation
+from validation.advice.goals import AVERAGE, Candidate, Question, Recommendation, difference, recommendation
 from validation.advice.hooks import AdviceHooks
-from validation.advice.pages import Page, PageHooks, Question, page_of_cut
+from validation.advice.pages import Page, PageHooks, page_of_cut
+from validation.advice.spectra import truth_of
 from validation.advice.wave_advice import advise_wave
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.models.column.tables import ColumnSection
 from validation.runs.history import DISPLACEMENT
 from validation.scenes.scene import Scene
-from validation.solvers.contract import Role
-from validation.solvers.registry import by_role, get_solver, solve
+from validation.solvers.registry import solve
 from validation.theory import columns
 
 MOST_STEPS = 4000  # of a run that is compared
@@ -64,15 +65,14 @@ def recommended_cut(scene: Scene, error: float, frequency: float | None = None) 
     settings["column.layer"] = [layer.model_dump(exclude_defaults=True) for layer in layers]
     steps = min(MOST_STEPS, math.ceil(scene.time.duration / advice.advised.step))
     case = scene.with_values(settings | {"time.steps": steps, "run.columns": [DISPLACEMENT]})
-    truths = [truth for truth in by_role(Role.TRUTH) if get_solver(truth).refusal(case) is None]
-    name = truths[0] if truths else elements()
-    exact = case if truths else case.with_values(AVERAGE)
+    truth = truth_of(case)
+    name = truth or elements()
     history = solve(case, own()).history
-    reference = solve(exact, name).history
+    reference = solve(case if truth else case.with_values(AVERAGE), name).history
     if history is None or reference is None:
         raise InputError("has no motion to compare with", source=scene.name)
     displacement_error = difference(history, reference, DISPLACEMENT)
-    condition = f"a wave of {frequency:.4g} Hz over {advice.distance:.4g} m, judged under the scene's own input"
-    candidate = Candidate(settings, steps, displacement_error, None)
+    condition = say("column condition", advice)
+    candidate = Candidate(settings, steps, displacement_error)
     offer = recommendation(scene, "wave", condition, candidate, error, (name, 0.0), steps * advice.advised.step)
     return advice.sentence, offer

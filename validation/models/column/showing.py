@@ -12,8 +12,8 @@ from validation.errors import InputError
 from validation.models.column.tables import ColumnSection
 from validation.report.scene.drawing import INSIDE
 from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
-from validation.report.texts import Texts
 from validation.runs.numbers import short
+from validation.runs.texts import Texts
 from validation.scenes.keys import described, stated
 from validation.scenes.scene import Scene
 from validation.theory import columns

@@ -26,11 +26,12 @@ import numpy as np
 from validation.advice.across import rebound_of
 from validation.advice.friction import left_of_a_distance
 from validation.advice.plain import PlainAnswer, in_columns
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.models.plane.assembly import OVERLAP
 from validation.models.plane.blocks import PlacedBlock, second_moments
 from validation.models.plane.tables import OWN_STIFFNESS, PlaneSection
-from validation.runs.numbers import share_text, significant
+from validation.runs.numbers import significant
 from validation.scenes.scene import Scene
 from validation.theory.edges import edge
 from validation.theory.statics import elasticity, plane_moduli
@@ -180,30 +181,23 @@ def longest_omega(stepping: Stepping, error: float) -> float | None:
 def lines(scene: Scene, source: str, advice: MovingAdvice) -> Iterator[str]:
     """Yield the lines of one page of text; `source` has the words of the scene on a command line."""
     t = scene.time
-    stepping = Stepping.of(scene)
-    discounted = f"{stepping.numbers}, gg = {t.discount:.6g}"
-    yield f"{scene.name}: blocks that move: {advice.blocks}, dt = {t.step:g} s, {discounted}"
+    yield say("moving blocks", advice, time=t, stepping=Stepping.of(scene))
     yield ""
     yield "What these settings do"
     stiffness = " to ".join(f"{p:.4g}" for p in dict.fromkeys(advice.stiffness))
     law = scene.table(PlaneSection).contact
-    of_dda = ", which dda takes for rigid contact" if law is not None and math.isinf(law.stiffness) else ""
-    facts = [("springs", f"p = {stiffness} N/m{of_dda}")]
-    if advice.sinking:
-        share = f"{share_text(advice.sinking_share)} of the thinnest block"
-        facts.append(("weight", f"of all that moves: one spring gives way by W / p = {advice.sinking:.3g} m, {share}"))
-    if advice.landing:
-        share = f"{share_text(advice.landing_share)} of its thickness"
-        facts.append(("landing", f"at t = 0: on one spring by v sqrt(m / p) = {advice.landing:.3g} m, {share}"))
-    corner = f"a corner of {' on '.join(advice.fastest)} alone"
-    facts.append(("contact", f"{corner}: w = {advice.frequency:.4g} rad/s, w dt = {advice.omega_dt:.3g}"))
-    least, most = advice.rebound
-    facts.append(("rebound", f"a landing on it gives back {least:.3g} to {most:.3g} of its speed, by where in a step"))
-    if t.discount < 1:
-        facts.append(("discount", f"gg = {t.discount:.6g} acts per step; {left_of_a_distance(t.discount, t.step)}"))
-    yield in_columns([(f"  {name}", sentence) for name, sentence in facts])
+    is_rigid = law is not None and math.isinf(law.stiffness)
+    words = {"stiffness": stiffness, "corner": " on ".join(advice.fastest)}
+    facts = {
+        "springs": say("springs of dda" if is_rigid else "springs of contacts", advice, **words),
+        "weight": say("weight", advice) if advice.sinking else "",
+        "landing": say("landing", advice) if advice.landing else "",
+        "contact": say("fastest contact", advice, **words),
+        "rebound": say("rebound", advice),
+        "discount": say("discount", t, left=left_of_a_distance(t.discount, t.step)) if t.discount < 1 else "",
+    }
+    yield in_columns([(f"  {name}", sentence) for name, sentence in facts.items() if sentence])
     yield ""
-    yield f"What to take for {share_text(OVERLAP)} of a block's thickness and a rebound to {share_text(advice.error)}"
+    yield say("what to take of contacts", advice, thickness=OVERLAP)
     yield in_columns([(f"  {key}", f"{value:.{DIGITS}g}") for key, value in advice.settings.items()])
-    sets = " ".join(f"--set {key}={value:g}" for key, value in advice.settings.items())
-    yield f"next: dda-validate run {source} {sets}"
+    yield say("next run", source, " ".join(f"--set {key}={value:g}" for key, value in advice.settings.items()))

@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 
 from validation.advice.contact_page import elements, own
-from validation.advice.goals import Candidate, Recommendation, recommendation
-from validation.advice.pages import Page, PageHooks, Question, page_of_cut
+from validation.advice.goals import Candidate, Question, Recommendation, recommendation
+from validation.advice.pages import Page, PageHooks, page_of_cut
+from validation.advice.words import say
 from validation.errors import InputError
 from validation.models.plane.corner_springs import lines, moving_advice
 from validation.models.plane.tables import PlaneSection
@@ -53,14 +54,14 @@ def recommended_cut(scene: Scene, error: float) -> tuple[str, Recommendation]:
                 break
             settings = {"plane.subdivide": counts, "plane.pattern": pattern, "time.step": scene.time.step}
             displacement_error = abs(get_solver(own()).static(scene.with_values(settings))[DISPLACEMENT] / fine - 1)
-            tried.append(Candidate(settings, scene.time.steps, displacement_error, None))
+            tried.append(Candidate(settings, scene.time.steps, displacement_error))
             if displacement_error <= error:
                 break
         if tried[-1].error <= error:
             break
     candidate = min(tried, key=lambda candidate: candidate.error)
     cut = " x ".join(map(str, plane.subdivide))
-    sentence = f"Its {cut} {plane.pattern} are off by {100 * present:.3g} % of the displacement at rest."
-    condition = f"displacement at rest of {candidate.settings['plane.pattern']} on the glue of the scene"
+    sentence = say("present beam", present, cut=cut, pattern=plane.pattern)
+    condition = say("beam condition", candidate.settings["plane.pattern"])
     reference = ("static elements", abs(coarse / fine - 1))
     return sentence, recommendation(scene, "static", condition, candidate, error, reference, scene.time.duration)

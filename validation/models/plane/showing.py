@@ -15,8 +15,8 @@ from validation.models.plane.geometry import inside
 from validation.models.plane.tables import BODIES, PlaneSection, Segment
 from validation.report.scene.drawing import body_height, body_width, box_rows
 from validation.report.scene.hooks import Number, Numbers, Rows, ShowingHooks
-from validation.report.texts import Texts
 from validation.runs.numbers import short
+from validation.runs.texts import Texts
 from validation.scenes.keys import described, stated
 from validation.scenes.outline import area
 from validation.scenes.scene import Scene

@@ -25,9 +25,9 @@ from validation.report.chapters.queries import value_of_case
 from validation.report.chapters.text import cell
 from validation.report.figures import histories
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.texts import FILLED, Texts
 from validation.runs.numbers import FORMS, decimal
 from validation.runs.row import Metrics, Value
+from validation.runs.texts import FILLED, Texts
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ class Texts:
     def __init__(self, module: str | Path) -> None:
         self._data = table_beside(module)
 
-    def text(self, name: str, *places: Any, **values: Any) -> str:
+    def text(self, name: str, /, *places: Any, **values: Any) -> str:
         """Return a text with its values, ``{0}`` and ``{name}``."""
         text = self._data["text"][name]
         return FILLED.vformat(text, places, values) if places or values else text
