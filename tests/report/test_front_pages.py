@@ -1,9 +1,12 @@
 """The pages that are read first: every number in sentence, table and chart, from closed forms or from made rows."""
 
+import math
+
 import numpy as np
 import pytest
 from oracles.made_cases import kept_study, line_in, lines_of, made_case, made_group, made_row, rules_of
 
+from dda.scheme import spectral
 from validation.report.blocks import Table
 from validation.report.chapters.gates import verdict_line
 from validation.report.figures.curves import GREY, style_of
@@ -27,6 +30,18 @@ def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least():
         assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
     assert closed.steps_for(PAPER, [0.5]) == [None]  # 0.373 is the greatest
     assert closed.steps_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), [0.05]) == [None]
+
+
+def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step():
+    for ratio in (0.1, 1.0, 10.0, 100.0):
+        p, m = ratio * 1e9, 10_800.0
+        K, M = np.array([[2 * p, -2 * p], [-2 * p, 4e9 + 2 * p]]), np.diag([m, m / 3])
+        w = math.sqrt(min(np.linalg.eigvals(np.linalg.solve(M, K)).real))
+        for step in (1e-4, 2e-3, 5e-3):
+            root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
+            stepped = np.abs(np.log(root[np.abs(root) > 1e-9])).max() / step
+            scene = closed.timed(closed.stiffer(PAPER, ratio), step=step)
+            assert decisions.stepped_frequency(scene) == pytest.approx(stepped, rel=1e-9)
 
 
 @pytest.mark.parametrize(
