@@ -52,7 +52,7 @@ def misprinted(known, motion):
     return wrong
 
 
-LONG = {"A3", "A5", "A6", "A8", "S1", "S2", "S3"}  # whose motions take seconds
+LONG = {"A2", "A3", "A5", "A6", "A8", "S1", "S2", "S3"}  # whose motions take seconds
 
 
 @pytest.mark.parametrize("name", [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in COLUMNS])

@@ -44,7 +44,7 @@ KNOWN = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "values"), thinned(KNOWN, 2))
+@pytest.mark.parametrize(("problem", "switches", "values"), thinned(KNOWN, 3))
 def test_the_motion_is_that_computed_elsewhere(problem, switches, values):
     motion = solve(problem, max(values))
     known = [one.split() for one in switches.split(", ")]

@@ -92,7 +92,7 @@ def test_the_roots_of_a_mode_are_those_of_the_closed_forms(case, gg):
         assert damping_ratio(modal.roots(1e-2, scheme)[0]) == pytest.approx(leading, rel=1e-3)
 
 
-@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 6))
+@pytest.mark.parametrize(("name", "options"), thinned(EVERY, 9))
 def test_every_path_gives_the_stepped_history(name, options):
     """Without and with the savings in space and time, and the work that is counted."""
     explicit = name == "leapfrog"
