@@ -42,9 +42,7 @@ Parts = tuple[Any, ...]
 SHORT = 2_000  # steps from which a loop is run compiled where its code is at hand
 LONG = 20_000  # the same from which it is compiled and kept
 ANEW = 1_000_000  # the same from which it is compiled where code cannot be kept
-OFTEN = (
-    10  # times as many steps of all histories of a process: these take as long in plain Python as their code to come
-)
+OFTEN = 10  # times as many steps of all histories of a process pay: they have taken as long as their code takes
 INLINED = 100  # functions of a loop up to which calls of the upper ones are replaced by what they call: 89 of one that
 # turns, 126 of blocks in the plane, which compile a fifth longer with it and are no faster
 MESSAGE_DELAY = 2.0  # seconds of compiling before it is said
@@ -83,7 +81,7 @@ def run_loop(
         What does the same by whole arrays, and takes the place of plain Python on lists; without records.
     """
     with np.errstate(all="ignore"):
-        if paying_steps(loop, steps) >= SHORT:  # else nothing is looked for, nor made, in the user's cache
+        if paying_steps(loop, steps):
             converted = tuple(as_record(part) for part in records)
             arguments = (*converted, *(as_structure(part) for part in series), *(as_structure(part) for part in rows))
             machine_code = compiled(loop, arguments) if is_worthwhile(loop, steps, types_of(arguments)) else None
@@ -109,7 +107,7 @@ def called_often(function: Loop, records: Parts, steps: int) -> tuple[Loop, Part
     steps
         Steps of one block that take as long.
     """
-    if paying_steps(function, steps) < SHORT:
+    if not paying_steps(function, steps):
         return None
     converted = tuple(as_record(part) for part in records)
     machine_code = compiled(function, converted) if is_worthwhile(function, steps, types_of(converted)) else None
@@ -124,6 +122,9 @@ def types_of(arguments: Parts) -> Parts:
 def paying_steps(key: object, steps: int) -> int:
     """Count the steps of a history; return them, or those of the whole process over `OFTEN` where these are more.
 
+    None pay where they are fewer than `SHORT`, nor where numba is not installed: then nothing is made ready for
+    compiled code, nor looked for in the user's cache.
+
     Parameters
     ----------
     key
@@ -132,7 +133,8 @@ def paying_steps(key: object, steps: int) -> int:
         Zero where plain Python is asked for.
     """
     made[key] += steps
-    return max(steps, made[key] // OFTEN) if steps else 0
+    paying = max(steps, made[key] // OFTEN) if steps else 0
+    return paying if paying >= SHORT and numba_version() else 0
 
 
 def is_worthwhile(loop: Loop, steps: int, types: Parts) -> bool:
@@ -140,7 +142,7 @@ def is_worthwhile(loop: Loop, steps: int, types: Parts) -> bool:
     paying = paying_steps((loop, types), steps)
     if paying >= LONG:
         return paying >= ANEW or cache_directory() is not None
-    return (loop, types) in loops or (paying >= SHORT and is_kept(loop, types))
+    return (loop, types) in loops or (paying > 0 and is_kept(loop, types))
 
 
 def is_kept(loop: Loop, types: Parts) -> bool:
@@ -305,21 +307,27 @@ def compile_loop(numba: Any, loop: Loop, types: Parts, directory: Path | None) -
 def code_directory(functions: list[FunctionType], types: Parts) -> Path | None:
     """Return the directory in which the code of functions for these types is kept; None where it cannot be."""
     directory = cache_directory()
-    digest = _digest(tuple(sorted({function.__code__.co_filename for function in functions})))
-    if directory is None or digest is None:
+    if directory is None:
         return None
+    digest = _digest(tuple(sorted({function.__code__.co_filename for function in functions})))
     return directory / digest / hashlib.sha256(repr(types).encode()).hexdigest()[:16]
 
 
 @functools.cache
-def _digest(sources: tuple[str, ...]) -> str | None:
-    """Return what changes with sources, with numba and with Python; None without numba."""
+def numba_version() -> str | None:
+    """Return the version of numba; None where it is not installed."""
     from importlib.metadata import PackageNotFoundError, version  # fifty modules, which `import dda` does not load
 
     try:
-        digest = hashlib.sha256(f"{version('numba')} {sys.version}".encode())
+        return version("numba")
     except PackageNotFoundError:
         return None
+
+
+@functools.cache
+def _digest(sources: tuple[str, ...]) -> str:
+    """Return what changes with sources, with numba and with Python."""
+    digest = hashlib.sha256(f"{numba_version()} {sys.version}".encode())
     for name in sources:
         digest.update(Path(name).read_bytes())
     return digest.hexdigest()[:16]

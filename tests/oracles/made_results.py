@@ -1,7 +1,6 @@
 """Results made by hand, so that a test knows every number that a report should print, and what a figure shows."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -61,11 +60,9 @@ def core_results(directory):
                if row.scene in scenes and row.name != "damping" and rows.keys() >= {*row.needs}}  # fmt: skip
     finished = Finished(rows, results, recipes)
     derived = [{"scene": scene, "name": name, "metrics": finished.row(scene, name).metrics} for scene, name in recipes]
-    grids = SimpleNamespace(
-        geomspace=lambda low, high, count: np.geomspace(low, high, count // 4), isfinite=np.isfinite
-    )
     with pytest.MonkeyPatch.context() as patch:  # curves of fewer points, which take seconds
-        patch.setattr(decisions, "np", grids)
+        patch.setattr(decisions, "POINTS", 60)
+        patch.setattr(decisions, "FIRST_POINTS", 50)
         data = core.data()
     kept_study(results, kept, pairs, study="core", derived=derived, data=data)
     gates = [Gate(names[-1], ("dda", "bar"), "pressure.l2", 0, 1, "so", until=until) for until in (0.2, 0.02)]

@@ -122,7 +122,7 @@ class Driven(Solver):
         ([0.0, math.nan, 0.0], Outcome.NOT_A_NUMBER),
         ([0.0, math.inf, 0.0], Outcome.OVERFLOW),
         ([0.0, 0.0], Outcome.WRONG_SHAPE),
-        ([0.0, 1e15, 0.0], Outcome.UNBOUNDED),
+        ([0.0, -1e15, 0.0], Outcome.UNBOUNDED),
         ([0.0, -1.0, 0.0], Outcome.COMPLETED),
     ],
 )

@@ -68,16 +68,16 @@ def first_touches(first: MovingPolygon, second: MovingPolygon, until: float, tog
     return [touch for touch in touches if touch.time <= touches[0].time + together]
 
 
-def edge_axes(corners: Array, others: Array, corner: int, edge: int) -> tuple[Array, Array, Array]:
+def edge_axes(corners: Array, edge_corners: Array, corner: int, edge: int) -> tuple[Array, Array, Array]:
     """Return how far a corner is before an edge [m], where along it as a share, and the normals [rad], a time each.
 
     Parameters
     ----------
-    corners, others
-        Of the two polygons at the times, shape (times, corners, 2) [m].
+    corners, edge_corners
+        Of the polygons of the corner and of the edge at the times, shape (times, corners, 2) [m].
     """
-    start = others[:, edge]
-    along = others[:, (edge + 1) % others.shape[1]] - start
+    start = edge_corners[:, edge]
+    along = edge_corners[:, (edge + 1) % edge_corners.shape[1]] - start
     length = np.hypot(*along.T)
     to = corners[:, corner] - start
     gap = (along[:, 1] * to[:, 0] - along[:, 0] * to[:, 1]) / length

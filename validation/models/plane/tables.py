@@ -148,9 +148,9 @@ class PlaneSection(PlaneContents):
     @cached_property
     def assembly(self) -> Assembly:
         """Moving blocks with their names resolved, checked."""
-        found = assembly.assembled(self)
-        assembly.check(self, found)
-        return found
+        assembled = assembly.assembled(self)
+        assembly.check(self, assembled)
+        return assembled
 
     @property
     def rectangle(self) -> tuple[float, float] | None:

@@ -28,6 +28,8 @@ from validation.suite.bands import cases
 from validation.theory import spectra, statics
 
 PAPER = "figures-3-4"
+POINTS = 240  # of a curve
+FIRST_POINTS = 200  # of that of the paper's own block
 RATIOS = (1.0, 10.0, 100.0)  # p/E of the paper
 TARGETS = (0.01, 0.02, 0.05, 0.1, 0.2)  # damping ratios that a step is named for
 TARGET = 0.05  # the one of the rules
@@ -148,8 +150,8 @@ def curves() -> Mapping[str, Any]:
 
 def _over_steps() -> Iterator[Mapping[str, Any]]:
     """Yield the curves of three charts: of the paper's block, of its springs, of discounts."""
-    grid = np.geomspace(1e-5, 2e-2, 240)
-    yield _curve("first", "DDA", np.geomspace(5e-5, 2e-2, 200), paper())
+    grid = np.geomspace(1e-5, 2e-2, POINTS)
+    yield _curve("first", "DDA", np.geomspace(5e-5, 2e-2, FIRST_POINTS), paper())
     for ratio in RATIOS:
         yield _curve("step", f"p = {ratio:g}E", grid, closed.stiffer(closed.constant(paper()), ratio))
     for gg in DISCOUNTS[1:]:
@@ -164,7 +166,7 @@ def _curve(chart: str, name: str, steps: Array, scene: Scene) -> Mapping[str, An
 
 
 def _over_springs() -> Iterator[Mapping[str, Any]]:
-    ratios = np.geomspace(0.1, 1e5, 240)
+    ratios = np.geomspace(0.1, 1e5, POINTS)
     base = closed.constant(paper(), step=2e-3)
     scenes = [closed.stiffer(base, float(ratio)) for ratio in ratios]
     shares = [closed.penetration(scene) / abs(statics.static_displacement(scene)) for scene in scenes]
