@@ -148,3 +148,24 @@ def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(scene, tmp_path, m
     rows = {group.study.name: list(group.rows.values()) for group in ended}
     assert {row.outcome for row in rows["sweep"]} == {Outcome.COMPLETED}, [row.notes for row in rows["sweep"]]
     assert rows["large"][0].outcome is Outcome.REFUSED and "0.3 GB" in rows["large"][0].notes[-1]
+
+
+@pytest.mark.long
+@pytest.mark.filterwarnings("ignore")  # another package's own
+def test_a_cluster_gives_the_rows_of_one_process_and_a_lost_worker_costs_none(scene, tmp_path):
+    distributed = pytest.importorskip("distributed")
+    study = sweep(scene, "sweep", 6, ("dda", "bar"))
+    (serial,) = run_cases([study_cases(study)], Results(tmp_path / "serial"))
+    lost = []
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as workers:
+
+        def lose(done, total, label):
+            if not lost:
+                lost.append(next(iter(workers.workers.values())).pid)
+                os.kill(lost[0], signal.SIGKILL)
+
+        with cluster.executor(workers.scheduler_address) as pool:
+            (ended,) = run_cases([study_cases(study)], Results(tmp_path / "dask"), executor=pool, progress=lose)
+    assert lost and len(ended.rows) == 12
+    values = [{key: (row.outcome, row.metrics) for key, row in group.rows.items()} for group in (serial, ended)]
+    assert values[0] == values[1]

@@ -92,6 +92,14 @@ def test_every_make_target_that_is_named_exists(page):
         assert {"test", "lint", "portable", "docs", "bench", "gates", "dist"} <= set(named)
 
 
+@pytest.mark.parametrize("script", ["Makefile", *sorted(f".ci/{p.name}" for p in (ROOT / ".ci").iterdir() if p.is_file())])
+def test_every_file_and_test_that_a_script_names_exists(script):
+    named = re.findall(r"\btests/[\w/]+\.py(?:::\w+)?", (ROOT / script).read_text(encoding="utf-8"))
+    parts = [name.partition("::") for name in named]
+    assert not [path for path, _, _ in parts if not (ROOT / path).is_file()]
+    assert not [f"{path}::{test}" for path, _, test in parts if f"def {test}" not in (ROOT / path).read_text("utf-8")]
+
+
 @pytest.mark.parametrize("page", PAGES)
 def test_every_path_that_a_page_names_exists(page):
     text = (ROOT / page).read_text(encoding="utf-8")
