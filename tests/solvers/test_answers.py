@@ -55,7 +55,7 @@ def numbers_of(name, value):
 def scene_of(solver, name, directory):
     """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
     scene = made(name, directory) if name in SCENES else load_scene(name).expand()[0]
-    most = 6 if solver.endswith("events") else 24
+    most = 4 if solver.endswith("events") else 24
     scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
     return scene if "." in scene.run.columns[0] else asked(solver, scene)
 

@@ -50,9 +50,12 @@ def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
         assert max(map(abs, mode.eigenvalues)) == pytest.approx(abs(Stepping.of(scene).roots(omega)[0]), rel=1e-10)
 
 
-@pytest.mark.parametrize(("solver", "scene"), [("continuum", LOCKED), ("block-events", OPENING), ("layers", COLUMN)])
+@pytest.mark.parametrize(
+    ("solver", "scene"),
+    [("continuum", LOCKED), ("block-events", OPENING), pytest.param("layers", COLUMN, marks=pytest.mark.long)],
+)
 def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver, scene):
-    scene = scene.with_values({"time.steps": 10})
+    scene = scene.with_values({"time.steps": 2})
     expected = solve(scene, solver).history.columns
     for values in (SCHEMES["hht"], SCHEMES["composite"]):
         history = solve(scene.with_values({"time.start": "consistent"} | values), solver).history
@@ -88,7 +91,7 @@ def test_solves_of_a_composite_scheme_are_two_a_step():
 
 @pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT | {"contact.restitution": 0.0}])
 def test_a_contact_method_converges_to_its_exact_motion(values):
-    coarse = OPENING.with_values(values | {"time.steps": 100})
+    coarse = OPENING.with_values(values | {"time.steps": 40})
     errors = []
     for halvings in (0, 4):
         parts = 2**halvings
