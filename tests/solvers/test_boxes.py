@@ -56,6 +56,7 @@ def test_a_box_turns_with_the_spin_and_the_velocity_it_starts_with():
     assert columns["box_1.angle"][-1] == pytest.approx(0.6, rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_pile_carries_its_weight():
     boxes = [BOX, {**BOX, "density": 8000.0}, BOX]
     scene = scene_of(*boxes, seconds=0.4)

@@ -119,4 +119,3 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         assert "column-events:full" in run.notes[0]
     assert said[0] != said[1]  # met on the way, and known before
     assert shares == sorted(shares) and 0 < shares[-1] < 1
-

@@ -1,9 +1,11 @@
 """Time schemes and contact methods of scenes through the adapters: their numbers reach the packages, in full."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import solve
 from validation.errors import InputError
@@ -34,9 +36,9 @@ def record_of(scene, solver="dda"):
     return prepared.contact_record()
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem", "bar"])
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("gg", [1.0, 0.99])
+@pytest.mark.parametrize(
+    ("scheme", "solver", "gg"), thinned(itertools.product(SCHEMES, ("dda", "fem", "bar"), (1.0, 0.99)), 7)
+)
 def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
     scene = LOCKED.with_values(SCHEMES[scheme] | {"time.gg": gg})
     if solver == "bar" and scheme == "leapfrog":

@@ -129,7 +129,9 @@ def shaken(along, time, directory):
     return solve(scene, "dda").history.columns
 
 
-@pytest.mark.parametrize(("along", "across", "springs"), [pytest.param("y", "x", 2, marks=pytest.mark.long), ("x", "y", 4)])
+@pytest.mark.parametrize(
+    ("along", "across", "springs"), [pytest.param("y", "x", 2, marks=pytest.mark.long), ("x", "y", 4)]
+)
 def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(along, across, springs, tmp_path):
     """Its motion is u = a / (1 - r^2) (sin w t - r sin w0 t), r = w / w0; the scheme is of second order."""
     own = math.sqrt(springs * STIFFNESS / MASS)

@@ -70,7 +70,7 @@ def landing(size=1.0, fem=None, columns=("b.x",), contact=None, **plane):
     data = {
         "plane": made | {"block": blocks, "touch": touch} | plane,
         "fem": fem or {"foundation": "corner", "elements": 1, "degree": 1},
-        "time": {"step": 1e-3, "steps": 40, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
+        "time": {"step": 1e-3, "steps": 30, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
         "run": {"columns": list(columns), "solvers": ["dda", "fem"]},
     }
     return parse_scene(data, "landing")

@@ -33,7 +33,9 @@ def refusal(scene):
     return get_solver("rigid-exact").refusal(scene) or ""
 
 
-@pytest.mark.parametrize(("name", "case"), CASES, ids=[f"{name} {case.label}" for name, case in CASES])
+@pytest.mark.parametrize(
+    ("name", "case"), thinned([pytest.param(*one, id=f"{one[0]} {one[1].label}") for one in CASES], 3)
+)
 def test_the_exact_motion_passes_its_problem(name, case):
     problem = box_problems()[name]
     scene = problem.scene(case)
@@ -79,9 +81,9 @@ def test_a_tumbling_box_stays_above_ground_and_keeps_its_energy(shape, tilt, lif
 REFUSED = tomllib.loads(Path(__file__).with_name("rigid_exact.toml").read_text(encoding="utf-8"))["refused"]
 
 
-@pytest.mark.parametrize(("boxes", "rigid", "why"), REFUSED)
-def test_other_motions_are_refused_by_name(boxes, rigid, why):
-    assert why in refusal(box_scene(*[BOX | box for box in boxes], **rigid))
+def test_other_motions_are_refused_by_name():
+    for boxes, rigid, why in REFUSED:
+        assert why in refusal(box_scene(*[BOX | box for box in boxes], **rigid))
 
 
 def test_a_corner_that_slips_is_refused():

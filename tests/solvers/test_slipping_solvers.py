@@ -50,6 +50,7 @@ def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path, monkeypatch):
     assert "at 0.5 s" in run.notes[0]
 
 
+@pytest.mark.long
 def test_the_notes_tell_what_is_proven(tmp_path):
     prepared = get_solver("block-events").prepare(scene(tmp_path))
     notes = prepared.run().notes

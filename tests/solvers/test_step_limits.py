@@ -96,7 +96,7 @@ GROWING = (
 )
 
 
-@pytest.mark.parametrize("name", GROWING)
+@pytest.mark.parametrize("name", thinned(GROWING, 3))
 def test_a_step_that_is_allowed_runs_and_its_growth_is_an_outcome_of_its_own(name):
     solver, tables = tables_of(name)
     run = solve(scene(0.05, 20, **tables).with_values({"time.allow_unstable": True}), solver)
