@@ -17,9 +17,12 @@ import numpy as np
 import pytest
 from oracles.stated_scenes import SCENES, asked, made
 
+from validation.advice.hooks import AdviceHooks
 from validation.errors import InputError
 from validation.report.scene.hooks import ShowingHooks
 from validation.runs.run import Outcome
+from validation.scenes.plain import lines
+from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.solvers.contract import NotReported
@@ -56,9 +59,32 @@ def numbers_of(name, value):
 def scene_of(solver, name, directory):
     """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
     scene = made(name, directory) if name in SCENES else load_scene(name).expand()[0]
-    most = 4 if solver.endswith("events") else 24
-    scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
+    most = 4 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
+    scene = scene.with_values({"time.steps": min(scene.time.steps, most), "fem.elements": 2})
     return scene if "." in scene.run.columns[0] else asked(solver, scene)
+
+
+def unless_refused(ask):
+    try:
+        return list(ask())
+    except InputError:
+        return []
+
+
+def told(scene):
+    """Return what the kind of a scene tells of it before anything is run, in numbers."""
+    showing = ShowingHooks.of(scene)
+    drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
+    advice = AdviceHooks.of(scene)
+    facts = [*advice.motions(scene), *unless_refused(lambda: advice.layers(scene)), advice.contact_limits(scene)]
+    return {
+        "drawn": zlib.crc32("\n".join(drawn).encode()),
+        "shown": [number.value for number in showing.numbers(scene)],
+        "springs": showing.springs([scene], lambda solver, metric: [0.7, -0.3]),
+        "advice": [repr(fact) for fact in facts],
+        "implausible": [value.sentence for value in implausible_values(scene)],
+        "problem": unless_refused(lambda: lines(scene)),
+    }
 
 
 def answers(solver, scene):
@@ -70,11 +96,9 @@ def answers(solver, scene):
     run = prepared.run()
     assert run.outcome is Outcome.COMPLETED, run.notes
     assert 0 <= sum(run.seconds.values()) <= time.perf_counter() - begin
-    showing = ShowingHooks.of(scene)
-    drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
     whole = {
-        "before": [*memory.needed(scene, adapter)[:1], reach(scene), zlib.crc32("\n".join(drawn).encode())],
-        "shown": [number.value for number in showing.numbers(scene)],
+        "before": [*memory.needed(scene, adapter)[:1], reach(scene)],
+        **told(scene),
         "history": {"time": run.history.time, **run.history.columns},
         "run": [dict(run.work), *run.notes, run.estimate or 0.0],
     }
