@@ -25,7 +25,8 @@ from validation.runs.regular import kind_of
 from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
-_PLAIN = re.compile(r"time(?:,\w+)+\n(?:[-+.eE\d]+(?:,[-+.eE\d]+)*\n?)+", re.ASCII)  # what numpy reads as it is read below
+# what numpy reads as `read_table` does
+_PLAIN = re.compile(r"time(?:,\w+)+\n(?:[-+.eE\d]+(?:,[-+.eE\d]+)*\n?)+", re.ASCII)
 
 
 @contextlib.contextmanager
