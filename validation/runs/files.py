@@ -25,7 +25,7 @@ from validation.runs.regular import kind_of
 from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
-# what numpy reads as `read_table` does
+# What numpy reads as it is read below.
 _PLAIN = re.compile(r"time(?:,\w+)+\n(?:[-+.eE\d]+(?:,[-+.eE\d]+)*\n?)+", re.ASCII)
 
 
