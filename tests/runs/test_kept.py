@@ -62,6 +62,8 @@ def test_rows_and_histories_are_kept_whole_and_what_is_lost_is_named(tmp_path):
     assert not results.sound(kept, 2, [])
     (tmp_path / "rows.jsonl").write_text("")
     assert refusal(results.whole, "made").startswith("the row of s dda")
+    results.append(row, made_history(0.1, np.ones(400)))  # whose size is far from that of so few steps
+    assert results.whole("made", histories=True)
     (tmp_path / "file").touch()
     assert refusal(Results(tmp_path / "file").check) == "must be a directory"
 

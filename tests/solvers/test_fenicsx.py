@@ -13,7 +13,6 @@ from conftest import SCENE, typed
 from faults import seams
 from faults.fault import Fault, times, undiscounted, with_scheme
 from faults.kill_matrix import Overlay, whole
-from oracles.elements import INCLINED
 
 from validation import solve
 from validation.engine.case import Case
@@ -106,25 +105,6 @@ def test_the_interpreter_is_found_and_the_launcher_beside_it():
     python = interpreter()
     assert python is not None and not adapters_fenicsx.has_dolfinx("/no/such/python")
     assert launcher(python) is not None
-
-
-@pytest.mark.long
-@pytest.mark.fenicsx
-@pytest.mark.parametrize(
-    "values",
-    [
-        {"fem.degree": 1, "contact.shear_stiffness": 3e8},
-        {"fem.cells": "triangles", "block.poisson": 0.3, "block.hypothesis": "plane strain"},
-        {"fem.foundation": "corner", "block.poisson": 0.3},
-        {"fem": {"elements": 4, "foundation": "patch", "patch_width": 0.5}},
-        {"block.vertices": INCLINED, "block.base": 1, "block.top": 3, "block.poisson": 0.2},
-        {"time.alpha": 0.0, "time.delta": 0.5, "time.step": 1e-5, "time.start": "consistent"},
-        {"contact.stiffness": 1e17, "block.hypothesis": "plane strain", "block.poisson": 0.45},
-    ],
-    ids=["linear", "triangles", "corner", "patch", "inclined", "explicit", "stiff"],
-)
-def test_the_two_codes_agree(scene, values):
-    assert 0 < error(scene.with_values(values)) <= SAME
 
 
 LOADS = {

@@ -13,7 +13,6 @@ from scipy.linalg import eigh
 
 import dda
 import fem_reference
-from fem_reference.mesh.model import build
 
 A, E, RHO = 2.0, 1e9, 2700.0
 SCHEME, SAME = dda.Scheme(0.5, 1.0, 1.0, 1e-3), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3)
@@ -76,13 +75,3 @@ def test_the_highest_frequency_of_many_sub_blocks(monkeypatch, dense):
     system = dda.subdivided(dda.TwoBlockModel(block, dda.Contact(g), 5e6), 1, n, g)
     expected = np.sqrt(12 * (E * width * h + 2 * g * h * h) / (RHO * width * h * h * h))
     assert dda.highest_frequency(system) == pytest.approx(expected, rel=np.pi**2 / n**2)
-
-
-@pytest.mark.parametrize("dense", thinned([1, 10**6], 2))
-@pytest.mark.parametrize("full", [False, True])
-def test_the_highest_frequency_of_a_mesh(monkeypatch, dense, full):
-    seams.FEM_DENSE.put(monkeypatch, dense)
-    case = make(poisson=0.3, elements=6, degree=1)
-    equations = build(case, full)
-    exact = np.sqrt(eigh(equations.K.toarray(), equations.M.toarray(), eigvals_only=True)[-1])
-    assert fem_reference.highest_frequency(case, full) == pytest.approx(exact, rel=1e-9)

@@ -49,27 +49,6 @@ def test_stiff_elements_on_corners_are_dda_but_for_its_finite_rotations():
     assert np.max(apart[1]) < 0.2 * np.max(apart[0]) < 0.01
 
 
-def test_blocks_that_are_glued_move_as_one():
-    """A bond on patches, of two blocks that fall on a fixed one by their weight."""
-    names = ("left.y", "right.y", "left.angle")
-    blocks = [
-        {"name": "base", "rectangle": [6.0, 1.0], "at": [0.0, -0.5], "fixed": True},
-        {"name": "left", "rectangle": [1.0, 1.0], "at": [-0.5, 0.5]},
-        {"name": "right", "rectangle": [1.0, 1.0], "at": [0.5, 0.5]},
-    ]
-    touch = [
-        {"block": "left", "corner": 0, "on": "base", "edge": 2},
-        {"block": "right", "corner": 1, "on": "base", "edge": 2},
-    ]
-    fem = {"foundation": "patch", "patch_width": 0.05, "elements": 2, "degree": 1}
-    bond = [{"blocks": ["left", "right"], "stiffness": 1e11}]
-    scene = landing(fem=fem, columns=names, block=blocks, touch=touch, bond=bond)
-    columns = solve(scene, "fem").history.columns
-    sunk = columns["left.y"] - 0.5
-    assert columns["right.y"] - 0.5 == pytest.approx(sunk, rel=1e-6) and sunk.min() < -1e-4
-    assert np.abs(columns["left.angle"]).max() < 0.05 * np.abs(sunk).max()
-
-
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -4,33 +4,11 @@ import math
 
 import numpy as np
 import pytest
-from conftest import thinned
 
-import dda.linear.elimination
-import fem_reference.history.response
 from validation import load_scene, response
 from validation.advice.response import Response
 
 BLOCK = load_scene("figures-3-4").with_values({"time.step": 0.002, "run.columns": ["displacement", "contact_pressure"]})
-COLUMNS = ("displacement", "contact_pressure")
-
-
-@pytest.mark.parametrize(
-    "damped",
-    thinned([{"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}, pytest.param({}, marks=pytest.mark.long)], 3),
-)
-def test_a_small_space_answers_as_eliminations_do(monkeypatch, damped):
-    size = {"block.subdivide": [3, 3], "fem.elements": 3}
-    scene = BLOCK.with_values(size | {"block.poisson": 0.3, "load.traction": 1e6} | damped)
-    f = np.linspace(0.0, 240.0, 7)
-    space, elements = response(scene, f, "dda"), response(scene, f, "fem")
-    monkeypatch.setattr(dda.linear.elimination, "BAND", np.inf)
-    monkeypatch.setattr(fem_reference.history.response, "NARROW", np.inf)
-    for found, solver in ((space, "dda"), (elements, "fem")):
-        band = response(scene, f, solver)
-        for column in COLUMNS:
-            size = np.max(np.abs(band.columns[column]))
-            assert np.allclose(found.columns[column], band.columns[column], rtol=1e-9, atol=1e-11 * size)
 
 
 def rational(poles):
