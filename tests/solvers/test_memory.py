@@ -2,6 +2,7 @@
 
 import math
 import os
+from pathlib import Path
 
 import pytest
 from conftest import SCENE, typed
@@ -60,9 +61,9 @@ def test_what_control_groups_leave(groups, files, expected, tmp_path):
 
 
 def test_a_machine_that_does_not_say_what_is_available_says_what_it_has(monkeypatch):
-    monkeypatch.setattr(memory, "_numbers", lambda path: {})
+    monkeypatch.setattr(Path, "read_text", lambda path, **options: "")
     assert memory._of_machine() == os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
-    monkeypatch.setattr(memory, "_numbers", lambda path: {"MemAvailable:": 7.0})
+    monkeypatch.setattr(Path, "read_text", lambda path, **options: "MemAvailable: 7 kB")
     assert memory._of_machine() == 7 * 1024.0
     assert SolvingHooks().memory(None, None) == (0.0, "time.steps") and SolvingHooks().reach(None) == math.inf
 
