@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import dda
+from validation.models.plane.blocks import PlaneBlockSection, second_moments
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.moving import model_of
 from validation.runs.run import Outcome
@@ -106,3 +107,10 @@ def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there(
     scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
     (load,) = scene.plane.assembly.loads
     assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]
+
+
+def test_a_regular_polygon_has_the_corners_and_the_moments_of_its_radius():
+    triangle = PlaneBlockSection(name="triangle", sides=3, radius=2.0).outline
+    expected = [(2.0, 0.0), (-1.0, math.sqrt(3)), (-1.0, -math.sqrt(3))]
+    assert np.array(triangle) == pytest.approx(np.array(expected))
+    assert second_moments(triangle) == pytest.approx(1.5 * math.sqrt(3) * np.eye(2), abs=1e-12)  # sqrt(3) a^4 / 96
