@@ -54,7 +54,7 @@ def check_opening(seed):
 
 def check_sliding(seed):
     problem, scheme, contact = sliding(seed)
-    if (history := followed(problem, scheme, contact, 80)) is None:
+    if (history := followed(problem, scheme, contact, 60)) is None:
         return np.zeros(3)
     run, lost, size = history
     cohesion = contact.friction.cohesion * 2.0 * build(problem).share

@@ -45,8 +45,7 @@ def test_a_cantilevers_tip_converges(degree, counts, least, most, last):
     assert errors[-1] < last
 
 
-@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize(("hypothesis", "degree"), [("plane stress", 1), ("plane strain", 2)])
 def test_a_free_body_has_its_three_strains_and_no_momentum(hypothesis, degree):
     model = PlaneModel([replace(STRESSED, hypothesis=hypothesis, degree=degree)])
     assert model.stress_error() < 1e-10
@@ -72,7 +71,7 @@ def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
 
 
 def test_modes_of_a_cantilever_share_its_deflection():
-    modes = PlaneModel([replace(CANTILEVER, elements=4)]).modes(SCHEME, 6)
+    modes = PlaneModel([replace(CANTILEVER, elements=3)]).modes(SCHEME, 6)
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
     assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia

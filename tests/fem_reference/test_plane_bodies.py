@@ -118,7 +118,7 @@ def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
     model = PlaneModel([lower, upper], patches(1, 0, 0.5, 2.0, 1.01, 0.4, **law))
     in_modes(monkeypatch)
-    found = model.history(Scheme(0.25, 0.5, 1.0, 4e-4), 750, model.means(0))
+    found = model.history(Scheme(0.25, 0.5, 1.0, 1e-3), 300, model.means(0))
     assert found.outcome == "completed" and found.normal.max() > 1e5 and np.abs(found.slip[-1]).min() > 1e-3
     assert np.all(found.closed[-1] == 0)
     masses = np.array([2.0, 1.8125]) * DENSITY
