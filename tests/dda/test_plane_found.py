@@ -98,15 +98,14 @@ def pile(count, seed):
     ("count", "steps", "least", "at_rest"),
     [
         (5, 120, 2, False),
-        pytest.param(12, 2000, 13, True, marks=pytest.mark.long),
-        pytest.param(200, 3000, 201, True, marks=pytest.mark.long),
+        pytest.param(100, 3000, 101, True, marks=pytest.mark.long),
     ],
-    ids=["few", "some", "many"],
+    ids=["few", "many"],
 )
 def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_rest):
     stiffness = 1e8
     blocks = pile(count, 3)
-    compiled = count > 100
+    compiled = count > 10
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
     result = history(model_of(blocks, springs), steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
     energy = own_energy(result)
@@ -127,7 +126,7 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_r
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("count", "steps"), [(6, 200), (200, 400)], ids=["some", "many"])
+@pytest.mark.parametrize(("count", "steps"), [(6, 200)], ids=["some"])
 def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
     """Rounding, 1e-15 of places, grows with every impact: a thousand times in the first that each block has."""
     model = model_of(pile(count, 5), ContactSprings(1e8, 4e7, friction=0.5))

@@ -80,9 +80,9 @@ def dashpot(seed, zeta):
     return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
 
 
-SLIPPING = [(seed, moved) for seed in (1, 2, 3, 8) for moved in (False, True)]
+SLIPPING = [(seed, moved) for seed in (1, 8) for moved in (False, True)]
 INTEGRATED = [
-    *((random_problem(seed), 5) for seed in (5, 0, 2, 1, 3, 4)),
+    *((random_problem(seed), 5) for seed in (5, 0, 1)),
     *((dashpot(*one), 8) for one in [(50, 0.1), (51, 0.8), (52, 0.3)]),
     *((slipping_problem(*one), 5) for one in SLIPPING),
 ]
