@@ -88,21 +88,6 @@ def test_the_own_landing_is_that_of_its_equations(ratio):
     assert own.depth == pytest.approx(depth, rel=1e-6) and own.contacts == contacts
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("ratio", [3.0, 100.0])
-def test_the_own_landing_is_that_of_the_exact_motion(ratio):
-    own = landing.own_landing(2 * ratio)
-    window = max(3.0, 1.4 * own.duration) * TRANSIT
-    scene = on_springs(ratio, **{"time.step": window / 60, "time.steps": 60})
-    names = ("contact.restitution", "contact.restitution_first", "switches.first_opening", "contact.penetration")
-    restitution, first_rate, opening, depth = measured(scene, "block-events", *names)
-    assert restitution == pytest.approx(own.restitution, abs=1e-12)
-    assert first_rate == pytest.approx(own.first_rate, abs=1e-11)
-    assert opening == pytest.approx(own.duration * TRANSIT, rel=1e-12)
-    quarter = math.sqrt(scene.block.mass / (8 * scene.contact.stiffness))
-    assert depth == pytest.approx(own.depth * quarter, rel=2e-2)  # sampled in the row
-
-
 def test_the_two_rigid_masses_are_limits_and_no_mass_lies_between():
     """A quarter of the mass at p >> E, all of it at p << E; at p = E the first contact is neither, nor is it at 3E."""
     scene = on_springs(1.0)
