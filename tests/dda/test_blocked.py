@@ -14,7 +14,6 @@ from dda.bodies.locked_block import modal_histories
 from dda.scheme import blocked as blocks
 from dda.scheme.newmark import staged_step, step_matrices
 
-SCHEMES = [(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (1 / 6, 0.5), (0.0, 0.5)]
 COLUMNS = ("displacement", "contact_pressure")
 
 

@@ -111,6 +111,12 @@ def test_springs_next_to_rigid_land_as_the_rigid_stop():
     assert below.contacts == above.contacts == landing.own_landing(1e291).contacts
 
 
+def test_the_force_of_a_wave_is_its_impedance_times_the_speed():
+    scene = UNLOADED.with_values({"block.density": 2100.0, "block.young": 7e8})
+    expected = 1.7 * math.sqrt(7e8 * 2100.0) * scene.block.base_length
+    assert landing.wave_force(scene, -1.7) == pytest.approx(expected, rel=1e-12)
+
+
 def test_a_weight_that_lifts_the_block_hides_no_landing():
     """It leaves its springs at every step."""
     lifted = load_scene("open-close").expand()[0].with_values({"load.gravity": -1e6})

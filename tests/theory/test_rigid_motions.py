@@ -252,6 +252,17 @@ def test_stiff_springs_tend_to_the_rigid_impulse():
         body = replace(FALLING, velocity=(speed, -2.0))
         soft = on_springs(body, 1e11, 1e14, mu, 2.0).impulse
         assert rigid_impulse(body, mu, 2.0) == pytest.approx(soft, rel=0.03)
+    landed = FALLING.flown(FALLING.landing(2.0)[0])
+    x, y = np.array(corner_of([*landed.place, landed.angle], FALLING.landing(2.0)[1])) - landed.place
+    mobility = 1 / 900.0 + x * x / FALLING.inertia
+    speed = landed.velocity[1] + landed.spin * x
+    assert rigid_impulse(FALLING, 0.0, 2.0) == (0.0, pytest.approx(-2 * speed / mobility, rel=1e-12))
+    # it holds from the first instant on where it comes straight down: both parts of its velocity take one impulse
+    square = np.array([[1 / 900.0 + y * y / FALLING.inertia, -x * y / FALLING.inertia], [0.0, mobility]])
+    square[1, 0] = square[0, 1]
+    still = replace(FALLING, velocity=(landed.spin * y, -0.6))
+    along, across = rigid_impulse(still, 0.9, 2.0)
+    assert along / across == pytest.approx(-square[0, 1] / square[0, 0], rel=1e-9)
 
 
 # ---- a first touch, an edge of what holds ----------------------------------------------------------------------------
@@ -273,6 +284,13 @@ def test_a_corner_touches_an_edge_where_a_line_says_and_a_corner_within_a_cone()
     low, high = normals(aimed, other, replace(touch, foot=0.0, edge=2))
     own = math.atan2(0.8, 0.6), math.pi - math.atan2(0.6, 0.8)  # of the two edges that meet in the lowest corner
     assert (low, high) == (pytest.approx(max(0.0, min(own))), pytest.approx(min(math.pi / 2, max(own))))
+
+
+def test_a_polygon_turns_about_its_centroid_as_it_moves():
+    corners = np.array([(-1.1, -0.4), (0.9, -0.6), (0.3, 1.2)])
+    moving = MovingPolygon(corners, (0.3, -2.0), (1.7, 0.6), -0.9)
+    plane = np.exp(-0.9j * 0.35) * (corners @ [1, 1j]) + complex(0.3, -2.0) + 0.35 * complex(1.7, 0.6)
+    assert moving.at(np.array([0.0, 0.35]))[1] @ [1, 1j] == pytest.approx(plane, rel=1e-14)
 
 
 def test_an_edge_lies_between_what_holds_and_what_does_not():
