@@ -41,7 +41,7 @@ NEWMARK = [(*AVERAGE, "consistent"), (*CONSTANT, "zero"), (0.3025, 0.6, "zero"),
 
 def check_against_the_papers(problem, scheme, name, parameters, rigid=False):
     """Assert all that is observed of a column, to rounding; return how often its contacts switch."""
-    steps = 60
+    steps = 40
     form, column = Assembly(problem), column_of(problem)
     if rigid:  # the uppermost contact
         form.stiffness[-1] = RIGID
@@ -116,7 +116,7 @@ def test_columns_step_as_in_the_papers(seeds):
         if name != "leapfrog":
             by_name = scheme_of(name, values, 2e-4, 0.98)
             switches += check_against_the_papers(problem, by_name, name, truth_of(values), rigid)
-    assert switches > 4 * len(seeds)
+    assert switches > 3 * len(seeds)
 
 
 @pytest.mark.parametrize("speed", [0.3, -0.3])

@@ -71,7 +71,7 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize(("name", "size"), thinned(product(PLACES, [1.0, 1e6, 1e-6]), 2))
+@pytest.mark.parametrize(("name", "size"), thinned(product(PLACES, [1.0, 1e6, 1e-6]), 4))
 def test_instant_kind_and_places_of_a_first_touch(name, size):
     A, motion, B, time, kind, points, normals = PLACES[name]
     contact = contact_of(A, motion, B, AT_REST, size=size)

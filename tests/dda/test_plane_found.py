@@ -45,7 +45,7 @@ def own_energy(result):
 THROWN = {
     "diamond beside a corner": ([box(-2, -1, 2, 1)], DIAMOND + np.array([-2e-4, 2.5e-3]), (0.0, -1.0), 12),
     "diamond past a corner": ([box(-2, -1, 2, 1)], DIAMOND + np.array([1e-3, 2e-3]), (0.0, -1.0), 12),
-    "square into a ledge": ([LEDGE], box(1.1, 1.1, 0.7, 0.7), (-1.0, -1.0), 115),
+    "square into a ledge": ([LEDGE], box(1.03, 1.03, 0.7, 0.7), (-1.0, -1.0), 45),
     "diamond into a ledge": ([LEDGE], DIAMOND / 2 + np.array([1.4, 1.02]), (-1.0, -1.0), 60),
 }
 

@@ -159,6 +159,7 @@ def test_a_graze_is_named_and_not_guessed():
     assert all(abs(time - 0.5 / 9.8125) < 1e-7 for time in near)
 
 
+@pytest.mark.long
 def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
     monkeypatch.setattr(report, "MOST_DIGITS", 30)
     monkeypatch.setattr(report, "PROMISED", 1e-29)
@@ -169,6 +170,7 @@ def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
         solve(COLUMNS["A1"].problem, 0.06, limit=5)
 
 
+@pytest.mark.long
 def test_a_column_that_is_welded_throughout_is_the_bonded_one():
     """Without any contact it goes as the springs between its faces do, and no instant has a motion of no length."""
     drive = drives.integrated(drives.half_sine(0.1, 0.02))
@@ -254,12 +256,12 @@ def test_the_forces_at_both_ends_make_the_momentum(base):
         base_motion=drives.still if base == "free" else drives.integrated(drives.ricker(0.5, 60.0)),
         pressure=drives.half_sine(1e5, 0.02),
     )
-    time = np.linspace(0.0, 0.01, 201)
+    time = np.linspace(0.0, 0.01, 101)
     state = solve(problem, time[-1]).at(time)
     momentum = np.array([2500.0, 1540.0]) @ state.velocity
     pushed = state.face_force[0] - state.face_force[-1]
     impulse = np.append(0.0, np.cumsum((pushed[1:] + pushed[:-1]) / 2)) * time[1]
-    assert momentum - momentum[0] == pytest.approx(impulse, abs=2e-3 * np.abs(momentum).max())
+    assert momentum - momentum[0] == pytest.approx(impulse, abs=8e-3 * np.abs(momentum).max())
 
 
 @pytest.mark.parametrize("seed", range(1))

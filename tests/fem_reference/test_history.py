@@ -38,10 +38,10 @@ def test_savings_change_nothing(change, unknowns, saving):
 
 
 def test_sparse_and_dense_modes_agree(monkeypatch):
-    problem = make(poisson=0.45, p=2e10, elements=4)
+    problem = make(poisson=0.45, p=2e10, elements=3)
     dense = modes(problem, CONSTANT)
     seams.FEM_DENSE.put(monkeypatch, 10)
     sparse = modes(problem, CONSTANT)
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)
-    assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=3e-2)
+    assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=5e-2)
