@@ -54,7 +54,7 @@ def test_a_box_about_its_corner_turns_as_the_integrated_pendulum(box, share):
 )
 def test_the_slip_on_shaken_ground_is_that_of_small_steps(box):
     duration = 2.0
-    step = 2e-5
+    step = 1e-4
     velocity = 0.0
     displacement = 0.0
     expected = []
@@ -62,13 +62,13 @@ def test_the_slip_on_shaken_ground_is_that_of_small_steps(box):
         wanted = box.ground_velocity(n * step) - velocity
         velocity += max(-box.grip * step, min(box.grip * step, wanted))
         displacement += velocity * step
-        if n % 5000 == 0:
+        if n % 1000 == 0:
             expected.append(displacement)
     time = 0.1 * np.arange(1, 21)
     largest = float(np.max(np.abs(box.slip(time))))
     assert largest > 0.005
-    np.testing.assert_allclose(box.displacement(time), expected, atol=2e-3 * largest)
-    np.testing.assert_allclose(box.slip(time) + box.ground(time), expected, atol=2e-3 * largest)
+    np.testing.assert_allclose(box.displacement(time), expected, atol=1e-2 * largest)
+    np.testing.assert_allclose(box.slip(time) + box.ground(time), expected, atol=1e-2 * largest)
 
 
 @pytest.mark.parametrize("impact", [SpringImpact(1700.0, 4e5, 9.81, 1.3), SpringImpact(20.0, 9e4, 1.62, 0.4)])

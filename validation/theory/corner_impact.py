@@ -175,6 +175,8 @@ def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[floa
         piece = min(to_rest, end)
         work += velocity[1] * piece + change[1] * piece**2 / 2
         velocity = velocity + change * piece
+        if piece == to_rest:
+            velocity[0] = 0.0  # of which no rounding may turn the slip round again
         impulse = impulse + direction * piece
         if piece == end:
             return float(impulse[0]), float(impulse[1])
