@@ -61,7 +61,7 @@ def judged(scene, digits=DIGITS, pressure=True, **values):
 
 @pytest.mark.parametrize("scene", [DROPPED, SHEARED])
 def test_the_scene_s_own_history_is_the_scene_s(scene):
-    answer = judged(scene)
+    answer = judged(scene.with_values({"time.steps": 60}))
     assert (answer.causes, answer.departs, answer.departure) == ([], False, None)
     assert answer.misfit < 1e-6
     assert all(stage.agrees for stage in answer.evidence)

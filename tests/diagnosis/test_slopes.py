@@ -216,7 +216,7 @@ def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
 
 
 def test_displacements_in_millimetres_are_a_unit_of_both_columns():
-    found = sound(steps=200)
+    found = sound(steps=40)
     both = ("displacement", "horizontal_displacement")
     answer = compare(scene(), Foreign(found.time, 1e3 * found.displacement, sideways=1e3 * found.sideways))
     assert answer.causes == ["unit"]

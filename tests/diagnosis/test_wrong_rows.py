@@ -12,7 +12,7 @@ from oracles.sliding_block import Plain, run
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
-STIFF = Plain(steps=120, p=5e9, dt=0.001)
+STIFF = Plain(steps=60, p=5e9, dt=0.001)
 
 
 def printed(values, digits):
