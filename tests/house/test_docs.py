@@ -26,9 +26,9 @@ from validation.solvers.names import check_names
 from validation.suite.matrix import phenomena, phenomenon, verify
 
 DOCS = ROOT / "docs"
-PAGES = ("columns.md", "methods.md")
-# Pages that take seconds each.
-LONG = (
+PAGES = (
+    "columns.md",
+    "methods.md",
     "extending.md",
     "plane.md",
     "subblocks.md",
@@ -74,7 +74,8 @@ def missing_lines(shown, printed):
     return [line for line in shown.splitlines() if not any(" ".join(line.split()) in text for text in plain)]
 
 
-@pytest.mark.parametrize("page", [*PAGES, *(pytest.param(page, marks=pytest.mark.long) for page in LONG)])
+@pytest.mark.long
+@pytest.mark.parametrize("page", PAGES)
 def test_code_blocks_run(page, tmp_path, finished_cases, monkeypatch):
     for name in ("before", "after"):  # what the page compares, with the cases that other tests have finished
         beside(finished_cases, tmp_path / name)
@@ -137,13 +138,15 @@ def test_the_example_of_readme_prints_what_its_comments_say(capsys):
     assert 1e-4 < form < 1e-2 and mesh < 1e-3 * form and pressure == pytest.approx(5e6, rel=1e-3)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", sorted((DOCS / "examples/numbers").glob("*.py")), ids=lambda path: path.stem)
 def test_numbers_of_pages_are_those_of_their_scripts(path):
     runpy.run_path(str(path))
     assert f"(examples/numbers/{path.name})" in page_text(f"{path.stem}.md")
 
 
-@pytest.mark.parametrize("page", ["loads.md", "plane.md", "subblocks.md"])
+@pytest.mark.parametrize("page", ["loads.md", *(pytest.param(f"{name}.md", marks=pytest.mark.long) for name in
+                                                ("plane", "subblocks"))])  # fmt: skip
 def test_tables_of_scenes_load(page, tmp_path):
     (tmp_path / "record.csv").write_text("time,x\n0,0\n1,0.001\n")
     for text in [text for language, _, text in blocks(DOCS / page) if language == "toml"]:
