@@ -129,7 +129,6 @@ compare pentagon pentagon.csv
 run figures-3-4 --set time.step=0.01 --results results
 rows figures-3-4 --results results
 diff results results
-judge dda standing
 judge answer
 judge answer/rocking.csv rocking
 judge dda standing rocking
