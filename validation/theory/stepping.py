@@ -40,7 +40,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from validation.errors import InputError
-from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import stages
 from validation.theory.stages import Stage, Stages
