@@ -92,7 +92,9 @@ def test_every_make_target_that_is_named_exists(page):
         assert {"test", "lint", "portable", "docs", "bench", "gates", "dist"} <= set(named)
 
 
-@pytest.mark.parametrize("script", ["Makefile", *sorted(f".ci/{p.name}" for p in (ROOT / ".ci").iterdir() if p.is_file())])
+@pytest.mark.parametrize(
+    "script", ["Makefile", *sorted(f".ci/{p.name}" for p in (ROOT / ".ci").iterdir() if p.is_file())]
+)
 def test_every_file_and_test_that_a_script_names_exists(script):
     named = re.findall(r"\btests/[\w/]+\.py(?:::\w+)?", (ROOT / script).read_text(encoding="utf-8"))
     parts = [name.partition("::") for name in named]
