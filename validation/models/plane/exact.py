@@ -18,7 +18,7 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.rigid.rocking import friction_needed
-from validation.theory.boxes import ShakenBox, SpringImpact, critical_spin, greatest_rotation, return_time
+from validation.theory.boxes import ShakenBox, SpringImpact
 from validation.theory.corner_impact import FallingRectangle, HorizonError
 from validation.theory.rocking import Rectangle
 
@@ -329,12 +329,13 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
     _unless(tilted, "the motion about a corner is known on level ground, under weight")
     rectangle = Rectangle(box.width, box.height, ground.gravity)
     spin = abs(box.spin)
-    overturns = spin >= critical_spin(rectangle)
+    overturns = spin >= rectangle.critical_spin
     _unless(overturns, "the motion is not known of a box that overturns, beyond the impact at its end")
-    end = return_time(rectangle, spin)
+    tilt = rectangle.greatest_rotation(spin)
+    end = 2 * rectangle.quarter_period(tilt)  # it comes down as it rose
     comes_back = f"the motion about a corner is known until the box comes back after {end:.4g} s"
     _unless(scene.time.duration >= end, comes_back)
-    needed = friction_needed(box.width, box.height, greatest_rotation(rectangle, spin))
+    needed = friction_needed(box.width, box.height, tilt)
     slips = f"the corner slips: friction must be above {math.degrees(math.atan(needed)):.4g} deg"
     _unless(ground.friction_coefficient <= needed, slips)
 
