@@ -76,7 +76,7 @@ def check_sliding(seed):
         (check_opening, range(1, 2), [2]),
         (check_sliding, range(1, 2), [5, 5, -1]),
         pytest.param(check_opening, range(4, 24), [75], marks=pytest.mark.long),
-        pytest.param(check_sliding, range(2, 12), [200, 70, 3], marks=pytest.mark.long),
+        pytest.param(check_sliding, range(2, 12), [150, 70, 3], marks=pytest.mark.long),
     ],
 )
 def test_what_holds_of_every_step(check, seeds, least):
