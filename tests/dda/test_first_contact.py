@@ -133,7 +133,7 @@ def as_moving(polygon, motion):
     return MovingPolygon(polygon @ turn, (x, y), (vx, vy), spin)
 
 
-@pytest.mark.parametrize("seed", thinned(range(24), 5))
+@pytest.mark.parametrize("seed", thinned(range(0, 24, 2), 4))
 def test_the_first_crossing_by_roots_agrees(seed):
     random = np.random.default_rng(seed)
     A = star(random, 3 + seed % 5)

@@ -76,8 +76,8 @@ def test_the_modes_share_the_static_solution_and_end_below_the_highest_frequency
 
 def test_a_column_on_a_shaken_base_is_stepped_to_its_response():
     w = 2 * np.pi * 40.0
-    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.9)
-    t = scheme.instants(1200)
+    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.8)
+    t = scheme.instants(500)
     sine = np.array([np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)])
     for spring in ([Spring(0.0, 4e9)], []):
         body = Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)], joints=spring)

@@ -104,11 +104,12 @@ def exact(problem, end):
     return exact_motion(problem, end)
 
 
-@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, len(ORDERS)))
+@pytest.mark.long
+@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, 1))
 def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
     """Errors of v against the exact motion, over its largest value."""
     end = 0.03
-    counts = [500, 1000, 2000]
+    counts = [300, 600, 1200]
     alpha, delta, start = scheme
     motion = exact(problem, end)
     errors = []
@@ -119,4 +120,4 @@ def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
         errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
     fitted = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
     assert abs(fitted - order) < 0.15, errors
-    assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)
+    assert errors[-1] < (4e-4 if order == 2 else 2e-2)

@@ -9,7 +9,7 @@ from itertools import product
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, thinned
+from conftest import SCENE
 from oracles.processes import AFTER, MARK, left, marked, new_mark
 
 from validation.runs.results import Results
@@ -89,7 +89,8 @@ SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL]
 LEAVERS = [("with_a_child", "sleep(600)"), ("deaf", "user_worker")]  # and what shows that one has begun
 
 
-@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 8))
+@pytest.mark.long
+@pytest.mark.parametrize(("number", "leaver"), product(SIGNALS, LEAVERS))
 def test_nothing_outlives_the_parent(number, leaver, tmp_path, mark):
     """The signal goes to the parent alone, as from a scheduler or an out-of-memory killer."""
     solver, words = leaver

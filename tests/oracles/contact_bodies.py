@@ -248,11 +248,11 @@ def on_shaken_base(model, seed):
     return replace(model, motion=shaken(np.random.default_rng(seed)))
 
 
-def block_case(model, scheme, steps=150, **options):
+def block_case(model, scheme, steps=100, **options):
     return Case(OneBlock, model, scheme, options, steps)
 
 
-def turning_case(seed, scheme=None, steps=120, model=None, **options):
+def turning_case(seed, scheme=None, steps=90, model=None, **options):
     """Return a thrown block: frictionless, bonded or rough by its seed."""
     made, dt = random_rolling(seed)
     made = with_law(made, gap=made.contact.gap / 100)  # it lands soon

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
@@ -48,7 +47,8 @@ def distance(finer, stride, exact, *names):
     return max(errors)
 
 
-@pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))
+@pytest.mark.long
+@pytest.mark.parametrize("shape", ["sine", "cosine", "triangle", "half-sine"])
 def test_every_shape_of_a_base_motion_moves_both(shape):
     size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
     layers = [layer | {"velocity": 0.0} for layer in LAYERS]
@@ -64,8 +64,8 @@ def test_every_shape_of_a_base_motion_moves_both(shape):
 
 
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch):
-    scene = scene_of(OPENS, ["displacement"], input=PULSE)
-    monkeypatch.setattr(BarsOfColumn, "most_terms", 2e4)
+    scene = scene_of(OPENS, ["displacement"], input=PULSE, time={"steps": 80})
+    monkeypatch.setattr(BarsOfColumn, "most_terms", 2e3)
     run = solve(scene, "bars-events")
     assert run.outcome is Outcome.HORIZON
     assert solve(scene, "bars-events", full=True).outcome is Outcome.COMPLETED

@@ -56,9 +56,10 @@ def test_a_box_turns_with_the_spin_and_the_velocity_it_starts_with():
     assert columns["box_1.angle"][-1] == pytest.approx(0.6, rel=1e-9)
 
 
+@pytest.mark.long
 def test_a_pile_carries_its_weight():
     boxes = [BOX, {**BOX, "density": 8000.0}, BOX]
-    scene = scene_of(*boxes, seconds=0.5)
+    scene = scene_of(*boxes, seconds=0.4)
     columns = columns_of(scene)
     weights = WEIGHT * np.array([1.0, 10.0, 1.0])
     forces = [columns[name][-1] for name in boxes_of(scene).force_columns]
@@ -69,8 +70,8 @@ def test_a_pile_carries_its_weight():
 
 
 def test_the_ground_carries_a_box_along_that_friction_holds():
-    columns = columns_of(scene_of(BOX, friction=40.0, base=(0.025, 2.0), seconds=0.25))
-    assert columns["box_1.x"][-1] == pytest.approx(0.05, rel=1e-3)  # at half a period twice the amplitude
+    columns = columns_of(scene_of(BOX, friction=40.0, base=(0.001, 10.0), seconds=0.05))
+    assert columns["box_1.x"][-1] == pytest.approx(0.002, rel=1e-2)  # at half a period twice the amplitude
 
 
 def test_a_restitution_that_springs_do_not_have_is_refused():

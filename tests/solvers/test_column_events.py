@@ -87,12 +87,12 @@ def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_st
 
 
 def test_notes_name_switches_and_the_proven_radius():
-    run = solve(scene_of(OPENS, ["displacement"]), "column-events")
+    run = solve(scene_of(OPENS, ["displacement"], 100), "column-events")
     assert run.notes[1].startswith("0 m ")
     assert sum(note.startswith("proven: ") for note in run.notes) == 2
     assert not run.notes[-1].endswith(" m")
     touching = OPENS | {"gap": 0.0, "joint": [{"height": 0.0, "stiffness": 1e9, "gap": 0.01}]}
-    run = solve(scene_of(touching, ["displacement"]), "column-events")
+    run = solve(scene_of(touching, ["displacement"], 40), "column-events")
     assert run.notes[-1].endswith(" 1, 2 m")
 
 
@@ -119,4 +119,3 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         assert "column-events:full" in run.notes[0]
     assert said[0] != said[1]  # met on the way, and known before
     assert shares == sorted(shares) and 0 < shares[-1] < 1
-    assert solve(scene, "column-events", full=True).outcome is Outcome.COMPLETED

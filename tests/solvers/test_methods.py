@@ -1,9 +1,11 @@
 """Time schemes and contact methods of scenes through the adapters: their numbers reach the packages, in full."""
 
+import itertools
 import math
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 from validation import solve
 from validation.errors import InputError
@@ -34,9 +36,9 @@ def record_of(scene, solver="dda"):
     return prepared.contact_record()
 
 
-@pytest.mark.parametrize("solver", ["dda", "fem", "bar"])
-@pytest.mark.parametrize("scheme", SCHEMES)
-@pytest.mark.parametrize("gg", [1.0, 0.99])
+@pytest.mark.parametrize(
+    ("scheme", "solver", "gg"), thinned(itertools.product(SCHEMES, ("dda", "fem", "bar"), (1.0, 0.99)), 7)
+)
 def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
     scene = LOCKED.with_values(SCHEMES[scheme] | {"time.gg": gg})
     if solver == "bar" and scheme == "leapfrog":
@@ -50,9 +52,12 @@ def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
         assert max(map(abs, mode.eigenvalues)) == pytest.approx(abs(Stepping.of(scene).roots(omega)[0]), rel=1e-10)
 
 
-@pytest.mark.parametrize(("solver", "scene"), [("continuum", LOCKED), ("block-events", OPENING), ("layers", COLUMN)])
+@pytest.mark.parametrize(
+    ("solver", "scene"),
+    [("continuum", LOCKED), ("block-events", OPENING), pytest.param("layers", COLUMN, marks=pytest.mark.long)],
+)
 def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver, scene):
-    scene = scene.with_values({"time.steps": 10})
+    scene = scene.with_values({"time.steps": 2})
     expected = solve(scene, solver).history.columns
     for values in (SCHEMES["hht"], SCHEMES["composite"]):
         history = solve(scene.with_values({"time.start": "consistent"} | values), solver).history
@@ -88,7 +93,7 @@ def test_solves_of_a_composite_scheme_are_two_a_step():
 
 @pytest.mark.parametrize("values", [{"contact.damping_ratio": 0.2}, IMPACT | {"contact.restitution": 0.0}])
 def test_a_contact_method_converges_to_its_exact_motion(values):
-    coarse = OPENING.with_values(values | {"time.steps": 100})
+    coarse = OPENING.with_values(values | {"time.steps": 40})
     errors = []
     for halvings in (0, 4):
         parts = 2**halvings

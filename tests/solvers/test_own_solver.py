@@ -97,9 +97,6 @@ import numpy as np
 import six_unknowns
 from validation import solve as suite
 
-def dda(scene):
-    return suite(scene, "dda").history
-
 def textbook(scene):
     return suite(scene, "dda-textbook").history
 
@@ -112,7 +109,6 @@ def noisy(scene):
 @pytest.mark.parametrize(
     ("solver", "same_as", "warned"),
     [
-        ("copies:dda", {"dda"}, ["identical"]),
         ("copies:textbook", {"dda-textbook"}, ["identical"]),
         ("copies:noisy", set(), ["not repeatable"]),
         ("six_unknowns:sound", set(), []),
@@ -135,7 +131,7 @@ AUTHORS = TABLES["authors"]
 THREE = (*START[:2], block_data.scenes()[0].name)
 
 
-@pytest.mark.parametrize("author", AUTHORS)
+@pytest.mark.parametrize("author", thinned(AUTHORS, 3))
 def test_what_an_author_can_do_wrong_is_said_once(author, reports_of):
     reports = reports_of(author, THREE)
     ending, scenes = AUTHORS[author]
@@ -358,7 +354,12 @@ def test_what_compare_says_ends_the_block(causes, lines, monkeypatch):
 WHAT_IS_MISREAD = TABLES["misread"]
 
 
-@pytest.mark.parametrize("solver", thinned(WHAT_IS_MISREAD, 8))
+TOLD_IN_SHORT = "without_poisson_and_central"
+
+
+@pytest.mark.parametrize(
+    "solver", [pytest.param(name, marks=[pytest.mark.long] * (name != TOLD_IN_SHORT)) for name in WHAT_IS_MISREAD]
+)
 def test_a_datum_that_a_solver_misreads_is_named(solver, reports_of):
     told = reports_of(solver)
     scenes, misread = WHAT_IS_MISREAD[solver].values()

@@ -37,7 +37,7 @@ def elements():
     return PlaneModel(bodies, contacts)
 
 
-@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.5, 1.0, 1.0), (0.25, 0.5, 0.99)])
+@pytest.mark.parametrize(("alpha", "delta", "gg"), [(0.25, 0.5, 0.99)])
 def test_linear_triangles_on_points_are_glued_blocks(alpha, delta, gg):
     material = dda.Material(density=2700.0, young=1e9, poisson=0.25)
     blocks = [Block(np.array(triangle), material) for triangle in TRIANGLES]
@@ -47,8 +47,8 @@ def test_linear_triangles_on_points_are_glued_blocks(alpha, delta, gg):
     strains = np.vstack([model.means(body)[3:] for body in range(4)]) @ model.rest
     assert strains == pytest.approx(glued.strains.ravel(), rel=1e-11)
     numbers = (alpha, delta, gg, 1e-4)
-    steps = glued.history(dda.Scheme(*numbers), 100, glued.observer(*RIGHT)).columns
-    found = model.history(fem_reference.Scheme(*numbers), 100, model.observer(*RIGHT, 1)).columns
+    steps = glued.history(dda.Scheme(*numbers), 30, glued.observer(*RIGHT)).columns
+    found = model.history(fem_reference.Scheme(*numbers), 30, model.observer(*RIGHT, 1)).columns
     for name, values in steps.items():
         assert np.abs(found[name] - values).max() < 1e-13 * np.abs(values).max()
     theirs = [mode.frequency for mode in glued.modes(dda.Scheme(*numbers), 4)]
@@ -70,7 +70,7 @@ def landing(size=1.0, fem=None, columns=("b.x",), contact=None, **plane):
     data = {
         "plane": made | {"block": blocks, "touch": touch} | plane,
         "fem": fem or {"foundation": "corner", "elements": 1, "degree": 1},
-        "time": {"step": 1e-3, "steps": 60, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
+        "time": {"step": 1e-3, "steps": 30, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
         "run": {"columns": list(columns), "solvers": ["dda", "fem"]},
     }
     return parse_scene(data, "landing")

@@ -50,6 +50,7 @@ def prepared(scene):
     return ready, ready.run()
 
 
+@pytest.mark.long
 def test_a_tower_tilted_beyond_its_diagonal_lies_down(prepared, scene):
     ready, run = prepared
     columns = run.history.columns

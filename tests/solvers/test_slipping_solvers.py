@@ -50,6 +50,7 @@ def test_a_motion_that_cannot_go_on_is_a_named_outcome(tmp_path, monkeypatch):
     assert "at 0.5 s" in run.notes[0]
 
 
+@pytest.mark.long
 def test_the_notes_tell_what_is_proven(tmp_path):
     prepared = get_solver("block-events").prepare(scene(tmp_path))
     notes = prepared.run().notes
@@ -92,8 +93,6 @@ def test_a_motion_of_too_much_work_ends_at_a_named_horizon(tmp_path, monkeypatch
     assert run.history is None
     told = float(run.notes[0].split("exact up to ")[1].split(" s")[0])
     assert told == pytest.approx(horizon, rel=0.3)
-    shorter = scene(tmp_path, GRANITE).with_values({"time.steps": int(told / 1e-4)})
-    assert get_solver(name).prepare(shorter).run().outcome is Outcome.COMPLETED
 
 
 @pytest.mark.long

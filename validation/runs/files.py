@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import errno
 import io
 import os
+import re
 import shutil
 import stat
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO
 
@@ -24,9 +25,11 @@ from validation.runs.regular import kind_of
 from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
+# What numpy reads as it is read below.
+_PLAIN = re.compile(r"time(?:,\w+)+\n(?:[-+.eE\d]+(?:,[-+.eE\d]+)*\n?)+", re.ASCII)
 
 
-@contextmanager
+@contextlib.contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
     """Yield a temporary path of the same ending; what stands there when the block ends well becomes the file.
 
@@ -64,7 +67,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
         raise
 
 
-@contextmanager
+@contextlib.contextmanager
 def atomic_directory(out: Path) -> Iterator[Path]:
     """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
 
@@ -198,9 +201,16 @@ def read_table(path: Path) -> tuple[list[str], Array]:
         The file cannot be read or is not such a table.
     """
     try:
-        header, *rows = rows_of(read_text(path)) or [[]]
+        text = read_text(path)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
+    if _PLAIN.fullmatch(text):
+        names = text.partition("\n")[0].split(",")
+        with contextlib.suppress(ValueError):  # what is wrong is found below, with its place
+            table = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1, ndmin=2)
+            if table.shape[1] == len(names):
+                return names, table
+    header, *rows = rows_of(text) or [[]]
     names = [cell.text for cell in header]
     if not names or names[0] != "time" or not all(names):
         raise InputError("header must begin with time and name every column", source=path, value=repr(",".join(names)))
