@@ -49,22 +49,27 @@ def test_rigid_stops_of_rigid_blocks_have_none():
 
 
 # Of Taylor series with thirty digits, and for the cradle of characteristics: last rows, or those at an instant [s].
-KNOWN = [
-    ("stack", "displacement_1", 0.06, 0.01074499902223, 1e-11),
-    ("stack", "displacement_3", 0.06, 0.03962539027349, 1e-11),
-    ("stack", "velocity_3", 0.06, 1.030656757347, 1e-11),
-    ("stack", "force_4", 0.02, 1606810.4758, 1e-9),
-    ("mass-ratio", "displacement_1", 0.03, -0.01331442988, 1e-9),
-    ("mass-ratio", "displacement_2", 0.02, -0.01994421045988, 1e-11),
-    ("mass-ratio", "force_4", 0.0105, 3993437.96, 1e-8),
-]
+KNOWN = {
+    "stack": [
+        ("displacement_1", 0.06, 0.01074499902223, 1e-11),
+        ("displacement_3", 0.06, 0.03962539027349, 1e-11),
+        ("velocity_3", 0.06, 1.030656757347, 1e-11),
+        ("force_4", 0.02, 1606810.4758, 1e-9),
+    ],
+    "mass-ratio": [
+        ("displacement_1", 0.03, -0.01331442988, 1e-9),
+        ("displacement_2", 0.02, -0.01994421045988, 1e-11),
+        ("force_4", 0.0105, 3993437.96, 1e-8),
+    ],
+}
 
 
-@pytest.mark.parametrize(("name", "column", "instant", "known", "digits"), KNOWN)
-def test_columns_of_rigid_blocks_move_as_is_known(name, column, instant, known, digits):
+@pytest.mark.parametrize("name", [pytest.param("stack", marks=pytest.mark.long), "mass-ratio"])
+def test_columns_of_rigid_blocks_move_as_is_known(name):
     one = problem(name)
-    row = round(instant / one.scene.time.step) - 1
-    assert standard(one).exact.columns[column][row] == pytest.approx(known, rel=digits)
+    for column, instant, known, digits in KNOWN[name]:
+        row = round(instant / one.scene.time.step) - 1
+        assert standard(one).exact.columns[column][row] == pytest.approx(known, rel=digits), column
 
 
 @pytest.mark.parametrize(
