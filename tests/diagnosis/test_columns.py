@@ -14,7 +14,7 @@ from validation.diagnosis import columns
 from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.columns import BONDED, ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import numbers_of_column, places
+from validation.diagnosis.numbers import numbers_of_column, numbers_of_layers, places
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading
 from validation.errors import InputError
@@ -216,5 +216,10 @@ def test_numbers_of_contacts_are_those_that_are_stated():
     numbers = list(numbers_of_column(DROPPED))
     assert not any("modulus" in number.name for number in numbers)  # of rigid blocks
     (springs,) = (number for number in numbers if number.id == "springs-factor" and "all" in number.name)
+    assert list(numbers_of_layers(DROPPED)) == []
+    layers = [{"thickness": 1.0, "density": density, "young": 1e9} for density in (2e3, 2e3, 3e3)]
+    (*_, third) = numbers_of_layers(DROPPED.with_values({"column.layer": layers}))
+    changed = third.changed(DROPPED.with_values({"column.layer": layers}), 1.5)["column.layer"]
+    assert [layer["density"] for layer in changed] == [2e3, 2e3, 4.5e3] and "layer 3" in third.name
     halved = DROPPED.with_values(springs.changed(DROPPED, 0.5)).column
     assert {contact.stiffness for contact in halved.contacts} == {5e8}
