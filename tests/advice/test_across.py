@@ -22,7 +22,7 @@ PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002})
         (Stepping(2e-3, 0.5, 1.0), {"damps the first mode"}),
         (Stepping.named("chung-hulbert", 6e-3, rho_inf=0.0), {"raises", "damps the first mode", "period too long"}),
     ],
-    ids=str,
+    ids=["average", "discounted", "long steps", "constant", "Chung-Hulbert"],
 )
 def test_what_is_to_be_feared_of_a_scheme_is_told_with_its_number(stepping, fears, monkeypatch):
     monkeypatch.setattr(across, "IMPACTS", (1.5, 1e5))

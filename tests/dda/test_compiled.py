@@ -15,16 +15,8 @@ from oracles.contact_bodies import CASES
 from dda.march import compiled, one_library, step
 
 EVERY_CODE = (
-    *("rough", "rough by two stages", "long steps", "lagged", "dead band", "implicit, shaken", "dashpot"),
-    *(
-        "conserving",
-        "augmented",
-        "impact",
-        "turning",
-        "turning by first order",
-        "turning by two stages",
-        "rough sub-blocks",
-    ),
+    *("rough by two stages", "dead band", "dashpot", "conserving", "augmented", "impact"),
+    *("turning by two stages", "rough sub-blocks"),
 )
 
 

@@ -9,7 +9,7 @@ import pytest
 from oracles.contact_bodies import CASES, NEWMARK, OneBlock, SubBlocks, TurningBlock, put_stage, with_law
 from oracles.unilateral_checks import apart, size
 
-from dda import Block, Load, Material, Unilateral, UnilateralModel
+from dda import BaseMotion, Block, Load, Material, Unilateral, UnilateralModel
 from dda.contact.rows import FOUND, INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
 from dda.march.step import push_modes
@@ -295,6 +295,8 @@ def test_one_contact_for_both_corners_is_the_full_model(scheme):
     assert one.unknowns == 3 and full.unknowns == 6 and np.count_nonzero(np.diff(one.closed[0])) > 0
     for name in ("normal", "shear", "gap", "velocity"):
         assert apart(getattr(full, name), getattr(one, name)) <= 1e-9, name
+    sideways = replace(model, motion=BaseMotion([0.0, 1.0], [[0.0, 0.0], [1e-3, 0.0]]))
+    assert OneBlock.solve(sideways, scheme, 2, {}).unknowns == 6
     without_strain = replace(model, block=replace(square, material=Material(2350.0, 4.3e9, 0.0)))
     assert OneBlock.solve(with_law(without_strain, shear=0.0), scheme, 2, {}).unknowns == 2
 

@@ -16,6 +16,9 @@ from dda import (
     PlaneModel,
     solve_plane,
 )
+from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, OUTCOMES
+from dda.march.step import steps_by
+from dda.plane import outcomes, solution, step
 from dda.plane.outcomes import contact_name
 from dda.plane.solution import PlaneContact
 
@@ -113,6 +116,39 @@ def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
     assert drift[:2].max() <= 1e-11 * np.abs(result.momentum[:, :2]).max()
     assert drift[2] <= 1e-6 * np.abs(result.momentum[0, 2])
     assert np.abs(result.energy["balance"]).max() <= 1e-11 * result.energy["kinetic"][0]
+
+
+@pytest.mark.parametrize("name", ["average", "composite"])
+def test_a_step_that_fails_is_made_in_parts_and_keeps_its_accounts(name, monkeypatch):
+    """Parts of 0.3 and 0.7 of every third step move what touches as whole steps do, but for their error."""
+
+    def stubborn(march, stage, start, before, after, course, part):
+        outcome, solves = step.make_stage(march, stage, start, before, after, course, part)
+        return (NONE if part.ratio == 1 and part.begun % 3 == 1 else outcome), solves
+
+    model = slope(0.3, 0.6, 1e8)
+    whole = solve_plane(model, SCHEMES[name], 12)
+    monkeypatch.setattr(solution, "make_steps", steps_by(stubborn, step.account, step.keep, step.keep_rows))
+    parts = solve_plane(model, SCHEMES[name], 12)
+    assert parts.outcome == OUTCOMES[FOUND] and parts.cuts.tolist() == [0, *(0, 1, 0) * 4]
+    assert np.abs(parts.energy["balance"]).max() <= 1e-10 * parts.energy["kinetic"].max()
+    assert parts.displacement == pytest.approx(whole.displacement, abs=0.02 * np.abs(whole.displacement).max())
+
+
+def test_contacts_whose_states_go_round_are_named(monkeypatch):
+    """The search comes back after two states, in which one of six contacts opens and closes."""
+    monkeypatch.setattr(step, "find", lambda *_: (NONE, 7))
+    monkeypatch.setattr(step, "find_many", lambda *_: (NONE, 7))
+    monkeypatch.setattr(outcomes, "solve", lambda *_: None)
+
+    def turned(laws, flexible, after, work, together):
+        work.tried[3] = LOWER if work.tried[3] == INSIDE else INSIDE
+
+    monkeypatch.setattr(outcomes, "update", turned)
+    monkeypatch.setattr(solution, "make_steps", steps_by(step.make_stage, step.account, step.keep, step.keep_rows))
+    result = solve_plane(slope(0.3, 0.6), scheme(CONSTANT, 1e-3), 3, compiled=False)
+    assert result.reached == 0 and result.outcome.startswith(OUTCOMES[NONE])
+    assert result.unsettled == (PlaneContact(2, 1, 0, 2),)
 
 
 def test_contacts_are_named_by_their_blocks():

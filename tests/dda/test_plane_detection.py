@@ -74,6 +74,10 @@ SITUATIONS = {
     "a diamond within a corner": ([SQUARE - (1, 1), at(DIAMOND, -0.001, 5e-4)], (0, -1e-3), [(1, 0, 0, TOP)]),
     "a diamond outside of a corner": ([SQUARE - (1, 1), at(DIAMOND, 0.001, 2e-3)], (0, -6e-3), [(0, 2, 1, 3)]),
     "beside a corner, from the right": ([SQUARE - (1, 1), at(DIAMOND, 0.502, -0.6)], (-4e-3, 0), [(1, 3, 0, RIGHT)]),
+    "beside a side, past its corner": (
+        *([SQUARE - (1, 1), at(SQUARE, 0.004, 0.004)], (0, -0.01)),
+        *([(1, 0, 0, RIGHT), (0, 2, 1, LEFT)],),
+    ),
     "into a notch": (
         [LEDGE, at(SQUARE, 1.01, 1.01)],
         (-0.02, -0.02),

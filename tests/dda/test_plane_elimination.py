@@ -63,6 +63,9 @@ def test_trees_fill_nothing(kind, blocks):
     matrix, _, total = filled(kind, 12, 3)
     assert total == blocks
     assert sorted(matrix.order) == list(range(12))
+    clear_pattern(matrix)
+    assert order_blocks(matrix) == 12
+    matrix, _, _ = filled(kind, 12, 3)
     small = block_matrix(12, 3, blocks - 1)
     small.number[:] = np.where(matrix.number == MISSING, MISSING, 0)
     assert order_blocks(small) == MISSING

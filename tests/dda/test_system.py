@@ -8,7 +8,6 @@ import dda
 import fem_reference
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
 TRAPEZIUM = ((0.3, 0.1), (2.3, 0.4), (1.9, 1.6), (0.5, 1.4))
 RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-1e-3, 2e-3], [0.0, 5e-4]])
 LOADS = {"traction": 2e5, "gravity": 9.81, "eccentricity": 0.2, "motion": RECORD}

@@ -25,7 +25,7 @@ PATCH = {"poisson": 0.3, "hypothesis": "plane strain", "foundation": "patch", "p
             ({"elements": 24}, Scheme(0.25, 0.5, 1.0, 1e-3, "consistent")),
             ({"elements": 24}, Scheme(0.5, 1.0, 1.0, 1e-5)),
         ],
-        5,
+        9,
     ),
 )
 def test_the_history_is_that_of_the_steps(change, scheme):

@@ -45,7 +45,7 @@ def page(place, *cases, claims=None, **kept):
 # ---- the register ---------------------------------------------------------------------------------------------------
 
 
-def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, tmp_path):
+def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, drawn, tmp_path):
     """Also where all hold or none, and where one or several of the refuted are misprints."""
     claims = {
         "S16": {"verdict": 0.0, "steps": 44, "none": 0, "share": "undefined"},

@@ -97,7 +97,8 @@ def answers(solver, scene):
     assert run.outcome is Outcome.COMPLETED, run.notes
     assert 0 <= sum(run.seconds.values()) <= time.perf_counter() - begin
     whole = {
-        "before": [*memory.needed(scene, adapter)[:1], reach(scene)],
+        "memory": memory.needed(scene, adapter)[0],
+        "reach": reach(scene),
         **told(scene),
         "history": {"time": run.history.time, **run.history.columns},
         "run": [dict(run.work), *run.notes, run.estimate or 0.0],

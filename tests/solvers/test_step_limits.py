@@ -26,7 +26,6 @@ COLUMN = {
     "motion": "shear",
     "layer": [{"thickness": 10.0, "density": 2000.0, "young": 1e8, "blocks": 4}],
 }
-HALF_SPACE = COLUMN | {"base": "transmitting", "base_density": 2000.0, "base_speed": 10.0}
 STACK = {
     "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
     "stiffness": 1e9,

@@ -131,11 +131,6 @@ class PlaneSection(PlaneContents):
         return stated if self.body is None else (*self.body.tractions, *stated)
 
     @property
-    def present(self) -> bool:
-        """Whether the scene is of this kind."""
-        return True
-
-    @property
     def is_glued(self) -> bool:
         """Whether the blocks are glued along all edges that they share, and observed as they deform."""
         return self.observe is not None or self.body is not None

@@ -228,7 +228,7 @@ def events_in_steps(case: Scene) -> Band:
     body = falling(case)
     landing, number = body.landing(case.time.duration)
     landed = body.flown(landing)
-    x, y = landed.arms(landed.angle)[number]
+    x, y = landed.arm(number)
     contact = case.table(PlaneSection).contact
     across = (contact.stiffness if contact else 0.0) * (1 / body.mass + x**2 / body.inertia)
     along = (contact.shear if contact else 0.0) * (1 / body.mass + y**2 / body.inertia)
