@@ -45,4 +45,8 @@ def test_a_block_that_opens_must_not_gain_unless_allowed(monkeypatch):
     monkeypatch.setattr(across, "IMPACTS", across.IMPACTS[:1])
     scene = load_scene("unlocked-constant").expand()[0]
     assert advise_across(scene, 0.05).no_gain and not advise_across(scene, 0.05, no_gain=False).no_gain
-    assert not advise_across(load_scene("figures-3-4").with_values({"time.step": 0.002}), 0.05).no_gain
+    closed = advise_across(PAPER, 0.05)
+    assert not closed.no_gain
+    assert closed.frequency == pytest.approx(dda_modes(PAPER)[0].frequency / (2 * math.pi))
+    present = [offer for offer in closed.offers if offer.step == PAPER.time.step and offer.gg == 1]
+    assert present and all(offer.damping == pytest.approx(0.05) for offer in present)

@@ -42,6 +42,7 @@ def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path)
     assert layer.blocks == math.ceil(10 * 100.0 * 200.0 / speed)
     assert scene.time.step == pytest.approx(1 / (40 * 200.0), rel=0.05)
     assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
+    assert scene.time.duration == pytest.approx(4 / 200.0 + 4 * 100.0 / speed, rel=1e-3)  # there and back
 
 
 def test_numbers_of_other_kinds_follow_from_size_and_rock():

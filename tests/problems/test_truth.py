@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from validation.errors import InputError
 from validation.models.plane import problems as boxes
+from validation.problems import truth
 from validation.problems.bands import standard
 from validation.problems.problem import ASKS, problem, problem_of
 from validation.problems.truth import exact, truth_of
+from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
 from validation.solvers.rigid.rocking import friction_needed
@@ -108,6 +111,18 @@ def test_a_scene_without_an_exact_motion_says_why():
         truth_of(load_scene("field-opening").with_values({"time.gg": 0.99}))
     with pytest.raises(InputError, match="damping"):  # the continuum's is not that of a block of one strain
         truth_of(load_scene("field-locked").with_values({"damping.stiffness": 1e-4}))
+
+
+@pytest.mark.parametrize("outcome", [Outcome.NOT_RUN, Outcome.OVERFLOW, Outcome.COMPLETED])
+def test_a_motion_that_was_not_computed_to_its_end_is_none(outcome, monkeypatch):
+    """What a run that overflows leaves is no exact motion; a completed run without a history is none either."""
+    left = None if outcome is Outcome.COMPLETED else "a history"
+    run = SimpleNamespace(outcome=outcome, history=left, notes=("why",))
+    monkeypatch.setattr(truth, "get_solver", lambda name: SimpleNamespace(solve=lambda scene: run))
+    one = problem("locked")
+    with pytest.raises(InputError) as refusal:
+        exact(one.scene, one.truth)
+    assert refusal.value.field == one.truth.name
 
 
 @pytest.mark.parametrize("tilt", [0.5, 0.9])
