@@ -228,3 +228,16 @@ def test_a_run_without_a_history_has_no_columns():
     for part, outcome in itertools.product(("time", "displacement"), (Outcome.RAISED, Outcome.TIMEOUT)):
         with pytest.raises(ValueError, match="because"):
             getattr(Run(outcome, notes=("because",)), part)
+
+
+def test_a_table_is_read_whatever_ends_it(tmp_path):
+    """Plain numbers are read at once; what is none is found with its place, also after digits without end."""
+    path = tmp_path / "table.csv"
+    path.write_text("time,displacement\n0.5,1e-3\n1.0,-2.5E+2\n")
+    names, values = files.read_table(path)
+    assert names == ["time", "displacement"] and values.tolist() == [[0.5, 1e-3], [1.0, -250.0]]
+    for wrong in ("1" * 60 + "x", "--1", "1,2,3"):
+        path.write_text(f"time,displacement\n0.5,1.0\n1.0,{wrong}\n")
+        with pytest.raises(InputError) as caught:
+            files.read_table(path)
+        assert "table.csv:3" in str(caught.value)

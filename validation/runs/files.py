@@ -26,7 +26,7 @@ from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
 # What numpy reads as it is read below.
-_PLAIN = re.compile(r"time(?:,\w+)+\n(?:[-+.eE\d]+(?:,[-+.eE\d]+)*\n?)+", re.ASCII)
+_PLAIN = re.compile(r"time(?:,\w+)+(?:\n[-+.eE\d]+(?:,[-+.eE\d]+)*)+\n?", re.ASCII)
 
 
 @contextlib.contextmanager
