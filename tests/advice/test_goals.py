@@ -75,7 +75,7 @@ def test_an_impact_is_judged_by_the_worst_of_four_places_of_a_step(monkeypatch):
         error = off[round(4 * gap / (speed * values["time.step"]))] if "contact.gap" in values else 0.0
         return History(time, {"displacement": (1 + error) * flight})
 
-    monkeypatch.setattr(goals, "_history", made)
+    monkeypatch.setattr(goals, "history_of_run", made)
     monkeypatch.setattr(goals, "estimated_seconds", lambda *given: 1.0)
     lands = PAPER.with_values({"block.velocity": -3.0, "contact.law": "unilateral"})
     for error, is_coarsest in ((0.05, True), (0.035, False)):

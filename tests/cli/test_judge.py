@@ -17,7 +17,7 @@ from validation.problems.bands import standard
 from validation.problems.cause import Cause
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
-from validation.problems.problem import problem
+from validation.problems.problem import names, problem
 from validation.report.chapters import judged
 from validation.runs.history import History
 from validation.runs.run import Outcome
@@ -255,6 +255,7 @@ def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(tmp_path, 
     done = typed("judge", tmp_path / "mine", "--out", tmp_path / "site")
     assert done.returncode == 1 and re.search(r"locked +stale .* 1\.9", done.stdout)
     assert re.search(r"rocking +PASS", done.stdout)
+    assert re.search(rf"^{len(names()) - 2} problems", done.stdout, re.M)
     for file in ("index.html", "answers_bob-s-code-co_1.0_default.html", "verdicts.json"):
         assert "pack 1.9" in (tmp_path / "site" / file).read_text(encoding="utf-8"), file
 

@@ -66,7 +66,7 @@ def test_a_mode_that_stops_at_once_has_no_power():
 DAMPED = product([2.0, 1e3, 1e9], [0.003, 1.0, 7.0, 60.0], [0.25, 0.250001, 0.2371])
 
 
-@pytest.mark.parametrize(("kappa", "a", "step"), thinned(DAMPED, 36))
+@pytest.mark.parametrize(("kappa", "a", "step"), thinned(list(DAMPED)[1:], 71))
 def test_damped_bar_against_its_transform(kappa, a, step):
     # On the fronts, right behind them and away from them; the transform of a stiff spring rounds by 2e-13.
     columns = ("displacement", "contact_pressure")

@@ -66,8 +66,6 @@ def test_what_is_compiled_gives_the_same_numbers(long, draw):
 @pytest.mark.parametrize(
     "contact",
     [
-        Unilateral(gap=1e-3, velocity=-0.2),
-        Unilateral(gap=1e-3, velocity=-0.2, shear="glued"),
         Unilateral(gap=1e-3, velocity=-0.2, shear="glued", friction=Friction(20.0, 1e4)),
         Unilateral(gap=1e-3, velocity=-0.2, shear="glued", rule="implicit"),
     ],

@@ -71,7 +71,7 @@ def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
 
 
 def test_modes_of_a_cantilever_share_its_deflection():
-    modes = PlaneModel([replace(CANTILEVER, elements=3)]).modes(SCHEME, 6)
+    modes = PlaneModel([replace(CANTILEVER, elements=2)]).modes(SCHEME, 6)
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
     assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia

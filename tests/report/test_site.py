@@ -96,6 +96,7 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
 def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path, monkeypatch):
     for other in ("scene_page", "chapter_blocks"):
         monkeypatch.setattr(pages, other, lambda *_: [])
+    monkeypatch.setattr(pages, "matrix", lambda verdicts: [Paragraph(f"of {len(verdicts)}")])
     pages.build(core_results, tmp_path / "site")
     files = texts(tmp_path / "site")
     index = files["index.html"]
@@ -103,6 +104,7 @@ def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tm
     assert [picture for _, picture in cards] == ["step", "springs", "discount"]
     assert all(f'id="{place}"' in files["decisions.html"] for place, _ in cards)
     assert index.index(cards[-1][0]) < index.index("study-core.html")
+    assert "of 2" in files["verification.html"] and 'href="verification.html"' in index
 
 
 def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site, results):

@@ -132,9 +132,10 @@ static = { value = "dda displacement.static", decimals = 2 }
 [table.cases]
 caption = "To {coarse} ms."
 by = "solver"
-first = [["", "exact", "", "{coarse}"]]
+first = [["", "", "exact", "", "{coarse}"]]
 columns = [
     { title = "Case", of = "scene", without = "figures-", once = true },
+    { title = "dt", of = "time.step", form = "g", without = "s" },
     { title = "Solver", of = "solver", words = { fem = "elements" } },
     { title = "", of = "time.step", form = "g", pattern = "{}, {}", also = [{ of = "* work.unknowns", digits = 1 }] },
     { title = "v", of = "* displacement.static", decimals = 2, where = { "time.step" = 0.01 } },

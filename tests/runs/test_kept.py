@@ -12,10 +12,11 @@ import pytest
 from oracles.made_cases import made_history, made_row
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, text
+from validation.runs import columns, extras, files, provenance, strict, text, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
+from validation.runs.modes import Mode
 from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
@@ -100,6 +101,24 @@ def test_columns_have_units_words_and_an_order():
     assert units == ["N", "mm", "mm", "m/s", "rad", "", ""] and columns.unit_of("force_1") == "Pa"
     assert columns.axis_of("x_7", own) == ("Place of box 7", "mm") and columns.axis_of("contact_pressure")[1] == "Pa"
     assert columns.axis_of("gap_2") == ("Gap 2", "m") and columns.split("a_b") == ("a_b", "")
+
+
+def test_headers_are_recognised_with_their_units():
+    known = {"displacement": "m", "time": "s"}
+    headers = ("displacement", "Displacement_mm", "displacement [cm]", "displacement_MM", "time_ms", "time_mm", "place")
+    found = [units.recognised(header, known) for header in headers]
+    assert [one and one[0] for one in found] == [*3 * ["displacement"], None, "time", None, None]
+    assert [one[1] for one in found if one] == pytest.approx([1.0, 1e-3, 1e-2, 1e-3])
+
+
+def test_a_motion_beyond_nyquist_shows_the_frequency_that_its_samples_have():
+    step, frequency, decay = 0.1, 50.0, 0.6
+    turned = np.sqrt((frequency * step) ** 2 - decay**2)  # 4.96: beyond pi
+    value = complex(np.exp(-decay + 1j * turned))
+    mode = Mode(frequency, 1.0, (value, value.conjugate()), sampled=True)
+    assert mode.alias(step) == pytest.approx(np.hypot(2 * np.pi - turned, decay) / step)
+    slow = replace(mode, frequency=33.0, eigenvalues=(value / 2, value.conjugate() / 2))  # 3.3 without its decay
+    assert slow.alias(step) is None and replace(mode, sampled=False).alias(step) is None
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():

@@ -11,7 +11,7 @@ import re
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import IO
 
@@ -167,6 +167,18 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
         write(stream)
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text as `write_atomically` does, in UTF-8."""
+    write_atomically(path, lambda stream: stream.write(text.encode()))
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Return rows as CSV."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
 def check_ending(path: Path | None, field: str) -> None:
     """Refuse a figure's file of an unknown kind, or that cannot be drawn here, before anything is computed.
 
@@ -185,11 +197,7 @@ def check_ending(path: Path | None, field: str) -> None:
 def write_csv(history: History, path: Path) -> None:
     """Write a history as CSV with full double precision, header ``time,displacement,...``."""
     table = np.column_stack([history.time, *history.columns.values()])
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *history.columns])
-    writer.writerows([repr(value) for value in row] for row in table.tolist())
-    write_atomically(path, lambda stream: stream.write(text.getvalue().encode()))
+    write_text(path, csv_text([["time", *history.columns], *table.tolist()]))
 
 
 def read_table(path: Path) -> tuple[list[str], Array]:
