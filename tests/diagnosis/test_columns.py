@@ -95,7 +95,9 @@ def is_named(answer, cause, number):
 def test_one_of_few_candidates_is_named(monkeypatch):
     few = [one for one in of_scene(DROPPED) if one.id in ("start", "gg")]
     monkeypatch.setattr(columns, "of_scene", lambda scene: few)
-    is_named(judged(DROPPED.with_values({"time.steps": 40}), time__gg=0.99), "gg", 0.99)
+    answer = judged(DROPPED.with_values({"time.steps": 40}), time__gg=0.99)
+    is_named(answer, "gg", 0.99)
+    assert any(stage.agrees is False for stage in answer.evidence)  # a fault explained is a fault
 
 
 @pytest.mark.long

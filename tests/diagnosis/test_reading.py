@@ -106,6 +106,12 @@ def test_times_name_the_steps():
         assert other.note != some.note != ""
 
 
+def test_a_program_s_own_steps_may_begin_late():
+    late = [one for one in steppings(history_at(0.0007 * np.arange(5, 13)), 0.002) if " 5" in one.note]
+    (rows,) = (one.rows for one in late)
+    np.testing.assert_array_equal(rows, np.arange(4, 12))
+
+
 def test_times_in_milliseconds_are_a_slip_of_units():
     found = steppings(history_at(2.0 * np.arange(1, 9)), 0.002)[0]
     assert found.factor == 1000
