@@ -29,10 +29,10 @@ gallery: $(REPORT)  ## the results as a static site with calculators, in reports
 field: $(PEERS)  ## other people's programs on the problems of blocks, as a PDF; minutes. FIELD='--require yade' insists on one
 	@$(BIN)/dda-validate judge installed $(FIELD_PROBLEMS) --beside dda --out reports/field.pdf $(FIELD) || [ $$? -eq 1 ]
 
-test: $(READY)  ## the tests and the accuracy gates, without the long ones
-	$(PYTEST) -n 2 --dist loadfile -m "not long"
+test: $(READY)  ## the tests without the long ones, the accuracy gates on first cases among them
+	$(PYTEST) -n 2 --dist loadfile -m "not long" tests
 
-test-all: test  ## these, then the long ones: all seeded faults, all fifty histories
+test-all: test  ## these, then the long ones: all accuracy gates, all seeded faults, all fifty histories
 	$(PYTEST) -n 2 --dist loadfile -m long
 
 gates: $(READY)  ## the accuracy gates alone

@@ -1,11 +1,10 @@
-"""Shared fixtures: a small scene as text and as a file, the command line as a process; which gates are long."""
+"""Shared fixtures: a small scene as text and as a file, the command line as a process; gates are long."""
 
 import copy
 import gc
 import importlib.util
 import io
 import os
-import re
 import signal
 import subprocess
 import sys
@@ -49,20 +48,6 @@ OVERFLOW = [  # options with which the small scene leaves the range of doubles
     for value in ("time.alpha=0", "time.delta=0.5", "time.step=0.1", "time.steps=2000", "time.allow_unstable=true")
     for word in ("--set", value)
 ]
-# Long are scenes of seconds (an exact motion of a shaken slope, mesh against sub-blocks, the record of work, which has
-# tests of its own, columns of many switches, four claims of the paper), orders and the finest meshes of plates and
-# beams whose coarse ones are short, other numbers of a family whose first ones are short (joints, schemes), and another
-# process of the distributed solver.
-LONG_GATES = re.compile(
-    r"(slope-quake-exact|subblocks-locking|cost-(granite|opening)|unlocked-constant|methods-cost|methods-rigid-impulses-euler"
-    r"|plates-glue|plates-(hole|disc)(?=:order)|beams-glue"
-    r"|beams-(supported|triangles|weight)(?=:order|\[plane\.subdivide=(64x8|8x64))"
-    r"|columns-(slips|spall|spall-bars|shaken)|columns-joint-0\.(1|5|75|9)"
-    r"|methods-(impact|locked|refined)-(?!constant|average|ch-0\.5|tr-bdf2)[\w.-]+"
-    r"|methods-\w+-(ch-0|ch-0\.8|bathe-half|bathe-0\.5|implicit-euler|nine-sixteenths))(?=[:\[])"
-    r"|claims:C(14|15|16|20):|.*:fenicsx:2-"
-)
-GATE = re.compile(r"test_gate\[(?P<name>(?P<scene>[^\[:]+)(?:\[[^\]]*\])?:(?P<kind>.+))\]")
 
 
 @pytest.hookimpl(wrapper=True, specname="pytest_collection")
@@ -81,20 +66,10 @@ def pytest_rest_while_collecting():
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark the gates of all but the first case of each scene and kind as long.
-
-    The kind is what a gate asks for of which solvers; a case that it is held against is named in brackets.
-    """
-    short = set()
+    """Mark all accuracy gates as long; `studies/test_gates_in_short.py` judges those of first cases."""
     for item in items:
-        gate = GATE.fullmatch(item.name)
-        if gate is None:
-            continue
-        kind = (gate["scene"], re.sub(r"\(.*?\)", "", gate["kind"]))
-        if kind in short or LONG_GATES.match(gate["name"]):
+        if item.path.name == "test_gates.py" and item.path.parent.name == "validation":
             item.add_marker(pytest.mark.long)
-        else:
-            short.add(kind)
 
 
 def pytest_collection_finish():

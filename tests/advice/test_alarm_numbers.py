@@ -74,6 +74,8 @@ def test_what_has_no_damping_ratio_of_its_own_is_not_split():
         text = runs(replace(mode, algorithmic=algorithmic, kinetic=kinetic))
         assert re.findall(r"\d+", text) == numbers
         assert ("kinetic" in text) is (kinetic != 0)
+    for ratio in (0.999, 1.0):
+        assert ("overdamped" in runs(replace(mode, damping=ratio))) is (ratio == 1.0)
 
 
 # ---- the damping budget -------------------------------------------------------------------------------------------

@@ -18,7 +18,7 @@ from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 
-PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 50})
+PAPER = load_scene("unlocked-constant").expand()[0].with_values({"time.step": 1e-3, "time.steps": 25})
 STANDS = load_scene("creep-steps").expand()[1]  # 2 ms, constant acceleration
 SCENES = {"paper": PAPER, "slides": load_scene("slope-drag").expand()[0], "stands": STANDS}
 ROWS = tomllib.loads(Path(__file__).with_name("raised.toml").read_text(encoding="utf-8"))["row"]

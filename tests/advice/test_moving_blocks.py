@@ -40,11 +40,11 @@ def test_a_corner_is_in_contact_for_half_a_period_of_its_frequency(rectangle, yo
     frequency = highest_frequency(block_of(scene), P)
     mass = DENSITY * math.prod(rectangle)
     assert frequency == pytest.approx(math.sqrt(over_mass * P / mass), rel=1e-5), "the closed form"
-    step = 2 * math.pi / frequency / 1000
-    values = {"time.step": step, "time.steps": 700, "time.alpha": 0.25, "time.delta": 0.5}
+    step = 2 * math.pi / frequency / 400
+    values = {"time.step": step, "time.steps": 280, "time.alpha": 0.25, "time.delta": 0.5}
     history = solve(scene.with_values(values | {"run.columns": ["A.1-floor.2.normal"]}), "dda").history
     pressed = np.sum(history.columns["A.1-floor.2.normal"] > 0)
-    assert pressed * step == pytest.approx(math.pi / frequency, rel=5e-3), "as dda has it"
+    assert pressed * step == pytest.approx(math.pi / frequency, rel=1e-2), "as dda has it"
 
 
 def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens():
@@ -57,7 +57,9 @@ def test_two_blocks_that_move_are_faster_than_one_and_strain_stiffens():
     assert math.sqrt(squares[1]) > highest_frequency(replace(block, young=1.0), P)
 
 
-@pytest.mark.parametrize("scheme", [{}, {"time.alpha": 0.25, "time.delta": 0.5}], ids=["constant", "average"])
+@pytest.mark.parametrize(
+    "scheme", [{}, pytest.param({"time.alpha": 0.25, "time.delta": 0.5}, marks=pytest.mark.long)], ids=str
+)
 def test_what_is_advised_keeps_thickness_and_rebound(scheme):
     scene = load_scene("rigid-impact").with_values(scheme)
     advice = moving_advice(scene, 0.05)

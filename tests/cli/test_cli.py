@@ -20,6 +20,8 @@ def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(sc
         "contact.stiffness=1e308",
         "--set",
         "time.steps=5",
+        "--set",
+        'run.solvers=["dda","bar"]',
         "--results",
         tmp_path / "results",
     )

@@ -14,15 +14,15 @@ gravity = 9.81
 {more}
 
 [[column.layer]]
-thickness = 7.0
+thickness = 4.0
 density = 2500.0
 young = inf
-blocks = 7
+blocks = 4
 velocity = -1.0
 
 [time]
 step = 1.0e-3
-steps = 30
+steps = 10
 
 [run]
 solvers = ["dda"]
@@ -31,7 +31,7 @@ solvers = ["dda"]
 
 def test_a_stack_whose_solves_are_limited_ends_by_name(tmp_path):
     path = tmp_path / "limited.toml"
-    path.write_text(STACK.format(more="solve_limit = 6"))
+    path.write_text(STACK.format(more="solve_limit = 3"))
     done = typed("advise", "contact", path)
     assert done.returncode == NUMERICAL_FAILURE
     assert Outcome.SOLVE_LIMIT.sentence in done.stdout

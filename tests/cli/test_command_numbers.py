@@ -1,12 +1,16 @@
 """Every number that a command prints, with its unit: computed apart, or kept by hand in a results directory."""
 
+import csv
+
 import pytest
-from conftest import typed
+from conftest import refused, typed
+from oracles.made_cases import kept_study, made_row
 
 from validation.cli.run import _status
 from validation.gates.changes import changes, markdown
 from validation.gates.gate import Gate, Status, Verdict
 from validation.runs.results import Results
+from validation.scenes.scene import load_scene
 
 # ---- solve and run ------------------------------------------------------------------------------------------------
 
@@ -53,6 +57,20 @@ def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to():
         "| worse | `a` | PASS → FAIL | 0.5 → 0.875 |",
         "| value | `b` | FAIL | 0.125 → 0.1 |",
     ]
+
+
+# ---- rows -----------------------------------------------------------------------------------------------------------
+
+
+def test_rows_of_a_study_are_one_table(tmp_path):
+    case = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    kept_study(Results(tmp_path), [(case, made_row("dda", {"displacement.static": -0.0125}, case.name), None)])
+    words = ("--results", tmp_path, "--csv", tmp_path / "rows.csv")
+    assert typed("rows", "made", *words).returncode == 0
+    lines = list(csv.DictReader((tmp_path / "rows.csv").read_text().splitlines()))
+    (line,) = [line for line in lines if line["metric"] == "displacement.static"]
+    assert (line["study"], line["solver"], line["value"], line["unit"]) == ("made", "dda", "-0.0125", "m")
+    assert refused("rows", "other", *words).startswith("error: other: ")
 
 
 # ---- claims -------------------------------------------------------------------------------------------------------

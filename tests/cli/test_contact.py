@@ -18,7 +18,7 @@ SHORT = ("--set", "time.step=0.001", "--set", "time.steps=8", "--set", "contact.
 
 def test_an_impact_law_has_a_page_without_springs_to_choose():
     stop = ("contact.stiffness=inf", "contact.shear_stiffness=0", 'contact.rule="impact"', "contact.restitution=0.5")
-    sets = [word for value in (*stop, "time.step=0.001", "time.steps=8") for word in ("--set", value)]
+    sets = [word for value in (*stop, "time.step=0.001", "time.steps=4") for word in ("--set", value)]
     done = typed("advise", "contact", "unlocked-average", *sets, "--json")
     assert done.returncode == 0, done.stderr
     page = json.loads(done.stdout)

@@ -17,7 +17,7 @@ advise wave figures-3-4 --set time.step=0.002 --fmax 1e200
 advise wave figures-3-4 --set time.step=0.002 --fmax 1e-200
 advise damping figures-3-4 --set time.step=1e-300
 advise damping figures-3-4 --set time.step=0.002 --set contact.stiffness=1e300
-advise contact unlocked-constant --set block.velocity=1e200 --set time.step=0.002 --set time.steps=20
+advise contact unlocked-constant --set block.velocity=1e200 --set time.step=0.002 --set time.steps=2
 """
 
 

@@ -89,11 +89,19 @@ def test_every_command_stands_in_one_group_of_the_help():
 def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
     """The bar starts while the first piece of work is still busy."""
     started = threading.Event()
+    stopped = []
 
     def work(*arguments, **options):
         raise InputError("shown" if started.wait(60) else "no bar")
 
     monkeypatch.setattr(command_line, "PROGRESS_DELAY", 0.0)
-    monkeypatch.setattr("rich.progress.Progress.start", lambda bar: started.set())
+
+    def start(bar):
+        bar.live._started = True
+        started.set()
+
+    monkeypatch.setattr("rich.progress.Progress.start", start)
+    monkeypatch.setattr("rich.progress.Progress.stop", lambda bar: stopped.append(bar.live.is_started))
     monkeypatch.setattr("validation.problems.pack.write_pack", work)
     assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: shown\n"
+    assert stopped == [True]

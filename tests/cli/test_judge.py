@@ -12,12 +12,12 @@ from conftest import refused, typed
 from oracles.answers import answered
 from oracles.processes import answer_here
 
-from validation.problems import bands, packs
+from validation.problems import packs
 from validation.problems.bands import standard
 from validation.problems.cause import Cause
 from validation.problems.data import PACK
 from validation.problems.pack import table_of
-from validation.problems.problem import problem
+from validation.problems.problem import names, problem
 from validation.report.chapters import judged
 from validation.runs.history import History
 from validation.runs.run import Outcome
@@ -56,7 +56,7 @@ def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path, exact)
     answered(tmp_path / "mine", 1.0, ("locked",))
     for arguments, who in (
         ((table(tmp_path / "my.csv", exact), "locked"), "my"),
-        ((tmp_path / "mine",), "Bob's <code>"),
+        ((tmp_path / "mine", "locked"), "Bob's <code>"),
     ):
         done = typed("judge", *arguments)
         assert done.returncode == 0, done.stderr
@@ -166,22 +166,19 @@ def test_programs_stand_beside_each_other(tmp_path, monkeypatch):
     """What is not applicable, what raises and what is not there are no failures of the others, nor hidden by them."""
     brought = {"mine": "same_or_not:rounded", "broken": "same_or_not:broken", "away": "same_or_not:away"}
     monkeypatch.setattr(registry, "entry_points", lambda: brought)
-    asked = ("installed", "locked", "rocking", "--beside", "dda")
-    done = typed("judge", *asked)
-    assert done.returncode == 1, done.stderr
+    asked = ("installed", "locked", "rocking", "--beside", "dda", "--require", "mine")
+    done = typed("judge", *asked, "--out", tmp_path / "site")
+    assert done.returncode == 1 and (tmp_path / "site/index.html").exists(), done.stderr
     header, locked, rocking, times = done.stdout.splitlines()[1:5]
     assert header.split() == ["Problem", "mine", "dda"] and times.startswith("time [s]")
     assert "PASS" in locked and "FAIL" in locked and str(Outcome.NOT_APPLICABLE) in rocking
     assert "DISK" in done.stdout and "apt-get" in done.stdout
-    found = json.loads(typed("judge", *asked, "--json").stdout)["answers"]
+    required = typed("judge", *asked, "--require", "away", "--json")
+    assert required.returncode == 3
+    found = json.loads(required.stdout)["answers"]
     assert {row["program"]: row["verdict"] for row in found if row["problem"] == "locked"} == {
         "mine": "PASS", "broken": "NOT RUN", "away": "NOT RUN", "dda": "FAIL",
     }  # fmt: skip
-    required = typed("judge", *asked, "--require", "away", "--require", "mine")
-    assert required.returncode == 3
-    assert typed("judge", *asked, "--require", "mine").returncode == 1
-    site = typed("judge", *asked, "--out", tmp_path / "site")
-    assert site.returncode == 1 and (tmp_path / "site/index.html").exists()
 
 
 def test_what_a_program_is_not_asked_or_refuses_is_told_once(tmp_path, monkeypatch):
@@ -221,7 +218,7 @@ def layout(tmp_path):
     return place
 
 
-def test_the_site_holds_every_answer_and_needs_nothing_else(layout, tmp_path, undrawn):
+def test_the_site_holds_every_answer_and_the_data_of_the_commands_and_needs_nothing_else(layout, tmp_path, undrawn):
     done = typed("judge", layout, "--layout", "--out", tmp_path / "site")
     assert done.returncode == 1, done.stderr
     files = {path.name: path.read_text(encoding="utf-8") for path in (tmp_path / "site").iterdir()}
@@ -236,11 +233,7 @@ def test_the_site_holds_every_answer_and_needs_nothing_else(layout, tmp_path, un
             assert "<code>" not in text and "<cause>" not in text
         if name.endswith(".svg"):
             ElementTree.fromstring(text)
-
-
-def test_verdicts_as_plain_data_are_those_of_the_commands(layout, tmp_path, undrawn):
-    typed("judge", layout, "--out", tmp_path / "site")
-    verdicts = json.loads((tmp_path / "site/verdicts.json").read_text(encoding="utf-8"))
+    verdicts = json.loads(files["verdicts.json"])
     assert (verdicts["format"], verdicts["pack"]) == (FORMAT, PACK)
     rows = {(row["program"], row["settings_name"], row["problem"]): row for row in verdicts["answers"]}
     assert len(rows) == 7
@@ -262,14 +255,9 @@ def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(tmp_path, 
     done = typed("judge", tmp_path / "mine", "--out", tmp_path / "site")
     assert done.returncode == 1 and re.search(r"locked +stale .* 1\.9", done.stdout)
     assert re.search(r"rocking +PASS", done.stdout)
+    assert re.search(rf"^{len(names()) - 2} problems", done.stdout, re.M)
     for file in ("index.html", "answers_bob-s-code-co_1.0_default.html", "verdicts.json"):
         assert "pack 1.9" in (tmp_path / "site" / file).read_text(encoding="utf-8"), file
-
-
-def test_each_exact_motion_is_computed_once(layout, undrawn, tmp_path):
-    bands._standard.cache_clear()
-    typed("judge", layout, "--out", tmp_path / "site")
-    assert bands._standard.cache_info().misses == 3
 
 
 def test_all_defects_are_printed_and_nothing_is_written(layout, tmp_path, undrawn):
@@ -331,6 +319,7 @@ def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypa
     from validation.suite.own_solver import gates
 
     monkeypatch.setattr(gates, "gates", dict)  # those of all studies take seconds to read
+    monkeypatch.setattr(gates, "judged_studies", tuple)
     for name in ("applying", "asked"):
         monkeypatch.setattr(gates, name, cache(getattr(gates, name).__wrapped__))
     monkeypatch.chdir(tmp_path)

@@ -6,10 +6,10 @@ from conftest import typed
 from validation.cli.printing import output
 from validation.metrics.catalogue import CATALOGUE
 from validation.scenes.keys import keys_of, range_of
-from validation.scenes.scene import scene_names, tables_of_scenes
+from validation.scenes.scene import load_scene, scene_names, tables_of_scenes
 from validation.solvers import registry
 from validation.solvers.registry import solver_names
-from validation.suite.folders import study_names
+from validation.suite.folders import get_study, study_names
 
 
 def listed(word):
@@ -24,9 +24,20 @@ def test_a_solver_of_another_package_is_listed_with_its_target(monkeypatch):
     assert last == ["theirs", "other", "their_package.adapter:solve", "decides", "itself"]
 
 
+def test_scenes_and_studies_have_a_count_and_a_title(monkeypatch):
+    monkeypatch.setattr("validation.scenes.scene.scene_names", lambda: ["figures-3-4"])
+    monkeypatch.setattr("validation.suite.folders.study_names", lambda: ["response"])
+    scene = load_scene("figures-3-4")
+    study = get_study("response")
+    words = ["figures-3-4", "3", *", ".join(scene.run.solvers).split(), *scene.title.split()]
+    assert [line.split() for line in listed("scenes")[1:]] == [words]
+    assert [line.split() for line in listed("studies")[1:]] == [["response", "3", *study.title.split()]]
+
+
 @pytest.mark.parametrize(
-    "word", ["keys", "metrics", pytest.param("scenes", marks=pytest.mark.long), "schemes", "solvers", "studies"]
-)
+    "word", ["keys", "metrics", "schemes", "solvers", *(pytest.param(word, marks=pytest.mark.long) for word in
+                                                        ("scenes", "studies"))]
+)  # fmt: skip
 def test_lists_fit_a_terminal(word, monkeypatch):
     monkeypatch.setattr(output, "terminal_width", lambda: 80)
     assert max(map(len, listed(word))) <= 80
@@ -44,9 +55,9 @@ def test_the_plain_list_fits_a_screen_and_counts_what_the_others_hold(monkeypatc
 
 def test_a_page_of_advice_keeps_its_lines_in_a_terminal(monkeypatch):
     monkeypatch.setattr(output, "terminal_width", lambda: 60)
-    page = typed("advise", "rigid-impact").stdout.splitlines()
+    page = typed("advise", "rigid-impact", "--keep-springs").stdout.splitlines()
     assert max(map(len, page)) <= 60
-    assert sum(line.startswith("  ") for line in page) == 7  # five facts, two settings
+    assert sum(line.startswith("  ") for line in page) == 6  # five facts, a setting
 
 
 def test_every_key_of_a_scene_is_described_once():

@@ -15,16 +15,8 @@ from oracles.contact_bodies import CASES
 from dda.march import compiled, one_library, step
 
 EVERY_CODE = (
-    *("rough", "rough by two stages", "long steps", "lagged", "dead band", "implicit, shaken", "dashpot"),
-    *(
-        "conserving",
-        "augmented",
-        "impact",
-        "turning",
-        "turning by first order",
-        "turning by two stages",
-        "rough sub-blocks",
-    ),
+    *("rough by two stages", "dead band", "dashpot", "conserving", "augmented", "impact"),
+    *("turning by two stages", "rough sub-blocks"),
 )
 
 
@@ -146,6 +138,7 @@ def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(f
     assert ran() == RAN
 
 
+@pytest.mark.long
 def test_code_is_the_same_for_arrays_of_all_lengths_in_named_tuples(fresh):
     for n in (3, 5):
         at = np.arange(2.0 * n).reshape(n, 2)
@@ -182,6 +175,7 @@ def test_what_is_kept_is_read_for_shorter_histories_of_the_same_sizes_than_are_c
         assert ran(20) == RAN
 
 
+@pytest.mark.long
 def test_short_histories_pay_together_but_where_plain_python_is_asked_for(fresh, monkeypatch):
     monkeypatch.setattr(compiled, "SHORT", 10)
     monkeypatch.setattr(compiled, "LONG", 30)
@@ -192,6 +186,7 @@ def test_short_histories_pay_together_but_where_plain_python_is_asked_for(fresh,
     assert ran(1) == RAN and ran(0) == (compiled.PLAIN, RAN[1])
 
 
+@pytest.mark.long
 def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeypatch, caplog):
     class Elapsed(threading.Timer):
         """A timer whose interval is over at once: a real one is another thread, which may come too late."""
@@ -209,6 +204,7 @@ def test_a_compilation_is_announced_and_code_that_was_kept_is_not(fresh, monkeyp
     assert len(caplog.records) == 1
 
 
+@pytest.mark.long
 def test_another_numba_compiles_in_its_own_way(fresh, monkeypatch):
     monkeypatch.setattr(one_library, "one_library", lambda: 1 / 0)
     assert ran(loop=loop_of_another_numba, numbers=Numbers(6.0)) == (compiled.COMPILED, [2.0, 3.0, 4.0])

@@ -10,7 +10,7 @@ from oracles import block_in_digits
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modes, solve
 from dda.scheme import spectral
 
-STEPS = 150
+STEPS = 50
 # The bounds that the package promises; worst of some 2000 random rectangles: 4e-12 and 6e-12.
 LIMIT = {"zero": 1e-11, "consistent": 1e-9}
 STARTS = ["zero", "consistent"]

@@ -12,9 +12,7 @@ from validation.theory.first_touch import MovingPolygon, first_touches
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
-PENTAGON = np.array([(-1.0, -0.8), (0.7, -1.0), (1.3, 0.2), (0.2, 1.1), (-0.9, 0.7)])
 LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
-TRIANGLE_CENTRED = TRIANGLE - TRIANGLE.mean(axis=0)
 BAR = np.array([(-2.0, -0.1), (2.0, -0.1), (2.0, 0.1), (-2.0, 0.1)])
 AT_REST = (0.0,) * 6
 
@@ -73,7 +71,7 @@ PLACES = {
 }
 
 
-@pytest.mark.parametrize(("name", "size"), thinned(product(PLACES, [1.0, 1e6, 1e-6]), 2))
+@pytest.mark.parametrize(("name", "size"), thinned(product(PLACES, [1.0, 1e6, 1e-6]), 4))
 def test_instant_kind_and_places_of_a_first_touch(name, size):
     A, motion, B, time, kind, points, normals = PLACES[name]
     contact = contact_of(A, motion, B, AT_REST, size=size)
@@ -133,7 +131,7 @@ def as_moving(polygon, motion):
     return MovingPolygon(polygon @ turn, (x, y), (vx, vy), spin)
 
 
-@pytest.mark.parametrize("seed", thinned(range(24), 5))
+@pytest.mark.parametrize("seed", thinned(range(0, 24, 2), 4))
 def test_the_first_crossing_by_roots_agrees(seed):
     random = np.random.default_rng(seed)
     A = star(random, 3 + seed % 5)

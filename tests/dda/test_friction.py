@@ -20,11 +20,11 @@ def error(name, steps, time, scheme=AVERAGE):
     return np.linalg.norm([result.columns[name][-1] for name in PLACE] - np.array(known.at[time]))
 
 
-@pytest.mark.parametrize(("name", "time"), thinned([("rubbing", 0.01), ("pulled", 0.03), ("incline", 0.05)], 2))
+@pytest.mark.parametrize(("name", "time"), [("rubbing", 0.01), pytest.param("rubbing", 0.03, marks=pytest.mark.long)])
 def test_a_history_is_near_that_of_its_events(name, time):
-    coarse, fine = error(name, 300, time), error(name, 900, time)
+    coarse, fine = error(name, 200, time), error(name, 600, time)
     assert fine < coarse / 4  # second order: a ninth, but for where a switch falls within its step
-    assert fine < 3e-4 * np.linalg.norm(KNOWN[name].at[time])
+    assert fine < 6e-4 * np.linalg.norm(KNOWN[name].at[time])
 
 
 @pytest.mark.parametrize("turned", thinned([50.0, -30.0], 2))

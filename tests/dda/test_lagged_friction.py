@@ -34,6 +34,5 @@ def test_a_history_of_a_program_is_met_step_by_step():
     own, program = np.array([x[n - 1] for n in PROGRAM]), np.array([*PROGRAM.values()])
     assert np.max(np.abs(own - program)[:5]) < 5e-6  # its base, 0.2 % of 2 mm that the block moves to and fro
     assert np.max(np.abs(own / program - 1)) < 0.025  # later, two histories with as many slips are not one
-    assert (
-        np.max(np.abs([creep(stable(22, "consistent", (0.0, 0.0)), 2e-3)[n - 1] for n in PROGRAM] / program - 1)) > 0.5
-    )
+    consistent = creep(stable(22, "consistent", (0.0, 0.0)), 2e-3, time=0.1)
+    assert abs(consistent[-1] / PROGRAM[50] - 1) > 0.4

@@ -11,6 +11,7 @@ from dda.bodies.column import Column, Layer, Spring
 from dda.bodies.column_equations import equations
 from dda.bodies.column_history import solve_column
 from dda.bodies.column_march import Drive
+from dda.linear import elimination, krylov
 
 SCHEME = Scheme(0.5, 1.0, 1.0, 1e-3)
 MOVED = BaseMotion([0.0, 1.0], [[0.0, 0.0], [0.03, -0.02]])
@@ -74,10 +75,27 @@ def test_the_modes_share_the_static_solution_and_end_below_the_highest_frequency
     assert max(mode.frequency for mode in found) == pytest.approx(dda.highest_frequency(body()), rel=1e-9)
 
 
+@pytest.mark.parametrize("body", [sub_blocks, column])
+def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_elimination(body, monkeypatch):
+    scheme = replace(SCHEME, gg=0.97, step=2e-3)
+    for along in (None, (0.3, 1.0)):
+        narrow = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
+        with monkeypatch.context() as patch:
+            patch.setattr(elimination, "BAND", -1)
+            patch.setattr(krylov, "AT_A_TIME", 2)
+            small = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
+            patch.setattr(krylov, "LARGEST", 2)  # which resolves none
+            whole = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
+        for name, values in narrow.items():
+            largest = np.abs(values).max()
+            assert small[name] == pytest.approx(values, rel=1e-8, abs=1e-9 * largest), name
+            assert whole[name] == pytest.approx(values, rel=1e-8, abs=1e-9 * largest), name
+
+
 def test_a_column_on_a_shaken_base_is_stepped_to_its_response():
     w = 2 * np.pi * 40.0
-    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.9)
-    t = scheme.instants(1200)
+    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.8)
+    t = scheme.instants(500)
     sine = np.array([np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)])
     for spring in ([Spring(0.0, 4e9)], []):
         body = Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)], joints=spring)

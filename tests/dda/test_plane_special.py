@@ -25,20 +25,20 @@ CONSTANT, DISCOUNTED = Scheme(0.5, 1.0, 1.0, 1e-3), Scheme(0.5, 1.0, 0.98, 1e-3)
 AVERAGE = Scheme(0.25, 0.5, 1.0, 3e-4, "consistent")
 STIFF = {"stiffness": 1e11, "shear": 1e9, "friction": 0.5}
 CASES = [  # each opens or closes but the first two, which are pressed
-    (CONSTANT, 200, {"pressure": 5e6}),
+    (CONSTANT, 60, {"pressure": 5e6, "poisson": 0.1}),
     (DISCOUNTED, 200, {"pressure": 5e6, "poisson": 0.2, "shear": 4e8}),
     (AVERAGE, 200, {"gap": 0.01, "gravity": 9.81}),
     (AVERAGE, 60, {"velocity": -1.0, "poisson": 0.3, "shear": 1e9, "friction": 0.5}),
     (Scheme(0.5, 1.0, 1.0, 3e-4), 300, {"gap": 0.01, "velocity": -1.0, "gravity": 9.81, "poisson": 0.3} | STIFF),
     (
         named_scheme("chung-hulbert", step=3e-4, gg=1.0, rho_inf=0.5),
-        200,
+        100,
         {"gap": 0.01, "velocity": -1.0, "poisson": 0.3},
     ),
 ]
 
 
-@pytest.mark.parametrize(("scheme", "steps", "data"), thinned(CASES, 5))
+@pytest.mark.parametrize(("scheme", "steps", "data"), thinned(CASES[::-1], 6))
 def test_a_block_that_does_not_turn_is_the_block_on_a_base(scheme, steps, data):
     values = {"poisson": 0.0, "stiffness": 1e9, "shear": 0.0, "friction": None, "gap": 0.0} | data
     poisson, p, shear, friction, gap = (values[key] for key in ("poisson", "stiffness", "shear", "friction", "gap"))

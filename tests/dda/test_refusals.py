@@ -1,6 +1,8 @@
 """What `dda` refuses, each by its field: the table `refusals.toml`, and how what is asked is made of its rows."""
 
+import re
 import tomllib
+from copy import deepcopy
 from dataclasses import fields, replace
 from pathlib import Path
 
@@ -144,7 +146,12 @@ TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
 ROWS = [(asked, refusal, given) for asked, part in TABLE.items() for refusal in part for given in part[refusal]]
 
 
-@pytest.mark.parametrize(("asked", "refusal", "given"), ROWS)
-def test_what_does_not_go_together_is_refused_by_field(asked, refusal, given):
-    with pytest.raises(ValueError, match=f"^{refusal}{'' if ':' in refusal else ': '}"):
-        model(asked, given) if asked in MODELS else ASKED[asked](**given)
+def test_what_does_not_go_together_is_refused_by_field():
+    for asked, refusal, given in deepcopy(ROWS):
+        try:
+            model(asked, given) if asked in MODELS else ASKED[asked](**given)
+        except ValueError as error:
+            begins = f"{refusal}{'' if ':' in refusal else ': '}"
+            assert re.match(begins, str(error)), (asked, refusal, given)
+        else:
+            pytest.fail(f"{asked} takes {given}")

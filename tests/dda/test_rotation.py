@@ -42,9 +42,9 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
         return start._replace(p=scheme.step * (model.body.shapes.T @ model.body.M @ V))
 
     with patch.object(RollingModel, "start", vibrating):
-        result = solve_unilateral(model, scheme, 300)
+        result = solve_unilateral(model, scheme, 100)
     states, M = result.motion, result.body.M
-    assert states.r[-1] > 6 * math.pi
+    assert states.r[-1] > 2 * math.pi
     assert np.max(np.abs(states.V @ M[:, :3] / (M[:3] @ V) - 1)) < 1e-12
     e = result.energies
     gained = np.diff(e["kinetic"] + e["strain"]) / e["kinetic"][0]
@@ -53,7 +53,7 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
     assert np.ptp(e["strain"]) > 1e-5 * e["kinetic"][0]
 
 
-@pytest.mark.parametrize("steps", [45, 180])
+@pytest.mark.parametrize("steps", [45])
 def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     r = math.pi / steps
     model = RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), FAR, spin=r / 0.01)
@@ -80,8 +80,8 @@ def test_small_motion_is_the_limit_of_small_loads(scheme):
     """On a base that leans; they differ by some forty times the rotation."""
     block = Block([[0, 0], [2, 1], [1.5, 2.2], [-0.5, 1.0]], MATERIAL)
     given = block, Unilateral(2e8, 1e8), Load(4e2, 0.3, 1.2e2, 9.81e-3)
-    small = solve_unilateral(UnilateralModel(*given), scheme, 100, COLUMNS, UnilateralOptions(energies=True))
-    turning = solve_unilateral(RollingModel(*given), scheme, 100, COLUMNS)
+    small = solve_unilateral(UnilateralModel(*given), scheme, 40, COLUMNS, UnilateralOptions(energies=True))
+    turning = solve_unilateral(RollingModel(*given), scheme, 40, COLUMNS)
     share = 40 * np.max(np.abs(small.columns["rotation"]))
     assert 0 < share < 1e-3
     for name in COLUMNS:

@@ -43,8 +43,8 @@ def test_the_names_are_those_of_scenes():
 # ---- roots -----------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("omega", [0.05, 1.9, 40.0])
-@every_scheme
+@pytest.mark.parametrize("omega", [1.9, 40.0])
+@few_schemes
 def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega):
     """The polynomial of the roots makes nothing of displacements in a row; the first step of leapfrog is its own."""
     if name == "leapfrog" and omega > 2:
@@ -63,7 +63,7 @@ def test_roots_are_those_of_steps_written_as_in_the_papers(name, values, omega):
     assert largest == pytest.approx(np.abs(found), abs=2e-6)
 
 
-@every_scheme
+@few_schemes
 def test_only_the_leapfrog_grows_beyond_a_limit(name, values):
     for gg in (1.0, 0.9):
         scheme = scheme_of(name, values, 1.0, gg)
@@ -83,7 +83,7 @@ def dense(model):
     return System(model.mass, model.stiffness, lambda t: model.force * 1.0), 1
 
 
-def check_history(name, values, gg=0.97, steps=40, **load):
+def check_history(name, values, gg=0.97, steps=25, **load):
     step = 3e-4
     model = square(1.7, 0.2, **load)
     ramp = model.load.ramp
@@ -99,13 +99,12 @@ def check_history(name, values, gg=0.97, steps=40, **load):
 
 @every_scheme
 def test_histories_are_those_written_as_in_the_papers(name, values):
-    check_history(name, values)
     check_history(name, values, ramp=4.1e-3)
 
 
-@every_scheme
+@few_schemes
 def test_a_moving_base(name, values):
-    step, steps = 4e-4, 80
+    step, steps = 4e-4, 40
     scheme = scheme_of(name, values, step, 0.98)
     t = scheme.instants(steps)
     shape = np.column_stack([1e-3 * np.sin(90 * t) ** 2, 2e-3 * np.sin(70 * t) ** 2])
@@ -128,11 +127,11 @@ def test_a_moving_base(name, values):
 @few_schemes
 def test_long_histories_are_blocked_where_a_step_has_two_numbers_a_mode(name, values):
     scheme = scheme_of(name, values, 2e-4, 0.999)
-    result = solve(square(), scheme, 1500)
-    stepped = solve(square(), scheme, 1500, full=True)
+    result = solve(square(), scheme, 600)
+    stepped = solve(square(), scheme, 600, full=True)
     note = " ".join(result.notes)
     assert ("carries the acceleration" in note) == scheme.averages and ("blocked" in note) != scheme.averages
-    assert result.solves == (1500 if scheme.averages else 0) and stepped.solves == 1500 * len(scheme.stages)
+    assert result.solves == (600 if scheme.averages else 0) and stepped.solves == 600 * len(scheme.stages)
     for column, values_of in stepped.columns.items():
         assert np.max(np.abs(values_of - result.columns[column])) < 1e-11 * np.max(np.abs(values_of))
     assert np.mean(result.columns["displacement"]) == pytest.approx(static(square())["displacement"], rel=0.1)
@@ -143,7 +142,7 @@ def test_what_grows_is_stepped_and_overflows_by_name():
     assert "stepped: a mode grows" in result.notes and any("overflow" in note for note in result.notes)
 
 
-@every_scheme
+@few_schemes
 def test_diagnostics_and_modes(name, values):
     scheme = scheme_of(name, values, 3e-4, 0.99)
     measured = diagnostics(square(2.0, 0.2), scheme)
@@ -157,8 +156,8 @@ def test_diagnostics_and_modes(name, values):
 def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along):
     frequency = 25.0
     step = 4e-4
-    scheme = scheme_of(name, values, step, 0.9)
-    steps = 400
+    scheme = scheme_of(name, values, step, 0.75)
+    steps = 200
     t = scheme.instants(steps)
     cosine = np.cos(2 * np.pi * frequency * t)
     motion = None if along is None else BaseMotion(t, 1e-3 * np.outer(cosine - 1, along))
@@ -168,7 +167,7 @@ def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along
         system, row = dense(square(1.3, 0.2))
         force = system.F(0)
         system.F = lambda now: force * math.cos(2 * math.pi * frequency * now)
-        D, _, _ = march(system, name, step, steps, np.zeros(6), np.zeros(6), 0.9, **truth_of(values))
+        D, _, _ = march(system, name, step, steps, np.zeros(6), np.zeros(6), 0.75, **truth_of(values))
         late = D[1:, row]
     else:
         alone = replace(model, load=Load(motion=motion))

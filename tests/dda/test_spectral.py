@@ -45,7 +45,7 @@ def test_damping_keeps_its_digits_from_nothing_to_all_of_a_mode(alpha, delta):
     """X is good to a rounding, of which a double root makes its square root; it stands within 1e-7 of none here."""
     rng = np.random.default_rng(0)
     with mp.workdps(60):
-        for _ in range(60):
+        for _ in range(30):
             omega = 10 ** rng.uniform(-9, 6)
             gg = rng.choice([1.0, 10 ** -rng.uniform(0, 14), 1 - 10 ** -rng.uniform(1, 12)])
             exact = sixty_digits(omega, alpha, delta, gg)
@@ -57,7 +57,7 @@ BLOCKS = [(1.0, 0.0), (30.0, 0.3), (100.0, -0.4)]  # p / E, Poisson's ratio
 
 
 @pytest.mark.parametrize(
-    ("weights", "gg", "shape", "step"), thinned(product(SCHEMES, [1.0, 0.93], BLOCKS, [1.7e-4, 2.3e-3]), 5)
+    ("weights", "gg", "shape", "step"), thinned(product(SCHEMES, [1.0, 0.93], BLOCKS, [1.7e-4, 2.3e-3]), 11)
 )
 def test_formulas_are_the_steps_of_the_modes(weights, gg, shape, step):
     alpha, delta = weights

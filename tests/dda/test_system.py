@@ -8,7 +8,6 @@ import dda
 import fem_reference
 
 COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation")
-PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
 TRAPEZIUM = ((0.3, 0.1), (2.3, 0.4), (1.9, 1.6), (0.5, 1.4))
 RECORD = dda.BaseMotion([0.0, 0.011, 0.02, 0.05], [[1e-4, 0.0], [3e-3, 1e-3], [-1e-3, 2e-3], [0.0, 5e-4]])
 LOADS = {"traction": 2e5, "gravity": 9.81, "eccentricity": 0.2, "motion": RECORD}
@@ -29,7 +28,7 @@ def largest_error(a, b, columns=COLUMNS):
     ("p", "moved", "bits"),
     # Two orders of operations: a rounding a step. With stiff springs the moving base itself is rounded, and the
     # ringing contact mode keeps what it is given.
-    thinned([(1e9, True, 51), (1e15, False, 48), (1e15, True, 44)], 2),
+    thinned([(1e9, True, 51), (1e15, False, 48), (1e15, True, 44)], 3),
 )
 def test_one_sub_block_is_the_two_block_model_to_the_last_bits(scheme, p, moved, bits):
     start = dda.BaseMotion([0.0, 0.02, 0.05], [[0.0, 0.0], [3e-3, 2e-3], [0.0, 5e-4]])
@@ -53,9 +52,9 @@ STILL = {"traction": 2e5, "gravity": 9.81}
 @pytest.mark.parametrize(
     ("n", "mu", "p", "loads", "scheme", "corrections"),
     [
-        (5, 0.25, 2e9, LOADS, SCHEME, None),
+        (3, 0.25, 2e9, LOADS, SCHEME, None),
         # without corrections a step of 10 s loses to 1e-5; the elements' own double arithmetic leaves some 1e-11
-        (6, 0.3, 1e12, STILL, dda.Scheme(0.25, 0.5, 1.0, 10.0), 2),
+        (3, 0.3, 1e12, STILL, dda.Scheme(0.25, 0.5, 1.0, 10.0), 2),
     ],
 )
 def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, scheme, corrections):

@@ -1,6 +1,5 @@
-"""Opening contact against 80-digit arithmetic, and against the exact motion as the step shrinks."""
+"""Opening contact against 80-digit arithmetic."""
 
-import functools
 from dataclasses import replace
 
 import numpy as np
@@ -8,11 +7,9 @@ import pytest
 from conftest import thinned
 from oracles import block_in_digits
 
-from dda import Block, Material, Scheme, Unilateral, UnilateralModel, UnilateralOptions, solve_unilateral
-from fem_reference.events.block_events import solve as exact_motion
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
 from fem_reference.events.block_model import BlockProblem
 
-PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 EPS = np.finfo(float).eps
 
 
@@ -52,7 +49,7 @@ def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
 CORNERS = [(1e3, 1e3), (1e9, 1e-9), (1e9, 1e-3), (1e13, 1e-4), (1e24, 1e-4), (1e24, 1e3)]
 
 
-@pytest.mark.parametrize(("p", "dt", "glued"), thinned([(*pair, glued) for pair in CORNERS for glued in (0.0, 0.4)], 5))
+@pytest.mark.parametrize(("p", "dt", "glued"), thinned([(*pair, glued) for pair in CORNERS for glued in (0.0, 0.4)], 7))
 def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued):
     steps, grown = 25, 1e-12
     problem = replace(
@@ -77,46 +74,3 @@ def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued)
     assert block_in_digits.lost(v, exact) < bound
     for mine, theirs in (*normal, *shear):
         assert max(abs(float(x - y)) for x, y in zip(mine, theirs, strict=True)) < bound * float(largest)
-
-
-# Schemes, exact motions and their order; a step hits a switch anywhere, which scatters a fitted order by a few tenths.
-
-
-GLUED = replace(PAPER, shear_stiffness=1e9, eccentricity=0.3)
-ECCENTRIC = replace(PAPER, eccentricity=0.3, poisson=0.2, young=1.3e9)
-# Problems, schemes, rules and their order; a step hits a switch anywhere, which scatters a fitted order by some tenths.
-ORDERS = [
-    (PAPER, (0.25, 0.5, "consistent"), "newmark", 2),
-    (PAPER, (0.5, 1.0, "zero"), "newmark", 1),
-    (ECCENTRIC, (0.5, 1.0, "zero"), "newmark", 1),
-    (GLUED, (0.5, 1.0, "zero"), "newmark", 1),
-    (ECCENTRIC, (0.25, 0.5, "consistent"), "newmark", 2),
-    (PAPER, (0.25, 0.5, "zero"), "newmark", 1),
-    (PAPER, (0.25, 0.5, "consistent"), "energy-conserving", 2),
-    (ECCENTRIC, (0.25, 0.5, "consistent"), "energy-conserving", 2),
-    (PAPER, (0.25, 0.5, "consistent"), "implicit", 1),
-    (ECCENTRIC, (0.25, 0.5, "consistent"), "implicit", 1),
-]
-
-
-@functools.cache
-def exact(problem, end):
-    return exact_motion(problem, end)
-
-
-@pytest.mark.parametrize(("problem", "scheme", "rule", "order"), thinned(ORDERS, len(ORDERS)))
-def test_the_order_in_dt_through_switches(problem, scheme, rule, order):
-    """Errors of v against the exact motion, over its largest value."""
-    end = 0.03
-    counts = [500, 1000, 2000]
-    alpha, delta, start = scheme
-    motion = exact(problem, end)
-    errors = []
-    for n in counts:
-        options = UnilateralOptions(rule)
-        result = solve_unilateral(model_of(problem), Scheme(alpha, delta, 1.0, end / n, start), n, options=options)
-        v = motion.at(np.minimum(result.time, end)).displacement[1]
-        errors.append(np.sqrt(np.mean((result.columns["displacement"] - v) ** 2) / np.mean(v**2)))
-    fitted = -np.polyfit(np.log(counts), np.log(errors), 1)[0]
-    assert abs(fitted - order) < 0.15, errors
-    assert errors[-1] < (1.2e-4 if order == 2 else 2e-2)

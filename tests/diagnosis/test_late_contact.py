@@ -15,13 +15,14 @@ from validation.diagnosis.reading import Foreign
 OPENS = Plain(steps=36, dt=0.001, p=3e9, alpha=0.25, delta=0.5, consistent=True, opens=True)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("slip", "cause"),
     [
-        pytest.param({"lags": "opening"}, "late-opening", marks=pytest.mark.long),
-        pytest.param({"lags": "switching"}, "late-contact", marks=pytest.mark.long),
+        ({"lags": "opening"}, "late-opening"),
+        ({"lags": "switching"}, "late-contact"),
         ({"tension": 1e6}, "opening-tension"),
-        pytest.param({"band": 1e-3}, "dead-band", marks=pytest.mark.long),
+        ({"band": 1e-3}, "dead-band"),
     ],
     ids=str,
 )

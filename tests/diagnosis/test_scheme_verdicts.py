@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
 from faults import seams
 from oracles import compared_schemes
 from oracles.compared_schemes import Case, dashpot_of, made, scene_of, verdict
@@ -129,11 +128,7 @@ NAMED = [
     ("composite", {"split": 0.45, "r": 0.2}, LOCKED, ["composite"]),
     ("hht", {"e": 0.07, "form": "state"}, OPENING, ["hht"]),
     ("moreau", {"e": 0.3}, OPENING, ["impact-law"]),
-    ("wbz", {"r": 0.55}, LOCKED, ["wbz"]),
-    ("symplectic-euler", {}, {"dt": 5e-4}, ["symplectic-euler"]),
-    ("theta", {"share": 0.7}, LOCKED, ["theta"]),
     ("implicit-euler", {}, {"dt": 2e-3, "gg": 0.98}, ["theta"]),
-    ("contact-split", {"law": "kane"}, LOCKED, ["implicit-contact"]),
     ("contact-split", {"law": "energy-conserving"}, OPENING, ["energy-conserving-contact"]),
     ("lagrange", {"alpha": 0.5, "delta": 1.0}, OPENING, ["rigid-contact"]),
     ("dashpot", {"c": dashpot_of(Body(), 0.3), "alpha": 0.5, "delta": 1.0}, OPENING, ["contact-dashpot"]),
@@ -141,7 +136,7 @@ NAMED = [
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("method", "numbers", "of_run", "causes"), thinned(NAMED, 4))
+@pytest.mark.parametrize(("method", "numbers", "of_run", "causes"), NAMED)
 def test_a_method_is_named_by_six_digits(method, numbers, of_run, causes):
     case, answer = judged(method, numbers, **of_run)
     assert answer.causes == causes
@@ -209,6 +204,7 @@ def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch):
     assert answer.causes != ["scheme", "start"]
 
 
+@pytest.mark.long
 def test_a_solver_that_parts_before_the_first_row_explains_nothing():
     """The horizon of `bar` beside this history is its first row."""
     case = made(108)
@@ -217,7 +213,8 @@ def test_a_solver_that_parts_before_the_first_row_explains_nothing():
 
 @pytest.mark.long
 def test_no_made_history_is_given_a_wrong_cause_and_most_are_named():
-    cases = [(case, case.judged()) for case in map(made, range(80, 110))]
+    """Of ten none is wrong, which one in four wrong ones would pass once in eighteen; the page counts three hundred."""
+    cases = [(case, case.judged()) for case in map(made, range(80, 110, 3))]
     counts = Counter(verdict(case, answer) for case, answer in cases)
     assert counts["wrong"] == 0, [case.seed for case, answer in cases if verdict(case, answer) == "wrong"]
     assert counts["right"] > len(cases) / 2

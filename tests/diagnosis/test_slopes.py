@@ -59,10 +59,11 @@ def test_a_run_of_ntdda_is_named_by_lagged_friction_and_weight():
     assert answer.departure.kind == "offset"
 
 
-CASES = [(1e-2, 30), (2e-3, 22), (2e-3, 15), (2e-4, 22), (2e-4, 30), (1e-3, 30), (1e-4, 15)]
+CASES = [(1e-2, 30), (2e-3, 15), (2e-4, 22)]
 
 
-@pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
+@pytest.mark.long
+@pytest.mark.parametrize(("step", "phi"), CASES)
 def test_creep_and_sliding_of_such_a_program_are_named(step, phi):
     steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
     found = program(dt=step, phi=phi, steps=steps, lagged=True, **BANDS)
@@ -87,7 +88,7 @@ def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step, phi):
     assert answer.values["base-compliance"] == pytest.approx(2e-3, rel=0.3)
 
 
-@pytest.mark.parametrize(("step", "phi"), thinned(CASES, 7))
+@pytest.mark.parametrize(("step", "phi"), thinned(CASES, 3))
 def test_a_sound_program_is_the_same_model(step, phi):
     found = sound(dt=step, phi=phi, steps=100 if step == 1e-2 else 500)
     answer = judged(found, time__step=step, contact__friction=phi)
@@ -96,7 +97,7 @@ def test_a_sound_program_is_the_same_model(step, phi):
 
 
 AVERAGE = {"time__alpha": 0.25, "time__delta": 0.5}
-SWINGS = [(2e-3, True), (5e-3, False), (5e-3, True), (2e-3, False), (1e-3, False), (1e-3, True)]
+SWINGS = [(5e-3, True), (1e-3, False)]
 
 
 @pytest.mark.long
@@ -137,8 +138,6 @@ def factor_on_friction(theirs, ours):
 # what the history was made with, what its scene has, and the number that is wrong with its value
 BIASES = [
     ({"p": 1.01e9}, {}, "normal-springs-factor", 1.01),
-    ({"p": 1.1e9}, {}, "normal-springs-factor", 1.1),
-    ({"p": 0.95e9, "ps": 0.38e9}, {}, "springs-factor", 0.95),
     ({"dt": 1e-3, "gg": 0.999}, {}, "gg", 0.999),
     ({"dt": 5e-4, "ps": 4.4e8}, {}, "shear-springs-factor", 1.1),
     # the scene's load is its weight, which is heavier with the block
@@ -149,7 +148,6 @@ BIASES = [
         1.1,
     ),
     ({"cohesion": 2e4}, {}, "cohesion", 2e4),
-    ({"phi": 22.02, "alpha": 0.25, "delta": 0.5}, AVERAGE, "friction-factor", factor_on_friction(22.02, 22)),
     (LIGHT | {"slope": 15.2, "phi": 15.1}, LIGHT_SCENE, "friction-factor", factor_on_friction(15.1, 15)),
     (LIGHT | {"slope": 15.1, "phi": 15.0}, LIGHT_SCENE, "slope-factor", 15.1 / 15.2),
 ]
@@ -200,19 +198,15 @@ def test_a_lagged_program_is_what_a_lagged_scene_asks_for():
 
 
 TRAPS = [
-    {"phi": 24.2},
-    {"gg": 0.99},
-    {"force": (LOAD * math.sin(0.38), -LOAD * math.cos(0.38))},
-    {"E": 2e9},
-    {"height": 2.5},
-    {"phi": 0.1},
-    {"mu": 0.2},
+    ({"phi": 24.2}, True),
+    ({"force": (LOAD * math.sin(0.38), -LOAD * math.cos(0.38))}, False),
+    ({"height": 2.5}, True),
+    ({"phi": 0.1}, False),
 ]
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("lagged", [True, False])
-@pytest.mark.parametrize("trap", TRAPS)
+@pytest.mark.parametrize(("trap", "lagged"), TRAPS)
 def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
     answer = judged(program(lagged=lagged, steps=200, **trap))
     assert answer.causes == ["unexplained"]
@@ -222,7 +216,7 @@ def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
 
 
 def test_displacements_in_millimetres_are_a_unit_of_both_columns():
-    found = sound(steps=200)
+    found = sound(steps=40)
     both = ("displacement", "horizontal_displacement")
     answer = compare(scene(), Foreign(found.time, 1e3 * found.displacement, sideways=1e3 * found.sideways))
     assert answer.causes == ["unit"]

@@ -11,7 +11,7 @@ from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
 
 SCENE = load_scene("figures-3-4").with_values(
-    {"time.step": 5e-4, "time.steps": 60, "contact.law": "unilateral", "run.solvers": ["dda"]}
+    {"time.step": 5e-4, "time.steps": 30, "contact.law": "unilateral", "run.solvers": ["dda"]}
 )
 
 

@@ -60,7 +60,7 @@ INSIDE = ".venv/site-packages"  # as an environment in a project's directory has
 
 
 @pytest.mark.parametrize(
-    ("place", "name"), [(INSIDE, "another-project"), (INSIDE, "dda-validation"), ("", "another-project")]
+    ("place", "name"), [(INSIDE, "other-project"), (INSIDE, "dda-validation"), ("", "other-project"), ("", "a-project")]
 )
 def test_another_project_or_another_checkout_of_this_one_has_no_commit(place, name, tmp_path):
     inside = sources(tmp_path / "other" / place)

@@ -3,20 +3,25 @@
 import json
 import multiprocessing
 import os
+import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracles.made_cases import study
+from oracles.made_cases import between, kept_study, made_row, study
 
+from validation.engine import cluster
 from validation.engine.case import Case
 from validation.engine.judge import _ordered, evaluate
 from validation.engine.measure import completed, execute
+from validation.engine.measured import JudgedStudy, complaints, covers, missing_gates, unjudged
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
+from validation.engine.table import lines, tidy
 from validation.errors import InputError
-from validation.gates.gate import Gate, Status, judge, rounded
+from validation.gates.gate import Gate, Status, Verdict, judge, rounded
 from validation.metrics.values import NOT_REPORTED
 from validation.runs.history import History
 from validation.runs.numbers import measured_text
@@ -74,6 +79,7 @@ def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene):
     assert Case(scene, "dda").key() != Case(scene, "dda-textbook").key()
     names = [Case(scene, solver, ranks=ranks).make_solver().name for solver in ("fenicsx", "dda") for ranks in (1, 2)]
     assert names == ["fenicsx", "fenicsx:2", "dda", "dda"]
+    assert Case(scene, "fenicsx").make_solver().name == "fenicsx" and Case(scene, "dda").ranks == 1
 
 
 class Broken(Solver):
@@ -117,6 +123,7 @@ def test_a_failure_is_a_named_outcome(scene, tmp_path, monkeypatch, way, outcome
     assert words in run.notes[-1]
     assert outcome.sentence.endswith(".")
     monkeypatch.setattr(Case, "make_solver", lambda self: Broken(way))
+    assert execute(Case(scene, "dda"), "key", "test")[1] is None
     broken = Study("test", "t", "p", [scene], ("dda",), gates=study(scene).gates)
     verdict = run_study(broken, Results(tmp_path))[0]
     assert verdict.status is (Status.NOT_RUN if way == "inapplicable" else Status.FAIL)
@@ -211,3 +218,52 @@ def test_a_row_survives_its_line():
     assert Row.parse(row.line()) == row
     assert Row.parse(row.line()[:-5]) is None
     assert Row.parse("[]") is None
+
+
+def test_the_numbers_of_a_study_are_one_table(scene, tmp_path):
+    swept = scene.model_copy(update={"name": "small[time.step=0.1]"})
+    row = made_row(
+        "dda", {"displacement.final": -0.5}, swept.name, work={"solves": 7}, seconds={"setup": 0.25}, estimate=1e-9
+    )
+    pair = between(swept.name, "dda", "bar", displacement_l2=0.125)
+    derived = [{"scene": "small", "name": "ratio", "metrics": {"a": None}}]
+    manifest = kept_study(Results(tmp_path), [(swept, row, None)], [pair], derived=derived)
+    rows = list(tidy(Results(tmp_path), manifest))
+    assert [(one.metric, one.value, one.unit) for one in rows] == [
+        ("outcome", "completed", ""),
+        ("displacement.final", -0.5, "m"),
+        ("work.solves", 7, ""),
+        ("seconds.setup", 0.25, "s"),
+        ("estimate", 1e-9, ""),
+        ("displacement.l2", 0.125, rows[5].unit),
+        ("a", None, ""),
+    ]
+    assert [one.case for one in rows] == 6 * [swept.name] + [""] and {one.scene for one in rows} == {"small"}
+    assert (rows[5].reference, rows[5].window, rows[0].window) == ("bar", 1.0, None)
+    table = lines(rows)
+    assert [line["time.step"] for line in table] == 6 * ["0.1"] + [""] and table[6]["value"] == table[0]["window"] == ""
+
+
+def test_what_a_run_has_left_unmeasured_is_told(scene):
+    gates = [Gate(scene.name, (solver,), "m", 0.0, 1.0, "r") for solver in ("dda", "bar")]
+    made = Study("made", "t", "p", [scene], ("dda",), gates=lambda: tuple(gates), expects=(Outcome.OVERFLOW,))
+    ends = {"dda": Outcome.RAISED, "bar": Outcome.TIMEOUT, "fem": Outcome.OVERFLOW, "layers": Outcome.REFUSED}
+    verdicts = [Verdict(gates[0], None, Status.NOT_RUN, "w"), Verdict(gates[1], 0.5, Status.PASS, "")]
+    bad = JudgedStudy(made, verdicts[:1], {("small", solver): end for solver, end in ends.items()})
+    good = JudgedStudy(made, verdicts[1:], {("small", "dda"): Outcome.COMPLETED, ("small", "bar"): Outcome.NOT_RUN})
+    none = JudgedStudy(made, [], {("small", "dda"): Outcome.UNSTABLE})
+    assert [bad.refused, good.refused, bad.failed] == [True, False, [("small", "dda"), ("small", "bar")]]
+    first, second, third = complaints([bad, good, none])
+    assert first.endswith(": small dda and 1 more") and "no case" in second and " 1 gates " in third
+    assert [one.partition(":")[0] for one in unjudged([bad, none])] == ["made"]
+    assert "1 of 1" in next(missing_gates([bad, good], ["dda"])) and not [*missing_gates([bad, good], ["bar"])]
+    assert [*missing_gates([good], ["layers"])] and covers("fem", "fem:full") and covers("fenicsx", "fenicsx:2")
+    assert not covers("fem", "fenicsx") and not covers("bar", "bar-events")
+
+
+def test_sources_of_users_are_the_first_that_a_worker_finds(tmp_path, monkeypatch):
+    monkeypatch.setattr(sys, "path", ["a", "b"])
+    worker = SimpleNamespace(local_directory=tmp_path)
+    for _ in range(2):
+        cluster.place_sources({"ours/deep/part.py": b"A = 1"}, worker)
+    assert len(sys.path) == 3 and (Path(sys.path[0]) / "ours/deep/part.py").read_bytes() == b"A = 1"

@@ -50,15 +50,15 @@ def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene, tm
 # ---- between the steps --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("values", [{}, {"time.gg": 0.9}, {"time.gg_rate": 30.0}], ids=str)
+@pytest.mark.parametrize("values", [{"time.gg": 0.9}, {"time.gg_rate": 30.0}], ids=str)
 def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(values, tmp_path):
-    """At 10 ms for 0.2 s the first mode turns eleven times; a discount per step must not become one per instant."""
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "time.steps": 20} | values)
+    """At 10 ms for 0.07 s the first mode turns four times; a discount per step must not become one per instant."""
+    scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "time.steps": 7} | values)
     results = Results(tmp_path)
     run_study(Study("s", "S", "", [scene], ("dda", "continuum")), results)
     kept = {row.solver: results.history(key) for key, row in results.rows().items()}
     exact = kept["continuum"]
-    assert kept["dda"].between is None and len(exact.time) == 20
+    assert kept["dda"].between is None and len(exact.time) == 7
     parts = measure.INSTANTS_OF_STEP
     np.testing.assert_allclose(exact.between.time[parts - 1 :: parts], exact.time, rtol=1e-12)
     for name, column in exact.columns.items():

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from conftest import thinned
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
@@ -14,7 +15,7 @@ ROOMS = {f"validation/{room}": (True,) * 4 for room in ("runs", "scenes", "metri
 ROOMS |= {"dda/bodies": (True, False, False, False), "fem_reference/mesh": (False, True, True, False)}
 
 
-@pytest.mark.parametrize(("room", "changed"), ROOMS.items())
+@pytest.mark.parametrize(("room", "changed"), thinned(ROOMS.items(), 3))
 def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(room, changed, scene, monkeypatch):
     def keys():
         case_module.source_digest.cache_clear()

@@ -5,11 +5,10 @@ import signal
 import subprocess
 import sys
 import time
-from itertools import product
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, thinned
+from conftest import SCENE
 from oracles.processes import AFTER, MARK, left, marked, new_mark
 
 from validation.runs.results import Results
@@ -89,7 +88,8 @@ SIGNALS = [signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGKILL]
 LEAVERS = [("with_a_child", "sleep(600)"), ("deaf", "user_worker")]  # and what shows that one has begun
 
 
-@pytest.mark.parametrize(("number", "leaver"), thinned(product(SIGNALS, LEAVERS), 8))
+@pytest.mark.long
+@pytest.mark.parametrize(("number", "leaver"), list(zip(SIGNALS, 2 * LEAVERS, strict=True)))
 def test_nothing_outlives_the_parent(number, leaver, tmp_path, mark):
     """The signal goes to the parent alone, as from a scheduler or an out-of-memory killer."""
     solver, words = leaver
@@ -105,7 +105,7 @@ def test_nothing_outlives_the_parent(number, leaver, tmp_path, mark):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", SIGNALS)
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
 def test_nothing_outlives_a_parent_that_runs_cases_itself(number, tmp_path, mark):
     with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
         wait_for(mark, "user_worker", process)

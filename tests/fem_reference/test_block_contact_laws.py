@@ -22,10 +22,6 @@ def dashpot(problem, zeta, mass_share=1.0):
     return replace(problem, damping=zeta * math.sqrt(2 * problem.stiffness * m))
 
 
-def transit(problem):
-    return problem.height * math.sqrt(problem.density / problem.young)
-
-
 def at_events(motion, corner="M"):
     return [(switch.time, switch.kind) for switch in motion.switches if switch.corner == corner]
 

@@ -77,7 +77,7 @@ def test_forces_bounds_and_momentum_balance_in_every_step(seed):
     ones = np.ones(len(system.F))
     frictional = column.law == "frictional"
     gaps = np.zeros(len(column.contacts)) if frictional else np.array([one.gap for one in column.contacts])
-    for step in range(1, 101):
+    for step in range(1, 51):
         marched = stepper.march(before, stepper.record(1))
         assert marched.outcome == CONVERGED
         state = marched.state
@@ -102,7 +102,7 @@ def test_forces_bounds_and_momentum_balance_in_every_step(seed):
         before = state
 
 
-@pytest.mark.parametrize(("seed", "welded"), [(0, False), (1, False), (4, True)])  # opens, slips, opens
+@pytest.mark.parametrize(("seed", "welded"), thinned([(1, False), (4, True), (0, False)], 3))  # opens, slips, opens
 def test_natural_modes_are_the_same_column(seed, welded, monkeypatch):
     column, drive, dt = random_column(seed)
     column = replace(column, contacts=column.contacts[1:]) if welded else column
@@ -143,8 +143,8 @@ def test_contacts_that_never_slip_are_bonded_springs():
     strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
     springs = [(0.0, 3e9), (1.0, 1e9)]
     bonded = ContactColumn(strata, "frictional", tuple(ColumnContact(*one) for one in springs), (0.0, 0.0))
-    t = 1e-4 * np.arange(301)
-    drive = still(300, displacement=1e-3 * np.sin(80 * t) ** 2, pressure=1e5 * np.sin(300 * t))
+    t = 1e-4 * np.arange(101)
+    drive = still(100, displacement=1e-3 * np.sin(80 * t) ** 2, pressure=1e5 * np.sin(300 * t))
     drive = replace(drive, velocity=0.08 * np.sin(160 * t), acceleration=12.8 * np.cos(160 * t))
     names, heights = ["displacement", "contact_pressure", "displacement_1", "stress_1"], [1.0]
     one = solve_contacts(bonded, [4, 4], 2, scheme(AVERAGE, 1e-4, 0.999, "zero"), drive, names, heights)

@@ -27,7 +27,7 @@ def test_the_damped_bar_right_beside_its_fronts(column, a):
     np.testing.assert_allclose(found[beside], expected, rtol=0, atol=ROUNDING)
 
 
-@pytest.mark.parametrize(("behind", "a", "column"), thinned(product([6e-5, 0.25, 0.4], [3.0, 3.3], FIRST), 7))
+@pytest.mark.parametrize(("behind", "a", "column"), thinned(product([6e-5, 0.25, 0.4], [3.0, 3.3], FIRST), 12))
 def test_fronts_count_until_they_are_below_rounding(column, a, behind):
     """At a t = 21 to 25 a front of size exp(-a t), 1e-9 to 1e-11, is still alive, and so is what is between."""
     first, gap = FIRST[column]

@@ -75,7 +75,7 @@ SHAPES = {
 }
 
 
-@pytest.mark.parametrize(("shape", "load", "suffix"), thinned(product(SHAPES, LOADS, [".vtu", ".xdmf"]), 5))
+@pytest.mark.parametrize(("shape", "load", "suffix"), thinned(product(SHAPES, LOADS, [".vtu", ".xdmf"]), 7))
 def test_stress_is_the_deformation_times_the_moduli(tmp_path, shape, load, suffix):
     """In every cell of every frame of linear elements, read from the file alone."""
     problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))
@@ -96,7 +96,7 @@ LATERAL = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
 
 
 @pytest.mark.parametrize(
-    ("poisson", "load", "degree"), thinned([(*case, degree) for case in LATERAL for degree in (1, 2)], 2)
+    ("poisson", "load", "degree"), thinned([(*case, degree) for case in LATERAL for degree in (1, 2)], 5)
 )
 def test_the_frames_are_the_history(tmp_path, poisson, load, degree):
     """The middle node of every frame gives the columns of its step; the last is the .vtu's."""
@@ -117,7 +117,7 @@ def test_the_frames_are_the_history(tmp_path, poisson, load, degree):
     np.testing.assert_allclose(last.stress, frames[-1].stress, rtol=0, atol=1e-12 * Q)
 
 
-@pytest.mark.parametrize(("steps", "stride"), thinned([(1, 1), (399, 2), (201, 2), (400, 2), (403, 3), (200, 1)], 2))
+@pytest.mark.parametrize(("steps", "stride"), thinned([(403, 3), (1, 1), (399, 2), (201, 2), (400, 2), (200, 1)], 6))
 def test_a_series_has_every_stride_and_the_last_step(tmp_path, steps, stride):
     path = tmp_path / "block.xdmf"
     fem_reference.solve(make(elements=1, degree=1), fem_reference.Scheme(0.5, 1.0, 1.0, 1e-3), steps, fields=path)

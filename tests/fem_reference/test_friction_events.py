@@ -60,13 +60,13 @@ def limit(problem, normal):
     return math.tan(math.radians(problem.friction or 0)) * normal + problem.cohesion * problem.width / 2
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(20, 26) for moved in (False, True)], 12))
+@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(20, 24) for moved in (False, True)], 8))
 def test_energy_law_and_the_digits_of_random_motions(seed, moved):
     problem = slipping_problem(seed, moved)
     end = 4 * problem.height * math.sqrt(problem.density / problem.young)
     motion, finer = solve(problem, end), solve(problem, end, digits=70)
     assert motion.switches == finer.switches
-    t = np.sort(np.concatenate([np.linspace(0, end, 201), [s.time for s in motion.switches]]))
+    t = np.sort(np.concatenate([np.linspace(0, end, 60), [s.time for s in motion.switches]]))
     history, other = motion.at(t), finer.at(t)
     # a float rounds terms of a series that cancel by up to e^4, sixty radians of a sine by 1e-14
     for name in ("displacement", "velocity", "gap", "normal_force", "shear_force", "slide", "slipped", "friction"):

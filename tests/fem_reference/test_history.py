@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from conftest import thinned
 from faults import seams
 from oracles.elements import make
 
@@ -18,32 +17,31 @@ def errors(result, reference):
     )
 
 
-@pytest.mark.parametrize("scheme", thinned([CONSTANT, AVERAGE], 4))
 @pytest.mark.parametrize(
     ("change", "unknowns", "saving"),
     [
-        ({}, 13, "one column of elements"),
-        ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 169, "half the block"),
-        ({"foundation": "patch", "patch_width": 0.31}, 169, "half the block"),
-        ({"foundation": "corner", "poisson": 0.2}, 169, "half the block"),
+        ({}, 9, "one column of elements"),
+        ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 81, "half the block"),
+        ({"foundation": "patch", "patch_width": 0.31}, 81, "half the block"),
+        ({"foundation": "corner", "poisson": 0.2}, 81, "half the block"),
     ],
 )
-def test_savings_change_nothing(scheme, change, unknowns, saving):
-    problem = make(**change, elements=6)
-    saved, whole = solve(problem, scheme, 30), solve(problem, scheme, 30, full=True)
+def test_savings_change_nothing(change, unknowns, saving):
+    problem = make(**change, elements=4)
+    saved, whole = solve(problem, AVERAGE, 30), solve(problem, AVERAGE, 30, full=True)
     assert errors(saved, whole) <= 1e-11  # rounding of thirty solves
-    assert (saved.unknowns, whole.unknowns) == (unknowns, 2 * 13**2)
-    assert saving in saved.notes and not any("elements" in note or "half" in note for note in whole.notes[:1])
+    assert (saved.unknowns, whole.unknowns) == (unknowns, 2 * 9**2)
+    assert saving in saved.notes and saving not in whole.notes
     assert saved.notes[-1] == "stepped: few steps" and whole.notes[-1] == "stepped: all savings off"
-    assert saved.factorisations == (2 if scheme.start == "consistent" else 1)
-    assert saved.solves == 30 + (scheme.start == "consistent")
+    assert saved.factorisations == 2
+    assert saved.solves == 31
 
 
 def test_sparse_and_dense_modes_agree(monkeypatch):
-    problem = make(poisson=0.45, p=2e10, elements=8)
+    problem = make(poisson=0.45, p=2e10, elements=3)
     dense = modes(problem, CONSTANT)
     seams.FEM_DENSE.put(monkeypatch, 10)
     sparse = modes(problem, CONSTANT)
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)
-    assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=2e-2)
+    assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=5e-2)

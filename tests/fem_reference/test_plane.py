@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 from fem_reference import Scheme
 from fem_reference.plane.body import PlaneBody, mesh_of
@@ -33,20 +32,20 @@ def tip(**changes):
     return float(model.observer(*RIGHT)[1] @ model.rest)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("degree", "counts", "least", "most", "last"),
     # the energy of bending has order 2 and 4; the singular corners, towards which cells halve, leave order 2 of the 4
-    thinned([(2, (1, 2, 4), 1.9, 4.1, 1e-4), (1, (2, 4, 8), 1.5, 2.1, 1e-2)], 2),
+    [(1, (2, 4), 1.4, 2.1, 4e-2), (2, (1, 2, 4), 1.9, 4.1, 1e-4)],
 )
 def test_a_cantilevers_tip_converges(degree, counts, least, most, last):
-    truth = tip(elements=10)
+    truth = tip(elements=5)
     errors = [abs(tip(elements=n, degree=degree) / truth - 1) for n in counts]
     assert least < -np.polyfit(np.log(counts), np.log(errors), 1)[0] < most
     assert errors[-1] < last
 
 
-@pytest.mark.parametrize("hypothesis", ["plane stress", "plane strain"])
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize(("hypothesis", "degree"), [("plane stress", 1), ("plane strain", 2)])
 def test_a_free_body_has_its_three_strains_and_no_momentum(hypothesis, degree):
     model = PlaneModel([replace(STRESSED, hypothesis=hypothesis, degree=degree)])
     assert model.stress_error() < 1e-10
@@ -62,7 +61,7 @@ def test_a_free_body_has_its_three_strains_and_no_momentum(hypothesis, degree):
     assert strains == pytest.approx(expected, rel=1e-9)
 
 
-@pytest.mark.parametrize(("elements", "cells"), [(1, 14), (2, 56)])
+@pytest.mark.parametrize(("elements", "cells"), [(2, 56)])
 def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
     """Five triangles below, whose side the corner above cuts, and four in each cell above it."""
     mesh = mesh_of(replace(STRESSED, elements=elements))
@@ -72,7 +71,7 @@ def test_cells_that_meet_in_a_t_share_their_points(elements, cells):
 
 
 def test_modes_of_a_cantilever_share_its_deflection():
-    modes = PlaneModel([replace(CANTILEVER, elements=4)]).modes(SCHEME, 6)
+    modes = PlaneModel([replace(CANTILEVER, elements=2)]).modes(SCHEME, 6)
     assert 0.96 < modes[0].share < 0.97 < sum(mode.share for mode in modes) < 1
     slender = 1.8751**2 / 16 * np.sqrt(YOUNG / 12 / 2700.0)
     assert 0.95 * slender < modes[0].frequency < 0.97 * slender  # less by shear and rotary inertia

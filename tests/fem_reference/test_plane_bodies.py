@@ -57,7 +57,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     friction = None if angle is None else Friction(angle, 1e4)
     start = Unilateral(1e-3, -0.1, "glued" if shear else "frictionless", friction=friction)
-    block = solve_unilateral(problem, CONSTANT, 100, start, full=True)
+    block = solve_unilateral(problem, CONSTANT, 50, start, full=True)
     law = {"friction": None, "cohesion": 0.0}
     if angle is not None:
         law = {"friction": math.tan(math.radians(angle)), "cohesion": 1e4 * side / 2}
@@ -68,7 +68,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     law |= {"stiffness": stiffness, "shear_stiffness": shear, "gap": 1e-3}
     model = PlaneModel([body], patches(0, None, 0.0, side, 0.0, width, **law), SHAKEN)
-    found = model.history(CONSTANT, 100, model.observer((1.0, 1.0), (1.0, 1.0)))
+    found = model.history(CONSTANT, 50, model.observer((1.0, 1.0), (1.0, 1.0)))
     columns = block.columns
     place = np.abs(columns["displacement"]).max()
     force = np.abs(columns["contact_pressure"]).max()
@@ -83,7 +83,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
         assert apart(values, columns[name], work) < 1e-11
 
 
-@pytest.mark.parametrize(("degree", "modal"), [(1, False), (2, True)])
+@pytest.mark.parametrize(("degree", "modal"), thinned([(2, True), (1, False)], 2))
 def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     """Poisson's ratio 0 and springs all along the faces: the same motion on every vertical line, tilts none."""
     width, height, gap, stiffness = 2.0, 1.0, (2e-3, 1e-3), (1e9, 5e8)
@@ -94,7 +94,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     model = PlaneModel(bodies, contacts)
     top = 2 * height + gap[1]
     scheme = Scheme(0.5, 1.0, 1.0, 1e-4, "consistent")
-    still = np.zeros(251)
+    still = np.zeros(61)
     faces = [ColumnContact(y, 2 * k / width, g) for y, k, g in zip((0.0, height), stiffness, gap, strict=True)]
     strata = (Stratum(height, DENSITY, YOUNG, 0.0),) * 2
     column = ContactColumn(Ground(strata, "pressure"), "unilateral", tuple(faces), (-1.0, -1.0), GRAVITY)
@@ -103,7 +103,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     if modal:
         in_modes(monkeypatch)
     rows = np.vstack([model.observer((0.0, top), (width, top), 1)[1], model.means(1)[[0, 2]]])
-    found = model.history(scheme, 250, rows)
+    found = model.history(scheme, 60, rows)
     assert apart(found.columns["0"], truth["displacement"]) < 1e-12
     for pair, name in (((0, 1), "force_1"), ((2, 3), "force_2")):
         assert apart(found.normal[:, pair].sum(axis=1) / width, truth[name]) < 1e-12
@@ -118,7 +118,7 @@ def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
     model = PlaneModel([lower, upper], patches(1, 0, 0.5, 2.0, 1.01, 0.4, **law))
     in_modes(monkeypatch)
-    found = model.history(Scheme(0.25, 0.5, 1.0, 2e-4), 1500, model.means(0))
+    found = model.history(Scheme(0.25, 0.5, 1.0, 1e-3), 300, model.means(0))
     assert found.outcome == "completed" and found.normal.max() > 1e5 and np.abs(found.slip[-1]).min() > 1e-3
     assert np.all(found.closed[-1] == 0)
     masses = np.array([2.0, 1.8125]) * DENSITY
@@ -128,7 +128,8 @@ def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
 
 
-@pytest.mark.parametrize("degree", thinned([1, 2], 2))
+@pytest.mark.long
+@pytest.mark.parametrize("degree", [1, 2])
 def test_two_bodies_pressed_on_patches_have_a_limit(degree):
     """At the ends of a patch the pressure jumps, at corners it is singular: order 1.5 to 2 whatever the degree."""
     places = []
@@ -202,7 +203,7 @@ def test_bodies_that_begin_at_rest_stay_there():
     rows = np.vstack([model.means(0), model.means(1)])
     assert rows[7] @ model.rest < rows[1] @ model.rest - 0.01 < -0.02
     consistent = replace(CONSTANT, start="consistent")
-    found = model.history(consistent, 50, rows, settled=True)
+    found = model.history(consistent, 20, rows, settled=True)
     at_rest = rows @ model.rest
     for number, values in found.columns.items():
         assert np.abs(values - at_rest[int(number)]).max() < 1e-12

@@ -47,7 +47,7 @@ def exact():
             ("composite", {"rho_inf": 0.5}, 12.99, -0.1270, 0.0519),
             ("leapfrog", {}, 13.46, -0.1242, 0.1200),
         ],
-        4,
+        9,
     ),
 )
 def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, error):

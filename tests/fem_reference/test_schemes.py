@@ -97,8 +97,8 @@ def test_every_path_gives_the_stepped_history(name, options):
     """Without and with the savings in space and time, and the work that is counted."""
     explicit = name == "leapfrog"
     scheme = named_scheme(name, step=1e-5 if explicit else 1e-3, gg=0.99, **options)
-    steps = 40
-    for change in ({"elements": 4}, {"elements": 2, "poisson": 0.3}):
+    steps = 8
+    for change in ({"elements": 2}, {"elements": 2, "poisson": 0.3}):
         problem = make(**change)
         result = solve(problem, scheme, steps)
         assert error(result.columns.values(), stepped(problem, scheme, steps)) < 1e-10
@@ -114,8 +114,8 @@ def test_the_bar_is_the_limit_of_the_mesh(case, ramp):
     name, options = case
     scheme = named_scheme(name, step=1e-3, gg=0.97, **options)
     bar = Bar.of(make(ramp=ramp)).solve(scheme, 60)
-    coarse, fine = (solve(make(elements=count, ramp=ramp), scheme, 60) for count in (16, 32))
-    assert error(fine.columns.values(), list(bar.columns.values())) < 1e-5
+    coarse, fine = (solve(make(elements=count, ramp=ramp), scheme, 60) for count in (8, 16))
+    assert error(fine.columns.values(), list(bar.columns.values())) < 2e-4
     assert error(fine.columns.values(), list(bar.columns.values())) < 0.1 * error(
         coarse.columns.values(), list(bar.columns.values())
     )
@@ -143,7 +143,7 @@ def test_stability_limits():
 
 
 def test_diagnostics_agree_with_themselves():
-    found = diagnostics(make(elements=3, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
+    found = diagnostics(make(elements=2, poisson=0.3), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.4))
     assert found.spectral_radius == pytest.approx(found.predicted_radius, abs=1e-9)
     assert found.spectral_radius < 1
 
@@ -163,7 +163,7 @@ def test_a_free_step_loses_the_energy_that_the_scheme_takes(alpha, delta):
     D, V = np.random.default_rng(5).normal(size=(2, len(model.F)))
     state = Motion(D, V * highest, -np.linalg.solve(model.M.toarray(), model.K @ D))
     energies = [state.V @ (model.M @ state.V) + size(state.D, state.A)]
-    for _ in range(60):
+    for _ in range(20):
         new = step.advance(state)
         energies.append(new.V @ (model.M @ new.V) + size(new.D, new.A))
         loss = (2 * delta - 1) * size(new.D - state.D, new.A - state.A)

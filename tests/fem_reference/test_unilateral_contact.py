@@ -28,7 +28,7 @@ def random_base(rng, n):
 @pytest.mark.parametrize("n", [1, 2, 3, 5, 12])
 def test_one_state_after_the_other_solves_the_complementarity_problem(n):
     rng, used = np.random.default_rng(n), 0
-    for _ in range(60):
+    for _ in range(30):
         C, compliance, free = random_base(rng, n)
         found = frictionless(C, compliance, free, (rng.random(n) < 0.5).astype(np.int8)).contact(1)
         used += found.solves == 2
@@ -38,7 +38,7 @@ def test_one_state_after_the_other_solves_the_complementarity_problem(n):
         # the condition of a random A of twelve points
         assert np.all(N >= 0) and np.all(gap >= -1e-6 * size)
         assert np.all(N * np.abs(gap) <= 1e-6 * N * size)
-    assert used > 20
+    assert used > 10
 
 
 def test_a_problem_on_which_the_iteration_cycles_is_solved():
@@ -76,9 +76,9 @@ def test_many_forces_are_solved_for_twice(shear, rule, monkeypatch):
     problem = make(elements=4, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8)
     contact = Unilateral(gap=1e-5, velocity=-0.1, shear=shear, rule=rule)
     scheme = Scheme(0.25, 0.5, 0.9, 2e-4) if rule == "implicit" else replace(SCHEME, step=2e-4)
-    few = solve_unilateral(problem, scheme, 90, contact)
+    few = solve_unilateral(problem, scheme, 50, contact)
     monkeypatch.setattr(stepper, "DENSE", 4)
-    many = solve_unilateral(problem, scheme, 90, contact)
+    many = solve_unilateral(problem, scheme, 50, contact)
     assert 0 < few.columns["open_share"].mean() < 1 and many.solves > few.solves
     for name, values in few.columns.items():
         # rounding of the energies lost is that of the energies

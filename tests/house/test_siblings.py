@@ -105,6 +105,7 @@ def test_a_folder_without_code_hides_an_editable_install(package, place, install
     assert done.stdout.startswith(f"{place / package} is {IN_THE_WAY} {package}"), done.stderr
 
 
+@pytest.mark.long
 def test_the_plug_in_leaves_a_projects_own_package_of_that_name_alone(place, installed):
     add_package(place, "validation").joinpath("theirs.py").write_text("VALUE = 3\n")
     place.joinpath("test_theirs.py").write_text(

@@ -15,15 +15,11 @@ from oracles.answers import answered
 from validation.runs.extras import EXTRA_OF, PROJECTS
 
 ROOT = Path(__file__).parents[2]
-SCENE_OF_DDA_ONLY = """
-import sys
-from validation import load_scene, solve
-scene = load_scene("figures-3-4").with_values({"time.step": 0.002})
-solve(scene, "dda")
-"""
-PLUGIN = "import validation.entry.plugin"
-# typer ends a help page by an exception of its own: what main() imports counts as well
-HELP_PAGE = """
+IMPORT = re.compile(r"^ *(?:from (\w+)[\w.]* import |import (\w+)[\w.]*(?: as \w+)?$)", re.M)
+STEPS = {  # what one interpreter does, the lighter before the heavier
+    "bare": "",
+    # typer ends a help page by an exception of its own: what main() imports counts as well
+    "help page": """
 import sys
 from validation.cli import main
 sys.argv = ["dda-validate", "--help"]
@@ -31,7 +27,15 @@ try:
     main()
 except SystemExit:
     pass
-"""
+""",
+    "plug-in": "import validation.entry.plugin",
+    "dda": "import dda",
+    "scene of dda": """
+from validation import load_scene, solve
+solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
+""",
+    "bar": "import fem_reference.exact.bar",
+}
 TYPER = {
     "typer",
     "click",
@@ -52,39 +56,19 @@ def text(path):
     return path.read_text(encoding="utf-8")
 
 
-def statements(path):
-    """Yield the statements of a file, those inside others as well."""
-    left = [ast.parse(text(path))]
-    while left:
-        node = left.pop()
-        yield node
-        for part in ("body", "orelse", "finalbody", "handlers", "cases"):
-            left.extend(getattr(node, part, ()))
-
-
-@cache
 def imports(path):
     """Return the top-level packages that a file imports, anywhere in it."""
-    found = set()
-    for node in statements(path):
-        if isinstance(node, ast.Import):
-            found |= {alias.name.partition(".")[0] for alias in node.names}
-        elif isinstance(node, ast.ImportFrom) and node.module and not node.level:
-            found.add(node.module.partition(".")[0])
-    return found
+    return {name for names in IMPORT.findall(text(path)) for name in names if name}
 
 
-@cache
-def modules(code):
-    """Return the modules that a fresh interpreter holds after some code."""
-    shown = "\nimport sys; print('\\n'.join(['', 'loaded:', *sys.modules]))"
-    done = subprocess.run([sys.executable, "-c", code + shown], capture_output=True, text=True, check=True, cwd=ROOT)
-    return frozenset(done.stdout.partition("\nloaded:\n")[2].split())
-
-
-def loaded(code):
-    """Return the top-level modules that a fresh interpreter holds after some code."""
-    return {name.partition(".")[0] for name in modules(code)}
+@pytest.fixture(scope="module")
+def modules():
+    """Return the modules that one fresh interpreter holds after each of `STEPS`, by its name."""
+    shown = "\nimport sys; print('\\nloaded:', *sys.modules)"
+    code = "\n".join(f"{code}{shown}" for code in STEPS.values())
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
+    lines = [line.split()[1:] for line in done.stdout.splitlines() if line.startswith("loaded: ")]
+    return dict(zip(STEPS, map(set, lines), strict=True))
 
 
 def packages(names):
@@ -145,7 +129,6 @@ compare pentagon pentagon.csv
 run figures-3-4 --set time.step=0.01 --results results
 rows figures-3-4 --results results
 diff results results
-judge dda standing
 judge answer
 judge answer/rocking.csv rocking
 judge dda standing rocking
@@ -166,7 +149,6 @@ report: judge answer --out page
 report: judge answer --out page.pdf
 exact: solve figures-3-4 --set time.step=0.01 --solver block-events
 exact: solve figures-3-4 --set time.step=0.01 --solver dda-60
-exact: judge dda opening
 exact: export-pack pack
 mesh: solve pentagon --solver fem
 mesh: solve figures-3-4 --set time.step=0.01 --solver fem --fields fields.vtu
@@ -193,9 +175,9 @@ def test_a_plain_install_judges_and_compares(tmp_path):
 
 
 def test_what_needs_an_extra_names_it_in_one_line(tmp_path):
-    (history,) = (line for line in LIGHT.strip().splitlines() if line.endswith(" history.csv"))
+    (tmp_path / "history.csv").write_text("time,displacement\n0.01,-0.01\n")
     extras, lines = zip(*(row.split(": ") for row in HEAVY.strip().splitlines()), strict=True)
-    for extra, (status, _, errors) in zip(extras, ended(tmp_path, [history, *lines], ("locked",))[1:], strict=True):
+    for extra, (status, _, errors) in zip(extras, ended(tmp_path, lines, ("locked",)), strict=True):
         assert status == 2, errors
         (line,) = (line for line in errors.splitlines() if "warning" not in line)
         assert line.startswith("error: ")
@@ -233,24 +215,16 @@ def test_no_print_no_exit_no_assert_in_library_code():
                 assert not {"print", "sys.exit", "exit"} & set(calls), path
 
 
-def test_a_scene_of_dda_alone_imports_no_finite_elements():
-    assert not loaded(SCENE_OF_DDA_ONLY) & {"skfem", "matplotlib", "fem_reference", "typst", "meshio"}
+def test_a_scene_of_dda_needs_no_finite_elements_and_the_bar_no_ball_arithmetic(modules):
+    assert not packages(modules["scene of dda"]) & {"skfem", "matplotlib", "fem_reference", "typst", "meshio"}
+    assert not packages(modules["bar"]) & {"skfem", "meshio", "matplotlib", "flint"}
 
 
-def test_the_bar_needs_no_finite_elements_and_no_ball_arithmetic():
-    code = "import fem_reference.exact.bar, validation"
-    assert not loaded(code) & {"skfem", "meshio", "matplotlib", "flint"}
-
-
-def test_the_command_line_and_the_plugin_start_light():
-    assert not loaded(PLUGIN) & {"numpy", "scipy", "pydantic", "typer"}
-    assert not loaded(HELP_PAGE) & {"numpy", "scipy", "skfem", "matplotlib", "pydantic"}
-
-
-def test_start_up_loads_little():
+def test_start_up_loads_little(modules):
     """What bounds its time on any machine: the libraries by name, and how many modules beside those of a bare start."""
-    bare, dda, page = (modules(code) for code in ("", "import dda", HELP_PAGE))
-    assert packages(dda - bare) == {"numpy", "dda"}
+    bare, page, plugin, dda = (modules[name] for name in ("bare", "help page", "plug-in", "dda"))
+    assert not packages(plugin) & {"numpy", "scipy", "pydantic"}
+    assert packages(dda - plugin) == {"numpy", "dda"}
     assert len([name for name in dda if name.startswith("dda")]) < 90  # 50
     assert packages(page - bare) <= {"validation"} | TYPER
     assert len(own := {name for name in page if name.startswith("validation")}) < 35, own  # 22

@@ -9,7 +9,6 @@ import subprocess
 import tomllib
 from fnmatch import fnmatch
 
-import pytest
 import typer
 import yaml
 from oracles.pages import BLOCK, ROOT
@@ -84,35 +83,33 @@ def test_the_action_s_last_step_asks_what_its_inputs_say(tmp_path):
 # ---- what pages name ------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("page", [*PAGES, ".ci/run", *(f".github/workflows/{p.name}" for p in WORKFLOWS.iterdir())])
-def test_every_make_target_that_is_named_exists(page):
-    named = re.findall(r"(?:^|`|run: )make ([a-z-]+)", (ROOT / page).read_text(encoding="utf-8"), re.M)
-    assert set(named) <= set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
-    if page == "CONTRIBUTING.md":
-        assert {"test", "lint", "portable", "docs", "bench", "gates", "dist"} <= set(named)
+def test_every_make_target_that_is_named_exists():
+    targets = set(re.findall(r"^([a-z-]+):", (ROOT / "Makefile").read_text(encoding="utf-8"), re.M))
+    pages = [*(ROOT / page for page in PAGES), ROOT / ".ci/run", *WORKFLOWS.iterdir()]
+    named = {page: set(re.findall(r"(?:^|`|run: )make ([a-z-]+)", page.read_text("utf-8"), re.M)) for page in pages}
+    assert not {page.name: names - targets for page, names in named.items() if names - targets}
+    assert {"test", "lint", "portable", "docs", "bench", "gates", "dist"} <= named[ROOT / "CONTRIBUTING.md"]
 
 
-@pytest.mark.parametrize("script", ["Makefile", *sorted(f".ci/{p.name}" for p in (ROOT / ".ci").iterdir() if p.is_file())])
-def test_every_file_and_test_that_a_script_names_exists(script):
-    named = re.findall(r"\btests/[\w/]+\.py(?:::\w+)?", (ROOT / script).read_text(encoding="utf-8"))
-    parts = [name.partition("::") for name in named]
-    assert not [path for path, _, _ in parts if not (ROOT / path).is_file()]
-    assert not [f"{path}::{test}" for path, _, test in parts if f"def {test}" not in (ROOT / path).read_text("utf-8")]
+def test_every_file_and_test_that_a_script_names_exists():
+    for script in (ROOT / "Makefile", *(path for path in (ROOT / ".ci").iterdir() if path.is_file())):
+        for name in re.findall(r"\btests/[\w/]+\.py(?:::\w+)?", script.read_text(encoding="utf-8")):
+            path, _, test = name.partition("::")
+            assert (ROOT / path).is_file() and f"def {test}" in (ROOT / path).read_text("utf-8"), (script.name, name)
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_every_path_that_a_page_names_exists(page):
-    text = (ROOT / page).read_text(encoding="utf-8")
+def test_every_path_that_a_page_names_exists():
     rooms = r"(?:dda|fem_reference|validation|tests|docs|reports|\.ci|\.github)"
-    paths = set(re.findall(rf"`({rooms}/[\w./-]*)`", text)) | set(re.findall(r"\b(?:tests|reports)/[\w/]+\.py", text))
-    assert not [path for path in paths - WRITTEN if not (ROOT / path).exists()]
-    links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", text)
-    assert not [link for link in links if not (ROOT / page).parent.joinpath(link).exists()]
+    for page in PAGES:
+        text = (ROOT / page).read_text(encoding="utf-8")
+        paths = {*re.findall(rf"`({rooms}/[\w./-]*)`", text), *re.findall(r"\b(?:tests|reports)/[\w/]+\.py", text)}
+        assert not [path for path in paths - WRITTEN if not (ROOT / path).exists()], page
+        links = re.findall(r"\]\((?!https?:)([^)#\s]+)\)", text)
+        assert not [link for link in links if not (ROOT / page).parent.joinpath(link).exists()], page
 
 
-@pytest.mark.parametrize("page", PAGES)
-def test_commands_and_options_of_a_page_exist(page):
-    blocks = BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))
+def test_commands_and_options_of_pages_exist():
+    blocks = [block for page in PAGES for block in BLOCK.findall((ROOT / page).read_text(encoding="utf-8"))]
     lines = [line for language, _, text in blocks if language in ("sh", "text", "yaml") for line in text.splitlines()]
     for line in lines:
         for part in line.removeprefix("      - run: ").partition(" #")[0].split("&&"):

@@ -160,6 +160,7 @@ def test_the_restitution_where_contact_lasts_two_steps(scheme, e, gap):
     assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
 
 
+@pytest.mark.long
 def test_the_horizon_ends_where_switches_have_amplified_rounding():
     """Average acceleration on a stiff contact is chaotic, constant acceleration is not."""
     stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400}

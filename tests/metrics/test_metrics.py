@@ -131,6 +131,7 @@ def test_a_long_history_is_measured_without_aliases(steps):
     assert found.damping == pytest.approx(damping, rel=1e-6)
 
 
+@pytest.mark.long
 def test_a_slow_history_is_measured_over_more_than_its_first_samples():
     """400 of 9000 samples hold a fifteenth of a period."""
     frequency, damping, dt = 100.0, 0.01, 1e-5

@@ -74,8 +74,8 @@ def box_scene(
 
 
 def record(amplitude, frequency, duration):
-    """Return the file of a record of A (1 - cos(2 pi f t)) over a duration [s] and a second more."""
-    time = np.arange(round(ROWS_A_SECOND * (duration + 1)) + 1) / ROWS_A_SECOND
+    """Return the file of a record of A (1 - cos(2 pi f t)) over a duration [s] and a tenth of a second more."""
+    time = np.arange(round(ROWS_A_SECOND * (duration + 0.1)) + 1) / ROWS_A_SECOND
     path = Path(RECORDS.name) / f"{amplitude}-{frequency}-{duration}.csv"
     rows = np.column_stack([time, amplitude * (1 - np.cos(2 * np.pi * frequency * time))])
     np.savetxt(path, rows, "%.17g", ",", header="time,x", comments="")

@@ -279,12 +279,6 @@ def _kind(causes):
     return causes[0] if len(causes) == 1 else "two causes"
 
 
-def share(found):
-    """Return the share of the named causes that are right."""
-    said = [verdict(one) for one in found if set(one.named) - {UNKNOWN, SAME}]
-    return said.count("right") / max(len(said), 1)
-
-
 def judge(count, processes=1, first=0):
     """Judge so many histories."""
     if processes == 1:

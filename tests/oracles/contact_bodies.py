@@ -248,11 +248,11 @@ def on_shaken_base(model, seed):
     return replace(model, motion=shaken(np.random.default_rng(seed)))
 
 
-def block_case(model, scheme, steps=150, **options):
+def block_case(model, scheme, steps=80, **options):
     return Case(OneBlock, model, scheme, options, steps)
 
 
-def turning_case(seed, scheme=None, steps=120, model=None, **options):
+def turning_case(seed, scheme=None, steps=70, model=None, **options):
     """Return a thrown block: frictionless, bonded or rough by its seed."""
     made, dt = random_rolling(seed)
     made = with_law(made, gap=made.contact.gap / 100)  # it lands soon
@@ -312,8 +312,8 @@ CASES = {
     "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
     "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
     "shaken by two stages": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), of_scheme("composite")),
-    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 100),
-    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 60),
+    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 60),
+    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 40),
     "turning": turning_case,
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),

@@ -1,6 +1,5 @@
 """Blocks with friction under two corners: histories that are known by their events."""
 
-import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -31,19 +30,6 @@ KNOWN = {
             0.01: (1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3),
             0.03: (-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3),
         },
-    ),
-    "pulled": Known(
-        UnilateralModel(square(0.25), Unilateral(YOUNG, YOUNG, friction=0.5), 5e6, traction=2e6),
-        {0.03: (5.135338437750e-2, -8.977369811162e-3, -1.753606771872e-2)},
-    ),
-    "incline": Known(
-        UnilateralModel(
-            square(),
-            Unilateral(YOUNG, 0.4 * YOUNG, friction=math.tan(math.radians(30))),
-            gravity=9.81,
-            slope=20.0,
-        ),
-        {0.05: (8.660335668094e-4, -9.241387969921e-5, -5.024326498383e-5)},
     ),
 }
 

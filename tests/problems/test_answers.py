@@ -264,6 +264,9 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"pack": ...}, "pack", "nothing"),
         ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings", ANSWERS_TEMPLATE["settings"]),
         ({"wo": "x"}, "wo", "'x'"),
+        ({"who": 2001 * "x"}, "who", 2001 * "x"),
+        ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),
+        ({"step_s": "0.002"}, "step_s", "'0.002'"),
         ({"not_reported": {"locked": ["pressure"]}}, "not_reported.locked", "'pressure'"),
         (
             {"not_reported": {"locked": ["displacement_m", "contact_pressure_Pa"]}},
@@ -276,6 +279,11 @@ def test_a_wrong_field_is_named(fields, field, value, tmp_path):
     ((place, found, shown),) = defects_of(answered(tmp_path, names=("locked",), **fields))
     assert place.startswith(f"{FILE}:") and found == field
     assert shown.strip("'")[:50] == value.strip("'")[:50]
+
+
+def test_words_of_the_greatest_length_are_taken(tmp_path):
+    place = answered(tmp_path, names=("locked",), who=2000 * "x", settings_name=60 * "x")
+    assert read_sets(place)[0].data.settings_name == 60 * "x"
 
 
 @pytest.mark.parametrize(

@@ -8,20 +8,18 @@ from oracles.box_scenes import box_scene
 from peers.boxes import spring_step, substeps
 from peers.drake import OWN_STEP, SPRING_SHARE, AsItComes, Drake, program
 
-# To look for it costs nothing; to import it takes seconds in every process that collects these tests.
-installed = pytest.mark.skipif(not find_spec("pydrake"), reason="NOT RUN: Drake is not installed")
+if not find_spec("pydrake"):  # to import it takes seconds in every process that collects these tests
+    pytest.skip("NOT RUN: Drake is not installed", allow_module_level=True)
 # Thousands of steps a second with the chosen settings, few as it comes.
 slowly = pytest.mark.parametrize("solver", [pytest.param(Drake(), marks=pytest.mark.long), AsItComes()],
                                  ids=["chosen", "default"])  # fmt: skip
 SLOPE = math.radians(20.0)
 
 
-@installed
 def test_its_default_step_is_that_of_a_new_configuration():
     assert program().MultibodyPlantConfig().time_step == OWN_STEP
 
 
-@installed
 def test_a_box_slides_with_coulomb_friction_to_the_order_of_the_step():
     """The friction of a step is that of the normal force of the step before: at first of none."""
     errors = []
@@ -36,7 +34,6 @@ def test_a_box_slides_with_coulomb_friction_to_the_order_of_the_step():
     assert errors[1] < 0.5 * errors[0]
 
 
-@installed
 @slowly
 def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
     scene = box_scene({"width": 2.0, "height": 1.5}, stiffness=1e7)
@@ -44,7 +41,6 @@ def test_a_given_stiffness_is_that_of_a_box_on_the_ground(solver):
     assert 0.75 - solver.solve(scene)["box_1.y"][-1] == pytest.approx(weight / 1e7, rel=1e-3)
 
 
-@installed
 @slowly
 def test_no_dissipation_gives_the_speed_back_where_the_step_resolves_the_contact(solver):
     """Over half a period implicit steps of length h take away pi (k/m)^(1/2) h / 2 of the speed."""

@@ -1,13 +1,14 @@
 """Exudyn's adapter: that it states a scene of boxes rightly, by what its integrator and its springs must give."""
 
-import importlib.util
 import math
+from importlib.util import find_spec
 
 import pytest
 from oracles.box_scenes import box_scene
 from peers.exudyn import AsItComes, Exudyn
 
-installed = pytest.mark.skipif(importlib.util.find_spec("exudyn") is None, reason="NOT RUN: Exudyn is not installed")
+if not find_spec("exudyn"):  # to import it takes seconds in every process that collects these tests
+    pytest.skip("NOT RUN: Exudyn is not installed", allow_module_level=True)
 both = pytest.mark.parametrize("solver", [Exudyn(), AsItComes()], ids=["chosen", "default"])
 SLOPE = math.radians(20.0)
 DEFAULT_ZONE = 1e-3  # m/s, frictionProportionalZone of ObjectContactSphereTriangle
@@ -18,7 +19,6 @@ def zone(solver):
     return solver.friction_zone or DEFAULT_ZONE
 
 
-@installed
 def test_its_default_step_is_that_of_its_settings():
     import exudyn
 
@@ -26,7 +26,6 @@ def test_its_default_step_is_that_of_its_settings():
     assert time.endTime / time.numberOfSteps == AsItComes.own_step
 
 
-@installed
 @both
 def test_a_box_that_stands_creeps_at_the_slip_that_its_proportional_friction_asks_for(solver):
     """At rest friction is N tan(phi) v / v0 = N tan(slope), where it settles; to a tenth, after its first sinking."""
@@ -36,7 +35,6 @@ def test_a_box_that_stands_creeps_at_the_slip_that_its_proportional_friction_ask
     assert creep == pytest.approx(zone(solver) * math.tan(SLOPE) / math.tan(math.radians(25.0)), rel=0.1)
 
 
-@installed
 @both
 def test_the_peak_force_is_that_of_a_mass_on_the_stiffness_of_the_scene(solver):
     scene = box_scene({"lift": 0.1}, stiffness=1e6, step=0.001, steps=300)

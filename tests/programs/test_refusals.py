@@ -1,5 +1,7 @@
 """What the programs of blocks and columns cannot express is refused by name before any is asked; so is absence."""
 
+import functools
+import itertools
 import re
 import shutil
 import sys
@@ -27,6 +29,12 @@ REFUSING = PROGRAMS | {"ntdda": ntdda.Histories}
 ROWS = [(name, *row) for name in REFUSING for row in REFUSALS.get(name, REFUSALS[name.removesuffix("-default")])]
 
 
+@functools.cache
+def field(problem):
+    """Return a scene of the field of programs."""
+    return load_scene(f"field-{problem}")
+
+
 @pytest.fixture
 def _nothing_is_there(monkeypatch):
     for module in ("mujoco", "openseespy", "openseespy.opensees"):
@@ -36,25 +44,23 @@ def _nothing_is_there(monkeypatch):
 
 
 @pytest.mark.usefixtures("_nothing_is_there")
-@pytest.mark.parametrize(("name", "problem", "values", "words"), ROWS)
-def test_what_a_program_cannot_express_is_refused_by_name(name, problem, values, words):
-    scene = load_scene(f"field-{problem}").with_values(values)
-    with pytest.raises(NotImplementedError, match=re.escape(words)):
-        REFUSING[name]().solve(scene)
+def test_what_a_program_cannot_express_is_refused_by_name():
+    for name, problem, values, words in ROWS:
+        with pytest.raises(NotImplementedError, match=re.escape(words)):
+            REFUSING[name]().solve(field(problem).with_values(values))
 
 
 @pytest.mark.usefixtures("_nothing_is_there")
-@pytest.mark.parametrize("problem", ["locked", "rocking", "column"])
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_that_is_absent_is_named_with_its_recipe(name, problem):
-    columns = {} if problem == "column" else {"run.columns": ["rotation"] if problem == "rocking" else ["displacement"]}
-    with pytest.raises(NotImplementedError, match=r"(pip|apt-get) install"):
-        PROGRAMS[name]().solve(load_scene(f"field-{problem}").with_values(columns))
+def test_a_program_that_is_absent_is_named_with_its_recipe():
+    columns = {"locked": {"run.columns": ["displacement"]}, "rocking": {"run.columns": ["rotation"]}, "column": {}}
+    for name, problem in itertools.product(PROGRAMS, columns):
+        with pytest.raises(NotImplementedError, match=r"(pip|apt-get) install"):
+            PROGRAMS[name]().solve(field(problem).with_values(columns[problem]))
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
-def test_a_program_says_what_it_is_and_handles_features_of_scenes(name):
-    program = PROGRAMS[name]
-    assert set(program().about) == {"program", "version", "recipe", "model", "settings"}
-    assert max(map(len, program().about.values())) <= 400
-    assert set(program.handles) <= {feature.name for feature in features.FEATURES}
+def test_a_program_says_what_it_is_and_handles_features_of_scenes():
+    for program in PROGRAMS.values():
+        about = program().about
+        assert set(about) == {"program", "version", "recipe", "model", "settings"}
+        assert max(map(len, about.values())) <= 400
+        assert set(program.handles) <= {feature.name for feature in features.FEATURES}

@@ -9,7 +9,7 @@ from validation.report.figures.histories import save
 from validation.report.render.pdf import typeset
 
 LINES = 46  # of text that fill a page
-CASES = range(2, LINES, 3)  # lines above a chapter, so that it begins at each height of a page
+CASES = range(2, LINES, 6)  # lines above a chapter, so that it begins at each height of a page
 
 
 def chapter(name):

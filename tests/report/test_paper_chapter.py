@@ -45,7 +45,7 @@ def page(place, *cases, claims=None, **kept):
 # ---- the register ---------------------------------------------------------------------------------------------------
 
 
-def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, tmp_path):
+def test_claims_have_verdict_reason_and_numbers_and_the_lead_counts_them(kept, drawn, tmp_path):
     """Also where all hold or none, and where one or several of the refuted are misprints."""
     claims = {
         "S16": {"verdict": 0.0, "steps": 44, "none": 0, "share": "undefined"},
@@ -81,7 +81,7 @@ def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(kept
     derived = [{"scene": name, "name": "period", "metrics": {"continuum": word}} for name, word in words.items()]
     blocks = page(tmp_path, *cases, derived=derived)
     kept("paper", [block for block in blocks if isinstance(block, FigureBlock)])
-    kept_figures("figures-paper", drawn)
+    kept_figures("figures-paper", {name: drawn[name] for name in sorted(drawn)[:3]})
 
 
 def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_path):

@@ -13,7 +13,7 @@ from urllib.parse import urlencode
 
 import numpy as np
 import pytest
-from conftest import SCENE, refused, thinned, typed
+from conftest import SCENE, refused, typed
 from oracles.made_cases import kept_study, made_row
 from oracles.made_results import made_rows
 from pypdf import PdfReader
@@ -23,6 +23,7 @@ from validation.gates.gate import Gate, judge
 from validation.report import blocks as kinds
 from validation.report.blocks import Block, Callout, Heading, Link, Links, Listing, Paragraph, Points, table
 from validation.report.book import build
+from validation.report.figures import histories
 from validation.report.render import pdf, terminal
 from validation.report.render.html import page, readable
 from validation.report.site import pages
@@ -32,6 +33,7 @@ from validation.scenes.scene import load_scene, parse_scene
 
 REASON = "because of h / c"
 FAILING = "fail<!--ing"  # a name that would open a comment in a script
+EMPTY = '<svg xmlns="http://www.w3.org/2000/svg" width="9pt" height="9pt"/>'
 HOSTILE = "</script><b>50 % & 'more' @feng2017"  # the key of a source cites nothing in a user's title
 CHROMIUM = os.environ.get("CHROMIUM") or shutil.which("chromium") or shutil.which("google-chrome")
 browser = pytest.mark.skipif(not CHROMIUM, reason="the browser is NOT RUN: needs Chromium on the path or in CHROMIUM")
@@ -51,10 +53,18 @@ def results(tmp_path_factory):
     return kept
 
 
+def written_empty(figure, path):
+    """Write an empty drawing; the bytes of a figure have a test of their own."""
+    path.write_text(EMPTY)
+    return path
+
+
 @pytest.fixture(scope="module")
 def site(results, tmp_path_factory):
     out = tmp_path_factory.mktemp("site")
-    assert pages.build(results, out, docs="..") == out / "index.html"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(histories, "save", written_empty)
+        assert pages.build(results, out, docs="..") == out / "index.html"
     return out
 
 
@@ -83,7 +93,10 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     assert "FAIL" in files["index.html"] and REASON in files["index.html"]
 
 
-def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path):
+def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path, monkeypatch):
+    for other in ("scene_page", "chapter_blocks"):
+        monkeypatch.setattr(pages, other, lambda *_: [])
+    monkeypatch.setattr(pages, "matrix", lambda verdicts: [Paragraph(f"of {len(verdicts)}")])
     pages.build(core_results, tmp_path / "site")
     files = texts(tmp_path / "site")
     index = files["index.html"]
@@ -91,6 +104,7 @@ def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tm
     assert [picture for _, picture in cards] == ["step", "springs", "discount"]
     assert all(f'id="{place}"' in files["decisions.html"] for place, _ in cards)
     assert index.index(cards[-1][0]) < index.index("study-core.html")
+    assert "of 2" in files["verification.html"] and 'href="verification.html"' in index
 
 
 def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(site, results):
@@ -105,24 +119,21 @@ def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(s
         assert "<b>50" not in text and "&lt;b&gt;50" in text and "@feng2017" in text, name
 
 
-@pytest.mark.usefixtures("drawn")  # the bytes of a figure have a test of their own
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
-    results, tmp_path, monkeypatch
+    site, results, tmp_path, monkeypatch
 ):
     out = tmp_path / "out"
     out.mkdir()
     (out / pages.MARK).write_text("an earlier site")
     (out / "scene-old.html").write_text("gone")
+    monkeypatch.setattr(histories, "save", written_empty)
     with monkeypatch.context() as patch:
-        patch.setattr(pages, "chapter_blocks", lambda *_: (_ for _ in ()).throw(OSError(28, "full")))
+        patch.setattr(pages, "scene_page", lambda *_: (_ for _ in ()).throw(OSError(28, "full")))
         with pytest.raises(InputError, match="full"):
             pages.build(results, out)
     assert set(texts(out)) == {pages.MARK, "scene-old.html"}
-    sites = []
-    for _ in range(2):
-        pages.build(results, out)
-        sites.append(texts(out))
-    assert sites[0] == sites[1] and "scene-passing.html" in sites[0] and "scene-old.html" not in sites[0]
+    pages.build(results, out, docs="..")
+    assert texts(out) == texts(site)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
 
 
@@ -184,7 +195,7 @@ def example(kind):
 @pytest.mark.parametrize("kind", get_args(Block))
 def test_every_kind_of_block_has_its_form_in_every_renderer(kind, tmp_path):
     block = example(kind)
-    (tmp_path / "f.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="9pt" height="9pt"/>')
+    (tmp_path / "f.svg").write_text(EMPTY)
     (tmp_path / "r.pdf").write_bytes(pdf.typeset(tmp_path, [block]))
     printed = PdfReader(tmp_path / "r.pdf").pages[0].extract_text()
     shown = "\n".join(text for text, _ in terminal.lines([block], 80))
@@ -234,18 +245,15 @@ def answer(command):
     return json.loads(done.stdout)
 
 
-SETTINGS = thinned(  # a browser takes seconds for each
-    [
-        {"solve_for": "dt", "alpha": 0.3025, "delta": 0.6, "gg": 0.98, "density": 2000, "target": 0.02},
-        {"solve_for": "dt"},
-        {"solve_for": "gg", "step": 3e-4, "alpha": 0.25, "delta": 0.5, "stiffness_ratio": 10, "target": 0.08},
-        {"solve_for": "scheme", "step": 1e-3, "gg": 0.99, "young": 4e9, "side": 3, "target": 0.3},
-    ],
-    4,
-)
+SETTINGS = [  # a browser takes seconds for each
+    {"solve_for": "dt", "alpha": 0.3025, "delta": 0.6, "gg": 0.98, "density": 2000, "target": 0.02},
+    {"solve_for": "gg", "step": 3e-4, "alpha": 0.25, "delta": 0.5, "stiffness_ratio": 10, "target": 0.08},
+    {"solve_for": "scheme", "step": 1e-3, "gg": 0.99, "young": 4e9, "side": 3, "target": 0.3},
+]
 
 
 @browser
+@pytest.mark.long
 @pytest.mark.parametrize("settings", SETTINGS, ids=str)
 def test_the_calculators_answer_as_the_command_line(site, settings):
     shown = computed(site, settings)

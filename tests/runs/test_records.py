@@ -39,3 +39,5 @@ def test_two_verdicts_of_one_gate_are_refused():
     assert unique(two) == two
     with pytest.raises(ValueError, match=r"^g .* s$"):
         unique([*two, judged("FAIL", 3.0)])
+    with pytest.raises(ValueError, match=r"^g{200} .* s{200}$"):
+        unique(2 * [judged("PASS", 1.5, name=300 * "g") | {"study": 300 * "s"}])

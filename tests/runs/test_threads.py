@@ -168,6 +168,7 @@ def test_a_command_has_as_many_as_the_user_says():
     assert run_python(TYPED, OMP_NUM_THREADS="2") == "{2} 2"
 
 
+@pytest.mark.long
 def test_the_package_dda_touches_nothing():
     code = "import os; before = dict(os.environ); import dda, validation; print(dict(os.environ) == before)"
     assert run_python(code) == "True"

@@ -115,6 +115,7 @@ def python(code, place):
     assert finished.returncode == 0, finished.stderr[-3000:]
 
 
+@pytest.mark.long
 def test_a_folder_adds_a_kind(tmp_path):
     folder = tmp_path / "kinds" / "pendulum"
     folder.mkdir(parents=True)

@@ -53,6 +53,7 @@ def test_python_warns_once_a_scene_and_not_once_a_solver():
     assert [(warning.category, warning.filename) for warning in caught] == [(PlausibilityWarning, "rock")]
 
 
+@pytest.mark.long
 def test_commands_warn_on_standard_error_once(tmp_path):
     lines = ['title = "t"', "[block]", "side = 2.0", "density = 2.7", "young = 3e10", "[contact]", "stiffness = 1e9"]
     scene = tmp_path / "mine.toml"

@@ -1,9 +1,5 @@
 """The adapters of elastic bars and of line elements whose contacts open or slip: the elements tend to the bars."""
 
-import numpy as np
-import pytest
-from conftest import thinned
-
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
 from validation.solvers.columns.bars import BarsOfColumn
@@ -14,7 +10,6 @@ LAYERS = [
     {"thickness": 1.5, "density": 2000.0, "young": 5e8, "blocks": 1, "velocity": -0.5},
 ]
 OPENS = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gap": 1e-3, "gravity": 9.81, "layer": LAYERS}
-WELDED = {"motion": "pressure", "law": "unilateral", "layer": LAYERS, "gravity": 9.81}  # but for its joints
 HEIGHTS = [0.0, 0.5, 1.0, 2.0, 2.75]
 PULSE = {"at": "top", "shape": "half-sine", "pressure": 3e5, "duration": 0.006}
 
@@ -32,40 +27,9 @@ def history(scene, solver):
     return dict(run.history.columns)
 
 
-SMOOTH = ("displacement", "displacement_2", "displacement_5")  # the others have fronts, about which elements ring
-
-
-def distance(finer, stride, exact, *names):
-    """Greatest mean distance of a column of the elements, at the exact motion's instants, over its greatest value."""
-    stepped = history(finer, "fem")
-    errors = []
-    for name in names or exact:
-        largest = np.abs(exact[name]).max()
-        if largest:
-            errors.append(np.abs(stepped[name][stride - 1 :: stride] - exact[name]).mean() / largest)
-        else:
-            assert not stepped[name].any(), name
-    return max(errors)
-
-
-@pytest.mark.parametrize("shape", thinned(["sine", "cosine", "triangle", "half-sine"], 4))
-def test_every_shape_of_a_base_motion_moves_both(shape):
-    size = {"duration": 0.008} if shape in ("triangle", "half-sine") else {"frequency": 60.0}
-    layers = [layer | {"velocity": 0.0} for layer in LAYERS]
-    column = WELDED | {"joint": [{"height": 2.0, "stiffness": 1e9}], "settled": True, "layer": layers}
-    drive = {"at": "base", "shape": shape, "velocity": -0.3, **size}
-    columns = ["displacement", "displacement_2", "force_4"]
-    scene = scene_of(column, columns, input=drive, time={"steps": 60})
-    exact = history(scene, "bars-events")
-    time = {"step": 1e-4 / 8, "steps": 480}
-    fine = scene_of(column, columns, 16, input=drive, time=time)
-    assert distance(fine, 8, exact, *SMOOTH[:2]) < 0.01
-    assert distance(fine, 8, exact) < 0.12
-
-
 def test_a_motion_that_outgrows_the_work_ends_at_a_horizon(monkeypatch):
-    scene = scene_of(OPENS, ["displacement"], input=PULSE)
-    monkeypatch.setattr(BarsOfColumn, "most_terms", 2e4)
+    scene = scene_of(OPENS, ["displacement"], input=PULSE, time={"steps": 80})
+    monkeypatch.setattr(BarsOfColumn, "most_terms", 2e3)
     run = solve(scene, "bars-events")
     assert run.outcome is Outcome.HORIZON
     assert solve(scene, "bars-events", full=True).outcome is Outcome.COMPLETED

@@ -25,16 +25,6 @@ def scene_of(column, columns, steps=200, **tables):
     return parse_scene({"column": {"heights": HEIGHTS} | column, "time": time, "run": run, **tables}, "made")
 
 
-def history(scene, solver="column-events"):
-    run = solve(scene, solver)
-    assert run.outcome is Outcome.COMPLETED and run.history is not None, run.notes
-    return dict(run.history.columns)
-
-
-def names(*parts, numbers=range(1, 6)):
-    return [f"{part}_{number}" for part in parts for number in numbers]
-
-
 @pytest.mark.parametrize(
     "drive",
     [
@@ -68,31 +58,13 @@ def test_the_drive_is_that_of_the_scene(drive, tmp_path):
         np.testing.assert_allclose(values, expected, atol=1e-12 * max(np.abs(expected).max(), 1e-3))
 
 
-def test_heights_are_of_the_lower_block_and_stresses_are_those_of_contacts_or_strains():
-    columns = ["displacement", "contact_pressure", *names("displacement", "stress"), "force_1", "force_3", "force_4"]
-    columns += ["gap_1", "gap_3"]
-    values = history(scene_of(OPENS, columns))
-    middle = values["displacement_2"]  # of the lowest block, whose foot and top are the heights 1 and 3
-    np.testing.assert_allclose(middle, (values["displacement_1"] + values["displacement_3"]) / 2, rtol=1e-13)
-    np.testing.assert_allclose(values["force_1"], values["contact_pressure"])
-    np.testing.assert_allclose(values["stress_5"], values["force_4"] / 2, atol=1e-9)  # rigid, nothing on its top
-    modulus = 1e9 * 0.8 / (1.2 * 0.6)
-    strain = (values["displacement_1"] - values["displacement_3"]) / 1.0
-    np.testing.assert_allclose(values["stress_2"], modulus * strain, rtol=1e-9, atol=1e-3)
-    np.testing.assert_allclose(values["displacement"], values["displacement_5"], rtol=1e-15)
-    closed = values["force_1"] > 0
-    assert closed.any() and not closed.all()
-    assert (values["gap_1"][closed] == 0).all()
-    assert (values["gap_1"][~closed] > 0).all()
-
-
 def test_notes_name_switches_and_the_proven_radius():
-    run = solve(scene_of(OPENS, ["displacement"]), "column-events")
+    run = solve(scene_of(OPENS, ["displacement"], 100), "column-events")
     assert run.notes[1].startswith("0 m ")
     assert sum(note.startswith("proven: ") for note in run.notes) == 2
     assert not run.notes[-1].endswith(" m")
     touching = OPENS | {"gap": 0.0, "joint": [{"height": 0.0, "stiffness": 1e9, "gap": 0.01}]}
-    run = solve(scene_of(touching, ["displacement"]), "column-events")
+    run = solve(scene_of(touching, ["displacement"], 40), "column-events")
     assert run.notes[-1].endswith(" 1, 2 m")
 
 
@@ -119,4 +91,3 @@ def test_a_motion_of_too_much_work_ends_at_a_horizon_and_shows_how_far_it_is(mon
         assert "column-events:full" in run.notes[0]
     assert said[0] != said[1]  # met on the way, and known before
     assert shares == sorted(shares) and 0 < shares[-1] < 1
-    assert solve(scene, "column-events", full=True).outcome is Outcome.COMPLETED

@@ -42,21 +42,6 @@ def test_the_engine_keeps_what_the_metrics_of_a_case_are_measured_from(monkeypat
     assert asked[0] is kept
 
 
-@pytest.mark.parametrize("solver", thinned(["dda", "fem"], 2))
-def test_a_pressure_that_is_there_at_once_acts_on_a_column_at_rest_under_its_weight(solver):
-    """Each of the three takes the state at rest for that of the weight alone."""
-    tables = {
-        "input": {"at": "top", "shape": "triangle", "pressure": 5e5, "duration": 0.01},
-        "fem": {"elements": 1, "degree": 1},
-    }
-    layer = LAYER | {"thickness": 3.0, "blocks": 3, "velocity": 0.0, "young": 1e9}
-    column = {"gravity": 9.81, "settled": True, "layer": [layer], "heights": [0.5]}
-    scene = scene_of(column, ["displacement_1", "contact_pressure"], 5e-5, 400, **tables)
-    stepped, exact = (get_solver(name).solve(scene).history.columns for name in (solver, "column-events"))
-    for name, values in exact.items():
-        assert np.abs(stepped[name] - values).max() < 5e-3 * np.abs(values).max(), name
-
-
 @pytest.mark.parametrize(
     ("case", "lowest", "highest"),
     thinned([(0, -23.765, -1.320), (1, -22.386, 2.107), (2, -24.06, -1.71), pytest.param(3, -17.92, -0.013)], 4),

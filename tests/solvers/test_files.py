@@ -10,10 +10,13 @@ from oracles.pages import ROOT
 
 from validation.engine.measure import completed
 from validation.errors import InputError
+from validation.runs.defects import Defects, DefectsError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.plain import lines, words
 from validation.scenes.scene import load_scene
+from validation.solvers.history_table import read_table
+from validation.solvers.processes.user_worker import columns_of
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE
 from validation.suite.own_solver.gates import applying
@@ -69,6 +72,56 @@ def test_how_a_program_ends_is_named(text, outcome, said, tmp_path, monkeypatch)
     run = completed(get_solver(program(tmp_path, text)), SCENE)
     assert run.outcome is outcome, run.notes
     assert said in "".join(run.notes)
+    if outcome is Outcome.COMPLETED:
+        assert run.seconds["setup"] == 0 < run.seconds["stepping"] < 60
+
+
+COLUMNS = {"displacement": "m", "rotation": "rad"}
+TABLES = [  # of three rows, 0.001 s apart: what is wrong with it, where, and in which field
+    ("time,displacement\n0,9\n0.001,1\n0.002,2\n0.003,3", None, None),
+    ("time,displacement\n0,9\n0.001,1\n0.0025,2\n0.003,3", "x:4:1", "time"),
+    ("time,displacement\n0,9\n0.001,1\n0.002,2", "x:4:1", "time"),
+    ("time,displacement\n0.001,1\n0.002,2\n0.003,3\n0.004,4", "x:5:1", "time"),
+    ("time,displacement\n1,1\n2,2\n3,3", "x:2:1", "time"),
+    ("time,displacement\n0.002,1\n0.003,2\n0.004,3", "x:2:1", "time"),
+    ("time,displacement\n0.001,1\n0.002,2,5\n0.003,3", "x:3:8", None),
+    ("time,displacement\n0.001,1\n0.002\n0.003,3", "x:3:6", None),
+    ("time,displacement\n0.001,1\n0.002,1e200\n0.003,inf", "x:3:7", "displacement"),
+    ("time,displacment\n0.001,1", "x:1:6", "header"),
+    ("time,rotation\n0.001,1", "x:1:14", "header"),
+    ("time,displacement,time\n0.001,1,1", "x:1:19", "header"),
+    ("0.001,1\n0.002,2", "x:1:1", "header"),
+    ("time,displacement\n0.001,\n0.002,", "blank", None),
+    ("", "x", None),
+]
+
+
+def test_a_table_of_a_history_is_read_or_its_defect_has_a_place():
+    for text, place, field in TABLES:
+        defects = Defects()
+        table = read_table(Path("x"), 0.001 * np.arange(1, 4), COLUMNS, ["displacement"], defects, text=text)
+        if place is None:
+            assert table.history.displacement.tolist() == [1.0, 2.0, 3.0] and not len(defects)
+            assert [*table.header] == ["displacement"]
+            continue
+        assert table is None and (place == "blank") is (not len(defects)), text
+        if place != "blank":
+            with pytest.raises(DefectsError) as error:
+                defects.check()
+            assert (str(error.value.source), error.value.field) == (place, field), text
+
+
+def test_a_solver_answers_in_one_of_a_few_forms():
+    rows = np.arange(6.0).reshape(2, 3)
+    named = {"displacement": [1.0], "contact_pressure": [2.0]}
+    assert columns_of(([1.0], [2.0])) == columns_of(named) == named
+    found = columns_of(rows)
+    assert {name: list(values) for name, values in found.items()} == dict(
+        zip(("time", "displacement", "contact_pressure"), rows.T.tolist(), strict=True)
+    )
+    for other in ([1, 2, 3, 4], np.zeros((3, 4)), np.zeros(3), "ab", None):
+        with pytest.raises(TypeError):
+            columns_of(other)
 
 
 def test_what_cannot_be_started_and_kinds_without_words(tmp_path):

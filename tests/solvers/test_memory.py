@@ -1,6 +1,8 @@
 """Memory: limits of control groups count, and a refusal for want of it is not kept."""
 
 import math
+import os
+from pathlib import Path
 
 import pytest
 from conftest import SCENE, typed
@@ -9,6 +11,7 @@ from validation.engine.run import run_study
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.solvers import memory
+from validation.solvers.hooks import SolvingHooks
 from validation.suite.folders import scene_study
 
 MB = 2**20
@@ -55,6 +58,14 @@ JOB, USER = "user.slice/job.scope", "user.slice"
 )
 def test_what_control_groups_leave(groups, files, expected, tmp_path):
     assert left(machine(tmp_path, groups, files)) == expected
+
+
+def test_a_machine_that_does_not_say_what_is_available_says_what_it_has(monkeypatch):
+    monkeypatch.setattr(Path, "read_text", lambda path, **options: "")
+    assert memory._of_machine() == os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    monkeypatch.setattr(Path, "read_text", lambda path, **options: "MemAvailable: 7 kB")
+    assert memory._of_machine() == 7 * 1024.0
+    assert SolvingHooks().memory(None, None) == (0.0, "time.steps") and SolvingHooks().reach(None) == math.inf
 
 
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):

@@ -23,6 +23,12 @@ def test_memory_of_a_mesh_grows_by_its_unknowns(solver):
     assert sizes[200, 1] > 2 * 201**2 * 1000  # element matrices, indices and a factor are more than that
 
 
+def test_a_mesh_that_cannot_be_read_needs_no_memory():
+    """That it cannot be read is said where it is read."""
+    meshed = scene_of().with_values({"fem": {"mesh": "nowhere.msh"}})
+    assert memory.needed(meshed, get_solver("fem"))[0] == 8 * 50 * (4 * 3 + 6)
+
+
 @pytest.mark.parametrize(
     ("solver", "changes", "column"),
     [

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import dda
+from validation.models.plane.blocks import PlaneBlockSection, second_moments
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.moving import model_of
 from validation.runs.run import Outcome
@@ -99,60 +100,6 @@ def test_a_step_that_does_not_end_names_the_contacts_that_flip():
     assert flipping and all(block.startswith("stone_") for _, block, _, _ in flipping)
 
 
-LASTING = 0.1  # s: more than a period of the base
-AMPLITUDE = 1e-4  # m: less than opens the contact
-DRIVEN = 2 * np.pi * 12.0  # rad/s
-UNDER = {  # a square on a base that shakes up and down, or glued between two walls that shake along
-    "y": {
-        "held": [{"name": "base", "rectangle": [3.0, 1.0], "at": [0.0, MASS * 9.81 / (2 * STIFFNESS) - 1.0]}],
-        "contact": {"stiffness": STIFFNESS, "friction": 30.0},
-        "touch": [{"block": "square", "corner": corner, "on": "base", "edge": 2} for corner in (0, 1)],
-        "gravity": [0.0, -9.81],
-    },
-    "x": {
-        "held": [{"name": n, "rectangle": [1.0, 1.0], "at": [x, 0.0]} for n, x in (("base", -1.0), ("other", 1.0))],
-        "bond": [{"blocks": ["square", name], "stiffness": STIFFNESS} for name in ("base", "other")],
-    },
-}
-
-
-def shaken(along, time, directory):
-    """Return the columns of a square of one frequency: glue is symmetric about its centroid, its corners never open."""
-    record = np.column_stack([time, AMPLITUDE * np.sin(DRIVEN * time)])
-    np.savetxt(directory / "shake.csv", record, "%.17g", ",", header=f"time,{along}", comments="")
-    tables = dict(UNDER[along])
-    held = [block | {"motion": str(directory / "shake.csv")} for block in tables.pop("held")]
-    plane = {"young": "inf", "density": MASS, "block": [*held, {"name": "square", "rectangle": [1.0, 1.0]}], **tables}
-    names = [f"{name}.{part}" for name in ("base", "square") for part in ("x", "y", "vx", "vy", "spin")]
-    stepping = {"step": time[1], "steps": len(time) - 1, "alpha": 0.25, "delta": 0.5, "start": "consistent"}
-    scene = parse_scene({"plane": plane, "time": stepping, "run": {"columns": [*names, "energy.balance"]}}, "shaken")
-    return solve(scene, "dda").history.columns
-
-
-@pytest.mark.parametrize(("along", "across", "springs"), [("y", "x", 2), ("x", "y", 4)], ids=["pressed", "glued"])
-def test_a_block_on_what_shakes_is_an_oscillator_on_a_moving_base(along, across, springs, tmp_path):
-    """Its motion is u = a / (1 - r^2) (sin w t - r sin w0 t), r = w / w0; the scheme is of second order."""
-    own = math.sqrt(springs * STIFFNESS / MASS)
-    r = DRIVEN / own
-    errors = []
-    for step in (5e-4, 2.5e-4):
-        time = step * np.arange(round(LASTING / step) + 1)
-        columns = shaken(along, time, tmp_path)
-        driven = AMPLITUDE * np.sin(DRIVEN * time)
-        base = columns[f"base.{along}"]
-        assert base - base[-1] == pytest.approx(driven[1:] - driven[-1], abs=1e-9 * AMPLITUDE)
-        assert columns[f"base.v{along}"] == pytest.approx(np.diff(driven) / step, abs=1e-9 * DRIVEN * AMPLITUDE)
-        assert not any(np.any(columns[name]) for name in (f"base.v{across}", "base.spin"))
-        assert columns[f"square.{across}"] == pytest.approx(0.0, abs=1e-9 * AMPLITUDE)
-        assert np.max(np.abs(columns["energy.balance"])) < 1e-9 * MASS * (DRIVEN * AMPLITUDE) ** 2
-        exact = AMPLITUDE / (1 - r**2) * (np.sin(DRIVEN * time) - r * np.sin(own * time))
-        errors.append(np.max(np.abs(columns[f"square.{along}"] - exact[1:])))
-    assert math.log2(errors[0] / errors[1]) == pytest.approx(2.0, abs=0.15)
-    # average acceleration shortens the frequency of the free part by w0^3 dt^2 / 12
-    lag = own**3 * step**2 / 12 * LASTING
-    assert errors[-1] == pytest.approx(lag * AMPLITUDE * r / (1 - r**2), rel=0.1)
-
-
 def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
     block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
     traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
@@ -160,3 +107,10 @@ def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there(
     scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
     (load,) = scene.plane.assembly.loads
     assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]
+
+
+def test_a_regular_polygon_has_the_corners_and_the_moments_of_its_radius():
+    triangle = PlaneBlockSection(name="triangle", sides=3, radius=2.0).outline
+    expected = [(2.0, 0.0), (-1.0, math.sqrt(3)), (-1.0, -math.sqrt(3))]
+    assert np.array(triangle) == pytest.approx(np.array(expected))
+    assert second_moments(triangle) == pytest.approx(1.5 * math.sqrt(3) * np.eye(2), abs=1e-12)  # sqrt(3) a^4 / 96

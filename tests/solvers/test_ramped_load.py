@@ -1,13 +1,10 @@
-"""A load that rises in a ramp: who refuses it, and what `compare` makes of it."""
+"""A load that rises in a ramp: who refuses it."""
 
 import math
 
 import pytest
-from conftest import refused, typed
 
 import dda
-
-RAMP = 0.0137  # s, between two steps
 
 
 def test_the_packages_refuse_a_ramp_where_they_do_not_know_it():
@@ -29,14 +26,3 @@ def test_the_packages_refuse_a_ramp_where_they_do_not_know_it():
     for ramp in (-1.0, math.nan, math.inf):
         with pytest.raises(ValueError, match="ramp"):
             dda.Load(ramp=ramp)
-
-
-@pytest.mark.long
-def test_compare_knows_the_ramp_of_a_scene_and_refuses_it_where_it_does_not(tmp_path):
-    values = ("--set", "time.step=0.002", "--set", f"load.ramp={RAMP}")
-    history = tmp_path / "ramped.csv"
-    assert typed("solve", "figures-3-4", *values, "--solver", "dda", "--csv", history).returncode == 0
-    assert typed("compare", "figures-3-4", history, *values).returncode == 0  # the scene's own history
-    assert typed("compare", "figures-3-4", history, *values[:2]).returncode == 1
-    polygon = ("--set", "block.vertices=[[0.0, 0.0], [2.0, 0.0], [1.8, 2.0], [0.2, 2.0]]")
-    assert refused("compare", "figures-3-4", history, *values, *polygon)

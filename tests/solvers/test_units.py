@@ -1,5 +1,7 @@
 """A user's columns in other units, with another sign, or as a force: each slip is named, and nothing sound is."""
 
+import itertools
+
 import numpy as np
 import pytest
 from conftest import thinned
@@ -48,18 +50,18 @@ def test_every_unit_of_the_table_is_tested():
         assert set(ratios("s" if column == "time" else unit_of(column)).values()) == set(of_column)
 
 
-@pytest.mark.parametrize("column", AT_HEIGHTS)
-def test_another_unit_at_a_height_is_named(scene, column):
+def test_another_unit_at_a_height_is_named():
     expected = np.sin(np.linspace(0.1, 9.0, 50))
-    for unit, times in AT_HEIGHTS[column].items():
-        told = factor(f"{column}_1", 1.1 * times * expected, expected)
-        assert told is not None and told.endswith(f"{unit}?")
-    assert factor(f"{column}_1", 1.1 * expected, expected) is None
+    for column, units in AT_HEIGHTS.items():
+        for unit, times in units.items():
+            told = factor(f"{column}_1", 1.1 * times * expected, expected)
+            assert told is not None and told.endswith(f"{unit}?")
+        assert factor(f"{column}_1", 1.1 * expected, expected) is None
 
 
 @pytest.mark.parametrize(
     ("column", "unit", "size", "variant"),
-    thinned(((*name, size, variant) for name in NAMES for size in (0.85, 1.0, 1.2) for variant in VARIANTS), 5),
+    thinned(((*name, size, variant) for name in NAMES for size in (0.85, 1.2) for variant in VARIANTS), 7),
 )
 def test_another_unit_is_named(scene, column, unit, size, variant):
     if column == "time":
@@ -70,12 +72,11 @@ def test_another_unit_is_named(scene, column, unit, size, variant):
     assert f"{column} is {factor:g} " in run.notes[0] and run.notes[0].endswith(f" {unit}?")
 
 
-@pytest.mark.parametrize("values", VARIANTS.values(), ids=VARIANTS)
-@pytest.mark.parametrize("column", COLUMNS)
-def test_another_sign_is_named(scene, column, values):
-    scene = scene.with_values(values)
-    run = run_of_columns(scene, columns_of(scene, {column: -1.0}))
-    assert run.outcome is Outcome.WRONG_UNITS and f"sign: {column} " in run.notes[0]
+def test_another_sign_is_named(scene):
+    for column, values in itertools.product(COLUMNS, VARIANTS.values()):
+        varied = scene.with_values(values)
+        run = run_of_columns(varied, columns_of(varied, {column: -1.0}))
+        assert run.outcome is Outcome.WRONG_UNITS and f"sign: {column} " in run.notes[0]
 
 
 @pytest.mark.parametrize("width", [0.4, 1.6, 2.0, 7.0])

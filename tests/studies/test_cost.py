@@ -214,6 +214,7 @@ MINE = {
 }
 
 
+@pytest.mark.long
 def test_a_user_s_block_is_run_and_told(tmp_path, monkeypatch):
     """Few methods, two levels each: the command runs the study of the scene and prints the cheapest ways."""
     short = tuple(replace(one, levels=one.levels[:2]) for one in methods() if one.id in ("fem-linear", "modal"))

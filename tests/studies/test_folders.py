@@ -98,6 +98,7 @@ def added(tmp_path, monkeypatch):
         del sys.modules[name]
 
 
+@pytest.mark.long
 def test_a_folder_that_is_added_is_run_judged_and_told(added, tmp_path, monkeypatch):
     names = study_names()
     assert names[names.index("paper") + 1] == "added-study"
@@ -112,7 +113,8 @@ def test_a_folder_that_is_added_is_run_judged_and_told(added, tmp_path, monkeypa
     assert chapter_of("added-study") is scene_chapter
 
 
-@pytest.mark.parametrize("folder", thinned(sorted(path.parent.name for path in HERE.glob("*/study.toml")), 9))
+@pytest.mark.long
+@pytest.mark.parametrize("folder", sorted(path.parent.name for path in HERE.glob("*/study.toml")))
 def test_a_folder_that_is_taken_away_leaves_the_others_whole(folder, tmp_path, monkeypatch):
     """Contracts of imports hold that no module needs it; here no scene of another study stands in it."""
     own = {name for name, path in study_folders().items() if path.path.name == folder}

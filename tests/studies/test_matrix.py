@@ -105,7 +105,8 @@ def test_the_kind_of_a_reference_is_one_of_four():
         Gate("s", ("dda",), "m", 0, 1, "r", "guess")
 
 
-@pytest.mark.parametrize(("factor", "status"), [pytest.param(1.0, 0, marks=pytest.mark.long), (1.1, 1)])
+@pytest.mark.long
+@pytest.mark.parametrize(("factor", "status"), [(1.0, 0), (1.1, 1)])
 def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, few, tmp_path, monkeypatch):
     sliding = replace(phenomenon("boxes"), scenes=("boxes-sliding",))
     monkeypatch.setattr(matrix, "phenomenon", lambda text: sliding)

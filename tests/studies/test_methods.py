@@ -100,6 +100,7 @@ def test_gates_of_four_scenes_are_bitten(tmp_path, finished_cases):
     check(FAULTS[:5], SHORT, tmp_path, finished_cases)
 
 
+@pytest.mark.long
 def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch):
     gates = [gate for gate in get_study("methods").gates() if gate.pair[0] == methods.RIGID_MAP]
     rows = {row.scene: row for row in methods.derived() if row.name == methods.RIGID_MAP}

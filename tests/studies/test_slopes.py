@@ -75,6 +75,7 @@ CREEP = [
 ]
 
 
+@pytest.mark.long
 def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path, finished_cases):
     scenes = (creep.STEPS, creep.LAGGED)
     check_creep(

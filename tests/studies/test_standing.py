@@ -28,6 +28,7 @@ def test_columns_on_a_flat_base_have_the_brackets_of_another_program(phi, count,
     assert heights == pytest.approx((recursion, program), rel=3e-6)
 
 
+@pytest.mark.long
 def test_limits_are_those_of_another_program():
     assert math.degrees(limits.stepped_dip([2, 4, 4, 4, 4], 1.0, 1.0, 0.8)) == pytest.approx(14.6417, abs=5e-5)
     assert limits.keyed_dip(2.36188746487, 5, 1.0) == pytest.approx(DIP, rel=1e-11)

@@ -70,6 +70,7 @@ def test_springs_along_the_plane_change_the_impulse_as_another_program_has_it(mu
     assert left.impulse == pytest.approx(impulse, abs=5.0)  # it turns by 2e-4 in the millimetre above
 
 
+@pytest.mark.long
 def test_two_corners_rise_and_turn_as_another_program_has_them():
     assert formulas.two_corners((-1.0, 0.5), 2 / 3) == pytest.approx((0.99561982, -0.11450666), abs=1e-7)
 

@@ -4,7 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from scipy.linalg import eigh
 
+from validation.scenes.scene import Scene
 from validation.theory import columns
 from validation.theory.stepping import Stepping
 
@@ -50,3 +52,24 @@ def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step
 
 def test_every_contact_at_rest_carries_what_is_above():
     assert columns.static_forces([3.0, 2.0, 1.0]) == [6.0, 3.0, 1.0]
+
+
+@pytest.mark.parametrize("base", [{}, {"base": "springs", "base_stiffness": 3e7}])
+def test_the_first_frequency_of_a_column_is_that_of_its_faces(base):
+    """Blocks of one strain, two layers of them: the lowest eigenvalue of their faces, assembled."""
+    layers = [(3.0, 2000.0, 2e9, 2), (2.0, 1700.0, 5e8, 3)]
+    tables = [dict(zip(("thickness", "density", "young", "blocks"), layer, strict=True)) for layer in layers]
+    column = {"motion": "shear", "layer": tables} | base
+    course = {"input": {"shape": "ricker", "velocity": 0.1, "frequency": 2.0}, "time": {"step": 1e-3, "steps": 9}}
+    M, K = np.zeros((2, 6, 6))
+    K[0, 0] = base.get("base_stiffness", 1e18)
+    foot = 0
+    for thickness, density, young, blocks in layers:
+        for _ in range(blocks):
+            part = slice(foot, foot + 2)
+            M[part, part] += density * thickness / blocks / 6 * np.array([[2, 1], [1, 2]])
+            K[part, part] += young / 2 / (thickness / blocks) * np.array([[1, -1], [-1, 1]])
+            foot += 1
+    lowest = math.sqrt(eigh(K, M, eigvals_only=True)[0])
+    section = Scene.model_validate({"name": "two layers", "column": column} | course).column
+    assert columns.first_frequency(section) == pytest.approx(lowest, rel=1e-6)

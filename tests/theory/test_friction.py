@@ -101,3 +101,20 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha, delta, gg, stop
         held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
         until = friction.damped_creep(case) / friction.creep_scale(case)
         assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)
+
+
+def test_the_ringing_of_a_block_and_what_a_discount_takes_of_its_way():
+    case = scene().with_values(OTHER | {"time.step": 3e-3, "time.steps": 40, "contact.friction": 40.0})
+    ringing = math.sqrt(2 * 7e8 / (2400.0 * 1.5 * 3.0))
+    assert friction.normal_frequency(case) == pytest.approx(ringing, rel=1e-13)
+    assert friction.creep_scale(case) == pytest.approx(9.81 / ringing, rel=1e-13)
+    assert friction.lag(case) == pytest.approx((ringing * 3e-3) ** 2 / 12 * ringing * 0.12, rel=1e-12)
+    stiff = case.with_values({"contact.shear_stiffness": 7.03e8, "load.slope": -20.0})
+    stands = [{}, {"load.slope": 23.0}, {"contact.shear_stiffness": 7.2e8}, {"contact.cohesion": 1e3}]
+    found = [friction.stands_on_ringing_springs(stiff.with_values(one)) for one in stands]
+    assert found == [True, False, False, False]
+    for gg in (1.0, 0.9, 0.0):
+        x, v = 0.0, 0.0
+        for _ in range(7):
+            x, v = x + gg * v + 0.5, gg * v + 1
+        assert friction.distance_share(gg, 0.1, 0.7) == pytest.approx(x / 24.5, rel=1e-12)

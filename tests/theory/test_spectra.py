@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 from oracles.stepped_vibration import Rule, operators, two_unknowns
+from scipy.linalg import eigh
 
+from validation.theory import overshoot, stages, statics
 from validation.theory import spectra as expected
-from validation.theory import statics
 
 OBLONG = {"block.width": 0.7, "block.height": 3.1, "contact.stiffness": 4e8, "block.young": 6e8}
 
@@ -67,3 +68,64 @@ def test_the_response_of_a_mode_is_the_scheme_s(scene, start):
     for n in range(t.steps):
         state = np.einsum("nij,nj->ni", T, state) + push * (omega**2)[:, None]
         np.testing.assert_allclose(found[n], state[:, 0], rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize(("degree", "per_side"), [(1, 12), (2, 5)])
+def test_a_mesh_is_too_stiff_by_its_leading_term(oblong, degree, per_side):
+    """Against the lowest eigenvalue of elements of consistent mass on the spring, in units of the bar."""
+    case = oblong.with_values({"fem.elements": per_side, "fem.degree": degree})
+    h = 1 / case.fem.per_side
+    mass, stiff = (
+        (np.array([[2, 1], [1, 2]]) * h / 6, np.array([[1, -1], [-1, 1]]) / h)
+        if degree == 1
+        else (
+            np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) * h / 30,
+            np.array([[7, -8, 1], [-8, 16, -8], [1, -8, 7]]) / 3 / h,
+        )
+    )
+    M, K = np.zeros((2, degree * case.fem.per_side + 1, degree * case.fem.per_side + 1))
+    for i in range(case.fem.per_side):
+        part = slice(degree * i, degree * i + degree + 1)
+        M[part, part] += mass
+        K[part, part] += stiff
+    K[0, 0] += 2 * 4e8 * 3.1 / (6e8 * 0.7)
+    exact = float(expected.bar_modes(oblong, 1)[0])
+    lowest = math.sqrt(eigh(K, M, eigvals_only=True)[0])
+    assert expected.mesh_frequency_error(case) == pytest.approx(lowest / exact - 1, rel=0.02)
+
+
+def test_a_front_has_elements_and_histories_of_two_programs_a_rounding(oblong):
+    case = oblong.with_values({"fem.elements": 7, "time.step": 3e-4, "time.steps": 90})
+    speed = math.sqrt(6e8 / case.block.density)
+    assert expected.elements_per_front(case) == pytest.approx(speed * 3e-4 / (3.1 / case.fem.per_side), rel=1e-12)
+    assert expected.transit(case) == pytest.approx(3.1 / speed, rel=1e-12)
+    squares = two_unknowns(case.block, 4e8)[0] ** 2 * 3e-4**2
+    assert expected.rounding(case) == pytest.approx(10 * np.finfo(float).eps * 90 * (1 + 8 / 6) / squares, rel=1e-9)
+
+
+@pytest.mark.parametrize("W", [0.7, 3.1])
+def test_what_a_scheme_remembers_lifts_a_mode_in_its_first_step(W):
+    formula = W**6 / (16 * (2 + W**2) ** 2)
+    rise = overshoot.greatest_rise(stages.chung_hulbert(0.0), [W, 1e-3], [0.8, 0.2])
+    assert rise == pytest.approx(0.8 * formula, rel=1e-6)
+    assert overshoot.greatest_rise(stages.newmark(0.25, 0.5), [W], [1.0]) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_error_of_a_mesh_is_that_of_a_bar_whose_modes_are_as_much_too_fast(oblong):
+    """Of histories by the frequencies of quadratic elements, of which the low modes make nearly all."""
+    case = oblong.with_values({"fem.elements": 9, "fem.degree": 2, "time.step": 1e-3, "time.steps": 60})
+    n = case.fem.per_side
+    b = expected.bar_modes(case, 2 * n)
+    M, K = np.zeros((2, 2 * n + 1, 2 * n + 1))
+    for i in range(n):
+        part = slice(2 * i, 2 * i + 3)
+        M[part, part] += np.array([[4, 2, -1], [2, 16, 2], [-1, 2, 4]]) / n / 30
+        K[part, part] += np.array([[7, -8, 1], [-8, 16, -8], [1, -8, 7]]) / 3 * n
+    K[0, 0] += 2 * 4e8 * 3.1 / (6e8 * 0.7)
+    speed = math.sqrt(6e8 / case.block.density) * case.time.step / 3.1
+    elements = np.sqrt(eigh(K, M, eigvals_only=True))[: 2 * n]
+    exact, shifted = (expected.bar_response(case, speed * modes) for modes in (b, elements))
+    for name, error in expected.mesh_error(case).items():
+        shares = expected.bar_shares(case, name, b)
+        off = np.linalg.norm((shifted - exact) @ shares) / np.linalg.norm(exact @ shares + 1 - shares.sum())
+        assert error == pytest.approx(off, rel=0.4), name

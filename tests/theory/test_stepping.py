@@ -72,8 +72,7 @@ def stepped(stepping, natural, steps, driven=None):
 
 
 @pytest.mark.parametrize("name", SCHEMES)
-@pytest.mark.parametrize("gg", [1.0, 0.97])
-@pytest.mark.parametrize("omega", [0.7, 12.0])
+@pytest.mark.parametrize(("gg", "omega"), [(1.0, 12.0), (0.97, 0.7)])
 def test_the_roots_are_those_of_the_recursion_of_a_free_motion(name, gg, omega):
     stepping = replace(SCHEMES[name], gg=gg)
     roots = stepping.roots(omega)
@@ -102,7 +101,7 @@ def test_leading_terms_are_the_limit_of_the_roots(name):
     assert kinetic == pytest.approx(1e-6 / (2 * omega))
 
 
-@pytest.mark.parametrize("rho_inf", [0.0, 0.3, 0.5, 0.77, 1.0])
+@pytest.mark.parametrize("rho_inf", [0.0, 0.77, 1.0])
 @pytest.mark.parametrize("scheme", ["chung-hulbert", "hht", "wbz", "composite"])
 def test_rho_inf_is_the_spectral_radius_at_infinity_and_every_step_is_stable(scheme, rho_inf):
     if scheme == "hht" and rho_inf < 0.5:
@@ -159,7 +158,7 @@ def test_schemes_of_one_table_are_one_scheme():
             pair = [stepping.roots(omega)[0] for stepping in (first, second)]
             assert pair[0] == pytest.approx(pair[1], rel=1e-12), (first.name, second.name)
     # Houbolt's (2 + W^2) z^3 - 5 z^2 + 4 z - 1 has the roots of CH 0
-    for omega in (0.1, 0.9, 30.0):
+    for omega in (0.1, 30.0):
         for root in NAMED("chung-hulbert", rho_inf=0.0).roots(omega):
             assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
 
@@ -188,3 +187,28 @@ def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_steppi
 )
 def test_the_weight_of_springs_beside_the_mass_is_that_of_the_matrix_of_a_step(scheme, weight):
     assert SCHEMES[scheme].spring_weight == pytest.approx(weight, rel=1e-14)
+
+
+def test_a_scheme_says_its_numbers_and_what_it_does():
+    half = Stepping(2e-3, 0.375, 0.75, 0.98)
+    chung, bathe = NAMED("chung-hulbert", rho_inf=0.37), NAMED("composite", rho_inf=0.25, split=0.4)
+    assert (half.name, half.numbers) == ("(alpha, delta) = (0.375, 0.75)", "alpha = 0.375, delta = 0.75")
+    assert half.words == "dt = 0.002 s, (alpha, delta) = (0.375, 0.75), gg = 0.98"
+    assert [chung.name, bathe.name, NAMED("leapfrog").name] == [
+        "chung-hulbert (rho_inf = 0.37)", "composite (rho_inf = 0.25, split = 0.4)", "leapfrog"
+    ]  # fmt: skip
+    assert chung.numbers == chung.name
+    every = [half, AVERAGE, chung, NAMED("wbz", rho_inf=1.0), bathe, NAMED("leapfrog"), Stepping(1.0, 0.0, 0.5)]
+    assert [one.damps for one in every] == [True, False, True, False, True, False, False]
+    assert [one.has_contact_forces for one in every] == [True, True, True, True, True, False, False]
+    assert replace(every[-1], implicit=True).has_contact_forces
+    assert [one.solves for one in every] == [1, 1, 1, 1, 2, 0, 1]
+    assert NAMED("leapfrog").one_stage is None is bathe.one_stage and half.one_stage.beta == 0.375
+    rated = Stepping(1e-3, 0.5, 1.0, 0.9, rate=3.0).at(0.02)
+    assert (rated.step, rated.gg) == (0.02, pytest.approx(math.exp(-0.06))) and half.at(0.1).gg == 0.98
+    assert half.rayleigh() == (pytest.approx(2 * 0.02 / (1.98 * 2e-3)), 0.25 * 2e-3) and chung.rayleigh()[1] == 0.0
+    assert math.isnan(NAMED("leapfrog").damping_ratio(2.1)) and math.isnan(NAMED("leapfrog").period_error(2.1))
+    for scheme, rho in (("chung-hulbert", 1.2), ("hht", 0.4), ("wbz", -0.1), ("composite", 1.01)):
+        with pytest.raises(ValueError, match=r"rho_inf"):
+            NAMED(scheme, rho_inf=rho).roots(1.0)
+    assert half.oscillates(0.3) and not CONSTANT.oscillates(30.0)

@@ -272,7 +272,7 @@ def _static(scene: Scene, block: Scene, error: float) -> Recommendation:
     candidates = []
     for scheme, omega_dt in itertools.product((CONSTANT, STIFFEST), STATIC_STEPS):
         settings = scheme | cut | {"time.step": significant(omega_dt / first, RULE_DIGITS)}
-        history = _history(scene, own(), settings | {"time.steps": MOST_SETTLING})
+        history = history_of_run(scene, own(), settings | {"time.steps": MOST_SETTLING})
         if history is None:
             continue
         rests = [settling_step(history.columns[name], limits[name], RESTED) for name in (DISPLACEMENT, PRESSURE)]
@@ -297,7 +297,7 @@ def slide_errors(scene: Scene) -> Errors:
     Undamped stiff springs may let the exact block hop, which then slides farther; a rigid block stays on its slope.
     None where the run did not complete.
     """
-    history = _history(scene, own(), {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
+    history = history_of_run(scene, own(), {"run.columns": [ALONG, DISPLACEMENT, PRESSURE]})
     if history is None:
         return None
     distance = abs(float(history.columns[ALONG][-1])) / friction.run_out(scene, scene.time.duration)
@@ -323,12 +323,12 @@ def _driven(block: Scene, goal: str, error: float, frequency: float) -> Recommen
         columns = [DISPLACEMENT, PRESSURE, *([ALONG] if "x" in axes else [])]
         driven = block.with_values(NO_LOADS | {"load.base_motion": str(record), "run.columns": columns})
         fine = AVERAGE | {"time.step": finest, "time.steps": round(duration / finest)}
-        coarser, exact = (_history(meshed, elements(), fine) for meshed in _meshes(driven))
+        coarser, exact = (history_of_run(meshed, elements(), fine) for meshed in _meshes(driven))
         if exact is None or coarser is None:
             raise _refusal("the elements have no motion to compare with", block, goal)
 
         def errors(settings: dict[str, Any], every: int, steps: int) -> Errors:
-            history = _history(driven, own(), settings | {"time.steps": steps})
+            history = history_of_run(driven, own(), settings | {"time.steps": steps})
             if history is None:
                 return None
             return difference(history, exact, DISPLACEMENT, every), difference(history, exact, PRESSURE, every)
@@ -367,7 +367,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
     values = NO_LOADS | {"contact.law": "unilateral", "contact.friction": None, "block.velocity": -speed}
     falling = block.with_values(values | {"run.columns": [DISPLACEMENT, PRESSURE]})
     steps = math.ceil(duration / finest)
-    exact = _history(falling, exact_solver(), AVERAGE | {"time.step": finest, "time.steps": steps})
+    exact = history_of_run(falling, exact_solver(), AVERAGE | {"time.step": finest, "time.steps": steps})
     if exact is None:
         raise _refusal("has no exact motion of a landing", block, "impact")
     flight = np.concatenate([[0.0], exact.columns[DISPLACEMENT]])  # from the landing on
@@ -380,7 +380,7 @@ def _impacts(block: Scene, error: float, own_speed: float) -> tuple[Recommendati
             before = round(phase * every)  # instants of the exact motion until the landing
             count = (len(flight) - 1) // every
             gap = before / every * step * speed
-            history = _history(falling, own(), {**settings, "contact.gap": gap, "time.steps": count})
+            history = history_of_run(falling, own(), {**settings, "contact.gap": gap, "time.steps": count})
             if history is None:
                 return None
             displacement = history.columns[DISPLACEMENT]
@@ -418,7 +418,7 @@ def _cuts(scene: Scene) -> list[dict[str, Any]]:
     return cuts
 
 
-def _history(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:
+def history_of_run(scene: Scene, solver: str, values: Mapping[str, Any]) -> History | None:
     """Return the history of a run with some values; None where it did not complete."""
     run = solve(scene.with_values(dict(values)), solver)
     return run.history if run.outcome.value == "completed" else None

@@ -24,7 +24,7 @@ def claims(
     Example: [bold]dda-validate run paper && dda-validate claims[/bold]
     """
     from validation.errors import InputError
-    from validation.runs.files import write_atomically
+    from validation.runs.files import write_text
     from validation.runs.results import Results
     from validation.suite.claims import REGISTER, entries, page
     from validation.suite.folders import register_of
@@ -41,5 +41,4 @@ def claims(
         for claim in listed:
             echo(f"{claim['id']:<4} {claim['verdict'] or 'not run':<27} {claim['says']} [{claim['place']}]")
     if out is not None:
-        text = page(register, rows)
-        write_atomically(out, lambda stream: stream.write(text.encode()))
+        write_text(out, page(register, rows))

@@ -64,11 +64,11 @@ def response(
         # Write the table with all digits.
         response = answers[EXACT if exact else solver]
         from validation.advice.response import HEADER
-        from validation.runs.files import write_atomically
+        from validation.runs.files import csv_text, write_text
 
-        lines = [",".join(HEADER), *(",".join(map(repr, row)) for row in response.table().tolist())]
-        write_atomically(csv, lambda stream: stream.write(("\n".join(lines) + "\n").encode()))
-        echo(f"wrote {csv}: {len(lines) - 1} frequencies")
+        table = response.table().tolist()
+        write_text(csv, csv_text([HEADER, *table]))
+        echo(f"wrote {csv}: {len(table)} frequencies")
     if figure is not None:
         _draw(case, answers, logarithmic, figure)
     _print_peaks(case, answers)
@@ -118,7 +118,9 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         if name != EXACT and all(np.array_equal(answer.columns[c], exact_response.columns[c]) for c in answer.columns):
             continue  # of a solver that takes no steps
         highest = math.inf if answer.exact else limit  # what steps show beyond is the alias of another peak
-        both = [_up_to(highest, answer.peaks(column)) for column in (DISPLACEMENT, PRESSURE)]
+        both = [
+            [peak for peak in answer.peaks(column) if peak.frequency <= highest] for column in (DISPLACEMENT, PRESSURE)
+        ]
         listed += both
         cells = [[(f"{peak.frequency:.6g}", _amplitude(peak)) for peak in peaks[:PEAKS]] for peaks in both]
         for displacement, pressure in itertools.zip_longest(*cells, fillvalue=("", "")):
@@ -132,10 +134,6 @@ def _print_peaks(case: Scene, answers: dict[str, Response]) -> None:
         echo("note: unbounded: no damping; the amplitude has no limit at this natural frequency")
     if exact_response.frequency[-1] > limit:
         echo(f"note: above {limit:g} Hz, 1 / (2 dt), the steps see a load as its alias at a lower frequency")
-
-
-def _up_to(highest: float, peaks: list[Peak]) -> list[Peak]:
-    return [peak for peak in peaks if peak.frequency <= highest]
 
 
 def _amplitude(peak: Peak) -> str:

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import itertools
 from pathlib import Path
 from typing import Annotated
@@ -33,17 +31,13 @@ def rows(
     """
     from validation.engine.table import lines, tidy
     from validation.errors import InputError
-    from validation.runs.files import write_atomically
+    from validation.runs.files import csv_text, write_text
     from validation.runs.results import Results
 
     store = Results(results)
     if study not in store.studies():
         raise InputError(f"no results in {results}", source=study, advice=f"run it first: dda-validate run {study}")
     table = lines(list(tidy(store, store.whole(study))))
-    text = io.StringIO(newline="")
     columns = list(dict.fromkeys(itertools.chain.from_iterable(table)))
-    writer = csv.DictWriter(text, columns, lineterminator="\n")
-    writer.writeheader()
-    writer.writerows(table)
-    write_atomically(out, lambda stream: stream.write(text.getvalue().encode()))
+    write_text(out, csv_text([columns, *([line.get(column, "") for column in columns] for line in table)]))
     echo(f"wrote {out}: {len(table)} rows, {len(columns)} columns")

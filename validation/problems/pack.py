@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
@@ -25,7 +23,7 @@ from validation.problems.data import (
 from validation.problems.packs import digest
 from validation.problems.problem import Problem, names, problem
 from validation.runs.columns import kind_of, split
-from validation.runs.files import write_atomically
+from validation.runs.files import csv_text, write_text
 from validation.runs.history import Array, History
 from validation.scenes.plain import scene_data, words
 
@@ -153,13 +151,6 @@ def table_of(posed: Problem, motion: History, columns: Sequence[str] | None = No
     return csv_text([[TIME, *map(posed.named, names_of_columns)], *np.column_stack([motion.time, *values]).tolist()])
 
 
-def csv_text(rows: Sequence[Sequence[object]]) -> str:
-    """Return rows as CSV."""
-    text = io.StringIO(newline="")
-    csv.writer(text, lineterminator="\n").writerows(rows)
-    return text.getvalue()
-
-
 def blank_table(posed: Problem) -> str:
     """Return the table of an answer to fill in: header and instants."""
     lines = [",".join([TIME, *map(posed.named, posed.columns)])]
@@ -178,4 +169,4 @@ def _write(path: Path, text: str) -> None:
         raise InputError(
             f"cannot be made: {error.strerror}", source=path.parent, advice="choose another place"
         ) from None
-    write_atomically(path, lambda stream: stream.write(text.encode()))
+    write_text(path, text)

@@ -63,10 +63,8 @@ class Document:
 
     def place(self, address: Address, of_key: bool = False) -> Place:
         """Return where a value stands, or its key; of what is absent, where that stands in which it is missed."""
-        positions = self._keys if of_key and address in self._keys else self._values
-        while address not in positions:
-            address = address[:-1]
-        before = self._text[: positions[address]]
+        is_key = of_key and address in self._keys
+        before = self._text[: self._keys[address] if is_key else self._values[self.known(address)]]
         return Place(self.path, before.count("\n") + 1, len(before) - before.rfind("\n"))
 
     def known(self, address: Address) -> Address:

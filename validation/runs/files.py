@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import errno
 import io
 import os
+import re
 import shutil
 import stat
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import IO
 
@@ -24,9 +25,11 @@ from validation.runs.regular import kind_of
 from validation.runs.tables import meant, number, read_text, rows_of
 
 FIGURE_ENDINGS = (".svg", ".pdf", ".png")
+# What numpy reads as it is read below.
+_PLAIN = re.compile(r"time(?:,\w+)+(?:\n[-+.eE\d]+(?:,[-+.eE\d]+)*)+\n?", re.ASCII)
 
 
-@contextmanager
+@contextlib.contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
     """Yield a temporary path of the same ending; what stands there when the block ends well becomes the file.
 
@@ -64,7 +67,7 @@ def atomic_path(path: Path) -> Iterator[Path]:
         raise
 
 
-@contextmanager
+@contextlib.contextmanager
 def atomic_directory(out: Path) -> Iterator[Path]:
     """Yield a temporary directory beside `out`, which takes its name and its place when the block ends well.
 
@@ -164,6 +167,18 @@ def write_atomically(path: Path, write: Callable[[IO[bytes]], object]) -> None:
         write(stream)
 
 
+def write_text(path: Path, text: str) -> None:
+    """Write a text as `write_atomically` does, in UTF-8."""
+    write_atomically(path, lambda stream: stream.write(text.encode()))
+
+
+def csv_text(rows: Iterable[Iterable[object]]) -> str:
+    """Return rows as CSV."""
+    text = io.StringIO(newline="")
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    return text.getvalue()
+
+
 def check_ending(path: Path | None, field: str) -> None:
     """Refuse a figure's file of an unknown kind, or that cannot be drawn here, before anything is computed.
 
@@ -182,11 +197,7 @@ def check_ending(path: Path | None, field: str) -> None:
 def write_csv(history: History, path: Path) -> None:
     """Write a history as CSV with full double precision, header ``time,displacement,...``."""
     table = np.column_stack([history.time, *history.columns.values()])
-    text = io.StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["time", *history.columns])
-    writer.writerows([repr(value) for value in row] for row in table.tolist())
-    write_atomically(path, lambda stream: stream.write(text.getvalue().encode()))
+    write_text(path, csv_text([["time", *history.columns], *table.tolist()]))
 
 
 def read_table(path: Path) -> tuple[list[str], Array]:
@@ -198,9 +209,16 @@ def read_table(path: Path) -> tuple[list[str], Array]:
         The file cannot be read or is not such a table.
     """
     try:
-        header, *rows = rows_of(read_text(path)) or [[]]
+        text = read_text(path)
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
+    if _PLAIN.fullmatch(text):
+        names = text.partition("\n")[0].split(",")
+        with contextlib.suppress(ValueError):  # what is wrong is found below, with its place
+            table = np.loadtxt(io.StringIO(text), delimiter=",", skiprows=1, ndmin=2)
+            if table.shape[1] == len(names):
+                return names, table
+    header, *rows = rows_of(text) or [[]]
     names = [cell.text for cell in header]
     if not names or names[0] != "time" or not all(names):
         raise InputError("header must begin with time and name every column", source=path, value=repr(",".join(names)))

@@ -27,8 +27,8 @@ def check_polygon(vertices: tuple[Point, ...], base: int, top: int) -> None:
     if any(start == end for start, end in edges):
         raise ValueError("vertices must not repeat, got an edge of length zero")
     for i, j in itertools.combinations(range(n), 2):
-        adjacent = j == i + 1 or (i == 0 and j == n - 1)
-        if _folds_back(edges[i], edges[j]) if adjacent else _cross(edges[i], edges[j]):
+        shared = {(i + 1) % n, i} & {j, (j + 1) % n}  # the corner of two edges that follow each other
+        if _folds_back(vertices, *shared) if shared else _cross(edges[i], edges[j]):
             raise ValueError(f"vertices must not cross themselves, got edges {i} and {j} that do")
     if area(vertices) <= 0:
         raise ValueError("vertices must run counter-clockwise, got a clockwise outline")
@@ -57,18 +57,16 @@ def _within(p: Point, a: Point, b: Point) -> bool:
 
 def _cross(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
     """Whether two closed segments have a point in common."""
-    (a, b), (c, d) = first, second
-    t1, t2, t3, t4 = _turn(a, b, c), _turn(a, b, d), _turn(c, d, a), _turn(c, d, b)
-    if ((t1 > 0) - (t1 < 0)) * ((t2 > 0) - (t2 < 0)) < 0 and ((t3 > 0) - (t3 < 0)) * ((t4 > 0) - (t4 < 0)) < 0:
+    turns = [_turn(*line, p) for line, ends in ((first, second), (second, first)) for p in ends]
+    signs = [(turn > 0) - (turn < 0) for turn in turns]
+    if signs[0] * signs[1] < 0 and signs[2] * signs[3] < 0:
         return True
-    touches = ((t1, c, a, b), (t2, d, a, b), (t3, a, c, d), (t4, b, c, d))
-    return any(t == 0 and _within(p, s, e) for t, p, s, e in touches)
+    touches = zip(signs, (*second, *first), (first, first, second, second), strict=True)
+    return any(sign == 0 and _within(p, *line) for sign, p, line in touches)
 
 
-def _folds_back(first: tuple[Point, Point], second: tuple[Point, Point]) -> bool:
-    """Whether two edges that share a vertex overlap."""
-    shared = first[1] if first[1] in second else first[0]
-    a = first[0] if first[1] == shared else first[1]
-    b = second[1] if second[0] == shared else second[0]
-    forward = (a[0] - shared[0]) * (b[0] - shared[0]) + (a[1] - shared[1]) * (b[1] - shared[1])
-    return _turn(shared, a, b) == 0 and forward > 0
+def _folds_back(vertices: tuple[Point, ...], number: int) -> bool:
+    """Whether the two edges that meet in a vertex overlap."""
+    (x, y), *ends = vertices[number], vertices[number - 1], vertices[(number + 1) % len(vertices)]
+    (ax, ay), (bx, by) = ends
+    return _turn((x, y), *ends) == 0 and (ax - x) * (bx - x) + (ay - y) * (by - y) > 0

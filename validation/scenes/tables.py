@@ -62,8 +62,14 @@ Stiffness = Annotated[
     PlainSerializer(_stiffness_as_data, when_used="json"),
 ]
 NonNegative = Annotated[Real, Field(ge=0)]
+Share = Annotated[Real, Field(ge=0, le=1)]
+FrictionAngle = Annotated[Angle, Field(ge=0)]  # deg
+PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
+Hypothesis = Literal["plane stress", "plane strain"]
+Pattern = Literal["squares", "triangles"]  # of blocks that others are cut into
 Index = Annotated[int, BeforeValidator(_count)]
 Count = Annotated[Index, Field(ge=1)]
+Cut = tuple[Count, Count]  # into so many blocks along two directions
 Flag = Annotated[bool, Field(strict=True)]
 Words = Annotated[tuple[str, ...], Field(min_length=1), AfterValidator(_distinct)]
 
@@ -94,10 +100,10 @@ class BlockSection(Section):
         Angle, Key("deg", "at t = 0, counter-clockwise about the lower corner", None, ("run." + UPDATED,))
     ] = 0.0
     poisson: Annotated[Annotated[Real, Field(gt=-1, le=0.5)], Key("", "Poisson's ratio", "μ")] = 0.0
-    hypothesis: Annotated[Literal["plane stress", "plane strain"], Key("", "of the plane problem", "")] = "plane stress"
-    subdivide: Annotated[tuple[Count, Count] | None, Key("sub-blocks", "along the base and upwards", "")] = None
+    hypothesis: Annotated[Hypothesis, Key("", "of the plane problem", "")] = "plane stress"
+    subdivide: Annotated[Cut | None, Key("sub-blocks", "along the base and upwards", "")] = None
     pattern: Annotated[
-        Literal["squares", "triangles"],
+        Pattern,
         Key("", "of the sub-blocks; triangles: each square cut from lower left to upper right", "", ("subdivide",)),
     ] = "squares"
     glue_ratio: Annotated[Positive, Key("m", "end spring of a joint over young", "glue", ("subdivide",))] = 1.0e6
@@ -171,7 +177,7 @@ class ContactSection(Section):
     stiffness: Annotated[Stiffness, Key("N/m", "of each corner spring; inf is a rigid stop", "p")]
     shear_stiffness: Annotated[NonNegative | None, Key("N/m", "that of stiffness if absent; 0 is frictionless")] = None
     friction: Annotated[
-        Annotated[Angle, Field(ge=0)] | None,
+        FrictionAngle | None,
         Key("deg", "angle of friction; a closed corner is bonded in shear without", "φ", (OPENS, STEPPED)),
     ] = None
     cohesion: Annotated[NonNegative, Key("Pa", "over the whole base, half at each corner", None, ("friction",))] = 0.0
@@ -184,7 +190,7 @@ class ContactSection(Section):
         Key("", "c / (2 sqrt(k m)) of dashpots beside the springs, k both springs", "ζ", (OPENS, 'rule = "newmark"')),
     ] = 0.0
     restitution: Annotated[
-        Annotated[Real, Field(ge=0, le=1)] | None,
+        Share | None,
         Key(
             "",
             "rebound over landing speed: of the impact law, or in place of damping_ratio",
@@ -319,7 +325,7 @@ class TimeSection(Section):
         Key("", "time scheme; dda-validate list schemes describes them", ""),
     ] = "newmark"
     rho_inf: Annotated[
-        Annotated[Real, Field(ge=0, le=1)] | None,
+        Share | None,
         Key("", "spectral radius at infinite frequency; of the composite scheme 0 if absent", "ρ∞", (WITH_RHO_INF,)),
     ] = None
     split: Annotated[
@@ -332,9 +338,7 @@ class TimeSection(Section):
     stated_delta: Annotated[NonNegative, Key("", "Newmark's weight of the acceleration in the velocity", "δ")] = Field(
         1.0, alias="delta"
     )
-    gg: Annotated[
-        Annotated[Real, Field(ge=0, le=1)] | None, Key("", "factor on the velocity at the start of each step")
-    ] = None
+    gg: Annotated[Share | None, Key("", "factor on the velocity at the start of each step")] = None
     gg_rate: Annotated[NonNegative | None, Key("1/s", "in place of gg: gg = exp(-gg_rate step)", "c")] = None
     start: Annotated[Literal["zero", "consistent"], Key("", "initial acceleration")] = "zero"
     allow_unstable: Annotated[Flag, Key("", "whether a step beyond the stability limit is run")] = False
@@ -401,9 +405,7 @@ class DampingSection(Section):
     kinetic: Annotated[
         Literal["constant", "adaptive"], Key("", "gg of [time], or from the kinetic energies of the steps")
     ] = "constant"
-    floor: Annotated[
-        Annotated[Real, Field(ge=0, le=1)], Key("", "least adaptive gg", None, ('kinetic = "adaptive"',))
-    ] = 0.0
+    floor: Annotated[Share, Key("", "least adaptive gg", None, ('kinetic = "adaptive"',))] = 0.0
 
     @property
     def present(self) -> bool:

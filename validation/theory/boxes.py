@@ -1,8 +1,4 @@
-"""Closed forms of rigid boxes on a plane: sliding, bouncing, turning about a corner, a shaken ground, a spring below.
-
-A box of mass m, width w, height h and unit depth has R = sqrt(w^2 + h^2) / 2 and I_o = 4 m R^2 / 3 about a corner, and
-its centre stands above the corner after a rotation alpha = atan(w / h).
-"""
+"""Closed forms of rigid boxes on a plane: sliding, a shaken ground, a spring below."""
 
 from __future__ import annotations
 
@@ -13,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from validation.runs.history import Array
-from validation.theory.rocking import Rectangle
 
 # ---- on a slope -----------------------------------------------------------------------------------------------------
 
@@ -25,43 +20,6 @@ def sliding_acceleration(slope: float, friction: float, gravity: float) -> float
     """
     excess = math.tan(math.radians(slope)) - math.tan(math.radians(friction))
     return gravity * math.cos(math.radians(slope)) * max(excess, 0.0)
-
-
-# ---- about a corner -------------------------------------------------------------------------------------------------
-
-
-def critical_spin(box: Rectangle) -> float:
-    """Rate about a corner that just carries the centre above it [rad/s].
-
-    I_o w^2 / 2 = m g (R - h / 2).
-    """
-    radius = math.hypot(box.width, box.height) / 2
-    # R - h/2 without the difference of two nearly equal lengths of a slender box
-    rise = (box.width / 2) ** 2 / (radius + box.height / 2)
-    return math.sqrt(1.5 * box.gravity * rise) / radius
-
-
-def greatest_rotation(box: Rectangle, spin: float) -> float:
-    """Rotation at which a box that was started about a corner turns back [rad].
-
-    w^2 / 2 + P^2 cos(alpha) = P^2 cos(alpha - theta), P^2 = 3 g / (4 R).
-
-    Raises
-    ------
-    ValueError
-        It does not turn back.
-    """
-    ratio = spin / critical_spin(box)
-    if abs(ratio) >= 1:
-        raise ValueError(f"spin: must be below that which overturns it, got {abs(ratio):g} of it")
-    # 1 - cos(alpha - theta) = (1 - ratio^2) (1 - cos(alpha)), by half angles
-    half = math.asin(math.sqrt(1 - ratio**2) * math.sin(box.alpha / 2))
-    return box.alpha - 2 * half
-
-
-def return_time(box: Rectangle, spin: float) -> float:
-    """Time until a box that was started about a corner lies flat again [s]: it comes down as it rose."""
-    return 2 * box.quarter_period(greatest_rotation(box, spin))
 
 
 # ---- on a ground that moves -----------------------------------------------------------------------------------------
@@ -137,16 +95,21 @@ class ShakenBox:
             end = self._slips_at(piece.start) if piece.direction == 0 else self._alike_at(piece)
             if end >= duration:
                 return tuple(pieces)
+            displacement = float(self._within(piece, np.array(end)))
             if piece.direction == 0:
-                moved = float(self.ground(np.array(end)) - self.ground(np.array(piece.start)))
                 # where it begins to slip the ground outruns it
                 direction = -1 if self.ground_acceleration(end) > 0 else 1
                 velocity = self.ground_velocity(end)
-                pieces.append(SlipPiece(end, piece.displacement + moved, velocity, direction))
+                pieces.append(SlipPiece(end, displacement, velocity, direction))
             else:
-                lasted = end - piece.start
-                gained = piece.velocity * lasted - piece.direction * self.grip * lasted**2 / 2
-                pieces.append(self._next(end, piece.displacement + gained))
+                pieces.append(self._next(end, displacement))
+
+    def _within(self, piece: SlipPiece, time: Array) -> Array:
+        """Return the displacement of the box at instants of a piece [m]."""
+        if piece.direction == 0:
+            return np.asarray(piece.displacement + (self.ground(time) - self.ground(np.array(piece.start))))
+        since = time - piece.start
+        return np.asarray(piece.displacement + piece.velocity * since - piece.direction * self.grip * since**2 / 2)
 
     def _next(self, time: float, displacement: float) -> SlipPiece:
         """Return the piece that begins where box and ground move alike."""
@@ -198,13 +161,7 @@ class ShakenBox:
         moved = np.empty_like(time)
         for number, piece in enumerate(pieces):
             inside = index == number
-            since = time[inside] - piece.start
-            if piece.direction == 0:
-                ridden = self.ground(time[inside]) - self.ground(np.array(piece.start))
-                moved[inside] = piece.displacement + ridden
-            else:
-                slowed = piece.direction * self.grip * since**2 / 2
-                moved[inside] = piece.displacement + piece.velocity * since - slowed
+            moved[inside] = self._within(piece, time[inside])
         return moved
 
     def slip(self, time: Array) -> Array:

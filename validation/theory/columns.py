@@ -94,13 +94,11 @@ def first_frequency(column: ColumnSection) -> float | None:
 
 def _springs(column: ColumnSection) -> list[tuple[float, float]]:
     """Return height [m] and stiffness [Pa/m] of each spring across a column, from the base upwards."""
+    if column.law != "bonded":
+        return [(contact.height, contact.stiffness) for contact in column.contacts]
     springs = [(joint.height, joint.stiffness) for joint in column.springs]
-    between = column.glue if column.law == "bonded" else column.stiffness
-    if between is not None:
-        near = NEAR * column.height
-        jointed = [height for height, _ in springs]
-        faces = (face for face in column.faces[:-1] if all(abs(face - height) > near for height in jointed))
-        springs += [(face, between) for face in faces]
+    if column.glue is not None:
+        springs += [(face, column.glue) for face in column.plain_faces]
     return sorted(springs)
 
 

@@ -12,18 +12,28 @@ sticks or slips backwards once its slip has come to rest.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 from validation.runs.history import Array
 
-SAMPLES = 2000  # of a free flight, between which the lowest corner meets the plane
 MOST_MODES = 60
+ROUNDING = 16 * float(np.finfo(float).eps)  # part of the lengths in it by which a height of a corner may be wrong
+Point = tuple[float, float]
+
+
+class HorizonError(ArithmeticError):
+    """A rectangle does not go on from impact to impact of one corner."""
+
+    def __init__(self, time: float, reason: str) -> None:
+        super().__init__(f"exact up to {time:.6g} s only: {reason}")
+        self.time = time  # the horizon [s]
+        self.reason = reason
 
 
 @dataclass(frozen=True)
@@ -33,9 +43,9 @@ class FallingRectangle:
     width: float  # m
     height: float  # m
     mass: float  # kg
-    place: tuple[float, float]  # of the centroid [m]
+    place: Point  # of the centroid [m]
     angle: float  # rad
-    velocity: tuple[float, float]  # m/s
+    velocity: Point  # m/s
     spin: float  # rad/s
     gravity: float = 9.81
 
@@ -44,15 +54,20 @@ class FallingRectangle:
         """Of mass, about the centroid [kg m2]."""
         return self.mass * (self.width**2 + self.height**2) / 12
 
-    def arms(self, angle: float) -> Array:
-        """Return the corners about the centroid at an angle, shape (4, 2) [m]."""
+    @property
+    def corners(self) -> tuple[Point, ...]:
+        """The corners about the centroid before it is turned, counter-clockwise from the lower left one [m]."""
         x = self.width / 2
         y = self.height / 2
-        corners = np.array([[-x, -y], [x, -y], [x, y], [-x, y]])
-        cosine = math.cos(angle)
-        sine = math.sin(angle)
-        turned: Array = corners @ np.array([[cosine, sine], [-sine, cosine]])
-        return turned
+        return (-x, -y), (x, -y), (x, y), (-x, y)
+
+    def arm(self, corner: int, angle: float | None = None) -> Point:
+        """Return a corner about the centroid, at another angle if that is said [m]."""
+        x, y = self.corners[corner]
+        turn = self.angle if angle is None else angle
+        cosine = math.cos(turn)
+        sine = math.sin(turn)
+        return x * cosine - y * sine, x * sine + y * cosine
 
     def flown(self, time: float) -> FallingRectangle:
         """Return it after a free flight."""
@@ -67,16 +82,84 @@ class FallingRectangle:
 
     def landing(self, until: float) -> tuple[float, int]:
         """Return when the first corner meets the plane [s], and its number."""
+        time, _, corner = min((*self._comes_down(corner, until, 0.0), corner) for corner in range(4))
+        return time, corner
 
-        def lowest(time: float) -> float:
-            flown = self.flown(time)
-            return flown.place[1] + float(np.min(flown.arms(flown.angle)[:, 1]))
+    def next_impact(self, start: float, end: float) -> tuple[float, int] | None:
+        """Return when a corner comes down first [s], and which; None where none does before an instant.
 
-        times = np.linspace(0.0, until, SAMPLES + 1)
-        below = next(k for k, time in enumerate(times) if lowest(time) < 0)
-        time = brentq(lowest, times[below - 1], times[below], xtol=1e-15)
-        landed = self.flown(time)
-        return time, int(np.argmin(landed.arms(landed.angle)[:, 1]))
+        Parameters
+        ----------
+        start, end
+            Instants at which it begins to fly and up to which it is looked at [s].
+
+        Raises
+        ------
+        HorizonError
+            If a corner comes to press on the plane without an impact, or two come down at once.
+        """
+        downs = []
+        for number in range(4):
+            elapsed, lands = self._comes_down(number, end - start, start)
+            downs.append((start + elapsed, lands, number))
+        (time, lands, corner), (then, *_), *_ = sorted(downs)
+        if math.isinf(time):
+            return None
+        if not lands:
+            raise HorizonError(time, "a corner presses on the ground without an impact, and slides on it")
+        if then == time:
+            raise HorizonError(time, "two corners come down at once, and the first one decides what follows")
+        return time, corner
+
+    def _comes_down(self, corner: int, duration: float, start: float) -> tuple[float, bool]:
+        """Return when a corner is on the plane and does not rise, within a duration, and whether it falls on it.
+
+        No step passes a landing: with K a bound of the acceleration the height s later is at least
+        h + h' s - K s^2 / 2, and with K' one of its rate at least a s^2 / 2 - K' s^3 / 6 where h = h' = 0.
+        """
+        _, y = self.place
+        _, v = self.velocity
+        across, up = self.corners[corner]
+        size = max(math.hypot(*place) for place in self.corners)
+        bound = abs(self.gravity) + size * self.spin**2
+        bound_of_rate = size * abs(self.spin) ** 3
+        elapsed = 0.0
+        while elapsed <= duration:
+            turn = cmath.rect(1.0, self.angle + self.spin * elapsed)
+            centre = y + v * elapsed - self.gravity * elapsed**2 / 2
+            height = centre + across * turn.imag + up * turn.real
+            rate = v - self.gravity * elapsed + self.spin * (across * turn.real - up * turn.imag)
+            # what rounding leaves of a height, and the rate with which one falls through so little
+            extent = size + abs(y) + abs(v) * elapsed + self.gravity * elapsed**2
+            nothing = ROUNDING * (extent + abs(rate) * start)
+            slow = math.sqrt(2 * bound * nothing)
+            if height > nothing:
+                root = math.sqrt(rate**2 + 2 * bound * height)
+                if bound == 0 and rate >= 0:
+                    break
+                elapsed += 2 * height / (root - rate) if rate < 0 else (rate + root) / bound
+            elif rate < -slow:
+                return elapsed, True
+            elif rate > slow:
+                elapsed += rate / bound if bound else math.inf
+            else:
+                acceleration = -self.gravity - self.spin**2 * (height - centre)
+                if acceleration < 0 or (acceleration == 0 and bound > 0):
+                    return elapsed, False
+                if bound_of_rate == 0:
+                    break
+                elapsed += acceleration / bound_of_rate
+        return math.inf, True
+
+    def rebounded(self, corner: int) -> FallingRectangle:
+        """Return it after an impact of a smooth corner that gives all energy back."""
+        arm, _ = self.arm(corner)
+        u, v = self.velocity
+        inverse_mass = 1 / self.mass
+        inverse_inertia = 1 / self.inertia
+        impulse = -2 * (v + self.spin * arm) / (inverse_mass + arm**2 * inverse_inertia)
+        velocity = u, v + impulse * inverse_mass
+        return replace(self, velocity=velocity, spin=self.spin + impulse * arm * inverse_inertia)
 
 
 @dataclass(frozen=True)
@@ -99,7 +182,7 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
     coefficient = mu or 0.0
 
     def corner(q: Array) -> tuple[float, float, float, float]:
-        along, across = body.arms(q[2])[number]
+        along, across = body.arm(number, q[2])
         return q[0] + along, q[1] + across, q[3] - q[5] * across, q[4] + q[5] * along
 
     def shear(q: Array, mode: int, held: float) -> float:
@@ -109,7 +192,7 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
         return mode * coefficient * p * y if mode else -ps * (x - held)
 
     def rate(_: float, q: Array, mode: int, held: float) -> list[float]:
-        arm = body.arms(q[2])[number]
+        arm = body.arm(number, q[2])
         normal = -p * corner(q)[1]
         along = shear(q, mode, held)
         turning = (arm[0] * normal - arm[1] * along) / body.inertia
@@ -157,7 +240,7 @@ def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[floa
     """
     landing, number = body.landing(until)
     landed = body.flown(landing)
-    x, y = landed.arms(landed.angle)[number]
+    x, y = landed.arm(number)
     inverse = np.array([[1 / body.mass + y**2 / body.inertia, -x * y / body.inertia],
                         [-x * y / body.inertia, 1 / body.mass + x**2 / body.inertia]])  # fmt: skip
     velocity = np.array(landed.velocity) + landed.spin * np.array([-y, x])
@@ -175,6 +258,8 @@ def rigid_impulse(body: FallingRectangle, mu: float, until: float) -> tuple[floa
         piece = min(to_rest, end)
         work += velocity[1] * piece + change[1] * piece**2 / 2
         velocity = velocity + change * piece
+        if piece == to_rest:
+            velocity[0] = 0.0  # of which no rounding may turn the slip round again
         impulse = impulse + direction * piece
         if piece == end:
             return float(impulse[0]), float(impulse[1])

@@ -16,8 +16,9 @@ import math
 
 import numpy as np
 
-from validation.runs.history import Array, ArrayPair
+from validation.runs.history import ArrayPair
 from validation.scenes.scene import Scene
+from validation.theory.stages import step_end
 from validation.theory.statics import moduli, size
 from validation.theory.stepping import Stepping
 
@@ -168,55 +169,23 @@ def time_constant(scene: Scene) -> float:
 def free_motion(scene: Scene, acceleration: float) -> ArrayPair:
     """Return displacement and velocity at each step of a free body in the scene's scheme, from rest [m], [m/s].
 
-    With A_0 = s a (s = 1 for the consistent start), A_n = a and g = gg:
-
-        V_1 = dt a ((1 - delta) s + delta),     V_n = g^(n-1) V_1 + dt a (1 - g^(n-1)) / (1 - g)
-        D_1 = dt^2 a ((1/2 - alpha) s + alpha), D_n = D_1 + g dt sum_{k<n} V_k + (n - 1) dt^2 a / 2
-
-    From the consistent start V_n = dt a (1 - g^n) / (1 - g). Other schemes are stepped by the numbers of their stages.
+    From the consistent start Newmark's is V_n = dt a (1 - gg^n) / (1 - gg).
     """
-    t, n = scene.time, np.arange(1.0, scene.time.steps + 1)
-    if t.scheme != "newmark":
-        return _stepped(Stepping.of(scene), t.start == "consistent", t.steps, acceleration)
-    s = 1.0 if t.start == "consistent" else 0.0
-    first = t.step * acceleration * ((1 - t.delta) * s + t.delta)
-    begun = t.step**2 * acceleration * ((0.5 - t.alpha) * s + t.alpha)
-    gained, summed = _series(t.discount, n - 1)
-    velocity = t.discount ** (n - 1) * first + t.step * acceleration * gained
-    distance = t.step * (first * gained + t.step * acceleration * summed)
-    return begun + t.discount * distance + (n - 1) * t.step**2 * acceleration / 2, velocity
-
-
-def _stepped(stepping: Stepping, consistent: bool, steps: int, acceleration: float) -> ArrayPair:
-    """Return displacement and velocity of a free body at each step, by the stages of a scheme, in units of the step."""
-    pull = stepping.step**2 * acceleration
-    late = pull / 2 if stepping.scheme == "leapfrog" else 0.0  # its v is that of half a step before
-    moved = np.zeros(steps)
-    speed = np.zeros(steps)
+    t = scene.time
+    stepping = Stepping.of(scene)
+    pull = t.step**2 * acceleration
+    late = pull / 2 if t.scheme == "leapfrog" else 0.0  # its v is that of half a step before
+    moved = np.zeros(t.steps)
+    speed = np.zeros(t.steps)
     x = 0.0
     u = -late  # discounted velocity
-    a = pull if consistent else 0.0
-    for n in range(steps):
-        end = (x, u, a)
-        for stage in stepping.stages:
-            _, v_g, a_g = end
-            x_free, v_free = stage.ahead(x, u, a, v_g, a_g)
-            a_1 = (pull - stage.am * a_g) / (1 - stage.am)
-            end = (x_free + stage.beta * a_1, v_free + stage.gamma * a_1, a_1)
-        x, v, a = end
-        u = stepping.gg * v
+    a = pull if t.start == "consistent" else 0.0
+    for n in range(t.steps):
+        x, v, a = step_end(stepping.stages, x, u, a, load=pull)
+        u = t.discount * v
         moved[n] = x
         speed[n] = u + late if late else v
-    return moved, speed / stepping.step
-
-
-def _series(gg: float, n: Array) -> ArrayPair:
-    """Return the sums G_n = 1 + gg + ... + gg^(n-1), and of G_k over k < n."""
-    if gg == 1:
-        return n, n * (n - 1) / 2
-    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1
-    gained = -np.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else np.minimum(n, 1.0)
-    return gained, (n - gained) / (1 - gg)
+    return moved, speed / t.step
 
 
 def distance_share(gg: float, step: float, time: float) -> float:
@@ -225,5 +194,8 @@ def distance_share(gg: float, step: float, time: float) -> float:
     The sum of V_n = dt a (1 - gg^n) / (1 - gg) over that of V_n = n dt a.
     """
     n = max(round(time / step), 1)
-    _, summed = _series(gg, np.array(float(n)))
-    return float((n / 2 + gg * summed) / (n * n / 2))
+    if gg == 1:
+        return 1.0
+    # expm1 keeps the digits that 1 - gg^n would lose next to gg = 1
+    gained = -math.expm1(n * math.log(gg)) / (1 - gg) if gg > 0 else 1.0
+    return (n / 2 + gg * (n - gained) / (1 - gg)) / (n * n / 2)

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from validation.theory.stages import Stages
+from validation.theory.stages import Stages, step_end
 
 STEPS = 10  # in which the greatest energy is looked for; it is that of the first one
 
@@ -32,18 +32,11 @@ def greatest_rise(stages: Stages, omegas_dt: Sequence[float], shares: Sequence[f
         W = w dt of each mode, and its share of the static response.
     """
     square = np.array(omegas_dt) ** 2  # x_s and dt are 1
-    start = (0 * square, 0 * square, square)
+    motion = (0 * square, 0 * square, square)
     greatest = 0.0
     for _ in range(STEPS):
-        position, velocity, acceleration = start
-        before = start
-        for stage in stages:
-            x, v, a = before
-            x_free, v_free = stage.ahead(position, velocity, acceleration, v, a)
-            force = (1 - stage.af) * square * (1 - x_free) + stage.af * square * (1 - x) - stage.am * a
-            a_end = force / (1 - stage.am + (1 - stage.af) * square * stage.beta)
-            before = (x_free + stage.beta * a_end, v_free + stage.gamma * a_end, a_end)
-        start = before
-        over_given = (start[1] ** 2 + square * start[0] ** 2 - 2 * square * start[0]) / square
+        motion = step_end(stages, *motion, square, square)
+        position, velocity, _ = motion
+        over_given = (velocity**2 + square * position**2 - 2 * square * position) / square
         greatest = max(greatest, float(over_given @ np.array(shares)))
     return greatest

@@ -13,11 +13,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from validation.runs.history import Array
 from validation.scenes.scene import Scene
 
-Array = NDArray[np.float64]
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(80)
 HALVINGS = 60
 
@@ -44,6 +43,30 @@ class Rectangle:
     def housner(self) -> float:
         """Rate after over rate before an impact that keeps the angular momentum about the new corner [-]."""
         return 1 - 1.5 * math.sin(self.alpha) ** 2
+
+    @property
+    def critical_spin(self) -> float:
+        """Rate about a corner that just carries the centre above it [rad/s]: I w^2 / 2 = m g (R - h / 2)."""
+        radius = math.hypot(self.width, self.height) / 2
+        # R - h/2 without the difference of two nearly equal lengths of a slender box
+        rise = (self.width / 2) ** 2 / (radius + self.height / 2)
+        return math.sqrt(1.5 * self.gravity * rise) / radius
+
+    def greatest_rotation(self, spin: float) -> float:
+        """Return the tilt at which a block that was started about a corner turns back [rad].
+
+        w^2 / 2 + P^2 cos(alpha) = P^2 cos(alpha - theta).
+
+        Raises
+        ------
+        ValueError
+            It does not turn back.
+        """
+        ratio = spin / self.critical_spin
+        if abs(ratio) >= 1:
+            raise ValueError(f"spin: must be below that which overturns it, got {abs(ratio):g} of it")
+        # 1 - cos(alpha - theta) = (1 - ratio^2) (1 - cos(alpha)), by half angles
+        return self.alpha - 2 * math.asin(math.sqrt(1 - ratio**2) * math.sin(self.alpha / 2))
 
     def quarter_period(self, tilt: float) -> float:
         """Return the time from rest at a tilt [rad] until the base lies flat [s]."""

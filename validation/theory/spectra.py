@@ -13,6 +13,7 @@ import numpy as np
 
 from validation.runs.history import Array
 from validation.scenes.scene import Scene
+from validation.theory.stages import step_end
 from validation.theory.statics import height, moduli, size
 from validation.theory.stepping import Stepping
 
@@ -126,27 +127,21 @@ def bar_shares(scene: Scene, quantity: str, b: Array) -> Array:
 
 
 def bar_response(scene: Scene, omega: Array) -> Array:
-    """Newmark's response of modes to a step load over their static values, from rest, shape (steps, modes).
-
-    From the second step on x(n+1) = trace x(n) - det x(n-1), x measured from static; the first two steps from the
-    scheme's equations (6) and (7) with K = M w^2.
-    """
-    t, o2 = scene.time, omega**2
-    beta = 1 + t.alpha * o2
-    trace = 1 - o2 / (2 * beta) + t.discount * (1 - t.delta * o2 / beta)
-    det = t.discount * (1 + (0.5 - t.delta) * o2 / beta)
-    D, V, A = np.zeros_like(omega), np.zeros_like(omega), o2 * (t.start == "consistent")
-    x = np.empty((t.steps, len(omega)))
-    for n in range(t.steps):
-        if n < 2:
-            predicted = D + t.discount * V + (0.5 - t.alpha) * A
-            D = (predicted + t.alpha * o2) / beta
-            V, A = t.discount * V + (1 - t.delta) * A + t.delta * o2 * (1 - D), o2 * (1 - D)
-            before, now = x[0], D - 1
-        else:
-            before, now = now, trace * now - det * before
-        x[n] = now
-    return 1 + x
+    """Response of modes w dt to a step load over their static values, from rest, shape (steps, modes)."""
+    t = scene.time
+    stages = Stepping.of(scene).stages
+    square = omega[:, None] ** 2
+    displacement, velocity, acceleration, load = np.eye(4)
+    end = step_end(stages, displacement, t.discount * velocity, acceleration, square, square * load)
+    # a step of a mode's (x, v, a, 1), from the right; twice as many steps at once as are known
+    power = np.stack([*np.broadcast_arrays(*end), np.broadcast_to(load, (len(omega), 4))], axis=2)
+    states = np.zeros((len(omega), 1, 4))
+    states[..., 0, 2] = omega**2 * (t.start == "consistent")
+    states[..., 3] = 1.0
+    while states.shape[1] <= t.steps:
+        states = np.concatenate([states, states @ power], axis=1)
+        power = power @ power
+    return np.asarray(states[:, 1 : t.steps + 1, 0].T)
 
 
 def mesh_error(scene: Scene) -> dict[str, float]:

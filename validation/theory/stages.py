@@ -46,6 +46,27 @@ class Stage(NamedTuple):
 
 Stages = tuple[Stage, ...]
 
+
+def step_end(stages: Stages, x: Any, u: Any, a: Any, square: Any = 0.0, load: Any = 0.0) -> tuple[Any, Any, Any]:
+    """Return x, v and a at the end of a step of x'' + W^2 x = load, in units of the step; any may be arrays of modes.
+
+    Parameters
+    ----------
+    x, u, a
+        Displacement, discounted velocity and acceleration at its start.
+    square, load
+        W^2 = (w dt)^2 of a mode, 0 of a free body, and the load over the mass times dt^2.
+    """
+    end = (x, u, a)
+    for stage in stages:
+        x_g, v_g, a_g = end
+        x_free, v_free = stage.ahead(x, u, a, v_g, a_g)
+        force = load - square * ((1 - stage.af) * x_free + stage.af * x_g) - stage.am * a_g
+        a_end = force / (1 - stage.am + (1 - stage.af) * square * stage.beta)
+        end = (x_free + stage.beta * a_end, v_free + stage.gamma * a_end, a_end)
+    return end
+
+
 LEAPFROG: Stages = (Stage(e_0=1.0, g_0=1.0),)  # of v half a step before: the force is that of the start
 EXPLICIT_EULER: Stages = (Stage(g_0=1.0),)  # x1 = x + dt v, v1 = v + dt a
 

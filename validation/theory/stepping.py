@@ -44,7 +44,6 @@ from validation.scenes.scene import Scene
 from validation.theory import stages
 from validation.theory.stages import Stage, Stages
 
-Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 EPS = 2.0**-52
 GENERALISED_ALPHA: dict[str, Callable[[float], Stages]] = {

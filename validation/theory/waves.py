@@ -8,12 +8,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from validation.runs.history import ArrayPair
+from validation.runs.history import Array, ArrayPair
 from validation.theory.stepping import Complex, Stepping
 
-Array = NDArray[np.float64]
 GROWTH = 1e-9  # of a wave over a block, by rounding
 
 

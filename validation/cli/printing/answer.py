@@ -18,6 +18,7 @@ from validation.report.render.terminal import StyledLine, table_lines, wrapped
 from validation.runs.numbers import measured_text
 from validation.runs.records import AlarmRecord
 from validation.runs.results import Results
+from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.runs.text import printable
 
@@ -111,13 +112,19 @@ def _measured(verdict: Verdict) -> str:
 
 def badly_ended(answer: RunAnswer) -> Iterator[str]:
     """Yield how the cases ended that ended in a way their study does not expect."""
-    rows = answer.results.rows()
     for run in answer.runs:
         bad = _bad_cases(run)
-        for case in answer.results.manifest(run.study.name).get("cases", []):
-            if (case["scene"], case["solver"]) in bad:
-                row = rows[case["key"]]
-                yield how_it_ended(case["scene"], case["solver"], row.outcome, row.notes)
+        for scene, solver, row in finished_cases(answer.results, [run.study.name]):
+            if (scene, solver) in bad:
+                yield how_it_ended(scene, solver, row.outcome, row.notes)
+
+
+def finished_cases(results: Results, studies: Iterable[str]) -> Iterator[tuple[str, str, Row]]:
+    """Yield scene, solver and row of every case of some studies."""
+    rows = results.rows()
+    for study in studies:
+        for case in results.manifest(study).get("cases", []):
+            yield case["scene"], case["solver"], rows[case["key"]]
 
 
 def _bad_cases(run: JudgedStudy) -> set[tuple[str, str]]:

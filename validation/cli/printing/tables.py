@@ -9,7 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from validation.cli.printing.answer import how_it_ended
+from validation.cli.printing.answer import finished_cases, how_it_ended
 from validation.cli.printing.output import broken, echo
 from validation.gates.gate import Verdict
 from validation.report.blocks import Blocks, Listing, Paragraph, Table, TableColumn, table
@@ -30,11 +30,8 @@ PAIRS_SHOWN = 20
 
 def verdict_table(verdicts: Sequence[Verdict], results: Results, studies: Sequence[str]) -> Table:
     """Return a row a gate: verdict, scene, pair, metric, value, band, seconds of its first case."""
-    rows = results.rows()
-    seconds = {}
-    for study in studies:
-        for case in results.manifest(study)["cases"]:
-            seconds[case["scene"], case["solver"]] = sum(rows[case["key"]].seconds.values())
+    cases = finished_cases(results, studies)
+    seconds = {(scene, solver): sum(row.seconds.values()) for scene, solver, row in cases}
     name = _namer([v.gate.scene for v in verdicts])
     lines = []
     for v in verdicts:
@@ -143,13 +140,10 @@ def outcomes(results: Results, study: str) -> dict[tuple[str, str], Outcome]:
 
 def print_ends(results: Results, studies: list[str]) -> None:
     """Name the cases that did not complete, and how they ended; what a solver says of several ones it says once."""
-    rows = results.rows()
     scenes: dict[tuple[str, Outcome, tuple[str, ...]], list[str]] = {}
-    for study in studies:
-        for case in results.manifest(study)["cases"]:
-            row = rows[case["key"]]
-            if row.outcome is not Outcome.COMPLETED:
-                scenes.setdefault((case["solver"], row.outcome, row.notes), []).append(case["scene"])
+    for scene, solver, row in finished_cases(results, studies):
+        if row.outcome is not Outcome.COMPLETED:
+            scenes.setdefault((solver, row.outcome, row.notes), []).append(scene)
     for (solver, outcome, notes), names in scenes.items():
         echo(how_it_ended(names[0] if len(names) == 1 else f"{len(names)} cases", solver, outcome, notes))
 
@@ -162,18 +156,13 @@ def after_run(
 ) -> list[Change] | None:
     """Write the summary; return what changed since the baseline in the studies, None without a baseline."""
     from validation.gates.changes import against, markdown
-    from validation.runs.files import write_atomically
+    from validation.runs.files import write_text
 
     since = None if baseline is None else against(baseline, records, studies)
     if summary is not None:
-        text = printable_lines(markdown(records, since))
-        write_atomically(summary, lambda stream: stream.write(text.encode()))
+        # without lone surrogates, which no encoding takes
+        write_text(summary, markdown(records, since).encode("utf-8", "backslashreplace").decode())
     return since
-
-
-def printable_lines(text: str) -> str:
-    """Return lines without lone surrogates, which no encoding takes."""
-    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def change_blocks(changes: Sequence[Change]) -> Blocks:

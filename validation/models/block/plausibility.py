@@ -33,13 +33,26 @@ class HOOKS(PlausibilityHooks):
         strains = {
             "load.pressure": abs(load.pressure) / modulus,
             "load.traction": abs(load.traction) * 2 * (1 + block.poisson) / block.young,
-            "load.gravity": block.density * abs(load.gravity) * scene.block.extent[1] / modulus,
+            "load.gravity": block.density * abs(load.gravity) * block.extent[1] / modulus,
         }
         yield from material("block", block.density, block.young, math.sqrt(modulus / block.density), strains)
         yield from friction("contact.friction", scene.contact.friction)
         yield from _of_block(scene)
         yield from stepping(scene)
-        yield from _block_loads(scene)
+        # sizes, gravity, loads and strength
+        width, height = block.extent
+        stated = [name for name in ("side", "vertices") if name in block.model_fields_set]
+        if stated:
+            shape = "size" if block.vertices is None else "vertices"
+            yield from judged(shape, f"block.{stated[0]}", max(width, height))
+        else:
+            yield from judged("size", "block.width", width)
+            yield from judged("size", "block.height", height)
+        yield from judged("gravity", "load.gravity", load.gravity)
+        yield from judged("tension", "load.pressure", load.pressure)
+        yield from pressure_values("load.pressure", load.pressure, block.young)
+        yield from pressure_values("load.traction", load.traction, block.young)
+        yield from strength("contact.cohesion", scene.contact.cohesion, block.young)
 
     def sinks(self, scene: Scene) -> Iterator[Implausible]:
         """Yield springs that give way by a tenth of the height."""
@@ -87,20 +100,3 @@ def _of_block(scene: Scene) -> Iterator[Implausible]:
     by_stiffness = scene.damping.stiffness * frequency / 2
     field = "damping.mass" if by_mass > by_stiffness else "damping.stiffness"
     yield from judged("rayleigh", field, by_mass + by_stiffness, frequency=frequency)
-
-
-def _block_loads(scene: Scene) -> Iterator[Implausible]:
-    """Yield sizes, gravity, loads and strength of a block."""
-    b = scene.block
-    width, height = b.extent
-    stated = [name for name in ("side", "vertices") if name in b.model_fields_set]
-    if stated:
-        yield from judged("vertices" if b.vertices is not None else "size", f"block.{stated[0]}", max(width, height))
-    else:
-        yield from judged("size", "block.width", width)
-        yield from judged("size", "block.height", height)
-    yield from judged("gravity", "load.gravity", scene.load.gravity)
-    yield from judged("tension", "load.pressure", scene.load.pressure)
-    yield from pressure_values("load.pressure", scene.load.pressure, b.young)
-    yield from pressure_values("load.traction", scene.load.traction, b.young)
-    yield from strength("contact.cohesion", scene.contact.cohesion, b.young)

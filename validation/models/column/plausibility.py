@@ -25,13 +25,50 @@ class HOOKS(PlausibilityHooks):
     def values(self, scene: Scene) -> Iterator[Implausible]:
         """Yield what materials, frictions, times, springs and loads say."""
         column = scene.table(ColumnSection)
-        yield from _of_layers(scene, column)
+        driven = scene.stated_input
+        foot = 0.0
+        for number, layer in enumerate(column.layer):
+            if math.isfinite(layer.young):
+                modulus = column.modulus(layer)
+                speed = math.sqrt(modulus / layer.density)
+                strains = {}
+                if driven is not None:
+                    strains["input.pressure"] = abs(driven.pressure or 0.0) / modulus
+                    strains["input.velocity"] = abs(driven.velocity or 0.0) / speed
+                if column.motion == "pressure":
+                    strains["column.gravity"] = column.static_stress(foot) / modulus
+                yield from material(f"column.layer.{number}", layer.density, layer.young, speed, strains)
+            foot += layer.thickness
         yield from friction("column.friction", column.friction)
         for number, joint in enumerate(column.joint):
             yield from friction(f"column.joint.{number}.friction", joint.friction)
-        yield from _of_column(scene, column)
+        # times, springs and gaps that are out of proportion to the column
+        t = scene.time
+        moduli = [column.modulus(layer) for layer in column.layer]
+        travel = sum(layer.thickness * math.sqrt(layer.density / column.modulus(layer)) for layer in column.layer)
+        if travel > 0:
+            yield from judged("column_step", "time.step", t.step / travel, step=t.step)
+        if driven is not None and driven.frequency is not None:
+            periods = driven.frequency * t.duration
+            yield from judged("frequency", "input.frequency", periods, frequency=driven.frequency)
+        for name, stiffness in (("glue", column.glue), ("base_stiffness", column.base_stiffness)):
+            if stiffness is not None and math.isfinite(min(moduli)):
+                share = stiffness * column.height / min(moduli)
+                yield from judged("column_springs", f"column.{name}", share, stiffness=stiffness)
+        gaps = {"column.gap": column.gap} | {f"column.joint.{i}.gap": joint.gap for i, joint in enumerate(column.joint)}
+        for field, gap in gaps.items():
+            yield from judged("column_gap", field, gap / column.height, gap=gap)
         yield from stepping(scene)
-        yield from _column_loads(scene, column)
+        # sizes, gravity, pressure and strengths
+        for number, layer in enumerate(column.layer):
+            yield from judged("thickness", f"column.layer.{number}.thickness", layer.thickness)
+        yield from judged("gravity", "column.gravity", column.gravity)
+        youngs = [layer.young for layer in column.layer if math.isfinite(layer.young)]
+        if youngs:
+            yield from pressure_values("input.pressure", _input_pressure(scene), min(youngs))
+            yield from strength("column.strength", column.strength or 0.0, min(youngs))
+            for number, joint in enumerate(column.joint):
+                yield from strength(f"column.joint.{number}.strength", joint.strength or 0.0, min(youngs))
 
     def sinks(self, scene: Scene) -> Iterator[Implausible]:
         """Yield springs that give way by a tenth of the height."""
@@ -45,56 +82,6 @@ class HOOKS(PlausibilityHooks):
         for field, height, stiffness in springs:
             sink = (column.static_stress(height) + pressure) / stiffness
             yield from judged("column_sink", field, sink / column.height, stiffness=stiffness, sink=sink)
-
-
-def _of_layers(scene: Scene, column: ColumnSection) -> Iterator[Implausible]:
-    excitation = scene.stated_input
-    foot = 0.0
-    for number, layer in enumerate(column.layer):
-        if math.isfinite(layer.young):
-            modulus = column.modulus(layer)
-            speed = math.sqrt(modulus / layer.density)
-            strains = {}
-            if excitation is not None:
-                strains["input.pressure"] = abs(excitation.pressure or 0.0) / modulus
-                strains["input.velocity"] = abs(excitation.velocity or 0.0) / speed
-            if column.motion == "pressure":
-                strains["column.gravity"] = column.static_stress(foot) / modulus
-            yield from material(f"column.layer.{number}", layer.density, layer.young, speed, strains)
-        foot += layer.thickness
-
-
-def _of_column(scene: Scene, column: ColumnSection) -> Iterator[Implausible]:
-    """Yield times, springs and gaps of a column that are out of proportion to it."""
-    t = scene.time
-    moduli = [column.modulus(layer) for layer in column.layer]
-    travel = sum(layer.thickness * math.sqrt(layer.density / column.modulus(layer)) for layer in column.layer)
-    if travel > 0:
-        yield from judged("column_step", "time.step", t.step / travel, step=t.step)
-    driven = scene.stated_input
-    if driven is not None and driven.frequency is not None:
-        periods = driven.frequency * t.duration
-        yield from judged("frequency", "input.frequency", periods, frequency=driven.frequency)
-    for name, stiffness in (("glue", column.glue), ("base_stiffness", column.base_stiffness)):
-        if stiffness is not None and math.isfinite(min(moduli)):
-            share = stiffness * column.height / min(moduli)
-            yield from judged("column_springs", f"column.{name}", share, stiffness=stiffness)
-    gaps = {"column.gap": column.gap} | {f"column.joint.{i}.gap": joint.gap for i, joint in enumerate(column.joint)}
-    for field, gap in gaps.items():
-        yield from judged("column_gap", field, gap / column.height, gap=gap)
-
-
-def _column_loads(scene: Scene, column: ColumnSection) -> Iterator[Implausible]:
-    """Yield sizes, gravity, pressure and strengths of a column."""
-    for number, layer in enumerate(column.layer):
-        yield from judged("thickness", f"column.layer.{number}.thickness", layer.thickness)
-    yield from judged("gravity", "column.gravity", column.gravity)
-    moduli = [layer.young for layer in column.layer if math.isfinite(layer.young)]
-    if moduli:
-        yield from pressure_values("input.pressure", _input_pressure(scene), min(moduli))
-        yield from strength("column.strength", column.strength or 0.0, min(moduli))
-        for number, joint in enumerate(column.joint):
-            yield from strength(f"column.joint.{number}.strength", joint.strength or 0.0, min(moduli))
 
 
 def _input_pressure(scene: Scene) -> float:

@@ -9,14 +9,21 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, model_validator
 
 from validation.scenes.keys import Key, Section
-from validation.scenes.tables import Angle, Count, Flag, NonNegative, Positive, Real, Stiffness
+from validation.scenes.tables import (
+    Count,
+    Flag,
+    FrictionAngle,
+    NonNegative,
+    PoissonRatio,
+    Positive,
+    Real,
+    Stiffness,
+)
 
 MOST_HEIGHTS = 99  # at which a history may look
 NEAR = 1e-9  # of the column's height: how near a joint or height must be to the face that is meant
 BlockCount = Annotated[Count, Field(le=100_000)]  # of a layer: faces are lists, made before memory is predicted
 THINNEST = 1e-6  # block, of the height: its elements, hundreds at most, must be longer than `NEAR`
-PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
-FrictionAngle = Annotated[Angle, Field(ge=0)]
 OPENS, SLIPS, MOVES = 'law = "unilateral"', 'law = "frictional"', 'law = "unilateral" or "frictional"'
 
 
@@ -194,18 +201,21 @@ class ColumnSection(Section):
         return tuple(faces)
 
     @property
+    def plain_faces(self) -> list[float]:
+        """Heights of the faces without a joint, at which a block stands on another one or on the base [m]."""
+        lowest = 1 if self.base in ("transmitting", "free") else 0
+        near = NEAR * self.height
+        jointed = [joint.height for joint in self.springs]
+        return [face for face in self.faces[lowest:-1] if all(abs(face - joint) > near for joint in jointed)]
+
+    @property
     def contacts(self) -> tuple[Contact, ...]:
         """The contacts that open or slip, from the base upwards; none where the column is bonded."""
         if self.law == "bonded":
             return ()
         contacts = [self._contact(joint.height, joint) for joint in self.springs]
         if self.stiffness is not None:
-            lowest = 1 if self.base in ("transmitting", "free") else 0
-            jointed = [joint.height for joint in self.springs]
-            near = NEAR * self.height
-            for height in self.faces[lowest:-1]:
-                if all(abs(height - joint) > near for joint in jointed):
-                    contacts.append(self._contact(height, self))
+            contacts += [self._contact(height, self) for height in self.plain_faces]
         return tuple(sorted(contacts, key=lambda contact: contact.height))
 
     def _contact(self, height: float, stated: ColumnSection | JointSection) -> Contact:

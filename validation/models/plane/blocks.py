@@ -14,13 +14,11 @@ from pydantic import Field, model_validator
 from validation.runs.history import Array
 from validation.scenes.keys import Key, Section
 from validation.scenes.outline import area, check_polygon
-from validation.scenes.tables import Count, Flag, Positive, Real, Stiffness
+from validation.scenes.tables import Count, Cut, Flag, Hypothesis, Pattern, PoissonRatio, Positive, Real, Stiffness
 
 Point = tuple[Real, Real]
 Vertices = tuple[tuple[float, float], ...]
 Name = Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
-PoissonRatio = Annotated[Real, Field(gt=-1, lt=0.5)]
-Hypothesis = Literal["plane stress", "plane strain"]
 OF_MATERIAL = ("density", "young", "poisson")  # what a block may state itself
 Sides = Annotated[Count, Field(ge=3, le=1000)]
 
@@ -103,11 +101,9 @@ class PlaneBlockSection(Section):
     density: Annotated[Positive | None, Key("kg/m3", "that of plane if absent", "ρ")] = None
     young: Annotated[Stiffness | None, Key("Pa", "that of plane if absent; inf: rigid", "E")] = None
     poisson: Annotated[PoissonRatio | None, Key("", "that of plane if absent", "μ")] = None
-    subdivide: Annotated[
-        tuple[Count, Count] | None, Key("blocks", "of a rectangle in x and in y, glued by plane.glue", "")
-    ] = None
+    subdivide: Annotated[Cut | None, Key("blocks", "of a rectangle in x and in y, glued by plane.glue", "")] = None
     pattern: Annotated[
-        Literal["squares", "triangles"],
+        Pattern,
         Key("", "of these; triangles: each cell cut from lower left to upper right"),
     ] = "squares"
 
@@ -146,8 +142,8 @@ class PlaneBlockSection(Section):
         if self.vertices is not None:
             return self.vertices
         if self.rectangle is not None:
-            x, y = self.rectangle[0] / 2, self.rectangle[1] / 2
-            return ((-x, -y), (x, -y), (x, y), (-x, y))
+            width, height = self.rectangle
+            return upright(-width / 2, -height / 2, width, height)
         sides = self.sides or 1
         turns = [2 * math.pi * k / sides for k in range(sides)]
         radius = self.radius or 1.0
@@ -186,9 +182,7 @@ class PlaneBlockSection(Section):
             yield suffix, tuple((x - width / 2, y - height / 2) for x, y in outline)
 
 
-def cells(
-    width: float, height: float, subdivide: tuple[int, int], pattern: Literal["squares", "triangles"]
-) -> Iterator[tuple[str, Vertices]]:
+def cells(width: float, height: float, subdivide: Cut, pattern: Pattern) -> Iterator[tuple[str, Vertices]]:
     """Yield the parts of an upright rectangle from the origin, row by row from below: ``_2_1`` is second in the first.
 
     Triangles of a cell are ``_2_1a``, below its diagonal, and ``_2_1b``.
@@ -203,6 +197,11 @@ def cells(
         else:
             yield f"_{column}_{row}a", (a, b, c)
             yield f"_{column}_{row}b", (a, c, d)
+
+
+def upright(left: float, low: float, width: float, height: float) -> Vertices:
+    """Return the corners of an upright rectangle from its lower left one on [m]."""
+    return ((left, low), (left + width, low), (left + width, low + height), (left, low + height))
 
 
 def moved(outline: Vertices, at: tuple[float, float], turned: float) -> Vertices:

@@ -289,7 +289,7 @@ def corner(scene: Scene) -> tuple[JudgedNumber, ...]:
     time, number = body.landing(scene.time.duration)
     landed = body.flown(time)
     _, impulse = rigid_impulse(body, 0.0, scene.time.duration)
-    arm = float(landed.arms(landed.angle)[number][0])
+    arm = landed.arm(number)[0]
     approach = abs(landed.velocity[1] + landed.spin * arm)
     why = "one per cent of the speed of the corner as it lands: no rebound is known better"
     vertical = landed.velocity[1] + impulse / body.mass

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import cmath
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Any
 
@@ -20,13 +18,13 @@ from validation.scenes import features
 from validation.scenes.scene import Scene
 from validation.solvers.contract import LineStyle, Prepared, Role, Solver
 from validation.solvers.rigid.rocking import friction_needed
-from validation.theory.boxes import ShakenBox, SpringImpact, critical_spin, greatest_rotation, return_time
+from validation.theory.boxes import ShakenBox, SpringImpact
+from validation.theory.corner_impact import FallingRectangle, HorizonError
 from validation.theory.rocking import Rectangle
 
 AT_REST = 1e-12  # of the speed of the first landing: what is slower bounces no more
 ROLLS = 1e-6  # relative: a velocity that is that of a rotation about the corner, in the digits of a file
 ACCURACY = 1e-12  # relative tolerance of the integration
-ROUNDING = 16 * float(np.finfo(float).eps)  # part of the lengths in it by which a height of a corner may be wrong
 MOST_IMPACTS = 100_000
 
 
@@ -42,7 +40,12 @@ class RigidExact(Solver):
 
     name = "rigid-exact"
     handles = features.SCHEMES | {features.PLANE, features.MOVING_BLOCKS}
-    sources = ("validation.theory.boxes", "validation.theory.rocking", "fem_reference.exact.rocking")
+    sources = (
+        "validation.theory.boxes",
+        "validation.theory.corner_impact",
+        "validation.theory.rocking",
+        "fem_reference.exact.rocking",
+    )
     role = Role.TRUTH
     rank = 3.0
     line = LineStyle("#000000", (1.0, 1.0))
@@ -73,7 +76,7 @@ class ExactBoxes(Prepared):
         time = scene.time.step * np.arange(1.0, scene.time.steps + 1)
         try:
             columns = motion_of(scene)(time)
-        except TumblingHorizonError as error:
+        except HorizonError as error:
             steps = math.floor(error.time / scene.time.step)
             return Run(Outcome.HORIZON, notes=(f"{error}; the scene may have {steps} steps",))
         except ValueError as error:
@@ -326,12 +329,13 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
     _unless(tilted, "the motion about a corner is known on level ground, under weight")
     rectangle = Rectangle(box.width, box.height, ground.gravity)
     spin = abs(box.spin)
-    overturns = spin >= critical_spin(rectangle)
+    overturns = spin >= rectangle.critical_spin
     _unless(overturns, "the motion is not known of a box that overturns, beyond the impact at its end")
-    end = return_time(rectangle, spin)
+    tilt = rectangle.greatest_rotation(spin)
+    end = 2 * rectangle.quarter_period(tilt)  # it comes down as it rose
     comes_back = f"the motion about a corner is known until the box comes back after {end:.4g} s"
     _unless(scene.time.duration >= end, comes_back)
-    needed = friction_needed(box.width, box.height, greatest_rotation(rectangle, spin))
+    needed = friction_needed(box.width, box.height, tilt)
     slips = f"the corner slips: friction must be above {math.degrees(math.atan(needed)):.4g} deg"
     _unless(ground.friction_coefficient <= needed, slips)
 
@@ -361,151 +365,45 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
 # ---- tumbling -------------------------------------------------------------------------------------------------------
 
 
-class TumblingHorizonError(ArithmeticError):
-    """A box does not go on from impact to impact of one corner."""
-
-    def __init__(self, time: float, reason: str) -> None:
-        super().__init__(f"exact up to {time:.6g} s only: {reason}")
-        self.time = time  # the horizon [s]
-        self.reason = reason
-
-
 def _tumbling(ground: BoxesOnGround, box: Box) -> Motion:
     """From impact to impact of a corner, without friction or loss.
 
-    The motion raises `TumblingHorizonError` if the box does not go on so, or impacts are more than `MOST_IMPACTS`.
+    The motion raises `HorizonError` if the box does not go on so, or impacts are more than `MOST_IMPACTS`.
     """
     across = ground.pull[1]
-    start = _CornerFlight(
-        corners=tuple((sx * box.width / 2, sy * box.height / 2) for sx in (-1, 1) for sy in (-1, 1)),
-        inverse_mass=1 / box.mass,
-        inverse_inertia=1 / box.inertia,
-        gravity=across,
-        start=0.0,
-        y=box.y,
+    thrown = FallingRectangle(
+        width=box.width,
+        height=box.height,
+        mass=box.mass,
+        place=(box.x, box.y),
         angle=box.angle,
-        velocity=box.velocity[1],
+        velocity=box.velocity,
         spin=box.spin,
+        gravity=-across,
     )
     try:
-        start.next_impact(0.0)
-    except TumblingHorizonError as error:
+        thrown.next_impact(0.0, 0.0)
+    except HorizonError as error:
         why = f"the motion is not known of a box that at t = 0 does this: {error.reason}"
         raise UnknownMotionError(why) from None
 
     def motion(time: Array) -> dict[str, Array]:
-        flight = start
+        flight = thrown
+        start = 0.0
         heights, angles = np.empty((2, len(time)))
         written = 0
         for _ in range(MOST_IMPACTS):
-            impact = flight.next_impact(float(time[-1]))
+            impact = flight.next_impact(start, float(time[-1]))
             until = len(time) if impact is None else int(np.searchsorted(time, impact[0], side="right"))
-            since = time[written:until] - flight.start
-            heights[written:until] = flight.y + flight.velocity * since + across * since**2 / 2
+            since = time[written:until] - start
+            heights[written:until] = flight.place[1] + flight.velocity[1] * since + across * since**2 / 2
             angles[written:until] = flight.angle + flight.spin * since
             written = until
             if impact is None:
                 return _poses(ground, time, x=_flown(ground, box, time), y=heights, angle=angles)
-            flight = flight.after(*impact)
-        raise TumblingHorizonError(flight.start, f"more than {MOST_IMPACTS} impacts")
+            instant, corner = impact
+            flight = flight.flown(instant - start).rebounded(corner)
+            start = instant
+        raise HorizonError(start, f"more than {MOST_IMPACTS} impacts")
 
     return motion
-
-
-@dataclass(frozen=True)
-class _CornerFlight:
-    """A free flight of a box that turns, above frictionless ground that gives all energy back."""
-
-    corners: tuple[tuple[float, float], ...]  # about the centre [m]
-    inverse_mass: float  # [1/kg]
-    inverse_inertia: float  # [1/(kg m2)]
-    gravity: float  # negative downwards [m/s2]
-    start: float  # instant at which it begins [s]
-    y: float  # of the centre then [m]
-    angle: float  # [rad]
-    velocity: float  # of the centre upwards [m/s]
-    spin: float  # [rad/s]
-
-    def centre(self, elapsed: float) -> float:
-        """Return the height of the centre [m]."""
-        return self.y + self.velocity * elapsed + self.gravity * elapsed**2 / 2
-
-    def at(self, corner: int, elapsed: float) -> tuple[float, float]:
-        """Return how far a corner is from the centre along the ground, and its height [m]."""
-        x, y = self.corners[corner]
-        turn = cmath.rect(1.0, self.angle + self.spin * elapsed)
-        return x * turn.real - y * turn.imag, self.centre(elapsed) + x * turn.imag + y * turn.real
-
-    def rate(self, elapsed: float, arm: float) -> float:
-        """Return the velocity upwards of a corner that is so far along the ground [m/s]."""
-        return self.velocity + self.gravity * elapsed + self.spin * arm
-
-    def next_impact(self, end: float) -> tuple[float, int] | None:
-        """Return when a corner comes down first [s], and which; None where none does before an instant.
-
-        Raises
-        ------
-        TumblingHorizonError
-            If a corner comes to press on the ground without an impact, or two come down at once.
-        """
-        downs = []
-        for corner in range(len(self.corners)):
-            elapsed, lands = self._comes_down(corner, end - self.start)
-            downs.append((self.start + elapsed, lands, corner))
-        (time, lands, corner), (then, *_), *_ = sorted(downs)
-        if math.isinf(time):
-            return None
-        if not lands:
-            raise TumblingHorizonError(time, "a corner presses on the ground without an impact, and slides on it")
-        if then == time:
-            raise TumblingHorizonError(time, "two corners come down at once, and the first one decides what follows")
-        return time, corner
-
-    def _comes_down(self, corner: int, duration: float) -> tuple[float, bool]:
-        """Return when a corner is on the ground and does not rise, within a duration, and whether it falls on it.
-
-        No step passes a landing: with K a bound of the acceleration the height s later is at least
-        h + h' s - K s^2 / 2, and with K' one of its rate at least a s^2 / 2 - K' s^3 / 6 where h = h' = 0.
-        """
-        size = max(math.hypot(*place) for place in self.corners)
-        bound = abs(self.gravity) + size * self.spin**2
-        bound_of_rate = size * abs(self.spin) ** 3
-        elapsed = 0.0
-        while elapsed <= duration:
-            arm, height = self.at(corner, elapsed)
-            rate = self.rate(elapsed, arm)
-            # what rounding leaves of a height, and the rate with which one falls through so little
-            extent = size + abs(self.y) + abs(self.velocity) * elapsed - self.gravity * elapsed**2
-            nothing = ROUNDING * (extent + abs(rate) * self.start)
-            slow = math.sqrt(2 * bound * nothing)
-            if height > nothing:
-                root = math.sqrt(rate**2 + 2 * bound * height)
-                if bound == 0 and rate >= 0:
-                    break
-                elapsed += 2 * height / (root - rate) if rate < 0 else (rate + root) / bound
-            elif rate < -slow:
-                return elapsed, True
-            elif rate > slow:
-                elapsed += rate / bound if bound else math.inf
-            else:
-                acceleration = self.gravity - self.spin**2 * (height - self.centre(elapsed))
-                if acceleration < 0 or (acceleration == 0 and bound > 0):
-                    return elapsed, False
-                if bound_of_rate == 0:
-                    break
-                elapsed += acceleration / bound_of_rate
-        return math.inf, True
-
-    def after(self, time: float, corner: int) -> _CornerFlight:
-        """Return the flight after the impact of a corner at an instant [s]."""
-        elapsed = time - self.start
-        arm, _ = self.at(corner, elapsed)
-        impulse = -2 * self.rate(elapsed, arm) / (self.inverse_mass + arm**2 * self.inverse_inertia)
-        return replace(
-            self,
-            start=time,
-            y=self.centre(elapsed),
-            angle=self.angle + self.spin * elapsed,
-            velocity=self.velocity + self.gravity * elapsed + impulse * self.inverse_mass,
-            spin=self.spin + impulse * arm * self.inverse_inertia,
-        )

@@ -36,30 +36,53 @@ class HOOKS(FigureHooks):
 
     def draw(self, axes: Any, scene: Scene) -> None:
         """Draw the blocks of a scene, what joins them and what drives them."""
-        draw_plane(axes, scene.table(PlaneSection))
+        plane = scene.table(PlaneSection)
+        sketch = Sketch(axes, plane.polygons)
+        for clamp in plane.clamp:
+            sketch.hatched(clamp.edge)
+        if plane.is_glued:
+            _draw_tractions(sketch, plane.tractions)
+        else:
+            _draw_moving(sketch, plane.assembly)
+        if any(plane.gravity):
+            vector = LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity)
+            place = sketch.middle if plane.is_glued else (sketch.low[0] - 0.3 * LONGEST * sketch.size, sketch.middle[1])
+            sketch.arrow(place, vector, "g")
+        sketch.fit()
+        if not plane.is_glued:
+            _name_blocks(axes, plane.assembly)
 
     def frames(self, scene: Scene, history: History, steps: Sequence[int], solver: str, height: float) -> Any:
-        """Draw moving blocks at some steps, with contact forces as arrows."""
+        """Draw moving blocks at some steps side by side to one scale, with contact forces in the solver's colour.
+
+        The longest arrow of all frames is the largest force, which the first title states; axes are in metres.
+        """
         plane = scene.table(PlaneSection)
-        return frames_figure(plane, history, steps, solver, height) if plane.moves else None
-
-
-def draw_plane(axes: Any, plane: PlaneSection) -> None:
-    """Draw blocks, what joins them and what drives them."""
-    sketch = Sketch(axes, plane.polygons)
-    for clamp in plane.clamp:
-        sketch.hatched(clamp.edge)
-    if plane.is_glued:
-        _draw_tractions(sketch, plane.tractions)
-    else:
-        _draw_moving(sketch, plane.assembly)
-    if any(plane.gravity):
-        vector = LONGEST * sketch.size * np.array(plane.gravity) / math.hypot(*plane.gravity)
-        place = sketch.middle if plane.is_glued else (sketch.low[0] - 0.3 * LONGEST * sketch.size, sketch.middle[1])
-        sketch.arrow(place, vector, "g")
-    sketch.fit()
-    if not plane.is_glued:
-        _name_blocks(axes, plane.assembly)
+        if not plane.moves:
+            return None
+        assembly = plane.assembly
+        arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.28", "color": style_of(solver).color, "lw": 0.8}
+        forces = {step: list(forces_at(assembly, history, step)) for step in steps}
+        largest = max((float(np.hypot(*force)) for frame in forces.values() for _, force in frame), default=0.0)
+        outlines = {step: outlines_at(assembly, history, step) for step in steps}
+        low, high = _limits(assembly, [*outlines.values()])
+        size = float(np.max(high - low))
+        with house_style():
+            figure, ((*row,),) = axes_grid([(height, 0.0)], len(steps), MARGINS)
+            for number, (axes, step) in enumerate(zip(row, steps, strict=True)):
+                for block, outline in zip(assembly.blocks, outlines[step], strict=True):
+                    axes.fill(*outline.T, **(FIXED if block.held else MOVING))
+                for place, force in forces[step]:
+                    tail = place - LONGEST * size * force / (largest or 1.0)
+                    if np.any(force):
+                        look = {**arrow, "shrinkA": 0, "shrinkB": 0}
+                        axes.annotate("", tuple(place), tuple(tail), arrowprops=look, zorder=4)
+                force_words = f", largest force {quantity(largest, 'N')}" if largest and number == 0 else ""
+                axes.set_title(f"t = {float(history.time[step]):.3g} s{force_words}")
+                axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [m]", aspect="equal")
+                axes.tick_params(labelleft=number == 0)
+            row[0].set_ylabel("y [m]")
+        return figure
 
 
 def _draw_tractions(sketch: Sketch, loads: Sequence[tuple[Segment, tuple[float, float]]]) -> None:
@@ -108,38 +131,6 @@ def _name_blocks(axes: Any, assembly: Assembly) -> None:
         places = np.array([(x + side, height) for side in (-half, 0.0, half) for height in heights])
         if inside(places, block.vertices).all():
             axes.text(x, y, block.name, fontsize=5.5, ha="center", va="center", zorder=5)
-
-
-def frames_figure(
-    plane: PlaneSection, history: History, steps: Sequence[int], solver: str, height: float = 40.0
-) -> Any:
-    """Draw blocks at some steps side by side to one scale, with contact forces as arrows in the solver's colour.
-
-    The longest arrow of all frames is the largest force, which the first title states; axes are in metres.
-    """
-    assembly = plane.assembly
-    arrow = {"arrowstyle": "-|>,head_width=0.12,head_length=0.28", "color": style_of(solver).color, "lw": 0.8}
-    forces = {step: list(forces_at(assembly, history, step)) for step in steps}
-    largest = max((float(np.hypot(*force)) for frame in forces.values() for _, force in frame), default=0.0)
-    outlines = {step: outlines_at(assembly, history, step) for step in steps}
-    low, high = _limits(assembly, [*outlines.values()])
-    size = float(np.max(high - low))
-    with house_style():
-        figure, ((*row,),) = axes_grid([(height, 0.0)], len(steps), MARGINS)
-        for number, (axes, step) in enumerate(zip(row, steps, strict=True)):
-            for block, outline in zip(assembly.blocks, outlines[step], strict=True):
-                axes.fill(*outline.T, **(FIXED if block.held else MOVING))
-            for place, force in forces[step]:
-                tail = place - LONGEST * size * force / (largest or 1.0)
-                if np.any(force):
-                    look = {**arrow, "shrinkA": 0, "shrinkB": 0}
-                    axes.annotate("", tuple(place), tuple(tail), arrowprops=look, zorder=4)
-            force_words = f", largest force {quantity(largest, 'N')}" if largest and number == 0 else ""
-            axes.set_title(f"t = {float(history.time[step]):.3g} s{force_words}")
-            axes.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]), xlabel="x [m]", aspect="equal")
-            axes.tick_params(labelleft=number == 0)
-        row[0].set_ylabel("y [m]")
-    return figure
 
 
 def _limits(assembly: Assembly, frames: Sequence[Sequence[Array]]) -> tuple[Array, Array]:

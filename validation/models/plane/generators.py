@@ -13,12 +13,13 @@ from typing import Annotated, Any, Self
 import numpy as np
 from pydantic import Field, model_validator
 
-from validation.models.plane.blocks import Name, PlaneBlockSection, Point, Sides, Vertices
+from validation.models.plane.blocks import Name, PlaneBlockSection, Point, Sides, Vertices, moved, upright
 from validation.scenes.keys import Key, Section
 from validation.scenes.tables import Angle, Count, Index, NonNegative, Positive, Real
 
 MOST_BLOCKS = 20_000  # polygons are lists, made before memory is predicted
 Outlines = Iterator[tuple[str, Vertices, bool]]  # what a block is called behind the name, its corners, whether fixed
+ORIGIN = (0.0, 0.0)
 Size = Annotated[tuple[Positive, Positive], Key("m", "width and height of each")]
 Several = Annotated[Count, Field(le=MOST_BLOCKS)]
 
@@ -27,7 +28,7 @@ class GeneratorSection(Section):
     """Blocks that are drawn by one table: in their own frame, turned about its origin and moved to `at`."""
 
     name: Annotated[Name, Key("", "from which its blocks are called name_1, name_2, ...")]
-    at: Annotated[Point, Key("m", "where the origin of its frame is")] = (0.0, 0.0)
+    at: Annotated[Point, Key("m", "where the origin of its frame is")] = ORIGIN
     turned: Annotated[Real, Key("deg", "about that origin, counter-clockwise")] = 0.0
 
     def outlines(self) -> Outlines:
@@ -140,17 +141,16 @@ class ColumnsSection(GeneratorSection):
 
     def outlines(self) -> Outlines:
         """Yield the columns from the toe on, and the fixed ``base``."""
-        turn = -math.radians(self.dip)
         count = len(self.heights)
         for number, height in enumerate(self.heights):
             column = upright(-self.width * (number + 1), self.rise * number, self.width, height)
-            yield f"{number + 1}", rotated(column, turn), False
+            yield f"{number + 1}", moved(column, ORIGIN, -self.dip), False
         steps = [(-self.width * (k + side), self.rise * k) for k in range(count) for side in (0, 1)]
         treads = list(dict.fromkeys(steps)) if self.rise else [steps[0], steps[-1]]
         beyond = 2 * self.width  # on which what has slid off comes to lie
         last = -self.width * count
         outline = ((last, -self.base), (beyond, -self.base), (beyond, 0.0), *treads)
-        yield "base", rotated(outline, turn), True
+        yield "base", moved(outline, ORIGIN, -self.dip), True
 
 
 class SlopeSection(GeneratorSection):
@@ -178,7 +178,6 @@ class SlopeSection(GeneratorSection):
 
     def outlines(self) -> Outlines:
         """Yield the blocks from above, and the fixed ``ground``."""
-        turn = -math.radians(self.angle)
         zeros = (0.0,) * len(self.rectangles)
         place = 0.0
         sizes = zip(self.rectangles, self.noses or zeros, self.gaps or zeros, self.sinks or zeros, strict=True)
@@ -186,9 +185,9 @@ class SlopeSection(GeneratorSection):
             left = place + gap + nose
             body = upright(left, -sink, width, height)
             tip = ((left - nose, height / 2 - sink),) if nose else ()
-            yield f"{number}", rotated((*body, *tip), turn), False
+            yield f"{number}", moved((*body, *tip), ORIGIN, -self.angle), False
             place = left + width
-        yield "ground", rotated(upright(0.0, -self.base, self.length, self.base), turn), True
+        yield "ground", moved(upright(0.0, -self.base, self.length, self.base), ORIGIN, -self.angle), True
 
     def blocks(self) -> Iterator[PlaneBlockSection]:
         """Yield the blocks with their speeds."""
@@ -229,14 +228,3 @@ class RandomSection(GeneratorSection):
             x = (column + 0.5) * cell + radius * np.cos(angles)
             y = (row + 0.5) * cell + radius * np.sin(angles)
             yield f"{number + 1}", tuple(zip(x.tolist(), y.tolist(), strict=True)), False
-
-
-def upright(left: float, low: float, width: float, height: float) -> Vertices:
-    """Return the corners of an upright rectangle from its lower left one on [m]."""
-    return ((left, low), (left + width, low), (left + width, low + height), (left, low + height))
-
-
-def rotated(outline: Vertices, angle: float) -> Vertices:
-    """Return an outline that is turned about the origin [rad]."""
-    cosine, sine = math.cos(angle), math.sin(angle)
-    return tuple((cosine * x - sine * y, sine * x + cosine * y) for x, y in outline)

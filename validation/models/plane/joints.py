@@ -9,10 +9,8 @@ from pydantic import Field, model_validator
 
 from validation.models.plane.blocks import Point
 from validation.scenes.keys import Key, Section
-from validation.scenes.tables import Angle, Index, NonNegative, Positive, Real, Stiffness
+from validation.scenes.tables import FrictionAngle, Index, NonNegative, Positive, Real, Share, Stiffness
 
-FrictionAngle = Annotated[Angle, Field(ge=0)]
-Restitution = Annotated[Real, Field(ge=0, le=1)]
 Corner = Annotated[Index, Field(ge=0)]
 Pair = tuple[str, str]
 Segment = tuple[Point, Point]
@@ -31,7 +29,7 @@ class PlaneContactSection(Section):
     ]
     shear_stiffness: Annotated[NonNegative | None, Key("N/m", "that of stiffness if absent; 0 is frictionless")] = None
     restitution: Annotated[
-        Restitution | None, Key("", "rebound over approach speed; absent: as the contact's model has it", "e")
+        Share | None, Key("", "rebound over approach speed; absent: as the contact's model has it", "e")
     ] = None
     friction: Annotated[FrictionAngle | None, Key("deg", "angle of friction; absent: it never slips", "φ")] = None
     cohesion: Annotated[NonNegative, Key("N", "of a corner that may slip")] = 0.0

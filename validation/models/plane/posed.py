@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import functools
-import tomllib
 from collections.abc import Callable, Iterable, Mapping
-from pathlib import Path
 from typing import Any, NamedTuple
 
 from validation.models.plane.boxes import boxes_of
 from validation.problems.numbered import UNKNOWN, JudgedNumber, around
+from validation.runs.beside import table_beside
 from validation.runs.history import History
 from validation.scenes.scene import Scene, load_scene
 
@@ -17,7 +16,7 @@ PREFIX = "rigid-"  # of the scenes of problems
 EITHER_WAY = (1 - UNKNOWN, 1 + UNKNOWN)
 FRICTION = "tan(phi), which is not known better,"
 
-TABLE = tomllib.loads(Path(__file__).with_name("problems.toml").read_text(encoding="utf-8"))
+TABLE = table_beside(__file__, "problems.toml")
 Numbers = Callable[[Scene], tuple[JudgedNumber, ...]]  # what is measured on answers to a scene
 Measure = Callable[[History], float | None]
 

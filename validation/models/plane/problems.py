@@ -43,8 +43,6 @@ from validation.scenes.scene import Scene
 from validation.theory.boxes import (
     ShakenBox,
     SpringImpact,
-    critical_spin,
-    greatest_rotation,
     sliding_acceleration,
 )
 from validation.theory.rocking import Rectangle
@@ -206,13 +204,13 @@ def toppling(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return how far a box turns that was started about its corner; of one that may overturn, whether it does."""
     ground = boxes_of(scene)
     spin = abs(ground.boxes[0].spin)
-    if spin >= min(critical_spin(rectangle_of(ground, factor)) for factor in EITHER_WAY):
+    if spin >= min(rectangle_of(ground, factor).critical_spin for factor in EITHER_WAY):
         return overturning(scene)
     return (
         varied(
             "greatest rotation",
             "deg",
-            lambda factor: math.degrees(greatest_rotation(rectangle_of(ground, factor), spin)),
+            lambda factor: math.degrees(rectangle_of(ground, factor).greatest_rotation(spin)),
             "the width",
             lambda history: math.degrees(_rotation(history, ground)),
         ),
@@ -223,7 +221,7 @@ def overturning(scene: Scene) -> tuple[JudgedNumber, ...]:
     """Return whether a box overturns."""
     ground = boxes_of(scene)
     box = rectangle_of(ground)
-    overturns = abs(ground.boxes[0].spin) > critical_spin(box)
+    overturns = abs(ground.boxes[0].spin) > box.critical_spin
     reason = "1 where the centre passes above the corner, by the energy at the start"
     return (decided("overturns", overturns, reason, lambda history: _rotation(history, ground) > box.alpha),)
 
@@ -235,7 +233,7 @@ DECIDED = 150  # rows: 2.5 s, in which what passes the unstable position has don
 def _toppling_cases() -> Iterator[PlaneCase]:
     box = rectangle_of(boxes_of(own_scene("toppling")))
     for factor in SPINS:
-        spin = factor * critical_spin(box)
+        spin = factor * box.critical_spin
         velocity = [-spin * box.height / 2, spin * box.width / 2]
         started = {f"{BOX}.velocity": velocity, f"{BOX}.spin": spin, "time.steps": DECIDED}
         yield PlaneCase(f"spin {factor:g} of critical", started, overturning)

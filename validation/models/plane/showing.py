@@ -40,7 +40,11 @@ class HOOKS(ShowingHooks):
     def drawing(self, scene: Scene, width: int | None) -> tuple[int, Rows]:
         """Return the blocks in text, with what they are beside them."""
         plane = scene.table(PlaneSection)
-        return glued_rows(plane) if plane.is_glued else moving_rows(plane)
+        if plane.is_glued:
+            return _glued_rows(plane)
+        assembly = plane.assembly
+        rows = itertools.zip_longest(_raster(assembly), _words(plane, assembly), fillvalue="")
+        return ACROSS, [(f"  {line}", text) for line, text in rows]
 
     def springs(self, scenes: Sequence[Scene], numbers: Numbers) -> str:
         """Return the glue."""
@@ -56,7 +60,7 @@ class HOOKS(ShowingHooks):
         return glued_numbers(plane) if plane.is_glued else moving_numbers(plane, scene.time.step)
 
 
-def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
+def _glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
     """Return the outline of blocks in the plane with what they are beside it."""
     wide, high = np.ptp(np.vstack(plane.polygons), axis=0)
     slenderness = wide / high
@@ -76,13 +80,6 @@ def glued_rows(plane: PlaneSection) -> tuple[int, Rows]:
 
 def _segment(edge: Segment) -> str:
     return " to ".join(f"({x:g}, {y:g})" for x, y in edge)
-
-
-def moving_rows(plane: PlaneSection) -> tuple[int, Rows]:
-    """Return how many characters the drawing is wide, and its lines with words beside them."""
-    assembly = plane.assembly
-    rows = itertools.zip_longest(_raster(assembly), _words(plane, assembly), fillvalue="")
-    return ACROSS, [(f"  {line}", text) for line, text in rows]
 
 
 def _raster(assembly: Assembly) -> list[str]:

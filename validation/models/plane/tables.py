@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from functools import cached_property
-from typing import Annotated, Literal, Self
+from typing import Annotated, Self
 
 import numpy as np
 from pydantic import model_validator
@@ -16,13 +16,13 @@ from pydantic import model_validator
 from validation.models.plane import assembly, geometry
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import Point as Point
-from validation.models.plane.blocks import Vertices, cells, thickness
+from validation.models.plane.blocks import Vertices, cells, thickness, upright
 from validation.models.plane.contents import GENERATORS, PlaneContents
 from validation.models.plane.generators import MOST_BLOCKS
 from validation.models.plane.glued import BodySection, ClampSection, DiscSection, Loads, ObserveSection, PlateSection
 from validation.models.plane.joints import Segment as Segment
 from validation.scenes.keys import Key
-from validation.scenes.tables import Count, Positive, Real
+from validation.scenes.tables import Cut, Pattern, Positive, Real
 
 OWN_STIFFNESS = 1.0e9  # N/m, of a corner: DDA's springs where a scene has rigid contact
 OWN_STEP = 2.0e-3  # s: and its longest step there, that of the damping study that this suite began with
@@ -53,9 +53,9 @@ class PlaneSection(PlaneContents):
     ] = (0.0, 0.0, 0.0)
     width: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "W")] = None
     height: Annotated[Positive | None, Key("m", "of a rectangle that is cut", "H")] = None
-    subdivide: Annotated[tuple[Count, Count] | None, Key("blocks", "of it in x and in y", "")] = None
+    subdivide: Annotated[Cut | None, Key("blocks", "of it in x and in y", "")] = None
     pattern: Annotated[
-        Literal["squares", "triangles"],
+        Pattern,
         Key("", "of its blocks; triangles: each cell cut from lower left to upper right", "", ("subdivide",)),
     ] = "squares"
     plate: PlateSection | None = None
@@ -131,11 +131,6 @@ class PlaneSection(PlaneContents):
         return stated if self.body is None else (*self.body.tractions, *stated)
 
     @property
-    def present(self) -> bool:
-        """Whether the scene is of this kind."""
-        return True
-
-    @property
     def is_glued(self) -> bool:
         """Whether the blocks are glued along all edges that they share, and observed as they deform."""
         return self.observe is not None or self.body is not None
@@ -171,5 +166,4 @@ class PlaneSection(PlaneContents):
         """Polygons that tile the body, as few as there are: the rectangle, or the blocks."""
         if self.rectangle is None:
             return self.polygons
-        width, height = self.rectangle
-        return (((0.0, 0.0), (width, 0.0), (width, height), (0.0, height)),)
+        return (upright(0.0, 0.0, *self.rectangle),)

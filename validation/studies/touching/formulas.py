@@ -223,7 +223,7 @@ def events_in_steps(case: Scene) -> Band:
     body = falling(case)
     landing, number = body.landing(case.time.duration)
     landed = body.flown(landing)
-    x, y = landed.arms(landed.angle)[number]
+    x, y = landed.arm(number)
     contact = contact_of(case)
     across = contact.stiffness * (1 / body.mass + x**2 / body.inertia)
     along = contact.shear * (1 / body.mass + y**2 / body.inertia)

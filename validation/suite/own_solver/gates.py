@@ -142,12 +142,13 @@ def cases(study: str) -> Mapping[tuple[str, str], Case]:
 
 
 @functools.cache
-def asked() -> Mapping[tuple[str, str], frozenset[str]]:
-    """Return the metrics that the gates read of each case, by scene and solver."""
+def asked(studies: tuple[str, ...]) -> Mapping[tuple[str, str], frozenset[str]]:
+    """Return the metrics that the gates of some studies read of each case, by scene and solver."""
     metrics_by_case: dict[tuple[str, str], set[str]] = {}
-    for study, gate in gates().values():
-        for case, metric in reads(gate, recipes(study)):
-            metrics_by_case.setdefault(case, set()).add(metric)
+    for study in studies:
+        for gate in get_study(study).gates():
+            for case, metric in reads(gate, recipes(study)):
+                metrics_by_case.setdefault(case, set()).add(metric)
     return {case: frozenset(metrics) for case, metrics in metrics_by_case.items()}
 
 

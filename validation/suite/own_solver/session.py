@@ -22,6 +22,7 @@ from validation.solvers.files import Outside
 from validation.solvers.foreign import SAME_AS
 from validation.solvers.registry import get_solver
 from validation.solvers.user import PARTS, UserSolver
+from validation.suite.folders import judged_studies
 from validation.suite.matrix import JUDGED, CaseInPlace
 from validation.suite.own_solver import gates, history
 
@@ -56,11 +57,15 @@ class GateReport:
 
 
 class GateRuns:
-    """The cases that one process has run for gates, each when a gate first asks for it."""
+    """The cases that one process has run for gates of some studies, each when a gate first asks for it.
 
-    def __init__(self, results: Results, solver: str = JUDGED) -> None:
+    Bands are formulas: those of a study that is not among `studies` are not computed.
+    """
+
+    def __init__(self, results: Results, solver: str = JUDGED, studies: Iterable[str] = ()) -> None:
         self.results = results
         self.solver = solver  # which answers in the place of `JUDGED`
+        self.studies = tuple(studies or judged_studies())
         self.rows: dict[tuple[str, str], Row] = {}
         self._finished: dict[str, Finished] = {}  # by study: what is derived is computed once for all gates
 
@@ -87,7 +92,7 @@ class GateRuns:
         """Return a case with who answers it; the suite's own with the metrics that gates ask for, or of a kept row."""
         if self.solver != JUDGED:
             return CaseInPlace(**vars(case), answered_by=self.solver) if case.solver == JUDGED else case
-        required_metrics = gates.asked().get((case.scene.name, case.solver), frozenset())
+        required_metrics = gates.asked(self.studies).get((case.scene.name, case.solver), frozenset())
         return case if case.key() in kept else replace(case, only=required_metrics)
 
 

@@ -1,0 +1,169 @@
+"""Metrics of short histories with odd numbers, beside values worked out by hand."""
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from validation.metrics import columns, contact, growth, rotation
+from validation.metrics.catalogue import ALL, pair
+from validation.metrics.measurable import Measurable
+from validation.metrics.poles import LARGEST_MISFIT, poles, swing
+from validation.metrics.transform import spectrum
+from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
+from validation.runs.contact import ContactRecord
+from validation.runs.history import History
+from validation.runs.run import Outcome
+
+TIME = 0.25 * np.arange(1, 8)
+VALUES = np.array([0.5, 2.5, 3.5, 2.75, 1.5, 2.125, 1.75])
+PRESSED = np.array([3.0, -2.0, -5.0, 1.0, -4e-14, 2.0, 4.0])
+
+
+@pytest.fixture
+def made():
+    history = History(TIME, {"displacement": VALUES, "contact_pressure": PRESSED})
+    return Measurable(history, 0.25, {"displacement": 2.0})
+
+
+def test_columns(made):
+    assert columns.final(made, "displacement") == 1.75
+    assert columns.minimum(made, "displacement") == 0.5
+    assert columns.peak(made, "displacement", of="value") == 3.5
+    assert columns.peak(made, "displacement", of="time") == 0.75
+    assert columns.settling(made, "displacement", 0.15) == 6.0
+    assert columns.settling(made, "contact_pressure", 0.15) == NOT_REPORTED
+    assert columns.minimum_time(made) == 0.75
+    assert columns.tension_time(made) == 0.5  # what is smaller than rounding is none
+    bare = replace(made, history=History(TIME, {"displacement": VALUES}))
+    assert columns.minimum_time(bare) == columns.tension_time(bare) == NOT_REPORTED
+    empty = replace(made, history=History(TIME[:0], {"displacement": VALUES[:0]}))
+    assert columns.final(empty, "displacement") == NOT_REPORTED
+
+
+def test_ratios():
+    assert ratio(3.0, 4.0) == -0.25
+    assert ratio(UNDEFINED, 4.0) == UNDEFINED and ratio(3.0, NOT_REPORTED) == NOT_REPORTED
+    assert ratio(3.0, 0.0) == UNDEFINED
+
+
+def test_a_spectrum_is_a_sum():
+    omega = np.array([0.7, 3.1])
+    by_hand = [sum(v * np.exp(-1j * w * t) for t, v in zip(TIME, VALUES, strict=True)) for w in omega]
+    assert spectrum(TIME, VALUES, omega) == pytest.approx(np.array(by_hand), rel=1e-13)
+
+
+def test_growth_is_that_of_the_last_values():
+    n = np.arange(60)
+    developed = 1e-9 * 1.5**n + 1e-12 * (-1.1) ** n
+    assert growth.growth(developed) == pytest.approx(1.5, rel=1e-9)
+    turning = 1e-9 * 1.4**n * np.cos(0.9 * n + 0.3)  # two roots
+    assert growth.growth(turning) == pytest.approx(1.4, rel=1e-6)
+    assert growth.growth(np.append(developed, [np.inf, np.nan])) == pytest.approx(1.5, rel=1e-9)
+    assert growth.growth(1.1 ** np.arange(8.0)) is None  # has not grown
+    assert growth.growth(developed[:7]) is None and growth.growth(np.zeros(20)) is None
+    run = Measurable(History(n, {"displacement": developed}), 1.0, outcome=Outcome.COMPLETED)
+    assert growth.growth_of_run(run) == UNDEFINED
+
+
+def test_angles_and_landings():
+    values = np.array([-1.0, 0.0, 1.0, 4.0, 2.0])
+    time = np.array([1.0, 2.0, 4.0, 5.0, 7.0])
+    assert rotation.crossing(time, values, 2.5) == pytest.approx(4.5)
+    assert rotation.crossing(time, values, 0.5) == pytest.approx(3.0)
+    assert math.isnan(rotation.crossing(time, values, 9.0)) and math.isnan(rotation.crossing(time, values, -2.0))
+    gap = np.array([7.0, 5.0, 4.0, -1.0, 3.0])
+    assert rotation.landing(time, gap) == pytest.approx(4.0 + 4.0 / 1.0 * 2.0)
+    assert math.isnan(rotation.landing(time, np.array([1.0, -1.0, 2.0, 2.0, 2.0])))
+    assert math.isnan(rotation.landing(time, np.ones(5)))
+    turned = History(time, {"rotation": np.array([0.25, 0.75, 0.5, 0.5, 2.0])})
+    assert rotation.increments(turned).tolist() == [0.25, 0.5, -0.25, 0.0, 1.5]
+
+
+def record(**parts):
+    n = len(TIME)
+    numbers = dict.fromkeys(("kinetic", "strain", "springs", "load"), np.zeros(n))
+    given = {
+        "time": TIME,
+        "force": np.array([0.0, 0.0, 4.0, 0.0, 0.0, 3.0, 0.0]),
+        "open_share": np.array([1.0, 1.0, 0.0, 1.0, 1.0, 0.5, 1.0]),
+        "energies": numbers,
+        "start_energy": 8.0,
+        "input_energy": 4.0,
+        "velocity": np.array([-1.0, -2.0, -0.5, 1.0, 0.75, -3.0, 1.5]),
+        "start_velocity": -0.125,
+    }
+    names = ContactRecord.__dataclass_fields__
+    blank = {name: None for name in names if name not in given}
+    return SimpleNamespace(**blank | given | parts)
+
+
+def test_landings_by_hand():
+    assert contact.restitution(record()) == 1.5 / 2.0
+    before, after = contact.landing(record())
+    assert before == -2.0 and after.tolist() == [1.0, 0.75, 1.5]
+    at_once = record(force=np.array([1.0, 0, 0, 0, 0, 0, 0]))
+    assert contact.landing(at_once)[0] == -0.125
+    assert contact.restitution(record(force=np.zeros(7))) == UNDEFINED
+    assert contact.restitution(record(velocity=None)) == NOT_REPORTED
+
+
+def test_rebounds_by_hand():
+    rebounds = [SimpleNamespace(restitution=e, closing=v) for e, v in ((0.5, 1.0), (None, 3.0), (0.75, 2.0))]
+    of = record(rebounds=rebounds)
+    assert [contact.of_rebounds(of, part) for part in ("first", "mean", "most")] == [0.5, 0.625, 0.75]
+    assert contact.landing_speed(of) == 3.0
+    assert contact.of_rebounds(record(rebounds=rebounds[1:2]), "first") == UNDEFINED
+    assert contact.of_rebounds(record(), "first") == NOT_REPORTED
+    slipped = np.array([0.0, 0.0, 0.0, 1.0, 1.5, 2.0, 4.0])
+    assert contact.slip_rate(record(slip=slipped)) == 3.0 / 0.75
+    assert (
+        contact.rare_solves(record(solves=np.array([1, 2, 9]))) == 9.0 and contact.rare_solves(record()) == NOT_REPORTED
+    )
+
+
+def test_energies_by_hand():
+    kinetic = np.array([8.0, 7.0, 6.0, 9.0, 8.0, 7.0, 6.0])
+    lost = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0])
+    energies = record().energies | {"kinetic": kinetic}
+    of = record(energies=energies)
+    assert contact.rise(of) == 0.25
+    assert contact.rise(record(energies={})) == contact.imbalance(of) == NOT_REPORTED
+    names = dict.fromkeys((*contact.LOST, *contact.LOST_AT_IMPACTS), np.zeros(7))
+    balanced = record(energies=energies | names | {contact.LOST_AT_IMPACTS[0]: lost})
+    defects = kinetic + lost - 8.0
+    assert contact.imbalance(balanced) == np.max(np.abs(defects)) / 9.0
+    switched = record(energies=energies | names | {contact.LOST[2]: lost})
+    assert contact.switching(switched) == -0.75
+
+
+def test_what_needs_a_contact_says_so_where_there_is_none(made):
+    of_contact = {name: metric.function(made) for name, metric in ALL.items() if "contact" in metric.needs}
+    assert of_contact and set(of_contact.values()) == {NOT_REPORTED}
+    assert [ALL[name].linear for name in ("mode1.damping", "displacement.final")] == [True, False]
+
+
+def test_pairs_by_hand():
+    first = History(TIME, {"displacement": VALUES})
+    second = History(TIME, {"displacement": VALUES + 0.5})
+    size = math.sqrt(sum((VALUES + 0.5) ** 2))
+    assert pair("displacement.l2", first, second) == pytest.approx(math.sqrt(7 * 0.25) / size)
+    assert pair("displacement.max", first, second) == pytest.approx(0.5 / 4.0)
+
+
+def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
+    n = np.arange(80)
+    signal = 3.0 + 2.0 * 0.97**n * np.cos(0.4 * n + 0.2)
+    found = swing(signal, 0.5)
+    assert found.static == pytest.approx(3.0, rel=1e-8)
+    assert found.pole.amplitude == pytest.approx(2.0, rel=1e-6)
+    assert found.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.5, rel=1e-8)
+    noise = np.random.default_rng(7).normal(size=80)
+    assert swing(noise, 0.5).static == pytest.approx(np.mean(noise[-8:]))
+    assert swing(signal[:15], 0.5).pole is None
+    assert poles(noise, 0.5, order=2) == [] and LARGEST_MISFIT < 1
+    assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
+    (only,) = poles(signal - 3.0, 0.5)
+    assert only.damping == pytest.approx(-np.log(0.97) / abs(np.log(0.97) + 0.4j), rel=1e-8)

@@ -1,0 +1,173 @@
+"""All that solvers answer to scenes with every term, and what is known of these before: numbers, kept in `answers.txt`.
+
+A number is the sum of a quantity's values, each with a weight of its own: a step, a sign or a place that is another one
+shows. What a step that is shorter by 1e-11 of itself changes is decided by rounding, written as ~ and not judged.
+`KEEP_PAGES=1` writes the file anew.
+"""
+
+import math
+import os
+import re
+import time
+import zlib
+from dataclasses import asdict, is_dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.stated_scenes import SCENES, asked, made
+
+from validation.advice.hooks import AdviceHooks
+from validation.errors import InputError
+from validation.report.scene.hooks import ShowingHooks
+from validation.runs.run import Outcome
+from validation.scenes.plain import lines
+from validation.scenes.plausibility import implausible_values
+from validation.scenes.scene import load_scene
+from validation.solvers import memory
+from validation.solvers.contract import NotReported
+from validation.solvers.registry import BUILT_IN, get_solver
+from validation.solvers.soundness import reach
+
+KEPT = Path(__file__).with_name("answers.txt")
+MOST = 100  # values of what is given at steps
+FREQUENCIES = np.array([3.0, 47.0])  # Hz
+FIGURE = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e-?\d+)?(?!\w)")
+ASKED = dict(line.split(": ") for line in KEPT.read_text(encoding="utf-8").splitlines())
+
+
+def numbers_of(name, value):
+    """Yield the numbers in a value, those of a text too, by the names of its parts."""
+    if is_dataclass(value):
+        value = asdict(value)
+    if isinstance(value, dict):
+        for key, part in value.items():
+            yield from numbers_of(f"{name}.{key}", part)
+    elif isinstance(value, str):
+        yield name, [float(figure) for figure in FIGURE.findall(value)]
+    elif isinstance(value, (list, tuple)) and any(isinstance(part, str | dict) or is_dataclass(part) for part in value):
+        parts = {}
+        for part in value:
+            for key, numbers in numbers_of(name, part):
+                parts.setdefault(key, []).extend(numbers)
+        yield from parts.items()
+    elif value is not None:
+        numbers = np.ravel(np.asarray(value))
+        yield name, [*numbers.real.tolist(), *(numbers.imag.tolist() if np.iscomplexobj(numbers) else ())]
+
+
+def scene_of(solver, name, directory):
+    """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
+    scene = made(name, directory) if name in SCENES else load_scene(name).expand()[0]
+    most = 4 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
+    scene = scene.with_values({"time.steps": min(scene.time.steps, most), "fem.elements": 2})
+    return scene if "." in scene.run.columns[0] else asked(solver, scene)
+
+
+def unless_refused(ask):
+    try:
+        return list(ask())
+    except InputError:
+        return []
+
+
+def told(scene):
+    """Return what the kind of a scene tells of it before anything is run, in numbers."""
+    showing = ShowingHooks.of(scene)
+    drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
+    advice = AdviceHooks.of(scene)
+    facts = [*advice.motions(scene), *unless_refused(lambda: advice.layers(scene)), advice.contact_limits(scene)]
+    return {
+        "drawn": zlib.crc32("\n".join(drawn).encode()),
+        "shown": [number.value for number in showing.numbers(scene)],
+        "springs": showing.springs([scene], lambda solver, metric: [0.7, -0.3]),
+        "advice": [repr(fact) for fact in facts],
+        "implausible": [value.sentence for value in implausible_values(scene)],
+        "problem": unless_refused(lambda: lines(scene)),
+    }
+
+
+def answers(solver, scene):
+    """Return the numbers of all that a solver answers to a scene."""
+    begin = time.perf_counter()
+    adapter = get_solver(solver)
+    prepared = adapter.prepare(scene)
+    prepared.keeps_contact_record = True
+    run = prepared.run()
+    assert run.outcome is Outcome.COMPLETED, run.notes
+    assert 0 <= sum(run.seconds.values()) <= time.perf_counter() - begin
+    whole = {
+        "memory": memory.needed(scene, adapter)[0],
+        "reach": reach(scene),
+        **told(scene),
+        "history": {"time": run.history.time, **run.history.columns},
+        "run": [dict(run.work), *run.notes, run.estimate or 0.0],
+    }
+    for part, ask in {
+        "limit": prepared.highest_frequency,
+        "static": prepared.static,
+        "assumed": prepared.assumed_static,
+        "modes": lambda: [mode for mode in prepared.modes() if abs(mode.share) > 1e-6],  # the others have no order
+        "diagnostics": prepared.diagnostics,
+        "response": lambda: prepared.response(FREQUENCIES),
+        "exact": lambda: prepared.response(FREQUENCIES, exact=True),
+        "switches": prepared.switches,
+        "record": prepared.contact_record,
+    }.items():
+        try:
+            whole[part] = ask()
+        except (NotReported, InputError):
+            whole[part] = None
+    return {name: summed(numbers) for part, value in whole.items() for name, numbers in numbers_of(part, value)}
+
+
+def summed(numbers):
+    """Return the sum of weighted values; of samples between the steps, whose number is free, that of three of them."""
+    if len(numbers) > MOST:
+        numbers = [max(numbers), min(numbers), numbers[-1]]
+    return float(np.array(numbers, float) @ (1 + 0.4 * np.cos(np.arange(1, len(numbers) + 1))))
+
+
+def written(solver, scene):
+    """Return answers as they are kept."""
+    shorter = answers(solver, scene.with_values({"time.step": scene.time.step * (1 - 1e-11)}))
+    found = answers(solver, scene)
+    assert found.keys() == shorter.keys()
+    return " ".join(
+        "~" if not math.isclose(value, shorter[name], rel_tol=1e-8) else f"{value:.7g}" for name, value in found.items()
+    )
+
+
+def keep():
+    KEPT.write_text("".join(f"{key}: {line}\n" for key, line in ASKED.items()), encoding="utf-8")
+
+
+@pytest.mark.parametrize("pair", [pair for pair in ASKED if " " in pair])
+@np.errstate(all="ignore")
+def test_solvers_answer_as_before(pair, tmp_path):
+    solver, _, name = pair.partition(" ")
+    scene = scene_of(solver, name, tmp_path)
+    if os.environ.get("KEEP_PAGES"):
+        ASKED[pair] = written(solver, scene)
+        keep()
+    found = answers(solver, scene)
+    kept = ASKED[pair].split()
+    assert len(found) == len(kept)
+    assert {
+        name: value
+        for (name, value), number in zip(found.items(), kept, strict=True)
+        if number != "~" and value != pytest.approx(float(number), rel=1e-6, abs=1e-13, nan_ok=True)
+    } == {}
+
+
+def test_solvers_are_declared_as_before():
+    declared = {}
+    for name in BUILT_IN:
+        solver = get_solver(name)
+        line = vars(solver.line).values() if solver.line else ()
+        flags = (solver.cached, solver.distributed, solver.meshed, solver.saves)
+        declared[name] = " ".join(map(str, [solver.role.name, solver.rank, *line, *flags]))
+    if os.environ.get("KEEP_PAGES"):
+        ASKED.update(declared)
+        keep()
+    assert declared == {name: ASKED[name] for name in BUILT_IN}
