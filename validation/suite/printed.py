@@ -21,7 +21,7 @@ from __future__ import annotations
 
 import csv
 import operator
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -31,7 +31,7 @@ from validation.scenes.scene import Scene
 
 
 def printed_numbers(
-    path: Path, entry: dict[str, Any], cases_of: Callable[[str], Sequence[Scene]]
+    path: Path, entry: dict[str, Any], cases: Mapping[str, Sequence[Scene]]
 ) -> Mapping[str, Mapping[str, str]]:
     """Return the numbers of a table as their texts, by case and metric.
 
@@ -41,8 +41,8 @@ def printed_numbers(
         The table.
     entry
         That of the gates; ``scene``, ``by`` and ``metrics`` are taken out of it.
-    cases_of
-        Function of a scene's name that returns its cases.
+    cases
+        The cases of each scene, by its name.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def printed_numbers(
                 continue
             picked = values | {key: _value(value)} if equals else values
             (metric,) = metrics if equals else (column,)
-            subject = _case(path, cases_of(name), picked) if picked else name
+            subject = _case(path, cases[name], picked) if picked else name
             numbers.setdefault(subject, {})[metric] = text
     return numbers
 

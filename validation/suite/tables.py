@@ -17,7 +17,7 @@ stands in place of these in a study of fewer cases, which is a study of its own.
 An entry ``[[gate]]`` says what is judged, by which band, and why::
 
     [[gate]]
-    scenes = ["figures-5-6"]              # built-in scenes, all their cases, or single cases
+    scenes = ["figures-5-6"]              # scenes of the study or patterns of their names, or single cases
     pairs = [["dda"], ["fem", "bar"]]     # one solver or row, or a solver and its reference
     metrics = ["displacement.static"]
     band = [0.0, 1e-9]                    # or the name of a function
@@ -43,10 +43,12 @@ these; of ``owners`` it is one without a case.
 
 from __future__ import annotations
 
+import fnmatch
+import itertools
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -56,7 +58,7 @@ from validation.gates.gate import Gate
 from validation.runs.case_name import scene_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import Scene, load_scene
-from validation.suite.bands import OTHER, about, cases, half_unit
+from validation.suite.bands import OTHER, about, half_unit
 from validation.suite.declaration import Study
 from validation.suite.printed import printed_numbers
 
@@ -157,7 +159,8 @@ class StudyTable:
             read = {key: entry[key] for key in ("histories", "rows", "reads") if key in entry}
             compute = self.function(entry["compute"])
             for owner in entry.get("sweeps", ()):
-                declared.append(derived_row(owner, entry["name"], [*cases(owner)], compute, whole=True, **read))
+                levels = self.named_cases([owner])
+                declared.append(derived_row(owner, entry["name"], levels, compute, whole=True, **read))
             for owner in entry.get("owners", ()):
                 declared.append(derived_row(owner, entry["name"], [], compute))
             for case in self.declared_cases(entry):
@@ -177,7 +180,7 @@ class StudyTable:
         terms = {"scale": 1.0, "start": 0.0, "slack": 0.0, "above": 0.0}
         terms |= {name: entry.pop(name) for name in terms if name in entry}
         if isinstance(numbers, str):
-            numbers = printed_numbers(self.folder / numbers, entry, cache(self.cases_of))  # asked for each number
+            numbers = printed_numbers(self.folder / numbers, entry, self.cases)
         for scene, texts in numbers.items():
             scale, start, slack, above = (self._at(scene, term) for term in terms.values())
             for metric, text in texts.items():
@@ -191,7 +194,7 @@ class StudyTable:
         """Return a number, or the value of a function at a case."""
         if not isinstance(term, str):
             return term
-        (case,) = named_cases([scene])
+        (case,) = self.named_cases([scene])
         return float(self.function(term)(case))
 
     def _banded(self, entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
@@ -217,20 +220,28 @@ class StudyTable:
         """Return the cases that an entry names, and take them out of it."""
         if "cases" in entry:
             return list(self.function(entry.pop("cases"))())
-        return named_cases(entry.pop("scenes", ()))
+        return self.named_cases(entry.pop("scenes", ()))
 
-    def cases_of(self, name: str) -> tuple[Scene, ...]:
-        """Return the cases of a scene of the study, by its name."""
-        for declared in self.scenes():
-            scene = load_scene(declared) if isinstance(declared, str) else declared
-            if scene.name == name:
-                return scene.expand()
-        raise ValueError(f"{self.folder}: no scene {name}")
+    @cached_property
+    def cases(self) -> Mapping[str, tuple[Scene, ...]]:
+        """The cases of each scene of the study, by the scene's name."""
+        scenes = [load_scene(declared) if isinstance(declared, str) else declared for declared in self.scenes()]
+        return {scene.name: scene.expand() for scene in scenes}
 
+    def named_cases(self, names: Iterable[str]) -> list[Scene]:
+        """Return cases of the study: of a scene, or of a pattern of names, all of them, else the one of this name.
 
-def named_cases(names: Iterable[str]) -> list[Scene]:
-    """Return the cases of built-in scenes, all of them or one, by its name."""
-    named = []
-    for name in names:
-        named += [case for case in cases(scene_of(name)) if name in (case.name, scene_of(name))]
-    return named
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        named: list[Scene] = []
+        for name in names:
+            scenes = fnmatch.filter(self.cases, scene_of(name))
+            every = itertools.chain.from_iterable(self.cases[scene] for scene in scenes)
+            of_name = [case for case in every if scene_of(name) == name or case.name == name]
+            if not of_name:
+                raise InputError(f"names {name!r}, which is no scene of it", source=self.folder / "study.toml")
+            named += of_name
+        return named

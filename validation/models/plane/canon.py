@@ -15,6 +15,7 @@ import numpy as np
 
 from validation.models.plane.assembly import Assembly
 from validation.models.plane.blocks import PlacedBlock
+from validation.models.plane.joints import PlaneContactSection
 from validation.models.plane.limits import can_rest
 from validation.models.plane.posed import FRICTION, decided, varied, within
 from validation.models.plane.tables import PlaneSection
@@ -52,6 +53,20 @@ def rough(assembly: Assembly, first: int, second: int) -> float:
     """Return tan(phi) between two blocks, 0 where they are smooth."""
     springs = assembly.springs_between(first, second)
     return (springs.friction_coefficient if springs else None) or 0.0
+
+
+def contact_of(scene: Scene) -> PlaneContactSection:
+    """Return the contact of a scene.
+
+    Raises
+    ------
+    ValueError
+        The scene states none.
+    """
+    contact = scene.table(PlaneSection).contact
+    if contact is None:
+        raise ValueError(f"contact: is required in {scene.name}, got none")
+    return contact
 
 
 def stiffness_of(scene: Scene) -> float:

@@ -72,12 +72,16 @@ class CaseGroup:
         values = [case.number(solver, metric) for case in self.cases]
         return [value for value in values if value is not None]
 
-    def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any] | None:
-        """Return the metrics of a pair over the longest window, in either order, or None."""
+    def comparison(self, case: CaseResults, solver: str, reference: str) -> ComparisonRecord | None:
+        """Return the comparison of a pair over the longest window, in either order, None where there is none."""
         pair = {solver, reference}
         of_pair = [c for c in self.comparisons if c["scene"] == case.name and {c["solver"], c["reference"]} == pair]
-        longest = max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
-        return None if longest is None else dict(longest["metrics"])
+        return max(of_pair, key=lambda c: float(c.get("window") or 0.0), default=None)
+
+    def compared(self, case: CaseResults, solver: str, reference: str) -> Mapping[str, Any]:
+        """Return the metrics of this comparison."""
+        comparison = self.comparison(case, solver, reference)
+        return {} if comparison is None else comparison["metrics"]
 
     def numbers_of_pair(self, solver: str, reference: str, metric: str) -> list[float]:
         """Return a metric of a pair for the cases where it is a number."""
@@ -86,7 +90,7 @@ class CaseGroup:
 
     def number_of_pair(self, case: CaseResults, solver: str, reference: str, metric: str) -> float | None:
         """Return a metric of a pair where it is a number."""
-        value = (self.compared(case, solver, reference) or {}).get(metric)
+        value = self.compared(case, solver, reference).get(metric)
         return float(value) if isinstance(value, int | float) else None
 
 

@@ -23,7 +23,7 @@ from validation.report.chapters.summary import scene_summary
 from validation.report.chapters.text import AS_STATED, capital, load_size, span
 from validation.report.figures import histories, motion
 from validation.report.figures.charts import Figure
-from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences
+from validation.report.figures.curves import HistoryPanel, HistoryPanels, differences, evenly
 from validation.runs.columns import rank
 from validation.runs.history import DISPLACEMENT, PRESSURE
 from validation.runs.numbers import bounded, percent, plain, power, short
@@ -136,12 +136,8 @@ def _agreement(group: CaseGroup) -> str:
 
 def _windows(group: CaseGroup, solver: str, reference: str) -> str:
     """Return over which time a pair was compared, of which a relative L2 difference of undamped motions depends."""
-    longest = {case.name: -math.inf for case in group.cases}
-    for pair in group.comparisons:
-        scene = pair["scene"]
-        if {pair["solver"], pair["reference"]} == {solver, reference} and scene in longest:
-            longest[scene] = max(longest[scene], float(pair.get("window") or 0.0))
-    windows = [window for window in longest.values() if window > -math.inf]
+    compared = filter(None, (group.comparison(case, solver, reference) for case in group.cases))
+    windows = [float(pair.get("window") or 0.0) for pair in compared]
     if not windows or min(windows) <= 0:
         return ""
     low = min(windows)
@@ -336,8 +332,7 @@ def history_block(
     group: CaseGroup, columns: Sequence[str], directory: Path, without: Sequence[str] = ()
 ) -> FigureBlock:
     """Draw columns of a scene's cases over the time that all of them run, and return the figure with its caption."""
-    evenly_spaced = np.linspace(0, len(group.cases) - 1, MOST_PANELS)
-    cases = [group.cases[i] for i in np.unique(evenly_spaced.round().astype(int))]
+    cases = [group.cases[i] for i in evenly(len(group.cases), MOST_PANELS)]
     ends = _ends(cases)
     window = min(ends, default=0.0)  # cases of one figure are compared over the same time
     settled = _settling_time(cases, columns, without)

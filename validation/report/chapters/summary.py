@@ -11,8 +11,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from validation.advice.coarse import removal_of
 from validation.report.blocks import Beside, Blocks, Heading, Paragraph, Points, Table
 from validation.report.chapters.alarms import alarm_lines
@@ -20,6 +18,7 @@ from validation.report.chapters.data import CaseGroup, CaseResults, Groups, vari
 from validation.report.chapters.described import Description
 from validation.report.chapters.text import AS_STATED, parameters, range_of, span
 from validation.report.figures import histories
+from validation.report.figures.curves import evenly
 from validation.report.figures.drawing import scene_figure
 from validation.report.scene.hooks import SCHEMES, ShowingHooks
 from validation.runs.numbers import DASH, bounded, percent, plain, short
@@ -144,7 +143,7 @@ def reference_of(group: CaseGroup, case: CaseResults) -> str | None:
 
 def errors_of(group: CaseGroup, case: CaseResults, solver: str, reference: str | None) -> dict[str, float]:
     """Return the relative L2 differences of a solver from a reference that have a number."""
-    values = {} if reference is None else group.compared(case, solver, reference) or {}
+    values = {} if reference is None else group.compared(case, solver, reference)
     return {metric: float(values[metric]) for metric in ERRORS if isinstance(values.get(metric), int | float)}
 
 
@@ -155,7 +154,7 @@ def seconds_of(row: Row) -> float:
 
 def error_blocks(group: CaseGroup) -> Blocks:
     """Return error and cost of each solver in each case, against which reference, and the fastest run to an error."""
-    chosen = [group.cases[i] for i in np.unique(np.linspace(0, len(group.cases) - 1, MOST_CASES).round().astype(int))]
+    chosen = [group.cases[i] for i in evenly(len(group.cases), MOST_CASES)]
     lines = []
     for case in chosen:
         reference = reference_of(group, case)

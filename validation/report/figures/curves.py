@@ -20,6 +20,7 @@ from validation.solvers.contract import LineStyle
 from validation.solvers.registry import get_solver, is_solver
 
 HAIR = 0.4  # pt, of lines, as in `house.mplstyle`
+PARTS = 40  # of the time, in each of which a difference has one magnitude
 GREY = "#6b6b6b"
 LEAST_MOVED = 0.05  # of a place: less is not enlarged, or its ticks would need more digits than they have room for
 
@@ -58,10 +59,17 @@ def thin(x: Array, y: Array, points: int = 800) -> ArrayPair:
     return x[index], y[index]
 
 
-def envelope(x: Array, y: Array, bins: int = 40) -> ArrayPair:
-    """Return the largest magnitude of y in each of `bins` equal parts of the samples, at the parts' middles."""
+def evenly(count: int, most: int) -> list[int]:
+    """Return at most so many of the numbers 0 to `count` - 1, evenly taken, the first and the last among them."""
+    indices: list[int] = np.unique(np.linspace(0, count - 1, most).round().astype(int)).tolist()
+    return indices
+
+
+def band(x: Array, y: Array, bins: int) -> tuple[Array, Array, Array]:
+    """Return the middles of equal parts of the samples, and the least and the greatest value in each."""
     edges = np.unique(np.linspace(0, x.size, bins + 1).astype(int))
-    return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, np.maximum.reduceat(np.abs(y), edges[:-1])
+    low, high = (function.reduceat(y, edges[:-1]) for function in (np.minimum, np.maximum))
+    return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, low, high
 
 
 def nudge(places: Sequence[float], gap: float, low: float, high: float) -> NDArray[np.float64]:
@@ -133,7 +141,7 @@ def common_range(panels: HistoryPanels, column: str) -> tuple[float, float]:
 
 
 def differences(panel: HistoryPanel, column: str) -> dict[str, ArrayPair]:
-    """Return the envelope of each solver's scaled difference from the reference."""
+    """Return the largest magnitude of each solver's scaled difference from the reference in each part of the time."""
     base = panel.histories.get(panel.reference or "", panel.base)
     if base is None or column not in base.columns:
         return {}
@@ -147,5 +155,6 @@ def differences(panel: HistoryPanel, column: str) -> dict[str, ArrayPair]:
         ):
             with np.errstate(all="ignore"):  # a run that blew up differs by infinity
                 scaled = (history.columns[column] - base.columns[column]) / scale
-            envelopes[solver] = envelope(base.time, np.where(np.isfinite(scaled), scaled, np.inf))
+            middles, _, largest = band(base.time, np.where(np.isfinite(scaled), np.abs(scaled), np.inf), PARTS)
+            envelopes[solver] = middles, largest
     return envelopes

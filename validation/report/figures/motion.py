@@ -16,10 +16,17 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
-from validation.report.figures.curves import HistoryPanel, HistoryPanels, common_range, differences, engineering
+from validation.report.figures.curves import (
+    HistoryPanel,
+    HistoryPanels,
+    band,
+    common_range,
+    differences,
+    engineering,
+)
 from validation.report.figures.histories import LETTER, SLIDE, TITLE_LETTER, TITLE_LINE, WIDTH, Margins, size_of
 from validation.runs.columns import NO_OWN, axis_of
-from validation.runs.history import Array, History
+from validation.runs.history import History
 from validation.solvers.contract import Role
 from validation.solvers.registry import role
 
@@ -68,20 +75,20 @@ def history_figure(
     rows[-1] = (rows[-1][0], 13.0 + extra)
     ticks = 3 if room < NARROW else 5
     charts = []
-    bands = [drawn[first : first + across] for first in range(0, len(drawn), across)]
-    for band in bands:
-        in_rows = [_history_row(band, drawn, column, notes) for column in columns]
+    rows_of_panels = [drawn[first : first + across] for first in range(0, len(drawn), across)]
+    for shown in rows_of_panels:
+        in_rows = [_history_row(shown, drawn, column, notes) for column in columns]
         if span is not None:
-            start = [_until(panel, span) for panel in band]
+            start = [_until(panel, span) for panel in shown]
             row = _history_row(start, drawn, columns[0], notes)
             in_rows.append([replace(chart, y_label="its start", names="none") for chart in row])
         if apart:
-            in_rows.append(_difference_row(band, columns[0], notes))
-        in_rows[0] = [replace(chart, title=panel.title) for chart, panel in zip(in_rows[0], band, strict=True)]
+            in_rows.append(_difference_row(shown, columns[0], notes))
+        in_rows[0] = [replace(chart, title=panel.title) for chart, panel in zip(in_rows[0], shown, strict=True)]
         in_rows[-1] = [replace(chart, x_label="Time [s]") for chart in in_rows[-1]]
         for row in in_rows:
             charts += [replace(chart, x_ticks=ticks) for chart in row] + [None] * (across - len(row))
-    figure = chart_figure(charts, rows * len(bands), margins, shared=True, width=width)
+    figure = chart_figure(charts, rows * len(rows_of_panels), margins, shared=True, width=width)
     for axes in figure.axes[::across]:
         axes.yaxis.set_label_coords(-9.0 / size_of(axes)[0], 0.5)
     return figure
@@ -170,13 +177,6 @@ def _until(panel: HistoryPanel, span: float) -> HistoryPanel:
     return replace(panel, histories=cut, finer={name: history.until(span) for name, history in panel.finer.items()})
 
 
-def band(x: Array, y: Array) -> tuple[Array, Array, Array]:
-    """Return the middles of equal parts of the samples, and the least and the greatest value in each."""
-    edges = np.unique(np.linspace(0, x.size, BINS + 1).astype(int))
-    low, high = (function.reduceat(y, edges[:-1]) for function in (np.minimum, np.maximum))
-    return (x[edges[:-1]] + x[edges[1:] - 1]) / 2, low, high
-
-
 # ---- rows ---------------------------------------------------------------------------------------------------------
 
 
@@ -186,7 +186,9 @@ def _columns(count: int) -> int:
     return -(-count // rows)
 
 
-def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes: Mapping[str, str]) -> list[ChartPanel]:
+def _history_row(
+    shown: HistoryPanels, panels: HistoryPanels, column: str, notes: Mapping[str, str]
+) -> list[ChartPanel]:
     """Return a column of the histories of some panels, in the range that it has in all."""
     low, high = common_range(panels, column)
     name, unit = axis_of(column, panels[0].own if panels else NO_OWN)
@@ -194,7 +196,7 @@ def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes:
     pad = 0.05 * (high - low) or 1.0
     label = f"{name}\n[{unit}]" if unit else name
     charts = []
-    for panel in band:
+    for panel in shown:
         lines = []
         for solver, history in panel.drawn(column).items():
             values = factor * np.clip(history.columns[column], low - 9 * pad, high + 9 * pad)
@@ -208,7 +210,7 @@ def _history_row(band: HistoryPanels, panels: HistoryPanels, column: str, notes:
 
 def _filled(line: ChartLine) -> list[ChartLine]:
     """Return a line of more swings than can be seen as the band that it fills."""
-    middles, low, high = band(line.x, line.y)
+    middles, low, high = band(line.x, line.y, BINS)
     shade = line.shade
     edges = [
         ChartLine("", middles, low, shade, width=0.6, shaded=(low, high)),
@@ -232,8 +234,8 @@ def _with_all_names(charts: list[ChartPanel]) -> list[ChartPanel]:
     return [*charts[:-1], replace(last, lines=[*last.lines, *missing.values()])]
 
 
-def _difference_row(band: HistoryPanels, column: str, notes: Mapping[str, str]) -> list[ChartPanel]:
-    curves = [differences(panel, column) for panel in band]
+def _difference_row(shown: HistoryPanels, column: str, notes: Mapping[str, str]) -> list[ChartPanel]:
+    curves = [differences(panel, column) for panel in shown]
     values = np.zeros(0)
     for lines in curves:
         values = np.concatenate([values, *(y for _, y in lines.values())])
@@ -241,9 +243,9 @@ def _difference_row(band: HistoryPanels, column: str, notes: Mapping[str, str]) 
     least, largest = (values.min(), values.max()) if values.size else (FLOOR, 1.0)
     low = 10.0 ** math.floor(math.log10(least))
     high = 10.0 ** min(2, math.ceil(math.log10(largest) + 0.05))
-    scale = "static" if any(panel.static.get(column) for panel in band) else "largest"
+    scale = "static" if any(panel.static.get(column) for panel in shown) else "largest"
     charts = []
-    for panel, of_panel in zip(band, curves, strict=True):
+    for panel, of_panel in zip(shown, curves, strict=True):
         drawn = []
         for solver, (x, y) in of_panel.items():
             visible = np.where(y > FLOOR, np.minimum(y, 1e3 * high), np.nan)

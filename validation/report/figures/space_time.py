@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from validation.report.figures.curves import evenly
 from validation.report.figures.histories import Margins, axes_grid, house_style
 from validation.runs.history import Array
 
@@ -64,7 +65,7 @@ def space_time_figure(columns: Sequence[SpaceTime], height: float) -> Figure:
 
 
 def _draw(figure: Figure, axes: Axes, column: SpaceTime) -> None:
-    kept = np.unique(np.linspace(0, len(column.time) - 1, MOST_INSTANTS).round().astype(int))
+    kept = evenly(len(column.time), MOST_INSTANTS)
     time = 1e3 * column.time[kept]
     unit, factor = ("MPa", 1e-6) if np.max(column.forces) >= 1e5 else ("kPa", 1e-3)
     forces = factor * column.forces[:, kept]

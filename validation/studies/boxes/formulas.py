@@ -10,6 +10,7 @@ import math
 
 import numpy as np
 
+from validation.models.plane.canon import friction_of, moving_blocks, stiffness_of
 from validation.models.plane.tables import OWN_STEP, OWN_STIFFNESS, PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Metrics
@@ -19,8 +20,7 @@ from validation.suite.bands import Band
 
 def masses(case: Scene) -> list[float]:
     """Return the masses of the boxes, from the lowest up [kg]."""
-    blocks = case.table(PlaneSection).assembly.blocks
-    return [block.mass for block in blocks if not block.fixed]
+    return [block.mass for block in moving_blocks(case)]
 
 
 def slide(case: Scene, own: History, exact: History) -> Metrics:
@@ -59,9 +59,8 @@ def land(case: Scene, own: History, exact: History) -> Metrics:
 def settlement(case: Scene) -> Band:
     """Return the lead of a box that slides [m]: 0 to twice tan(phi) W/(2p), W across the slope."""
     plane = case.table(PlaneSection)
-    friction = plane.contact.friction_coefficient if plane.contact else 0.0
     settles = masses(case)[0] * -plane.gravity[1] / (2 * OWN_STIFFNESS)
-    return 0.0, 2 * (friction or 0.0) * settles
+    return 0.0, 2 * friction_of(plane) * settles
 
 
 def corner_gives_way(case: Scene) -> Band:
@@ -88,7 +87,5 @@ def ringing(case: Scene) -> Band:
 
 def closing(case: Scene) -> Band:
     """Return (w h)^2, w^2 = 2p/m."""
-    plane = case.table(PlaneSection)
-    stiffness = plane.contact.stiffness if plane.contact else 0.0
-    half = 2 * stiffness / masses(case)[0] * case.time.step**2
+    half = 2 * stiffness_of(case) / masses(case)[0] * case.time.step**2
     return -half, half

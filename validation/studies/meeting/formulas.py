@@ -21,6 +21,7 @@ from functools import partial
 import numpy as np
 
 from validation.engine.finished import Derived, DerivedRows, Finished
+from validation.models.plane.canon import moving_blocks, stiffness_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics, Value
@@ -139,14 +140,7 @@ def _number(value: Value) -> float:
 
 def largest_coordinate(case: Scene) -> float:
     """Return the largest coordinate of a block that moves [m]."""
-    blocks = case.table(PlaneSection).assembly.blocks
-    return float(max(np.max(np.abs(block.vertices)) for block in blocks if not block.fixed))
-
-
-def stiffness_of(case: Scene) -> float:
-    """Return the normal spring of a corner [N/m]."""
-    contact = case.table(PlaneSection).contact
-    return contact.stiffness if contact else math.inf
+    return float(max(np.max(np.abs(block.vertices)) for block in moving_blocks(case)))
 
 
 def rounding(case: Scene) -> Band:
@@ -161,7 +155,7 @@ def first_order(case: Scene) -> Bands:
     if name in BY_STRAIN:
         half = stiffness_of(case) / plane.young / math.log(10)
         return {"rotation": (1 - half, 1 + half)}
-    outline = np.concatenate([block.vertices for block in plane.assembly.blocks if not block.fixed])
+    outline = np.concatenate([block.vertices for block in moving_blocks(case)])
     length, height = np.ptp(outline, axis=0)
     weight = plane.density * length * height * -plane.gravity[1]
     pressed = sum(math.dist(*load.edge) * -load.traction[1] for load in plane.load if load.edge and load.traction)

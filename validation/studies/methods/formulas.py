@@ -206,17 +206,6 @@ def expanded(scene: Scene) -> tuple[Scene, ...]:
     return cases_by_scene()[scene.name]
 
 
-def locked_cases() -> Iterator[Scene]:
-    """Yield the cases of the locked block."""
-    for scheme in SCHEMES:
-        yield from expanded(locked(scheme))
-
-
-def rigid_stops() -> tuple[Scene, ...]:
-    """Return the cases of the rigid stop in displacements."""
-    return expanded(rigid("displacements"))
-
-
 def opened() -> dict[str, Scene]:
     """Return the cases of contact that opens, at 0.2 ms, that are held to the exact motion, by scheme and p."""
     compared = {}
@@ -239,12 +228,6 @@ def opened_exactly() -> dict[str, Scene]:
 def exact_cases() -> tuple[tuple[str, str], ...]:
     """Return the cases whose exact motion is run, beside the solvers of their scenes."""
     return tuple((case.name, "block-events") for case in opened_exactly().values())
-
-
-def sliding_cases() -> Iterator[Scene]:
-    """Yield the cases of the block that slides."""
-    for scheme in FRICTIONAL:
-        yield from expanded(sliding(scheme))
 
 
 # ---- what is derived from the runs ----------------------------------------------------------------------------------

@@ -31,19 +31,8 @@ FIRM = 1e9  # m, glue over Young's modulus
 ROUNDING = 1e-9  # of a sparse solution: 1e4 eps times the condition of triangles and glue
 STATIC = "displacement.static"
 STRESS = ("stress.xx", "stress.yy")
-FIRM_SCENES = ("plates-hole", "plates-disc")
 SOFT_SCENE = "plates-glue"
 Levels = Sequence[tuple[Scene, Row]]
-
-
-def firm() -> tuple[Scene, ...]:
-    """Return the cases that are glued firmly, which elements and a second program of elements run too."""
-    return tuple(cases(*FIRM_SCENES))
-
-
-def scenes() -> tuple[Scene, ...]:
-    """Return all cases."""
-    return (*firm(), *cases(SOFT_SCENE))
 
 
 # ---- what is exact --------------------------------------------------------------------------------------------------

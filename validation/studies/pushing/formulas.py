@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from validation.models.plane.canon import ACTIVE, PASSIVE, wedges_of
+from validation.models.plane.canon import ACTIVE, PASSIVE, moving_blocks, rough, stiffness_of, wedges_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import Array, History
 from validation.runs.row import Metrics
@@ -22,6 +22,7 @@ from validation.studies.pushing.exact import Pushing, at
 from validation.suite.bands import Band, Runs, cases
 
 LOCKED = "pushing-locked"
+DIPS = {"active": ACTIVE, "passive": PASSIVE}
 SETTLED = 0.5  # s, from which on the weight has grown and its ringing has gone
 STANDS = 1e-3  # m/s: the springs still give way at that speed after two seconds at most
 
@@ -36,8 +37,7 @@ def problem_of(scene: Scene) -> Pushing:
     assembly = plane.assembly
     upper, lower, ground = (assembly.members[f"slope_{name}"][0] for name in ("1", "2", "ground"))
     masses = [plane.density * area(assembly.blocks[block].vertices) for block in (upper, lower)]
-    springs = [assembly.springs_between(block, ground) for block in (upper, lower)]
-    friction = [(contact.friction_coefficient if contact else None) or 0.0 for contact in springs]
+    friction = [rough(assembly, block, ground) for block in (upper, lower)]
     between = assembly.springs_between(upper, lower)
     return Pushing(
         (masses[0], masses[1]),
@@ -49,19 +49,20 @@ def problem_of(scene: Scene) -> Pushing:
     )
 
 
-def down(history: History, block: str, angle: float) -> Array:
-    """Return the way of a block down a slope since the first row [m]."""
-    x, y = (history.columns[f"{block}.{part}"] for part in ("x", "y"))
-    way: Array = (x - x[0]) * math.cos(angle) - (y - y[0]) * math.sin(angle)
-    return way
+def way(history: History, block: str, direction: tuple[float, float]) -> Array:
+    """Return the way of a block along a direction of length 1 since the first row [m]."""
+    x, y = (history.columns[f"{block}.{part}"] for part in "xy")
+    along: Array = (x - x[0]) * direction[0] + (y - y[0]) * direction[1]
+    return along
 
 
 def errors_at_end(scene: Scene, history: History) -> tuple[float, float]:
     """Return how far both blocks are from the exact motion at the end [m]."""
     problem = problem_of(scene)
     start, end = at(problem, float(history.time[0])), at(problem, float(history.time[-1]))
+    down = (math.cos(problem.slope), -math.sin(problem.slope))
     upper, lower = (
-        float(down(history, f"slope_{block + 1}", problem.slope)[-1]) - (end[block] - start[block]) for block in (0, 1)
+        float(way(history, f"slope_{block + 1}", down)[-1]) - (end[block] - start[block]) for block in (0, 1)
     )
     return upper, lower
 
@@ -110,10 +111,8 @@ def orders(runs: Runs) -> Metrics:
 def first_correction(case: Scene) -> float:
     """Return W/(p l): all weight on one corner spring over the thinnest block that moves."""
     plane = case.table(PlaneSection)
-    moving = [block for block in plane.assembly.blocks if not block.fixed]
-    weight = sum(block.mass for block in moving) * math.hypot(*plane.gravity)
-    stiffness = plane.contact.stiffness if plane.contact else math.inf
-    return weight / (stiffness * plane.assembly.thinnest)
+    weight = sum(block.mass for block in moving_blocks(case)) * math.hypot(*plane.gravity)
+    return weight / (stiffness_of(case) * plane.assembly.thinnest)
 
 
 def centre(case: Scene) -> Band:
@@ -121,8 +120,7 @@ def centre(case: Scene) -> Band:
     problem = problem_of(case)
     end = at(problem, case.time.duration)
     first, second = problem.masses
-    way = (first * end[0] + second * end[1]) / (first + second)
-    half = first_correction(case) * way
+    half = first_correction(case) * ((first * end[0] + second * end[1]) / (first + second))
     return -half, half
 
 
@@ -149,19 +147,11 @@ def _first_order(name: str) -> Band:
 # ---- two wedges ---------------------------------------------------------------------------------------------------
 
 
-def up_dip(history: History, block: str, dip: float) -> Array:
-    """Return the way of a wedge down its plane [m]."""
-    x, y = (history.columns[f"{block}.{part}"] for part in ("x", "y"))
-    way: Array = -(x - x[0]) * math.cos(dip) - (y - y[0]) * math.sin(dip)
-    return way
-
-
 def against_wedges(scene: Scene, history: History) -> Metrics:
     """Return accelerations and mean forces over those of rigid wedges, less one, and the larger speed at the end."""
-    plane = scene.table(PlaneSection)
     late = history.time > SETTLED
-    ways = {"active": up_dip(history, "active", ACTIVE), "passive": up_dip(history, "passive", PASSIVE)}
-    measured = {name: 2 * float(np.polyfit(history.time[late], way[late], 2)[0]) for name, way in ways.items()}
+    ways = {name: way(history, name, (-math.cos(dip), -math.sin(dip))) for name, dip in DIPS.items()}
+    measured = {name: 2 * float(np.polyfit(history.time[late], down[late], 2)[0]) for name, down in ways.items()}
     corners = {
         "interface": [f"passive.{corner}-active.2.normal" for corner in (2, 3)],
         "active base": [f"active.{corner}-rock.3.normal" for corner in (0, 1)],
@@ -170,10 +160,10 @@ def against_wedges(scene: Scene, history: History) -> Metrics:
     for name, columns in corners.items():
         measured[name] = float(np.mean(sum(history.columns[column][late] for column in columns)))
     exact = wedges_of(scene).motion()
-    speed = max(float(way[-1] - way[-2]) for way in ways.values()) / scene.time.step
+    speed = max(float(down[-1] - down[-2]) for down in ways.values()) / scene.time.step
     return {name: value / exact[name] - 1 for name, value in measured.items()} | {
         "speed": speed,
-        "stiffness": plane.contact.stiffness if plane.contact else None,
+        "stiffness": stiffness_of(scene),
     }
 
 

@@ -27,11 +27,16 @@ def errors_of(scene: Scene, history: History) -> dict[str, float]:
     return {name: float(np.max(np.abs(history.columns[f"block.{name}"] - values))) for name, values in exact.items()}
 
 
+def balance(history: History) -> float:
+    """Return what the account of energies leaves at most, over the kinetic energy of the start."""
+    columns = history.columns
+    return float(np.max(np.abs(columns["energy.balance"])) / columns["energy.kinetic"][0])
+
+
 def accounts(scene: Scene, history: History) -> dict[str, Value]:
     """Return how far the angular momentum goes from that of the start, and the balance of energies over the first."""
     momentum = history.columns["momentum.angular"] / spinning_of(scene).momentum
-    balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    return {"momentum": np.max(np.abs(momentum - 1)), "balance": float(balance)}
+    return {"momentum": np.max(np.abs(momentum - 1)), "balance": balance(history)}
 
 
 def against_motion(scene: Scene, history: History) -> Metrics:
@@ -113,10 +118,8 @@ def against_flight(scene: Scene, history: History) -> Metrics:
 
 def weight_over_stiffness(scene: Scene) -> float:
     """Return W/p [m]."""
-    plane = scene.table(PlaneSection)
     (block,) = moving_blocks(scene)
-    weight = block.mass * -plane.gravity[1]
-    return weight / plane.contact.stiffness if plane.contact else 0.0
+    return block.mass * -scene.table(PlaneSection).gravity[1] / stiffness_of(scene)
 
 
 def pitch(scene: Scene) -> float:
@@ -171,8 +174,7 @@ def turn_at_end(scene: Scene, history: History) -> tuple[float, float]:
 
 def against_ledge(scene: Scene, history: History) -> Metrics:
     """Return the turn at the end over the rigid block's, less one, or where it stops [m]."""
-    balance = np.max(np.abs(history.columns["energy.balance"])) / history.columns["energy.kinetic"][0]
-    accounted = {"balance": float(balance), "stiffness": stiffness_of(scene)}
+    accounted = {"balance": balance(history), "stiffness": stiffness_of(scene)}
     slide = slide_of(scene)
     if slide.tips is None:
         return accounted | {"rest": float(history.columns["block.x"][-1]) - slide.start - slide.stopping_distance}

@@ -41,7 +41,7 @@ DROP = "standing-truss-drop"
 
 def moving(plane: PlaneSection, history: History | None = None) -> list[str]:
     """Return the names of the blocks that move, of those alone whose places a history has."""
-    names = [block.name for block in plane.assembly.blocks if not block.fixed]
+    names = [block.name for block in plane.assembly.moving]
     return [name for name in names if history is None or f"{name}.x" in history.columns]
 
 

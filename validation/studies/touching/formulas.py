@@ -12,7 +12,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from validation.metrics.values import or_nan
-from validation.models.plane.canon import TOGETHER, falling, polygons
+from validation.models.plane.canon import TOGETHER, contact_of, falling, polygons, stiffness_of
 from validation.models.plane.tables import PlaneSection
 from validation.runs.history import History
 from validation.runs.row import Metrics, Row
@@ -87,9 +87,8 @@ def turned_in_a_step(case: Scene) -> Band | None:
     bodies = polygons(case)
     speed = sum(math.hypot(*body.velocity) for body in bodies)
     plane = case.table(PlaneSection)
-    stiffness = plane.contact.stiffness if plane.contact else 0.0
     lightest = plane.density * min(block.area for block in plane.assembly.blocks)
-    starts = speed * step * min(1.0, step**2 * stiffness / lightest * 4)
+    starts = speed * step * min(1.0, step**2 * stiffness_of(case) / lightest * 4)
     return 0.0, 2 * step * sum(abs(body.spin) for body in bodies) + starts
 
 
@@ -146,7 +145,7 @@ def small_turn(case: Scene) -> Band:
     """
     plane = case.table(PlaneSection)
     mass = plane.density * area(plane.assembly.blocks[0].vertices)
-    stiffness = plane.contact.stiffness if plane.contact else math.inf
+    stiffness = stiffness_of(case)
     first, _ = polygons(case)
     deep = math.hypot(*first.velocity) * math.sqrt(mass / stiffness) / 0.5
     own = case.time.step**2 * stiffness / mass * (2 + 1.25 / (2 / 3)) / 12
@@ -158,11 +157,9 @@ def small_turn(case: Scene) -> Band:
 
 def rebound(scene: Scene) -> tuple[FallingRectangle, Rebound]:
     """Return the rectangle of a scene, and how it leaves springs."""
-    contact = scene.table(PlaneSection).contact
+    contact = contact_of(scene)
     body = falling(scene)
-    stiffness, shear = (contact.stiffness, contact.shear) if contact else (math.inf, 0.0)
-    mu = contact.friction_coefficient if contact else None
-    return body, on_springs(body, stiffness, shear, mu, scene.time.duration)
+    return body, on_springs(body, contact.stiffness, contact.shear, contact.friction_coefficient, scene.time.duration)
 
 
 def against_springs(scene: Scene, history: History) -> Metrics:
@@ -176,17 +173,16 @@ def against_springs(scene: Scene, history: History) -> Metrics:
     landed = body.flown(body.landing(scene.time.duration)[0])
     arm = math.hypot(body.width, body.height) / 2
     flight = body.gravity * float(history.time[-1]) * body.mass
-    contact = scene.table(PlaneSection).contact
+    contact = contact_of(scene)
     balance = np.max(np.abs(columns["energy.balance"])) / np.max(columns["energy.kinetic"])
-    ratio = contact.shear / contact.stiffness if contact else 0.0
     return {
         **errors,
         "size": max(abs(errors["vx"]), abs(errors["vy"]), abs(errors["spin"]) * arm) / abs(landed.velocity[1]),
         "bound": events_in_steps(scene)[1],
         "J_t": body.mass * (vx - body.velocity[0]),
         "J_n": body.mass * (vy - body.velocity[1]) + flight,
-        "mu": (contact.friction_coefficient if contact else None) or 0.0,
-        "ratio": ratio,
+        "mu": contact.friction_coefficient or 0.0,
+        "ratio": contact.shear / contact.stiffness,
         "balance": float(balance),
         **rigid(scene),
     }
@@ -194,16 +190,15 @@ def against_springs(scene: Scene, history: History) -> Metrics:
 
 def rigid(scene: Scene) -> dict[str, float]:
     """Return the impulses of the rigid limit, of the same friction, whose springs along the plane are far stiffer."""
-    contact = scene.table(PlaneSection).contact
-    along, across = rigid_impulse(falling(scene), (contact.friction_coefficient if contact else None) or 0.0, 1.0)
+    along, across = rigid_impulse(falling(scene), contact_of(scene).friction_coefficient or 0.0, 1.0)
     return {"rigid J_t": along, "rigid J_n": across}
 
 
 def in_the_limit(runs: Runs) -> Metrics:
     """Return the smooth impulse over that of a rigid impact, less one: on both springs, and extrapolated in p^-1/2."""
     soft, stiff = (or_nan(against_springs(*run)["J_n"]) / smooth_limit() - 1 for run in runs)
-    first, second = (case.table(PlaneSection).contact for case, _ in runs)
-    root = math.sqrt(second.stiffness / first.stiffness) if first and second else math.nan
+    first, second = (stiffness_of(case) for case, _ in runs)
+    root = math.sqrt(second / first)
     return {"soft": soft, "stiff": stiff, "rigid": (root * stiff - soft) / (root - 1)}
 
 
@@ -229,7 +224,7 @@ def events_in_steps(case: Scene) -> Band:
     landing, number = body.landing(case.time.duration)
     landed = body.flown(landing)
     x, y = landed.arm(number)
-    contact = case.table(PlaneSection).contact
-    across = (contact.stiffness if contact else 0.0) * (1 / body.mass + x**2 / body.inertia)
-    along = (contact.shear if contact else 0.0) * (1 / body.mass + y**2 / body.inertia)
+    contact = contact_of(case)
+    across = contact.stiffness * (1 / body.mass + x**2 / body.inertia)
+    along = contact.shear * (1 / body.mass + y**2 / body.inertia)
     return 0.0, case.time.step**2 * (across + along)

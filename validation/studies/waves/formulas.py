@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import functools
 import math
-from collections.abc import Iterator
 
 import numpy as np
 
@@ -58,12 +57,6 @@ def fem_too() -> tuple[tuple[str, str], ...]:
     )
 
 
-def all_cases() -> Iterator[Scene]:
-    """Yield all cases."""
-    for declared in scenes():
-        yield from (load_scene(declared) if isinstance(declared, str) else declared).expand()
-
-
 def closed(case: Scene) -> Metrics:
     """Return c dt/h of the lowest layer, its glue over that of its own blocks, and the weights of the scheme."""
     column = column_of(case)
@@ -76,12 +69,6 @@ def closed(case: Scene) -> Metrics:
         "scheme": f"{time.alpha:g}, {time.delta:g}, {time.discount:g}",
     }
     return values | {"glue": column.glue * height / column.modulus(layer)} if column.glue else values
-
-
-def sites() -> Iterator[Scene]:
-    """Yield the site under both schemes."""
-    yield from load_scene(SITE).expand()
-    yield from usual_site().expand()
 
 
 def largest(case: Scene, history: History) -> Metrics:
