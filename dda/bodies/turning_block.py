@@ -110,10 +110,10 @@ class RollingModel(LoadedBlock):
         V[2] = self.spin
         push = np.zeros(6)
         push[:2] = body.M[0, 0] * self.weight
-        turn = complex(Q[0, 0], Q[1, 0])
+        spin = np.array([-Q[1], Q[0]])
         across, up = np.zeros((2, 6))
-        for place, force in zip(*self.dead, strict=True):
-            directions(1j * turn, turn, q, complex(*place), across, up)
+        for (x, y), force in zip(*self.dead, strict=True):
+            directions(spin, Q, q, x, y, across, up)
             push += force[0] * across + force[1] * up
         dt = scheme.step
         R = dt * dt * (body.shapes.T @ push)
@@ -122,7 +122,7 @@ class RollingModel(LoadedBlock):
         ways = len(gap) if self.contact.shear else 0
         opening = np.concatenate([gap, np.zeros(ways)])
         state = state_of(6, opening, np.where(opening > 0, LOWER, INSIDE))
-        return RollingState(*state._replace(p=p, a=a, R=R), q, np.array([turn]))
+        return RollingState(*state._replace(p=p, a=a, R=R), q, Q)
 
     def history(self, request: Request) -> RollingResult:
         """Make the steps."""
@@ -222,7 +222,7 @@ class RollingResult(ContactResult):
         """Area of the outline over that of the start, (steps,) [-]."""
         e = self.motion.e[1:]
         strained = (1 + e[:, 0]) * (1 + e[:, 1]) - e[:, 2] ** 2 / 4
-        return np.asarray(np.abs(self.motion.Q[1:]) ** 2 * strained)
+        return np.asarray(np.linalg.det(self.motion.Q[1:]) * strained)
 
 
 def base_motion(model: RollingModel) -> BaseMotion | None:
@@ -249,7 +249,7 @@ def energies(model: RollingModel, rotation: str, laws: Laws, states: RollingMoti
     """
     M = model.body.M
     V = states.V
-    growth = np.ones(len(V)) if rotation == EXACT else np.abs(states.Q) ** 2
+    growth = np.ones(len(V)) if rotation == EXACT else np.linalg.det(states.Q)
     moving = growth * np.einsum("ki,ij,kj->k", V[:, :2], M[:2, :2], V[:, :2])
     turning = growth**2 * np.einsum("ki,ij,kj->k", V[:, 2:], M[2:, 2:], V[:, 2:])
     load = -(M[0, 0] * growth) * ((states.c - states.c[0]) @ model.weight)

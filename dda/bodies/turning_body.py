@@ -12,7 +12,6 @@ A step with the increments D = (u, v, r, dex, dey, dgxy) turns the block by
     first-order    Q1 = (I + r W) Q0,    W = (0, -1; 1, 0),
 
 the second as older programs do: every length grows by sqrt(1 + r^2) in each step, and the outline turns by atan r.
-Points are complex numbers x + i y here, and Q one that multiplies them, as W does, which is i.
 
 A point moves by exactly B D, with the chord B of the step, whose columns are those of x with the means of its ends,
 
@@ -29,18 +28,15 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from dda.bodies.gap_form import free_block
-from dda.contact.dense import Vector
+from dda.contact.dense import Matrix, Vector
 from dda.contact.springs import base_directions
 from dda.model.arrays import Array
 from dda.model.block import Block
 
 EXACT = "exact"
 FIRST_ORDER = "first-order"
-IN_PLANE = np.array([1.0, 1.0j])  # by which (x, y) is x + i y
-END, CHORD, MEAN = range(3)  # of a step's turn: Q1, (Q1 - Q0) / r and (Q1 + Q0) / 2
 
 
 def turned(angle: float) -> Array:
@@ -48,49 +44,68 @@ def turned(angle: float) -> Array:
     return np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
 
 
-def turn(Q: complex, r: float, exact: bool, out: Vector) -> None:
-    """Write what a step by r [rad], exact or of first order, does to Q: `END`, `CHORD` and `MEAN`."""
+class Turn(NamedTuple):
+    """What a step does to Q."""
+
+    end: Matrix  # Q1
+    chord: Matrix  # (Q1 - Q0) / r
+    mean: Matrix  # (Q1 + Q0) / 2
+
+
+def turned_by(Q: Matrix, a: float, b: float, out: Matrix) -> None:
+    """Write (a + b W) Q."""
+    for j in range(2):
+        out[0][j] = a * Q[0][j] - b * Q[1][j]
+        out[1][j] = b * Q[0][j] + a * Q[1][j]
+
+
+def turn(Q: Matrix, r: float, exact: bool, out: Turn) -> None:
+    """Write the turn of a step by r [rad], exact or of first order."""
     if not math.isfinite(r):
         r = math.nan
     if not exact:
-        out[CHORD] = 1j * Q
-        out[END] = complex(1.0, r) * Q
-        out[MEAN] = complex(1.0, r / 2) * Q
+        turned_by(Q, 0.0, 1.0, out.chord)
+        turned_by(Q, 1.0, r, out.end)
+        turned_by(Q, 1.0, r / 2, out.mean)
         return
     half = math.sin(r / 2) / (r / 2) if r != 0 else 1.0
-    out[END] = complex(math.cos(r), math.sin(r)) * Q
-    out[CHORD] = complex(-half * math.sin(r / 2), half * math.cos(r / 2)) * Q  # (R - I) / r = half W R(r/2)
-    out[MEAN] = 0.5 * (out[END] + Q)
+    turned_by(Q, math.cos(r), math.sin(r), out.end)
+    turned_by(Q, -half * math.sin(r / 2), half * math.cos(r / 2), out.chord)  # (R - I) / r = half W R(r/2)
+    for i in range(2):
+        for j in range(2):
+            out.mean[i][j] = (out.end[i][j] + Q[i][j]) / 2
 
 
-def strained(q: Vector, z: Any) -> Any:
-    """Return (I + E) xi of a point of the unstrained outline, or of several."""
-    x = z.real
-    y = z.imag
-    return z + ((x * q[3] + y * q[5] / 2) + 1j * (x * q[5] / 2 + y * q[4]))
+def strained(q: Vector, x: Any, y: Any) -> tuple[Any, Any]:
+    """Return (I + E) xi of a point of the unstrained outline."""
+    return x + (x * q[3] + y * q[5] / 2), y + (x * q[5] / 2 + y * q[4])
 
 
-def place(q: Vector, Q: Any, z: Any) -> Any:
+def place(q: Vector, Q: Matrix, x: Any, y: Any) -> tuple[Any, Any]:
     """Return where a point of the unstrained outline is, or several are, for the unknowns q = (c, r, e) [m]."""
-    return q[0] + 1j * q[1] + Q * strained(q, z)
+    across, up = strained(q, x, y)
+    return q[0] + (across * Q[0][0] + up * Q[0][1]), q[1] + (across * Q[1][0] + up * Q[1][1])
 
 
-def directions(spin: complex, stretch: complex, q: Vector, z: complex, across: Vector, up: Vector) -> None:
+def directions(spin: Matrix, stretch: Matrix, q: Vector, x: float, y: float, across: Vector, up: Vector) -> None:
     """Write B of a point of the unstrained outline, its rows of x and of y.
 
     Parameters
     ----------
     spin, stretch
-        What stands for dQ/dr and Q.
+        The matrices that stand for dQ/dr and Q.
     q
         Unknowns with whose strain the point turns.
     """
-    by_shear = 0.5 * stretch * complex(z.imag, z.real)  # no quotient: that of complex numbers is slow
-    by_strains = stretch * complex(z.real, 0.0), stretch * complex(0.0, z.imag), by_shear
-    columns = (complex(1.0, 0.0), complex(0.0, 1.0), spin * strained(q, z), *by_strains)
-    for j in range(6):
-        across[j] = columns[j].real
-        up[j] = columns[j].imag
+    turning_x, turning_y = strained(q, x, y)
+    for axis in range(2):
+        row = across if axis == 0 else up
+        row[0] = 1.0 - axis
+        row[1] = 0.0 + axis
+        row[2] = turning_x * spin[axis][0] + turning_y * spin[axis][1]
+        row[3] = stretch[axis][0] * x
+        row[4] = stretch[axis][1] * y
+        row[5] = stretch[axis][0] / 2 * y + stretch[axis][1] / 2 * x
 
 
 class RollingMotion(NamedTuple):
@@ -100,18 +115,17 @@ class RollingMotion(NamedTuple):
     r: Array  # (k,) sum of the steps' rotations [rad]
     e: Array  # (k, 3) strains in axes that turn with the block
     V: Array  # (k, 6) velocities of c, r, e
-    Q: NDArray[np.complex128]  # (k,) turn of the outline
+    Q: Array  # (k, 2, 2) turn of the outline
 
     def points(self, xi: Array) -> Array:
         """Return points of the unstrained outline where they are, (k, points, 2) [m]."""
         q = np.column_stack([self.c, self.r, self.e]).T[:, :, None]
-        places = place(q, self.Q[:, None], xi @ IN_PLANE)
-        return np.stack([places.real, places.imag], axis=-1)
+        return np.stack(place(q, self.Q.transpose(1, 2, 0)[:, :, :, None], *xi.T), axis=-1)
 
 
 def motion_of(rows: Array) -> RollingMotion:
     """Return the motion of rows that hold q, V and Q."""
-    return RollingMotion(rows[:, :2], rows[:, 2], rows[:, 3:6], rows[:, 6:12], rows[:, 12:] @ IN_PLANE)
+    return RollingMotion(rows[:, :2], rows[:, 2], rows[:, 3:6], rows[:, 6:12], rows[:, 12:].reshape(-1, 2, 2))
 
 
 def strain_matrices(e: Array) -> Array:

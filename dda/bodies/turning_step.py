@@ -23,8 +23,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dda.bodies.turning_body import CHORD, END, EXACT, IN_PLANE, MEAN, directions, place, turn
-from dda.contact.dense import Matrix, Vector, copy, dot
+from dda.bodies.turning_body import EXACT, Turn, directions, place, turn
+from dda.contact.dense import Matrix, Vector, copy, copy_matrix, dot
 from dda.contact.rows import FOUND, INSIDE, LOWER, NONE, Laws, Rows, Solved, States, find, flexed, rows_of, work_for
 from dda.march.account import add_contact_losses, add_damping, over_stages
 from dda.march.step import (
@@ -56,7 +56,7 @@ ROUNDS = 40  # of the turn; two to four are usual
 SETTLED = 1e-12  # last change of a place over the size of the block; the next would be this times the step's turn
 REACH = 0.02  # gap below which a corner may come to touch in a step, over the size of the block
 PAIRS = 32  # of corners that are tried in a step
-STATE = 14  # numbers that are kept of a state: q, V and Q
+STATE = 16  # numbers that are kept of a state: q, V and Q
 FAR = 1e300  # m, gap of a contact that is none
 
 
@@ -70,7 +70,7 @@ class RollingState(NamedTuple):
     path: Vector
     rows: Rows
     q: Vector  # (6,) centroid [m], sum of the steps' rotations [rad], strains in axes that turn with the block
-    Q: Vector  # (1,) turn of the outline, a complex number
+    Q: Matrix  # (2, 2) turn of the outline
 
 
 class Rolling(NamedTuple):
@@ -86,18 +86,19 @@ class Rolling(NamedTuple):
     by_unknowns: Matrix  # (n, 6) the transpose
     stiffness: Vector  # (n,) of the modes at the start [1/s^2]
     translation: States  # (n,) 1 of modes in which the centroid moves
-    xi: Vector  # (corners,) complex numbers, as all places
+    xi: Matrix  # (corners, 2)
     loads: int  # dead loads, two at most
-    where: Vector  # (2,) points of the outline on which they act [m]
-    dead: Vector  # (2,) [N]
+    where: Matrix  # (2, 2) points of the outline on which they act [m]
+    dead: Matrix  # (2, 2) [N]
     before: Rows  # of two corners that may touch
     after: Rows
     at: States  # (2,) which they are
     tried: States  # (PAIRS,)
     near: Vector  # (corners,) least height in the stage
-    rest: Vector  # (corners,) places from the base at the start of the stage [m]
-    place: Vector  # (corners,) at its end
-    turn: Vector  # (3,) of the step
+    rest: Matrix  # (corners, 2) places from the base at the start of the stage [m]
+    place: Matrix  # (corners, 2) at its end
+    turn: Turn
+    spin: Matrix  # (2, 2) dQ/dr at the end of the step
     loaded: Vector  # (n,) increments of the modes without contact forces, under the dead loads
     guess: Vector  # (6,)
     D: Vector  # (6,) increments of q
@@ -138,9 +139,9 @@ def rolling_march(
     count = len(xi)
     m = len(pair.compliance)
     loads = len(where)
-    points, forces = np.zeros((2, 2), complex)
-    points[:loads] = where @ IN_PLANE
-    forces[:loads] = dead @ IN_PLANE
+    points, forces = np.zeros((2, 2, 2))
+    points[:loads] = where
+    forces[:loads] = dead
     delta = scheme.delta if scheme.table is None else 0.5
     ground = np.zeros((len(corners.compliance), 2))
     ground[:count, 1] = 1.0
@@ -156,7 +157,7 @@ def rolling_march(
         by_unknowns=shapes.T.copy(),
         stiffness=np.array(body.k),
         translation=np.any(shapes[:2] != 0, axis=0).astype(np.int64),
-        xi=xi @ IN_PLANE,
+        xi=xi,
         loads=loads,
         where=points,
         dead=forces,
@@ -165,16 +166,17 @@ def rolling_march(
         at=np.zeros(2, dtype=np.int64),
         tried=np.zeros(PAIRS, dtype=np.int64),
         near=np.zeros(count),
-        rest=np.zeros(count, complex),
-        place=np.zeros(count, complex),
-        turn=np.zeros(3, complex),
+        rest=np.zeros((count, 2)),
+        place=np.zeros((count, 2)),
+        turn=Turn(*np.zeros((3, 2, 2))),
+        spin=np.zeros((2, 2)),
         loaded=np.zeros(len(body.k)),
         **{name: np.zeros(6) for name in ("guess", "D", "new", "q", "across", "up", "across_end", "up_end")},
     )
     march = march_of(body, pair, scheme, np.zeros(m), rolling)
     rows = len(ground)
     between = state_of(len(body.k), np.zeros(rows), np.zeros(rows))
-    return march._replace(between=RollingState(*between, np.zeros(6), np.ones(1, complex)), work=work_for(2, m))
+    return march._replace(between=RollingState(*between, np.zeros(6), np.eye(2)), work=work_for(2, m))
 
 
 def late_share(delta: float) -> float:
@@ -182,11 +184,11 @@ def late_share(delta: float) -> float:
     return 2 - 2 * delta
 
 
-def area_growth(rolling: Rolling, Q: complex) -> float:
+def area_growth(rolling: Rolling, Q: Matrix) -> float:
     """Return the area of the unstrained outline over that of the start."""
     if rolling.exact:
         return 1.0
-    return Q.real * Q.real + Q.imag * Q.imag
+    return float(Q[0][0] * Q[1][1] - Q[0][1] * Q[1][0])
 
 
 # ---- one stage -------------------------------------------------------------------------------------------------------
@@ -209,7 +211,7 @@ def make_stage(
     rolling = march.method
     length = length_of(march, stage, part.ratio)
     if not rolling.exact:
-        grow(march, area_growth(rolling, before.Q[0]))
+        grow(march, area_growth(rolling, before.Q))
         set_length(march, stage, part.ratio, length)
     predict(march, stage, length, start, before, course, part)
     near = nearest(rolling, REACH * rolling.size)
@@ -253,12 +255,12 @@ def predict(
     prescribe(march, course, stage, part)
     begin_step(march, start, length)
     free_modes(march, stage, length, before)
-    place_corners(rolling, before.q, before.Q[0], room.start, rolling.rest)
+    place_corners(rolling, before.q, before.Q, room.start, rolling.rest)
     by_modes(rolling, room.x, rolling.new)
     move(rolling, before, rolling.new)
-    place_corners(rolling, rolling.q, rolling.turn[END], room.end, rolling.place)
+    place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     for k in range(len(rolling.near)):
-        rolling.near[k] = min(rolling.rest[k].imag, rolling.place[k].imag)
+        rolling.near[k] = min(rolling.rest[k][1], rolling.place[k][1])
     share = numbers.end - numbers.begin
     for i in range(len(room.pushed)):
         room.pushed[i] = share * room.p[i] + share * share * room.a[i] / 2
@@ -273,15 +275,17 @@ def by_modes(rolling: Rolling, x: Vector, out: Vector) -> None:
 
 def move(rolling: Rolling, before: RollingState, D: Vector) -> None:
     """Write the turn of an increment D of q, and q after it."""
-    turn(before.Q[0], D[2], rolling.exact, rolling.turn)
+    turn(before.Q, D[2], rolling.exact, rolling.turn)
     for j in range(6):
         rolling.q[j] = before.q[j] + D[j]
 
 
-def place_corners(rolling: Rolling, q: Vector, Q: complex, base: Vector, out: Vector) -> None:
+def place_corners(rolling: Rolling, q: Vector, Q: Matrix, base: Vector, out: Matrix) -> None:
     """Write where the corners are, from the base."""
     for k in range(len(rolling.xi)):
-        out[k] = place(q, Q, rolling.xi[k]) - complex(base[0], base[1])
+        x, y = place(q, Q, rolling.xi[k][0], rolling.xi[k][1])
+        out[k][0] = x - base[0]
+        out[k][1] = y - base[1]
 
 
 def pair_number(at: States, near: int) -> int:
@@ -332,7 +336,7 @@ def settle(
     copy(rolling.guess, rolling.D)
     solves = 0
     for _ in range(ROUNDS):
-        turn(before.Q[0], rolling.D[2], rolling.exact, rolling.turn)
+        turn(before.Q, rolling.D[2], rolling.exact, rolling.turn)
         push_loads(march, before)
         for i in range(len(room.x)):
             rolling.loaded[i] = room.x[i] + length.numbers[3] * length.inverse[i] * room.pushed[i]
@@ -397,7 +401,7 @@ def set_rows(march: March, before: RollingState, near: int) -> None:
     for k in range(2):
         if k < near:
             corner = rolling.at[k]
-            force_directions(rolling, before, rolling.xi[corner])
+            force_directions(rolling, before, rolling.xi[corner][0], rolling.xi[corner][1])
         for i in range(n):
             shape = rolling.by_unknowns[i]
             weight[k][i] = dot(rolling.up, shape, 6) if k < near else 0.0
@@ -411,18 +415,20 @@ def set_rows(march: March, before: RollingState, near: int) -> None:
                     weight[3][i] += way
 
 
-def force_directions(rolling: Rolling, before: RollingState, z: complex) -> None:
+def force_directions(rolling: Rolling, before: RollingState, x: float, y: float) -> None:
     """Write B_f of a point, for the increments D and their turn."""
     for j in range(3, 6):
         rolling.q[j] = before.q[j] + rolling.D[j] / 2
-    directions(rolling.turn[CHORD], rolling.turn[MEAN], rolling.q, z, rolling.across, rolling.up)
+    directions(rolling.turn.chord, rolling.turn.mean, rolling.q, x, y, rolling.across, rolling.up)
     late = rolling.late
     if late == 0:
         return
     for j in range(3, 6):
         rolling.q[j] = before.q[j] + rolling.D[j]
-    end = rolling.turn[END]
-    directions(1j * end, end, rolling.q, z, rolling.across_end, rolling.up_end)
+    for j in range(2):
+        rolling.spin[0][j] = -rolling.turn.end[1][j]
+        rolling.spin[1][j] = rolling.turn.end[0][j]
+    directions(rolling.spin, rolling.turn.end, rolling.q, x, y, rolling.across_end, rolling.up_end)
     for j in range(6):
         rolling.across[j] = (1 - late) * rolling.across[j] + late * rolling.across_end[j]
         rolling.up[j] = (1 - late) * rolling.up[j] + late * rolling.up_end[j]
@@ -435,11 +441,11 @@ def push_loads(march: March, before: RollingState) -> None:
     for i in range(len(pushed)):
         pushed[i] = 0.0
     for k in range(rolling.loads):
-        force_directions(rolling, before, rolling.where[k])
+        force_directions(rolling, before, rolling.where[k][0], rolling.where[k][1])
         for i in range(len(pushed)):
             shape = rolling.by_unknowns[i]
-            along = rolling.dead[k].real * dot(rolling.across, shape, 6)
-            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k].imag * dot(rolling.up, shape, 6))
+            along = rolling.dead[k][0] * dot(rolling.across, shape, 6)
+            pushed[i] += march.body.mobility[i] * (along + rolling.dead[k][1] * dot(rolling.up, shape, 6))
 
 
 def add_forces(march: March, length: Length) -> None:
@@ -465,10 +471,10 @@ def set_openings(march: March, length: Length, near: int) -> None:
                 work.q[2 + k] = 0.0
             continue
         corner = rolling.at[k]
-        at = place(rolling.q, rolling.turn[END], rolling.xi[corner]) - complex(room.end[0], room.end[1])
-        work.q[k] = at.imag - flexed(march.laws, length.flexible, k, rolling.after.force)
+        x, y = place(rolling.q, rolling.turn.end, rolling.xi[corner][0], rolling.xi[corner][1])
+        work.q[k] = y - room.end[1] - flexed(march.laws, length.flexible, k, rolling.after.force)
         if m > 2:
-            way = at.real - rolling.rest[corner].real
+            way = x - room.end[0] - rolling.rest[corner][0]
             way -= flexed(march.laws, length.flexible, 2 + k, rolling.after.force)
             work.q[2 + k] = rolling.before.opening[2 + k] + way
     if m > 2:
@@ -483,7 +489,7 @@ def accept(
     rolling = march.method
     room = march.room
     corners = len(rolling.xi)
-    turn(before.Q[0], rolling.D[2], rolling.exact, rolling.turn)
+    turn(before.Q, rolling.D[2], rolling.exact, rolling.turn)
     push_loads(march, before)
     if near > 0:
         set_rows(march, before, near)
@@ -491,13 +497,13 @@ def accept(
     end_modes(march, stage, length, before, after)
     move(rolling, before, rolling.D)
     copy(rolling.q, after.q)
-    after.Q[0] = rolling.turn[END]
-    place_corners(rolling, rolling.q, rolling.turn[END], room.end, rolling.place)
+    copy_matrix(rolling.turn.end, after.Q)
+    place_corners(rolling, rolling.q, rolling.turn.end, room.end, rolling.place)
     rows = after.rows
     for r in range(len(rows.force)):
         clear_row(rows, r, r < corners)
         if r < corners:
-            rows.opening[r] = rolling.place[r].imag
+            rows.opening[r] = rolling.place[r][1]
     for r in range(len(rolling.after.force)):
         if r % 2 < near:
             copy_row(rolling.after, r, rows, row_of(rolling, r))
@@ -505,7 +511,7 @@ def accept(
         k = r - corners
         after.path[r] = before.path[r] + rows.slip[r]
         if rows.state[k] != INSIDE or before.rows.state[k] != INSIDE:
-            way = rolling.place[k].real - rolling.rest[k].real
+            way = rolling.place[k][0] - rolling.rest[k][0]
             after.path[r] = before.path[r] + before.rows.opening[r] + way - rows.opening[r]
 
 
@@ -515,7 +521,7 @@ def accept(
 def account(march: March, state: RollingState, after: RollingState, course: Course, part: Part, sums: Vector) -> None:
     """Add what an accepted part of a step slips, gives and loses by its contacts; the algorithm loses the rest."""
     rolling = march.method
-    growth = area_growth(rolling, state.Q[0])
+    growth = area_growth(rolling, state.Q)
     kinetic = 0.0
     for i in range(len(state.p)):
         mass = growth if rolling.translation[i] == 1 else growth * growth
@@ -553,8 +559,9 @@ def keep(march: March, state: RollingState, rows: Array, number: int) -> bool:
         rows[number, j] = state.q[j]
         rows[number, 6 + j] = rolling.new[j]
         total += rolling.new[j]
-    rows[number, 12] = state.Q[0].real
-    rows[number, 13] = state.Q[0].imag
+    for i in range(2):
+        for j in range(2):
+            rows[number, 12 + 2 * i + j] = state.Q[i][j]
     return math.isfinite(total)
 
 

@@ -181,8 +181,7 @@ def _type_of(value: Any) -> Any:
         fields = zip(value._fields, value, strict=True)  # type: ignore[attr-defined]
         return np.dtype((np.record, [(name, _type_of(part)) for name, part in fields]))
     array = np.asarray(value)
-    kinds = {"b": np.int64, "i": np.int64, "c": np.complex128}
-    return np.dtype((kinds.get(array.dtype.kind, np.float64), array.shape))
+    return np.dtype((np.int64 if array.dtype.kind in "bi" else np.float64, array.shape))
 
 
 def _fill(records: Any, value: Any) -> None:

@@ -27,7 +27,7 @@ from faults.kill_matrix import check_study
 import dda
 from dda.bodies import turning_step as step
 from dda.bodies.gap_form import ModalForm
-from dda.bodies.turning_body import END, EXACT, FIRST_ORDER, turned
+from dda.bodies.turning_body import EXACT, FIRST_ORDER, turned
 from dda.march.step import steps_by
 from validation.engine.run import run_study
 from validation.gates.gate import Status
@@ -494,7 +494,7 @@ def grown_twice(sound):
     def faulty(Q, r, exact, out):
         sound(Q, r, exact, out)
         if not exact:
-            out[END] *= math.sqrt(1 + r * r)
+            out.end[:] = [[math.sqrt(1 + r * r) * x for x in row] for row in out.end]
 
     return faulty
 
