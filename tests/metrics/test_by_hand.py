@@ -7,6 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from validation.gates.gate import rounded
 from validation.metrics import columns, contact, growth, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
@@ -167,3 +168,19 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
     (only,) = poles(signal - 3.0, 0.5)
     assert only.damping == pytest.approx(-np.log(0.97) / abs(np.log(0.97) + 0.4j), rel=1e-8)
+
+
+def test_edges_of_bands_are_rounded_and_margins_told():
+    assert [rounded(value) for value in (3e-13, -3e-13, 123456.0, 1.2345e-10)] == [1e-12, -1e-12, 123500.0, 1.2e-10]
+
+
+def test_limits_and_horizons_are_those_of_what_is_asked(made):
+    assert growth.limit(made) == NOT_REPORTED and growth.limit(replace(made, limit=lambda: 1.75)) == 1.75
+    shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
+    run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
+    assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
+
+
+def test_what_only_turns_has_no_centre_of_its_own():
+    n = np.arange(80)
+    assert swing(2 * 0.97**n * np.cos(0.4 * n), 0.5, order=2).static is None
