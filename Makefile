@@ -32,7 +32,7 @@ field: $(PEERS)  ## other people's programs on the problems of blocks, as a PDF;
 test: $(READY)  ## the tests without the long ones, the accuracy gates on first cases among them
 	$(PYTEST) -n 2 --dist loadfile -m "not long" tests
 
-test-all: test  ## these, then the long ones: all accuracy gates, all seeded faults, all fifty histories
+test-all: test  ## these, then the long ones: all accuracy gates, all seeded faults, random histories
 	$(PYTEST) -n 2 --dist loadfile -m long
 
 gates: $(READY)  ## the accuracy gates alone
