@@ -127,6 +127,12 @@ class Room(NamedTuple):
     force: Vector  # (m,) forces in the coordinates of the body
 
 
+class NoMethod(NamedTuple):
+    """A rule of contact without numbers of its own; compiled code takes no empty record."""
+
+    nothing: int = 0
+
+
 class March(NamedTuple):
     """A body, its contacts and its scheme, with room for a step."""
 
@@ -180,7 +186,7 @@ def march_of(
     laws: Laws,
     scheme: Scheme,
     opening: Array,
-    method: Any = (),
+    method: Any = NoMethod(),
     averages: bool = True,
     impulses: bool = False,
 ) -> March:

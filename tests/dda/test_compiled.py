@@ -12,6 +12,9 @@ import numpy as np
 import pytest
 from oracles.contact_bodies import CASES
 
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel
+from dda.bodies.opening_block import opening_block
+from dda.contact.rows import laws_of
 from dda.march import compiled, one_library, step
 
 EVERY_CODE = (
@@ -242,3 +245,10 @@ def test_a_function_or_a_number_that_was_replaced_counts(fresh, monkeypatch):
 def test_a_seeded_fault_is_never_compiled_away(always, monkeypatch):
     monkeypatch.setattr(step, "velocity_corrector", lambda stage, p, f, f_g, f1: p)
     assert compiled.PLAIN in CASES["frictionless"](1).run(3).notes[-1]
+
+
+def test_a_rule_of_contact_without_numbers_of_its_own_is_taken_by_compiled_code():
+    block = opening_block(UnilateralModel(Block.rectangle(2.0, 1.0, Material(2500.0, 1e9, 0.2)), Unilateral(1e9)))
+    laws = laws_of(Unilateral(1e9), contacts=block.contacts, rows=len(block.B), limit=6)
+    march = step.march_of(block.body, laws, Scheme(0.5, 1.0, 1.0, 1e-3), np.zeros(len(block.B)))
+    assert compiled.as_record(march).laws.together == laws.together

@@ -42,7 +42,7 @@ from validation.report.figures.curves import style_of
 STAGES = tuple(
     Stage(name, agrees, "words", {}) for name, agrees in (("at_rest", True), ("period", False), ("load", None))
 )
-SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 20})
+SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
 OWN = Variant(0.5, 1.0, 1.0)
 NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
