@@ -576,10 +576,8 @@ LEFT_OUT = {  # words of scenes or solvers whose gates stand elsewhere
     "waves": ("waves-facts",),  # without runs, in test_facts.py
     "rebound": (rebound.MAP,),  # and in test_rebound.py
     "touching": ("query",),  # which no run of a solver changes: in test_touching.py
-    "patch": ("fenicsx",),
+    **dict.fromkeys(("patch", "beams", "plates"), ("fenicsx",)),
     # Larger systems take seconds a fault: their gates measure what those of the smaller ones measure.
-    "beams": ("fenicsx", "order", "8x64", "16x128"),
-    "plates": ("fenicsx", "order", "cells=12"),
     "subblocks": (
         *("subblocks-locking", "16x16", "1x16", "1x32", "5x5", "=4x4,fem"),
         *("8x8", "=100,", "=10]", "width=0.6", "width=0.2"),
