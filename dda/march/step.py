@@ -133,6 +133,9 @@ class NoMethod(NamedTuple):
     nothing: int = 0
 
 
+NO_METHOD = NoMethod()
+
+
 class March(NamedTuple):
     """A body, its contacts and its scheme, with room for a step."""
 
@@ -186,7 +189,7 @@ def march_of(
     laws: Laws,
     scheme: Scheme,
     opening: Array,
-    method: Any = NoMethod(),
+    method: Any = NO_METHOD,
     averages: bool = True,
     impulses: bool = False,
 ) -> March:
