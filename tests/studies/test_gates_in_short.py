@@ -2,9 +2,18 @@
 
 A scene is here if its gates take less than some 0.3 s on one core, of a family of scenes its first ones, and of every
 study at least one. Studies of FEniCSx alone start its processes, which takes seconds, and are long.
+
+What the bands of all gates are, long ones included, is a number a study in `bands.toml`: the sum of the logarithms of
+all edges, each with a weight of its own, so that an edge which changes by a few per cent shows. Why a band is what it
+is stands in its reason; the number tells only that a formula has changed. `KEEP_PAGES=1` writes it anew.
 """
 
+import functools
+import math
+import os
+import tomllib
 from fnmatch import fnmatchcase
+from pathlib import Path
 
 import pytest
 
@@ -14,6 +23,8 @@ from validation.runs.results import Results
 from validation.suite.folders import get_study, judged_studies
 from validation.suite.own_solver.session import GateRuns
 
+KEPT = Path(__file__).with_name("bands.toml")
+ROUNDING, LARGEST = 1e-11, 1e30  # of an edge that counts
 LONG = ("two-codes",)
 SLOW = ("claims:C8:*", "claims:C14:*", "claims:C16:*")  # claims whose gates make histories of seconds
 SHORT = {
@@ -46,6 +57,11 @@ SHORT = {
 }
 
 
+@functools.cache
+def gates_of(study):
+    return tuple(get_study(study).gates())
+
+
 def test_every_study_is_here_or_long():
     assert {*SHORT, *LONG} == set(judged_studies())
 
@@ -57,7 +73,7 @@ def test_gates_of_the_first_cases(name, finished_cases):
     first = {}
     failed = {}
     passed = 0
-    for gate in get_study(name).gates():
+    for gate in gates_of(name):
         scene = scene_of(gate.scene)
         if not _is_short(scene, SHORT[name]) or any(fnmatchcase(gate.id, pattern) for pattern in SLOW):
             continue
@@ -73,3 +89,29 @@ def test_gates_of_the_first_cases(name, finished_cases):
 def _is_short(scene, patterns):
     fitting = [pattern for pattern in patterns if fnmatchcase(scene, pattern.removeprefix("!"))]
     return bool(fitting) and not fitting[-1].startswith("!")
+
+
+# ---- bands ----------------------------------------------------------------------------------------------------------
+
+
+def number(study):
+    """Return the number of a study: the sum of w log10(|edge| / ROUNDING), w from 1 to 2, with the sign of the edge."""
+    total = 0.0
+    for place, edge in enumerate(edge for gate in gates_of(study) for edge in (gate.low, gate.high)):
+        if abs(edge) > ROUNDING:
+            weight = 1 + place * 0.6180339887 % 1
+            total += math.copysign(weight * math.log10(min(abs(edge), LARGEST) / ROUNDING), edge)
+    return total
+
+
+def kept():
+    return tomllib.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+
+
+@pytest.mark.parametrize("study", judged_studies())
+def test_bands_are_what_they_were(study):
+    found = number(study)
+    if os.environ.get("KEEP_PAGES"):
+        lines = kept() | {study: round(found, 2)}
+        KEPT.write_text("".join(f"{name} = {value}\n" for name, value in sorted(lines.items())), encoding="utf-8")
+    assert found == pytest.approx(kept()[study], abs=0.03)
