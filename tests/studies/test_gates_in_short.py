@@ -29,7 +29,7 @@ LONG = ("two-codes",)
 SLOW = ("claims:C8:*", "claims:C14:*", "claims:C16:*")  # claims whose gates make histories of seconds
 SHORT = {
     "beams": ("beams-squares",),
-    "boxes": ("boxes-landing", "boxes-pile"),
+    "boxes": ("boxes-landing",),
     "columns": ("columns-domino", "columns-settle", "columns-slips-steps", "columns-solves-*"),
     "core": ("corner-springs", "mesh-*", "poisson*", "figure-[89]", "figures-5-6"),
     "cost": ("cost-dt-*", "cost-h-*"),
@@ -48,7 +48,7 @@ SHORT = {
     "slopes": ("slope-[dsfm]*",),
     "spin": ("spin-flight", "spin-stopping", "spin-turns"),
     "stability-small": ("*",),
-    "standing": ("standing-truss-*", "standing-overhang", "standing-leaning", "standing-book", "standing-keystone"),
+    "standing": ("standing-truss-*", "standing-overhang", "standing-leaning", "standing-keystone"),
     "stiff-contact": ("*",),
     "subblocks": ("*", "!subblocks-rocking", "!subblocks-locking"),
     "toppling": ("*", "!toppling-threshold"),
