@@ -68,7 +68,7 @@ def pytest_rest_while_collecting():
 def pytest_collection_modifyitems(items):
     """Mark all accuracy gates as long; `studies/test_gates_in_short.py` judges those of first cases."""
     for item in items:
-        if item.path.name == "test_gates.py" and item.path.parent.name == "validation":
+        if item.get_closest_marker("validation"):
             item.add_marker(pytest.mark.long)
 
 

@@ -11,7 +11,6 @@ from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first
 from validation.theory.first_touch import MovingPolygon, first_touches
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-TRIANGLE = np.array([(-1.0, -0.6), (1.2, -0.5), (0.1, 1.1)])
 LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
 BAR = np.array([(-2.0, -0.1), (2.0, -0.1), (2.0, 0.1), (-2.0, 0.1)])
 AT_REST = (0.0,) * 6

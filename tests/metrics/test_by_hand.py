@@ -2,7 +2,6 @@
 
 import math
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -14,7 +13,7 @@ from validation.metrics.measurable import Measurable
 from validation.metrics.poles import LARGEST_MISFIT, poles, swing
 from validation.metrics.transform import spectrum
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
-from validation.runs.contact import ContactRecord
+from validation.runs.contact import ContactRecord, Rebound
 from validation.runs.history import History
 from validation.runs.run import Outcome
 
@@ -84,21 +83,19 @@ def test_angles_and_landings():
 
 
 def record(**parts):
-    n = len(TIME)
-    numbers = dict.fromkeys(("kinetic", "strain", "springs", "load"), np.zeros(n))
+    nothing = np.zeros(len(TIME))
     given = {
         "time": TIME,
         "force": np.array([0.0, 0.0, 4.0, 0.0, 0.0, 3.0, 0.0]),
+        **dict.fromkeys(("impulse", "penetration", "gap"), nothing),
         "open_share": np.array([1.0, 1.0, 0.0, 1.0, 1.0, 0.5, 1.0]),
-        "energies": numbers,
+        "energies": dict.fromkeys(contact.STORED, nothing),
         "start_energy": 8.0,
         "input_energy": 4.0,
         "velocity": np.array([-1.0, -2.0, -0.5, 1.0, 0.75, -3.0, 1.5]),
         "start_velocity": -0.125,
     }
-    names = ContactRecord.__dataclass_fields__
-    blank = {name: None for name in names if name not in given}
-    return SimpleNamespace(**blank | given | parts)
+    return ContactRecord(**given | parts)
 
 
 def test_landings_by_hand():
@@ -112,7 +109,7 @@ def test_landings_by_hand():
 
 
 def test_rebounds_by_hand():
-    rebounds = [SimpleNamespace(restitution=e, closing=v) for e, v in ((0.5, 1.0), (None, 3.0), (0.75, 2.0))]
+    rebounds = (Rebound(1.0, 0.5), Rebound(3.0, None), Rebound(2.0, 1.5))
     of = record(rebounds=rebounds)
     assert [contact.of_rebounds(of, part) for part in ("first", "mean", "most")] == [0.5, 0.625, 0.75]
     assert contact.landing_speed(of) == 3.0

@@ -8,7 +8,6 @@ all edges, each with a weight of its own, so that an edge which changes by a few
 is stands in its reason; the number tells only that a formula has changed. `KEEP_PAGES=1` writes it anew.
 """
 
-import functools
 import math
 import os
 import tomllib
@@ -57,23 +56,17 @@ SHORT = {
 }
 
 
-@functools.cache
-def gates_of(study):
-    return tuple(get_study(study).gates())
-
-
 def test_every_study_is_here_or_long():
     assert {*SHORT, *LONG} == set(judged_studies())
 
 
-@pytest.mark.validation
 @pytest.mark.parametrize("name", SHORT)
 def test_gates_of_the_first_cases(name, finished_cases):
     runs = GateRuns(Results(finished_cases), studies=[name])
     first = {}
     failed = {}
     passed = 0
-    for gate in gates_of(name):
+    for gate in get_study(name).gates():
         scene = scene_of(gate.scene)
         if not _is_short(scene, SHORT[name]) or any(fnmatchcase(gate.id, pattern) for pattern in SLOW):
             continue
@@ -97,9 +90,10 @@ def _is_short(scene, patterns):
 def number(study):
     """Return the number of a study: the sum of w log10(|edge| / ROUNDING), w from 1 to 2, with the sign of the edge."""
     total = 0.0
-    for place, edge in enumerate(edge for gate in gates_of(study) for edge in (gate.low, gate.high)):
+    edges = [edge for gate in get_study(study).gates() for edge in (gate.low, gate.high)]
+    for order, edge in enumerate(edges):
         if abs(edge) > ROUNDING:
-            weight = 1 + place * 0.6180339887 % 1
+            weight = 1 + order * 0.6180339887 % 1
             total += math.copysign(weight * math.log10(min(abs(edge), LARGEST) / ROUNDING), edge)
     return total
 

@@ -176,14 +176,13 @@ def _answers(
     place = Path(source)
     if os.sep not in source and source not in solver_names() and is_program(os.path.join(".", source)):
         source = os.path.join(".", source)
-    runs = source in solver_names() or is_program(source) or (is_solver(source) and ":" in source)
-    if not runs and place.is_dir() and (layout or any(place.rglob(answers.FILE))):
+    if source in solver_names() or is_program(source) or (is_solver(source) and ":" in source):
+        return [answers_of(source, problems or list(map(problem, names())), progress)]
+    if place.is_dir() and (layout or any(place.rglob(answers.FILE))):
         return answers.read_sets(place, layout, progress, {posed.name: posed for posed in problems} or None)
-    if runs or place.exists():
-        named = [name for name in names() if runs or (place / f"{name}{answers.TABLE}").exists()]
-        asked = problems or [problem(name) for name in named]  # to pose them all takes a second
-        if runs:
-            return [answers_of(source, asked, progress)]
+    if place.is_dir() or place.is_file():
+        answered = (name for name in names() if (place / f"{name}{answers.TABLE}").exists())
+        asked = problems or list(map(problem, answered))  # to pose them all takes a second
         ours = list(dict.fromkeys(["time", *(column for posed in asked for column in posed.columns)]))
         theirs, factors = header
         names_of_tables = HeaderNames(theirs_of(theirs, ours), factors_of(factors, ours))
