@@ -94,7 +94,7 @@ def pytest_runtest_setup(item):
 
 @pytest.fixture(autouse=True)
 def plain_python(request, monkeypatch):
-    """Keep short tests from compiling, which takes longer than all of them; the plain functions give the same numbers."""
+    """Keep short tests from compiling, which takes longer than all of them; plain functions give the same numbers."""
     if not request.node.get_closest_marker("long"):
         monkeypatch.setattr("dda.march.compiled.SHORT", sys.maxsize)
 
