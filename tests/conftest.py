@@ -116,6 +116,13 @@ def pytest_runtest_setup(item):
             pytest.skip(f"fenicsx is NOT RUN: {INSTALL_HINT}")
 
 
+@pytest.fixture(autouse=True)
+def plain_python(request, monkeypatch):
+    """Keep short tests from compiling, which takes longer than all of them; plain functions give the same numbers."""
+    if not request.node.get_closest_marker("long"):
+        monkeypatch.setattr("dda.march.compiled.SHORT", sys.maxsize)
+
+
 def thinned(cases, every):
     """Mark all but every n-th case as long.
 
