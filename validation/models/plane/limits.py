@@ -37,14 +37,16 @@ class ContactPoint(NamedTuple):
 def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
     """Yield every corner on an edge: inside of it, or at its end where two faces lie on each other."""
     corners = [np.array(outline) for outline in outlines]
-    lows = [points.min(axis=0) - NEAR for points in corners]
-    highs = [points.max(axis=0) for points in corners]
+    lows = np.array([points.min(axis=0) - NEAR for points in corners])
+    highs = np.array([points.max(axis=0) for points in corners])
+    below = np.all(lows[:, None] <= highs, axis=2)
+    is_near = below & below.T
     rings = [points @ (1, 1j) for points in corners]
     for block, ring in enumerate(rings):
         faces = np.roll(ring, -1) - ring
         faces = faces / np.abs(faces)
         for on, others in enumerate(rings):
-            if block == on or np.any(lows[block] > highs[on]) or np.any(lows[on] > highs[block]):
+            if block == on or not is_near[block, on]:
                 continue
             starts = others[:, None]  # edges of the other block along the first axis, corners of this along the second
             edges = np.roll(starts, -1, axis=0) - starts
