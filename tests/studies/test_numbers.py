@@ -26,6 +26,7 @@ from validation.suite.folders import get_study, judged_studies
 
 KEPT = Path(__file__).with_name("numbers.toml")
 ROUNDING, LARGEST = 1e-11, 1e30  # of a value that counts
+MOST = 9  # scenes of a row
 
 
 def share(*names):
@@ -113,18 +114,19 @@ def values_in(data):
 
 
 def rows_of(study, factor=1.0):
-    """Return the numbers of a study's rows, each of the first case of every scene, by their names."""
+    """Return the numbers of a study's rows, each of the first cases of some scenes, by their names."""
     cases = {f"{case.solver} {case.scene.name}": case for case in study.cases()}
     rows = {(case.scene.name, case.solver): stand_in(key, case) for key, case in cases.items()}
     finished = Finished(rows, Histories(cases, factor), study.recipes())
     first = {}
     for scene, name in study.recipes():
-        first.setdefault((scene_of(scene), name), scene)
+        first.setdefault(name, {}).setdefault(scene_of(scene), scene)
     values = {}
     with np.errstate(all="ignore"):
-        for (_, name), scene in first.items():
-            metrics = finished.row(scene, name).metrics
-            values.setdefault(f"row {name}", []).extend([*metrics.values(), 7.0 * len(metrics)])
+        for name, scenes in first.items():
+            for scene in list(scenes.values())[:MOST]:
+                metrics = finished.row(scene, name).metrics
+                values.setdefault(f"row {name}", []).extend([*metrics.values(), 7.0 * len(metrics)])
     return {name: summed(found) for name, found in values.items()}
 
 
