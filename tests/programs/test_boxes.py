@@ -226,34 +226,6 @@ def test_a_box_that_falls_on_another_in_the_air_leaves_both_the_common_velocity(
     assert velocities == pytest.approx([-0.8, -0.8], rel=0.2)
 
 
-@pytest.mark.parametrize("program", without(*SICONOS, DAMPED, *DRAKE, *UPRIGHT, "exudyn-default"))
-def test_keeps_its_momentum_along_a_plane_without_friction(program):
-    restitution = 0.0 if program.solver is mujoco.AsItComes else 0.6
-    posed = scene({"tilt": 20.0, "lift": 0.2, "velocity": (0.7, 0.0), "spin": 1.0}, rows=60, restitution=restitution)
-    answer = program.solve(posed)
-    np.testing.assert_allclose(answer["box_1.x"], 0.7 * np.arange(1, 61) / 60, rtol=0, atol=program.rounding)
-    assert np.ptp(answer["box_1.y"]) > 0.1
-
-
-@pytest.mark.parametrize("program", without("drake-default"))
-def test_goes_with_a_ground_that_it_does_not_slip_on(program):
-    """Behind by two of the program's steps at most, or by the time in which MuJoCo's contact stops what slips.
-
-    As it comes MuJoCo creeps besides.
-    """
-    amplitude = 0.05
-    posed = scene(friction=60.0, base=(amplitude, 2.0))
-    answer = program.solve(posed)
-    base = np.array([boxes_of(posed).base(instant)[0] for instant in np.arange(1, 31) / 60])
-    fastest = amplitude * 4 * math.pi
-    late = 2 * program.own_step
-    if program.package == "mujoco":
-        late += math.sqrt(program.own_step * mujoco_boxes.TIME_CONSTANT)
-    creep = 0.01 if program.solver is mujoco.AsItComes else 1e-4
-    assert np.max(np.abs(answer["box_1.x"] - base)) < late * fastest + creep
-    assert np.max(base) > 0.09
-
-
 @pytest.mark.parametrize("program", without("drake-default"))
 def test_boxes_of_a_pile_begin_in_touch_and_carry_each_other(program):
     sizes = [{"width": 1.2, "height": 0.5}, {"width": 1.0, "height": 1.0, "density": 500.0}, {"height": 0.8}]

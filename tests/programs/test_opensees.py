@@ -88,11 +88,4 @@ def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver):
         solver().solve(load_scene("field-creep"))
 
 
-def test_what_symmetry_forbids_is_not_waited_for():
-    one = {"displacement": np.ones(4), "horizontal_displacement": np.full(4, 1e-18)}
-    other = {"displacement": np.ones(4), "horizontal_displacement": np.zeros(4)}
-    assert opensees._alike(one, other, tuple(one))
-    assert not opensees._alike(one, {**one, "displacement": np.full(4, 1.01)}, tuple(one))
-
-
 # ---- with it ------------------------------------------------------------------------------------------------------

@@ -27,12 +27,6 @@ def scene(name, **values):
     return load_scene(f"field-{name}").with_values({key.replace("__", "."): value for key, value in values.items()})
 
 
-@pytest.mark.long
-def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does():
-    with pytest.raises(NotImplementedError, match=r"contact\.cohesion"):
-        answer_of(siconos.Siconos(), scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))
-
-
 def test_the_springs_matrices_hold_the_suites_static_solution():
     given = scene("locked", block__poisson=0.2, load__eccentricity=0.3, load__gravity=9.81, load__slope=10.0)
     of, p = siconos.matrices(given, 2.0, 2.0), 1e9
