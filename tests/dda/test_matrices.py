@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from mpmath import mp
 from oracles import block_in_digits
 
-from dda import Block, Contact, Material, TwoBlockModel
+from dda import Block, Contact, Material, Scheme, TwoBlockModel
 
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
 MATERIALS = [Material(2100.0, 3e9, mu, h) for mu in (-0.6, 0.0, 0.37) for h in ("plane stress", "plane strain")]
@@ -20,10 +19,9 @@ def rotated(width, height, angle, origin):
 @pytest.mark.parametrize("material", MATERIALS)
 def test_matrices_agree_with_high_precision(material):
     model = TwoBlockModel(Block(PENTAGON, material), Contact(2e9, 0.7e9), 5e6, base=1, top=3)
-    with mp.workdps(block_in_digits.DIGITS):
-        M, K, F = block_in_digits.matrices(model)
-    for got, exact in ((model.mass, M), (model.stiffness, K), (model.force[:, None], F)):
-        exact = np.array(exact.tolist(), dtype=float)
+    exact = block_in_digits.locked_matrices(model, Scheme(0.5, 1.0, 1.0, 1e-3))
+    for got, digits in zip((model.mass, model.stiffness, model.force), exact, strict=True):
+        exact = digits.astype(float)
         np.testing.assert_allclose(got, exact, rtol=0, atol=1e-14 * np.abs(exact).max())
 
 

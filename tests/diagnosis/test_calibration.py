@@ -1,4 +1,4 @@
-"""Histories of random origin: the table of the documentation, and sixteen others that the long tests judge."""
+"""Histories of random origin: the table of the documentation, and eight others that the long tests judge."""
 
 from __future__ import annotations
 
@@ -10,13 +10,13 @@ from oracles import calibration
 
 @pytest.mark.long
 def test_a_named_cause_is_right_and_most_are_named():
-    """99 of 100 by the table of a thousand; were one in four wrong, none of ten would be so once in eighteen."""
-    others = calibration.judge(16, first=5000)  # than those of the table
+    """99 of 100 by the table of a thousand; were one in three wrong, none of eight would be so once in 25 times."""
+    others = calibration.judge(8, first=5000)  # than those of the table
     wrong = [one for one in others if calibration.verdict(one) == "wrong"]
     assert wrong == []
     assert {one.maker for one in others} == {"plain", "elements", "modes"}
     named = [one for one in others if calibration.verdict(one) == "right"]
-    assert len(named) >= 10  # silence alone would never be wrong
+    assert len(named) >= 5  # silence alone would never be wrong
 
 
 def test_the_counts_of_the_documentation_say_that_99_of_100_are_right():

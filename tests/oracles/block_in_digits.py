@@ -8,7 +8,6 @@ Matrices are those of mpmath; steps are made with arrays of `decimal`'s numbers,
 
 from decimal import Context, Decimal, localcontext
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 from mpmath import mp, mpf
@@ -37,42 +36,23 @@ def displacement_rows(x, y):
     return [1, 0, -y, x, 0, y / 2], [0, 1, x, 0, y, x / 2]
 
 
-def matrices(model):
-    """Return M, K and F, as matrices of mpmath."""
-    block, material, contact = model.block, model.block.material, model.contact
-    points = [(mpf(float(x)), mpf(float(y))) for x, y in block.corners]
-    s, x0, y0, s1, s2, s3 = integrals(points)
+def matrices(block):
+    """Return M and K of a block alone, as matrices of mpmath."""
+    material = block.material
+    s, _, _, s1, s2, s3 = integrals([(mpf(float(x)), mpf(float(y))) for x, y in block.corners])
     rho, E, mu = mpf(material.density), mpf(material.young), mpf(material.poisson)
     M = mp.zeros(6)
     M[0, 0] = M[1, 1] = s
     M[2, 2], M[3, 3], M[4, 4], M[5, 5] = s1 + s2, s1, s2, (s1 + s2) / 4
     for i, j, value in ((2, 3, -s3), (2, 4, s3), (2, 5, (s1 - s2) / 2), (3, 5, s3 / 2), (4, 5, s3 / 2)):
         M[i, j] = M[j, i] = value
-    M *= rho
     G = E / (2 * (1 + mu))
     lam = E * mu / (1 - mu**2) if material.hypothesis == "plane stress" else E * mu / ((1 + mu) * (1 - 2 * mu))
     K = mp.zeros(6)
     K[3, 3] = K[4, 4] = s * (lam + 2 * G)
     K[3, 4] = K[4, 3] = s * lam
     K[5, 5] = s * G
-    centred = [(x - x0, y - y0) for x, y in points]
-    ends = [centred[(model.base + i) % len(points)] for i in (0, 1)]
-    tx, ty = ends[1][0] - ends[0][0], ends[1][1] - ends[0][1]
-    a = mp.sqrt(tx**2 + ty**2)
-    tx, ty = tx / a, ty / a
-    pn, ps = mpf(contact.normal), mpf(contact.shear)
-    for x, y in ends:
-        u, v = displacement_rows(x, y)
-        normal = [tx * b - ty * c for b, c in zip(v, u, strict=True)]
-        shear = [tx * b + ty * c for b, c in zip(u, v, strict=True)]
-        for i in range(6):
-            for j in range(6):
-                K[i, j] += pn * normal[i] * normal[j] + ps * shear[i] * shear[j]
-    (x1, y1), (x2, y2) = (centred[(model.top + i) % len(points)] for i in (0, 1))
-    length = mp.sqrt((x2 - x1) ** 2 + (y2 - y1) ** 2)
-    row = displacement_rows((x1 + x2) / 2, (y1 + y2) / 2)[1]
-    F = mp.matrix([-mpf(model.pressure) * length * t for t in row])
-    return M, K, F
+    return rho * M, K
 
 
 def decimal(x):
@@ -123,14 +103,7 @@ class OpeningBlock:
     """The model and the scheme in numbers of many digits."""
 
     def __init__(self, model, scheme):
-        locked = SimpleNamespace(
-            block=model.block,
-            contact=SimpleNamespace(normal=0, shear=0),
-            base=model.base,
-            top=model.top,
-            pressure=model.pressure,
-        )
-        M, K0, _ = matrices(locked)
+        M, K0 = matrices(model.block)
         self.M, self.K0, self.inverse = array(M), array(K0), array(M**-1)
         self.alpha, self.delta, self.gg, self.dt = map(exact, (scheme.alpha, scheme.delta, scheme.gg, scheme.step))
         points = [(mpf(float(x)), mpf(float(y))) for x, y in model.block.corners]
@@ -279,6 +252,18 @@ class LockedBlock(OpeningBlock):
         D1, N, T, self.r, self.closed = self._accepted(D1, [row @ D1 for row in self.normal], both, shares)
         self._moved(D1, N, T)
         return D1[1], N, T
+
+
+def locked_matrices(model, scheme):
+    """Return M, K with the springs of both corners, and F."""
+    with mp.workdps(DIGITS), localcontext(Context(prec=DIGITS)):
+        block = LockedBlock(model, scheme)
+        springs = zip(block.normal, block.shear, strict=True)
+        return (
+            block.M,
+            block.K0 + sum(block.p * np.outer(n, n) + block.ps * np.outer(s, s) for n, s in springs),
+            block.F,
+        )
 
 
 def history(model, scheme, steps, kind=OpeningBlock):

@@ -1,14 +1,12 @@
-"""Steady vibrations by stepping: plain Newmark until transients are gone, then a least-squares fit.
+"""Steps of plain Newmark as operators of natural modes, and the steady vibrations that they keep up.
 
-Matrices are stepped in their natural modes, where the rounding of a slow motion does not reach a stiff one.
+In modes the rounding of a slow motion does not reach a stiff one.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import eigh
-
-GONE, MOST = 1e-14, 20_000  # of the transients; steps
 
 
 @dataclass(frozen=True)
@@ -38,35 +36,13 @@ def operators(rule, squares):
     return T, np.array([rule.alpha, rule.delta, 1.0]) / left[:, None]
 
 
-def steady_modes(rule, squares, w):
-    """Return the amplitudes of modes under unit loads cos(wt); None where transients last too long."""
-    T, push = operators(rule, squares)
-    radius = float(np.max(np.abs(np.linalg.eigvals(T))))
-    if radius >= 1 or np.log(GONE) / np.log(radius) > MOST:
-        return None
-    steps = int(np.log(GONE) / np.log(radius)) + 50
-    push, state = rule.step**2 * push, np.zeros((len(squares), 3))
-    fitted = int(4 * np.pi / (w * rule.step)) + 12
-    seen = np.empty((fitted, len(squares)))
-    for i in range(1, steps + fitted + 1):
-        state = np.einsum("nij,nj->ni", T, state) + push * np.cos(w * rule.step * i)
-        if i > steps:
-            seen[i - steps - 1] = state[:, 0]
-    return fit(seen, w, rule.step * np.arange(steps + 1.0, steps + fitted + 1))
-
-
 def amplitudes(rule, M, K, F, rows, w):
-    """Return the amplitudes of some rows of D under F cos(wt), by steps; None where transients last too long."""
+    """Return the amplitudes of some rows of D under F cos(wt): what steps T y + push F turn on by e^{i w dt}."""
     squares, shapes = eigh(K, M)
-    steady = steady_modes(rule, squares, w)
-    return None if steady is None else np.asarray((rows @ shapes) @ ((shapes.T @ F) * steady))
-
-
-def fit(seen, w, times):
-    """Return c of Re(c e^{iwt}) + shift by least squares, one for each column: a dashpot alone holds no place."""
-    wave = np.column_stack([np.cos(w * times), -np.sin(w * times), np.ones_like(times)])
-    real, imaginary, _ = np.linalg.lstsq(wave, seen, rcond=None)[0]
-    return np.asarray(real + 1j * imaginary)
+    T, push = operators(rule, squares)
+    turn = np.exp(1j * w * rule.step)
+    steady = np.linalg.solve(turn * np.eye(3) - T, turn * rule.step**2 * push[:, :, None])[:, 0, 0]
+    return (rows @ shapes) @ ((shapes.T @ F) * steady)
 
 
 def two_unknowns(block, stiffness):

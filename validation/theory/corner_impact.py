@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from validation.runs.history import Array
 
@@ -176,6 +175,8 @@ def on_springs(body: FallingRectangle, p: float, ps: float, mu: float | None, un
 
     Every mode (sticks, slips either way) is integrated up to the event that ends it, by a method of order 8.
     """
+    from scipy.integrate import solve_ivp
+
     time, number = body.landing(until)
     start = body.flown(time)
     rough = mu is not None and ps > 0

@@ -8,7 +8,6 @@ from time import perf_counter
 from typing import Any
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from validation.models.plane.boxes import LANDS_BY, Box, BoxesOnGround, boxes_of
 from validation.models.plane.history import POSE
@@ -340,6 +339,8 @@ def _about_corner(scene: Scene, ground: BoxesOnGround, box: Box) -> Motion:
     _unless(ground.friction_coefficient <= needed, slips)
 
     def motion(time: Array) -> dict[str, Array]:
+        from scipy.integrate import solve_ivp
+
         radius = math.hypot(box.width, box.height) / 2
         sign = math.copysign(1.0, box.spin)
         solution = solve_ivp(
