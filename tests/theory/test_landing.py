@@ -79,7 +79,7 @@ def integrated(k):
         closed = not closed
 
 
-@pytest.mark.parametrize("ratio", [0.37, 41.0])
+@pytest.mark.parametrize("ratio", [pytest.param(0.37, marks=pytest.mark.long), 41.0])
 def test_the_own_landing_is_that_of_its_equations(ratio):
     own = landing.own_landing(2 * ratio)
     restitution, first, depth, duration, contacts = integrated(2 * ratio)
