@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.gates.gate import rounded
 from validation.metrics import columns, contact, growth, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
@@ -149,6 +148,12 @@ def test_pairs_by_hand():
     size = math.sqrt(sum((VALUES + 0.5) ** 2))
     assert pair("displacement.l2", first, second) == pytest.approx(math.sqrt(7 * 0.25) / size)
     assert pair("displacement.max", first, second) == pytest.approx(0.5 / 4.0)
+    for static, error in ((-3.0, 0.125), (-5.0, 0.1)):
+        assert pair("displacement.scaled", first, second, {"displacement.static": static}) == pytest.approx(error)
+    assert pair("displacement.scaled", first, second, {}) == NOT_REPORTED
+    assert pair("pressure.scaled", first, second, {"pressure.static": 1.0}) == NOT_REPORTED
+    longer = History(np.append(TIME, 2.0), {"displacement": np.append(VALUES, 90.0)})
+    assert pair("displacement.max", longer, second) == pair("displacement.max", first, second)
 
 
 def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
@@ -165,10 +170,6 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
     (only,) = poles(signal - 3.0, 0.5)
     assert only.damping == pytest.approx(-np.log(0.97) / abs(np.log(0.97) + 0.4j), rel=1e-8)
-
-
-def test_edges_of_bands_are_rounded_and_margins_told():
-    assert [rounded(value) for value in (3e-13, -3e-13, 123456.0, 1.2345e-10)] == [1e-12, -1e-12, 123500.0, 1.2e-10]
 
 
 def test_limits_and_horizons_are_those_of_what_is_asked(made):

@@ -144,6 +144,8 @@ def test_a_block_slides_to_a_ledge_and_tips_about_it():
     assert slide.turn(tips + 0.35) == pytest.approx(done.y[2, -1], rel=1e-8) and slide.turn(tips) == 0.0
     with pytest.raises(ValueError, match=r"^time: "):
         replace(slide, speed=1.62).turn(3.0)
+    slow = replace(slide, speed=1.62)  # 0.35 m/s over the ledge
+    assert 0 < slow.turn(slow.tips[0] + 0.01) < 0.01
 
 
 # ---- a truss, wedges -------------------------------------------------------------------------------------------------
