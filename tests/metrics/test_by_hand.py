@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.metrics import columns, contact, growth, rotation
+from validation.metrics import columns, contact, growth, modes, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
 from validation.metrics.poles import LARGEST_MISFIT, poles, swing
@@ -14,6 +14,7 @@ from validation.metrics.transform import spectrum
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
 from validation.runs.contact import ContactRecord, Rebound
 from validation.runs.history import History
+from validation.runs.modes import Mode
 from validation.runs.run import Outcome
 
 TIME = 0.25 * np.arange(1, 8)
@@ -177,6 +178,23 @@ def test_limits_and_horizons_are_those_of_what_is_asked(made):
     shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
     run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
     assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
+
+
+def test_numbers_of_modes_by_hand(made):
+    roots = (0.6 + 0.3j, 0.6 - 0.3j), (-0.9 + 0j, 0.4 + 0j)
+    of = replace(
+        made, modes=(Mode(9.0, 0.1, roots[0], 0.3), Mode(4.0, 0.7, roots[1], -0.9), Mode(6.5, 0.2, roots[0], 0.5))
+    )
+    assert [modes.natural(of, number) * 2 * math.pi for number in (1, 2, 3)] == pytest.approx([4.0, 6.5, 9.0])
+    assert (
+        modes.natural(of, 4) == NOT_REPORTED == modes.first_axial(made, "frequency") == modes.contact(made, "damping")
+    )
+    size = abs(np.log(0.6 + 0.3j))
+    assert modes.first_axial(of, "numerical_frequency") == pytest.approx(size / 0.25, rel=1e-13)
+    assert modes.first_axial(of, "damping") == pytest.approx(-math.log(math.hypot(0.6, 0.3)) / size, rel=1e-13)
+    assert modes.first_axial(of, "frequency") == 9.0
+    assert modes.contact(of, "least_root") == -0.9 and modes.contact(of, "damping") == UNDEFINED
+    assert modes.contact(of, "spectral_radius") == pytest.approx(0.9)
 
 
 def test_what_only_turns_has_no_centre_of_its_own():
