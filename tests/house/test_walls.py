@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from conftest import typed
 from oracles.answers import answered
 
 from validation.runs.extras import EXTRA_OF, PROJECTS
@@ -174,18 +175,31 @@ def test_a_plain_install_judges_and_compares(tmp_path):
     assert written == {"answer", "history.csv", "pentagon.csv", "results", "rows.csv"}
 
 
-@pytest.mark.parametrize("count", [3, pytest.param(99, marks=pytest.mark.long)])
-def test_what_needs_an_extra_names_it_in_one_line(count, tmp_path):
-    """One command of each extra is short, the others compute first."""
+def check_named(extra, status, errors):
+    """A command ended as bad input, by one line that names the extra."""
+    assert status == 2, errors
+    (line,) = (line for line in errors.splitlines() if "warning" not in line)
+    assert line.startswith("error: ")
+    assert line.endswith(f"'dda-validation[{extra}]'")
+
+
+@pytest.mark.long
+def test_what_needs_an_extra_names_it_in_one_line(tmp_path):
     (tmp_path / "history.csv").write_text("time,displacement\n0.01,-0.01\n")
-    if count > 3:
-        answered(tmp_path / "answer", 1.001, ("locked",))
-    extras, lines = zip(*(row.split(": ") for row in HEAVY.strip().splitlines()[:count]), strict=True)
+    answered(tmp_path / "answer", 1.001, ("locked",))
+    extras, lines = zip(*(row.split(": ") for row in HEAVY.strip().splitlines()), strict=True)
     for extra, (status, _, errors) in zip(extras, ended(tmp_path, lines), strict=True):
-        assert status == 2, errors
-        (line,) = (line for line in errors.splitlines() if "warning" not in line)
-        assert line.startswith("error: ")
-        assert line.endswith(f"'dda-validation[{extra}]'")
+        check_named(extra, status, errors)
+
+
+def test_an_extra_that_is_absent_is_named_before_anything_is_imported(tmp_path, monkeypatch):
+    monkeypatch.setattr("validation.runs.extras.is_installed", lambda library: False)
+    (tmp_path / "history.csv").write_text("time,displacement\n0.01,-0.01\n")
+    for row in HEAVY.strip().splitlines():
+        extra, line = row.split(": ")
+        if line.startswith(("report", "solve", "export")):
+            done = typed(*line.split(), cwd=tmp_path)
+            check_named(extra, done.returncode, done.stderr)
 
 
 def test_extras_bring_what_they_say_and_a_plain_install_brings_none_of_it():

@@ -1,8 +1,11 @@
 """Outlines of blocks, records and loads as a scene reads them."""
 
+import numpy as np
 import pytest
 
+from validation.errors import InputError
 from validation.scenes.outline import check_polygon
+from validation.scenes.record import Record, direction
 
 PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
 
@@ -19,3 +22,17 @@ PENTAGON = [[0.0, 0.0], [3.0, 0.0], [4.0, 2.0], [2.0, 3.0], [-1.0, 2.0]]
 )
 def test_outlines_that_are_sound(vertices):
     check_polygon(vertices, 0, 2)
+
+
+def test_a_base_moves_along_one_line_towards_x_or_towards_y_where_that_is_steeper():
+    for x, y, line in (
+        ([0.0, -0.3, 0.7], [0.0, 0.0, 0.0], (1.0, 0.0)),
+        ([0.0, 0.0, 0.0], [0.0, -0.2, -0.5], (0.0, 1.0)),
+        ([0.0, 0.3, -0.9], [0.0, -0.4, 1.2], (-0.6, 0.8)),
+        ([0.0, -8e-9, -4e-9], [0.0, -6e-9, -3e-9], (0.8, 0.6)),
+    ):
+        assert direction(Record(np.arange(3.0), np.array(x), np.array(y))) == pytest.approx(line, abs=1e-12)
+    for x, y in (([0.0] * 3, [0.0] * 3), ([0.0, 1.0, 2.0], [0.0, 1.0, 2.01])):
+        with pytest.raises(InputError) as error:
+            direction(Record(np.arange(3.0), np.array(x), np.array(y)))
+        assert error.value.field == "load.base_motion"
