@@ -164,6 +164,7 @@ def test_the_report_is_one_page_and_a_remedy_reads_the_history(tmp_path):
     assert imread(tmp_path / "f.png").shape[:2] == (1080, 1920)  # a slide
 
 
+@pytest.mark.long
 def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch):
     """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
     s = scene(time__steps=20).with_values({"fem.elements": 1, "fem.degree": 1, "block.poisson": 0.25})
