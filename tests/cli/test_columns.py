@@ -22,7 +22,7 @@ velocity = -1.0
 
 [time]
 step = 1.0e-3
-steps = 10
+steps = 4
 
 [run]
 solvers = ["dda"]

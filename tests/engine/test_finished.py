@@ -2,11 +2,13 @@
 
 import re
 
+import numpy as np
 import pytest
 from oracles.made_cases import made_row
 
 from validation.engine.finished import Derived, Finished
 from validation.engine.judge import evaluate
+from validation.engine.run import _derived_record
 from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
@@ -22,3 +24,11 @@ def test_what_is_derived_ends_as_the_run_that_it_needs(ended, status, tmp_path):
     finished = Finished(rows, Results(tmp_path), {("scene", "name"): recipe})
     verdict = evaluate(Gate("scene", ("name",), "first", 0.0, 2.0, "why"), finished)
     assert verdict.status is status and {"dda", "scene"} <= {*re.findall(r"\w+", verdict.why)}
+
+
+def test_what_is_derived_is_kept_as_plain_numbers(tmp_path):
+    recipe = Derived("scene", "name", (("scene", "dda"),), lambda finished: {"first": np.float64(0.5), "word": "none"})
+    made = Finished({("scene", "dda"): made_row("dda", {}, "scene")}, Results(tmp_path), {("scene", "name"): recipe})
+    record = _derived_record(made, "scene", "name")
+    assert record == {"scene": "scene", "name": "name", "metrics": {"first": 0.5, "word": "none"}}
+    assert type(record["metrics"]["first"]) is float

@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from conftest import typed
 from oracles.answers import answered
 
 from validation.runs.extras import EXTRA_OF, PROJECTS
@@ -32,7 +33,7 @@ except SystemExit:
     "dda": "import dda",
     "scene of dda": """
 from validation import load_scene, solve
-solve(load_scene("figures-3-4").with_values({"time.step": 0.002}), "dda")
+solve(load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4}), "dda")
 """,
     "bar": "import fem_reference.exact.bar",
 }
@@ -140,6 +141,8 @@ advise step figures-3-4 --set time.step=0.01 --set time.steps=5 --damping 0.05
 # What it does not, after the extra that does.
 HEAVY = """
 report: report --results results
+mesh: solve pentagon --solver fem
+exact: solve figures-3-4 --set time.step=0.01 --solver block-events
 report: report --results results --site site
 report: report --results results --figures figures
 report: compare figures-3-4 history.csv --out page.pdf
@@ -147,17 +150,14 @@ report: compare figures-3-4 history.csv --figure figure.svg
 report: advise response figures-3-4 --set time.step=0.01 --figure response.svg
 report: judge answer --out page
 report: judge answer --out page.pdf
-exact: solve figures-3-4 --set time.step=0.01 --solver block-events
 exact: solve figures-3-4 --set time.step=0.01 --solver dda-60
 exact: export-pack pack
-mesh: solve pentagon --solver fem
 mesh: solve figures-3-4 --set time.step=0.01 --solver fem --fields fields.vtu
 """
 
 
-def ended(place, lines, answers):
-    """Return status, output and errors of command lines without the libraries of the extras, beside some answers."""
-    answered(place / "answer", 1.001, answers)
+def ended(place, lines):
+    """Return status, output and errors of command lines without the libraries of the extras."""
     command = [sys.executable, "-c", WITHOUT_EXTRAS, json.dumps([line.split() for line in lines])]
     done = subprocess.run(command, capture_output=True, text=True, check=True, cwd=place)
     return json.loads(done.stdout.splitlines()[-1])
@@ -165,8 +165,9 @@ def ended(place, lines, answers):
 
 @pytest.mark.long
 def test_a_plain_install_judges_and_compares(tmp_path):
+    answered(tmp_path / "answer", 1.001, ("rocking", "column"))
     lines = LIGHT.strip().splitlines()
-    for line, (status, output, errors) in zip(lines, ended(tmp_path, lines, ("rocking", "column")), strict=True):
+    for line, (status, output, errors) in zip(lines, ended(tmp_path, lines), strict=True):
         assert status == 0, (line, errors)
         assert "Traceback" not in output + errors
         assert ("meshio" in output) == line.startswith("compare pentagon")
@@ -174,14 +175,31 @@ def test_a_plain_install_judges_and_compares(tmp_path):
     assert written == {"answer", "history.csv", "pentagon.csv", "results", "rows.csv"}
 
 
+def check_named(extra, status, errors):
+    """A command ended as bad input, by one line that names the extra."""
+    assert status == 2, errors
+    (line,) = (line for line in errors.splitlines() if "warning" not in line)
+    assert line.startswith("error: ")
+    assert line.endswith(f"'dda-validation[{extra}]'")
+
+
+@pytest.mark.long
 def test_what_needs_an_extra_names_it_in_one_line(tmp_path):
     (tmp_path / "history.csv").write_text("time,displacement\n0.01,-0.01\n")
+    answered(tmp_path / "answer", 1.001, ("locked",))
     extras, lines = zip(*(row.split(": ") for row in HEAVY.strip().splitlines()), strict=True)
-    for extra, (status, _, errors) in zip(extras, ended(tmp_path, lines, ("locked",)), strict=True):
-        assert status == 2, errors
-        (line,) = (line for line in errors.splitlines() if "warning" not in line)
-        assert line.startswith("error: ")
-        assert line.endswith(f"'dda-validation[{extra}]'")
+    for extra, (status, _, errors) in zip(extras, ended(tmp_path, lines), strict=True):
+        check_named(extra, status, errors)
+
+
+def test_an_extra_that_is_absent_is_named_before_anything_is_imported(tmp_path, monkeypatch):
+    monkeypatch.setattr("validation.runs.extras.is_installed", lambda library: False)
+    (tmp_path / "history.csv").write_text("time,displacement\n0.01,-0.01\n")
+    for row in HEAVY.strip().splitlines():
+        extra, line = row.split(": ")
+        if line.startswith(("report", "solve", "export")):
+            done = typed(*line.split(), cwd=tmp_path)
+            check_named(extra, done.returncode, done.stderr)
 
 
 def test_extras_bring_what_they_say_and_a_plain_install_brings_none_of_it():

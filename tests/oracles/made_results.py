@@ -182,7 +182,8 @@ def figure_text(figure):
     lines = []
     for axes in figure.axes:
         place = (25.4 * np.outer([1, 1], figure.get_size_inches())).ravel() * axes.get_position().bounds
-        lines.append(f"axes at {_short(place)} mm, x {_axis(axes.xaxis)}, y {_axis(axes.yaxis)}")
+        off = "" if axes.axison else " off"
+        lines.append(f"axes{off} at {_short(place)} mm, x {_axis(axes.xaxis)}, y {_axis(axes.yaxis)}")
         lines += [f"  title {text!r}" for text in (axes.get_title(loc="left"), axes.get_title()) if text]
         leaders = [line for line in axes.lines if _kind(axes, line) == "in axes"]  # from a line to its name
         lines += [f"  {len(leaders)} leaders"] * bool(leaders)
@@ -191,17 +192,19 @@ def figure_text(figure):
             shown = f"{to_hex(line.get_color())} {line.get_linestyle()} {line.get_linewidth():g}"
             dots = f" {line.get_marker()} {line.get_markersize():g} {to_hex(line.get_markerfacecolor())}"
             ends = _short([*x[:1], *x[-1:], *dict.fromkeys([*y[:1], *y[-1:], *_range(y)])])
-            lines.append(f"  line {shown}{dots * (line.get_marker() != 'None')}: {x.size} at {ends}")
+            between = f" about {_short([_centre(x), _centre(y)])}" * (x.size > 2)
+            lines.append(f"  line {shown}{dots * (line.get_marker() != 'None')}: {x.size} at {ends}{between}")
         for patch in axes.patches:
             corners = patch.get_path().vertices
-            lines.append(f"  patch {to_hex(patch.get_facecolor())}: {len(corners)} within {_short(_range(corners))}")
+            within = f"{_short(_range(corners))} about {_short(map(_centre, corners.T))}"
+            lines.append(f"  patch {to_hex(patch.get_facecolor())}: {len(corners)} within {within}")
         for collection in axes.collections:
             shade = collection.get_array()
             values = [] if shade is None else _range(np.asarray(shade))
             kind = type(collection).__name__.replace("FillBetweenPoly", "Poly")  # its name since matplotlib 3.10
             lines.append(f"  {kind} {_short(values)}, alpha {collection.get_alpha()}")
         for text in axes.texts:
-            place = f"{_kind(axes, text)} {_short(text.get_position())}"
+            place = f"{_kind(axes, text)} {_short([*text.get_position(), *getattr(text, 'xy', ())])}"
             lines.append(f"  text {text.get_text()!r} {place} {to_hex(text.get_color())}")
     return "\n".join(lines)
 
@@ -214,13 +217,25 @@ def _axis(axis):
     ticks = axis.get_major_locator()()
     low, high = sorted(axis.get_view_interval())
     inside = [tick for tick in ticks if low <= tick <= high]
-    return f"{axis.get_label_text()!r} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}"
+    words = list(getattr(axis.get_major_formatter(), "seq", ()))
+    sides = [label.get_horizontalalignment()[0] for label in axis.get_ticklabels()[:: len(words) - 1 or 1] if words]
+    hidden = axis.get_tick_params()
+    unlabelled = "" if hidden.get("labelleft", hidden.get("labelbottom")) else " unlabelled"
+    named = f" as {words} {''.join(sides)}" * bool(words) + unlabelled
+    return f"{axis.get_label_text()!r} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}{named}"
 
 
 def _range(values):
     finite = np.asarray(values, dtype=float)
     finite = finite[np.isfinite(finite)]
     return [float(finite.min()), float(finite.max())] if finite.size else []
+
+
+def _centre(values):
+    """Return a mean in which every value has a weight of its own."""
+    finite = np.asarray(values, dtype=float)
+    finite = np.clip(finite[np.isfinite(finite)], -1e9, 1e9)
+    return np.average(finite, weights=1.3 + np.arange(finite.size)) if finite.size else 0.0
 
 
 def _short(values):

@@ -120,21 +120,23 @@ def test_no_page_asks_a_network_or_names_a_place_and_titles_of_users_stay_text(s
 
 
 def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as_a_whole(
-    site, results, tmp_path, monkeypatch
+    results, tmp_path, monkeypatch
 ):
+    """Pages without figures, whose bytes have a test of their own."""
     out = tmp_path / "out"
     out.mkdir()
     (out / pages.MARK).write_text("an earlier site")
     (out / "scene-old.html").write_text("gone")
-    monkeypatch.setattr(histories, "save", written_empty)
     with monkeypatch.context() as patch:
         patch.setattr(pages, "scene_page", lambda *_: (_ for _ in ()).throw(OSError(28, "full")))
         with pytest.raises(InputError, match="full"):
             pages.build(results, out)
     assert set(texts(out)) == {pages.MARK, "scene-old.html"}
-    pages.build(results, out, docs="..")
-    assert texts(out) == texts(site)
-    assert [path.name for path in tmp_path.iterdir()] == ["out"]
+    monkeypatch.setattr(pages, "scene_page", lambda group, _: [Paragraph(group.title)])
+    for place in (out, tmp_path / "other"):
+        pages.build(results, place)
+    assert texts(out) == texts(tmp_path / "other") and "scene-passing.html" in texts(out)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]
 
 
 def test_bad_input_is_one_line(tmp_path):

@@ -110,7 +110,16 @@ parts = [
     { text = "said", when = ["nowhere"] },
     { maps = "steps" },
     { maps = "nothing" },
+    { picture = "scenes" },
+    { picture = "nothing" },
 ]
+[picture.scenes]
+file = "scenes.svg"
+caption = "As drawn."
+height = 31.0
+scenes = { "figures-3-4*" = "First", "nowhere" = "Never" }
+[picture.nothing]
+scenes = { "nowhere" = "Never" }
 [text]
 said = "At {coarse} ms: {cases}."
 missing = "There is {absent}."

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,7 +15,8 @@ from validation.report.blocks import Blocks, Callout, Heading, Link, Links, Para
 from validation.report.book import chapter_blocks, ordered_studies, unread_studies
 from validation.report.chapters.data import CaseGroup, case_groups
 from validation.report.chapters.gates import gate_list, not_passed, verdict_line
-from validation.report.chapters.scene import scene_page
+from validation.report.chapters.registry import chapter_of
+from validation.report.chapters.scene import scene_chapter, scene_page
 from validation.report.front import DECISIONS as THREE
 from validation.report.front import front_chapter
 from validation.report.names import Readable
@@ -117,11 +119,14 @@ class Site:
         """Write the chapter of a study, and the pages of the scenes that no study before it has."""
         page = self._study_pages[study]
         groups = case_groups(self._results, self._results.whole(study, histories=True))
-        for group in groups:
-            if group.name not in self._scenes:
-                self._scenes[group.name] = self._write_scene(group)
+        drawn = {group.name: self._write_scene(group) for group in groups if group.name not in self._scenes}
         scenes = tuple(self._scenes[group.name] for group in groups)
-        chapter = chapter_blocks(self._results, study, self._directory(page))
+        if len(groups) == len(drawn) == 1 and chapter_of(study) is scene_chapter:
+            # Such a chapter is the page of its scene, whose figures are not drawn twice.
+            (chapter,) = drawn.values()
+            shutil.copytree(self._figures(scenes[0].target), self._figures(page))
+        else:
+            chapter = chapter_blocks(self._results, study, self._directory(page))
         gates = gate_list([verdict for verdict in self._verdicts if verdict["study"] == study])
         self._write(
             page,
@@ -133,22 +138,28 @@ class Site:
         purpose = self._manifests[study].get("purpose", "")
         self._studies.append(Link(page, self._title(study), purpose, picture, scenes))
 
-    def _write_scene(self, group: CaseGroup) -> Link:
+    def _write_scene(self, group: CaseGroup) -> Blocks:
+        """Write the page of a scene and return what it says, without its gates."""
         page = self._scene_pages[group.name]
         verdicts = [verdict for verdict in self._verdicts if scene_of(verdict["scene"]) == group.name]
         blocks = scene_page(group, self._directory(page))
         self._write(page, f"{group.name}: {group.title}", [*blocks, *gate_list(verdicts)])
-        return Link(page, group.title, group.name, picture_of(page, blocks))
+        self._scenes[group.name] = Link(page, group.title, group.name, picture_of(page, blocks))
+        return blocks
+
+    def _figures(self, page: str) -> Path:
+        """Return the directory of a page's figures."""
+        return self._place / page.removesuffix(".html")
 
     def _directory(self, page: str) -> Path:
         """Make the directory of a page's figures."""
-        directory = self._place / page.removesuffix(".html")
+        directory = self._figures(page)
         directory.mkdir()
         return directory
 
     def _write_decisions(self) -> Blocks:
         """Write the page of the three decisions and return what leads there; nothing where no study has any."""
-        front = front_chapter(self._results, self.studies, self._place / DECISIONS.removesuffix(".html"))
+        front = front_chapter(self._results, self.studies, self._figures(DECISIONS))
         if front is None:
             return []
         front.directory.mkdir()

@@ -1,0 +1,63 @@
+"""``verify`` and the options of the plug-in: what is handed on, and the status that follows."""
+
+import json
+import os
+from types import SimpleNamespace
+
+import pytest
+from conftest import typed
+
+from validation.entry import plugin
+from validation.gates.gate import Gate, Status, Verdict
+from validation.suite import matrix
+
+
+def verdict(status):
+    return Verdict(Gate("small", ("dda", "bar"), "pressure.l2", 0.0, 0.5, "so"), 0.25, status)
+
+
+@pytest.mark.parametrize(
+    ("solver", "statuses", "code"),
+    [
+        ("dda", [Status.PASS, Status.NOT_RUN], 0),
+        ("dda", [Status.PASS, Status.FAIL], 1),
+        ("bar", [Status.NOT_RUN], 1),
+        ("bar", [], 1),
+    ],
+)
+def test_what_verifies_a_phenomenon_is_judged_beside_the_results_of_dda_alone(
+    solver, statuses, code, tmp_path, monkeypatch
+):
+    calls = []
+
+    def judged(shown, results, *more):
+        calls.append((shown.name, results.directory == tmp_path / "r", *more[:2]))
+        return [verdict(status) for status in statuses], []
+
+    monkeypatch.setattr(matrix, "phenomenon", lambda name: SimpleNamespace(name=name, study="core"))
+    monkeypatch.setattr(matrix, "verify", judged)
+    words = ("verify", "ledge", "--solver", solver, "--results", tmp_path / "r", "--jobs", "3", "--json")
+    done = typed(*words)
+    assert (done.returncode, calls) == (code, [("ledge", solver == "dda", solver, 3)]), done.stderr
+    assert [one["verdict"] for one in json.loads(done.stdout)] == [str(status) for status in statuses]
+
+
+def test_a_solver_of_a_user_has_the_limit_of_time_that_is_stated(monkeypatch):
+    options = {}
+    group = SimpleNamespace(addoption=lambda name, **rest: options.update({name: rest}))
+    plugin.pytest_addoption(SimpleNamespace(getgroup=lambda *words: group))
+    assert options["--dda-timeout"]["default"] == 60.0
+    monkeypatch.setenv("DDA_VALIDATE_TIMEOUT", "1")
+    marks = []
+    for user, seconds in (("bar", 7.5), ("no such solver", 8.0)):
+        values = {"--dda-solver": user, "--dda-timeout": seconds}
+        config = SimpleNamespace(
+            getoption=lambda name, default=None, values=values: values[name],
+            addinivalue_line=lambda name, line: marks.append(name),
+        )
+        if user == "bar":
+            plugin.pytest_configure(config)
+        else:
+            with pytest.raises(pytest.UsageError):
+                plugin.pytest_configure(config)
+    assert os.environ["DDA_VALIDATE_TIMEOUT"] == "7.5" and marks == ["markers"] * 2
