@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import tomllib
+from collections import Counter
 from contextlib import redirect_stderr, redirect_stdout
 from importlib.machinery import SourceFileLoader
 from pathlib import Path
@@ -64,12 +65,35 @@ def pytest_rest_while_collecting():
         gc.enable()
 
 
+LONGEST = (  # files whose long tests take a minute and more: two workers that begin with them end together
+    "test_gates.py",
+    "diagnosis/test_calibration.py",
+    "house/test_docs.py",
+    "problems/test_cause.py",
+    "studies/test_kills.py",
+    "studies/test_slopes.py",
+    "report/test_readable.py",
+    "diagnosis/test_slopes.py",
+    "solvers/test_fenicsx.py",
+)
+
+
+def pytest_configure(config):
+    """Let pytest-xdist hand files out as they are sorted below, not by the number of their tests."""
+    config.option.loadscopereorder = False
+
+
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
-    """Mark all accuracy gates as long; `studies/test_gates_in_short.py` judges those of first cases."""
+    """Mark all accuracy gates as long, for `studies/test_gates_in_short.py` judges those of first cases; sort files."""
+    of_files = Counter(item.path for item in items)
+    order = {}
     for item in items:
         if item.get_closest_marker("validation"):
             item.add_marker(pytest.mark.long)
+        is_long = [item.path.as_posix().endswith(f"/{name}") for name in LONGEST]
+        order[item] = (*is_long, True).index(True), -of_files[item.path]
+    items.sort(key=order.get)
 
 
 def pytest_collection_finish():

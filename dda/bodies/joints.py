@@ -194,12 +194,22 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
     edges = [(i, block.edge(e)) for i, block in enumerate(blocks) for e in range(len(block.corners))]
     owners = np.array([owner for owner, _ in edges])
     ends = np.array([edge for _, edge in edges])
-    slack = _SAME_PLACE * float(np.max(np.ptp(ends.reshape(-1, 2), axis=0)))
+    extent = np.ptp(ends.reshape(-1, 2), axis=0)
+    slack = _SAME_PLACE * float(np.max(extent))
+    lows = ends.min(axis=1) - slack
+    highs = ends.max(axis=1) + slack
+    sweep = int(np.argmax(extent))  # along the longer side: only edges beside one another there can share anything
+    order = np.argsort(lows[:, sweep], kind="stable")
+    begins = lows[order, sweep]
+    longest = float(np.max(highs[:, sweep] - lows[:, sweep]))
     joints = []
-    for i, (a, b) in edges:
+    for (i, (a, b)), low, high in zip(edges, lows, highs, strict=True):
         n = np.array([a[1] - b[1], b[0] - a[0]]) / np.hypot(*(b - a))
-        near = (owners > i) & np.all(np.abs((ends - a) @ n) <= slack, axis=1)
-        for k in np.flatnonzero(near):
+        window = order[slice(*np.searchsorted(begins, (low[sweep] - longest, high[sweep])))]
+        window = np.sort(window[owners[window] > i])
+        beside = np.all((lows[window] <= high) & (highs[window] >= low), axis=1)
+        near = beside & np.all(np.abs((ends[window] - a) @ n) <= slack, axis=1)
+        for k in window[near]:
             part = common_part((a, b), ends[k], slack)
             if part is not None:
                 joints.append(Joint(i, int(owners[k]), *part, normal, shear))

@@ -71,8 +71,9 @@ def test_a_stack_comes_to_rest_when_a_long_run_of_it_does(kind):
     step = angle / lowest_frequency(1e9, 2500.0, blocks)
     scene = stack(layers[0], {"layer": layers, "gap": gap, "heights": middles}, step=step)
     resting = columns.rest(scene)
+    steps = 100 + 4 * round(resting.seconds / step)
     names = [f"displacement_{number}" for number in range(1, len(middles) + 1)]
-    history = solve(scene.with_values({"time.steps": 6000, "run.columns": names}), "dda").history
+    history = solve(scene.with_values({"time.steps": steps, "run.columns": names}), "dda").history
     moved = np.array([history.columns[name] for name in names])
     away = np.abs(moved - moved[:, -1:]).max(axis=0) > 1e-3 * resting.settlement
     assert resting.seconds == pytest.approx(history.time[np.flatnonzero(away)[-1]] + step, rel=1e-9)

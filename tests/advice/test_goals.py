@@ -114,7 +114,7 @@ def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(monkeyp
 
 def test_a_column_is_cut_for_its_wave_and_judged_by_its_exact_motion():
     scene = load_scene("waves-base").expand()[0]
-    _, offer = cut_column(scene, 0.05)
+    _, offer = cut_column(scene, 0.2)
     case = with_settings(scene, offer, **{"time.steps": offer.steps, "run.columns": ["displacement"]})
     a, b = (solve(case, name).displacement for name in ("dda", "layers"))
     assert np.linalg.norm(a - b) / np.linalg.norm(b) == pytest.approx(offer.displacement_error, rel=1e-9)

@@ -164,6 +164,7 @@ def test_the_report_is_one_page_and_a_remedy_reads_the_history(tmp_path):
     assert imread(tmp_path / "f.png").shape[:2] == (1080, 1920)  # a slide
 
 
+@pytest.mark.long
 def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch):
     """What `compare` asks of a solver with a mesh, of one number of the scene and few factors."""
     s = scene(time__steps=20).with_values({"fem.elements": 1, "fem.degree": 1, "block.poisson": 0.25})
@@ -174,3 +175,13 @@ def test_finite_elements_find_the_factor_that_they_were_given(monkeypatch):
     best = search.explanations()[0]
     assert (best.id, best.value) == ("young-factor", pytest.approx(0.9, rel=1e-6))
     assert best.left < 1e-9
+
+
+@pytest.mark.long
+def test_what_the_exact_bar_is_too_far_from_is_known_as_the_mesh_of_the_scene(monkeypatch):
+    seams.RIVAL_SLIPS.put(monkeypatch, {"load-factor"})
+    s = scene(time__steps=20).with_values({"fem.elements": 3, "fem.degree": 1})
+    run_ = solve(s.with_values({"load.pressure": 1.3 * s.load.pressure}), "fem")
+    answer = compare(s, Foreign(0.002 * np.arange(1, 21), run_.displacement, run_.contact_pressure))
+    assert (answer.model, answer.causes) == ("fem", ["load-factor"])
+    assert answer.values["load-factor"] == pytest.approx(1.3, rel=1e-4)

@@ -72,7 +72,8 @@ def test_a_base_that_adds_two_per_cent_is_benign():
     assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
 
 
-@pytest.mark.parametrize("times", [0.5, pytest.param(2.0, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("times", [0.5, 2.0])
 def test_springs_by_a_round_factor_are_never_a_base_however_stiff_they_are(times):
     """At p = 100E springs half as stiff add 1 % to the static displacement, springs twice as stiff take 0.5 % off."""
     answer = softened("dda", times, contact__stiffness=1e11)
@@ -376,6 +377,7 @@ def test_reversed_columns_where_gravity_is_the_only_load_are_a_sign_or_its_direc
     assert compare(weighty, Foreign(own.time, -own.displacement, own.contact_pressure)).causes == ["sign"]
 
 
+@pytest.mark.long
 def test_a_history_at_rest_under_a_scene_with_gravity_alone_lacks_the_gravity():
     weighty = SCENE.with_values({"load.pressure": 0.0, "load.gravity": 9.81})
     still = Foreign(0.002 * np.arange(1, 11), np.zeros(10), np.zeros(10))

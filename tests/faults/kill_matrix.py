@@ -12,6 +12,7 @@ from validation.engine.finished import Finished
 from validation.engine.judge import evaluate
 from validation.engine.run import finish
 from validation.gates.gate import Status
+from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.suite.folders import get_study
@@ -51,55 +52,79 @@ def check_study(name, faults, directory, finished_cases, is_checked=lambda gate:
     check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases)
 
 
-def check_kill_matrix(
-    study,
-    cases,
-    gates,
-    faults,
-    directory,
-    finished_cases,
-):
+def check_kill_matrix(study, cases, gates, faults, directory, finished_cases):
     """Run the cases sound, and with faults until every gate is bitten and every fault seen.
 
-    Scene by scene the faults are tried that have bitten most, as long as a gate of it is unbitten; a fault that no gate
-    has seen then goes on through all other scenes. What runs once with a fault is kept.
+    Scenes whose runs take least come first. In each the fault is tried that has bitten most of what is unbitten there
+    on scenes of its family, or on others; of several what costs least. A fault that no gate has seen then goes on
+    through all scenes. What runs once with a fault is kept.
     """
     sound = finish(cases, study, Results(finished_cases))
     assert not failed(sound, gates)
+    seconds = {case: sum(row.seconds.values()) for case, row in sound.rows.items()}
+
+    def cost(runs):
+        return sum(seconds[case] for case in runs)
+
     scenes = {}
     for gate in gates:
         scenes.setdefault(gate.scene, []).append(gate)
+    by_cost = sorted(scenes.values(), key=lambda some: cost({need for gate in some for need in study.needs(gate)}))
     kills = {fault.name: set() for fault in faults}
     results = {fault.name: Overlay(directory / str(i), sound.results) for i, fault in enumerate(faults)}
-    tried = set()
+    bites = {fault.name: {} for fault in faults}  # by kind of gate, on the last such scene
+    runs = {fault.name: set() for fault in faults}
 
-    def bite(fault, scene):
-        tried.add((fault.name, scene))
-        kills[fault.name] |= killed(study, cases, scenes[scene], fault, sound, results[fault.name])
+    def bite(fault, some):
+        bitten = killed(study, cases, some, fault, sound, results[fault.name])
+        kills[fault.name] |= bitten
+        for gate in some:
+            bites[fault.name] |= dict.fromkeys((kind(gate), kind(gate)[1:]), gate.id in bitten)
+        runs[fault.name] |= reached(study, some, fault)
 
-    for scene, some in scenes.items():
-        for fault in sorted(faults, key=lambda fault: -len(kills[fault.name])):
-            if not {gate.id for gate in some} <= set().union(*kills.values()):
-                bite(fault, scene)
-    for fault, scene in product(faults, scenes):
-        if not kills[fault.name] and (fault.name, scene) not in tried:
-            bite(fault, scene)
+    def promise(fault, some):
+        seen = bites[fault.name]
+        known = [seen.get(kind(gate), seen.get(kind(gate)[1:])) for gate in some]
+        return known.count(True), -known.count(False), -cost(reached(study, some, fault) - runs[fault.name])
+
+    def unbitten(some):
+        bitten = set().union(*kills.values())
+        return [gate for gate in some if gate.id not in bitten]
+
+    for some in by_cost:
+        untried = list(faults)
+        while untried and (missing := unbitten(some)):
+            best = max(untried, key=lambda fault: promise(fault, missing))
+            untried.remove(best)
+            bite(best, missing)
+    for fault, some in product(faults, by_cost):
+        if not kills[fault.name]:
+            bite(fault, some)
     print_matrix(kills, gates)
     unseen = [name for name, killed in kills.items() if not killed]
-    unbitten = sorted({gate.id for gate in gates} - set().union(*kills.values()))
     assert not unseen, f"faults that no gate sees: {unseen}"
-    assert not unbitten, f"gates that no fault bites: {unbitten}"
+    assert not unbitten(gates), f"gates that no fault bites: {sorted(gate.id for gate in unbitten(gates))}"
+
+
+def kind(gate):
+    """Return what a gate has in common with those on the same scene with other values."""
+    return scene_of(gate.scene), gate.pair, gate.metric
+
+
+def reached(study, gates, fault):
+    """Return the cases that gates need and a fault reaches."""
+    return {need for gate in gates for need in study.needs(gate) if need[1] in fault.solvers}
 
 
 def killed(study, cases, gates, fault, sound, results):
     """Return the gates that fail with a fault; only the cases that it reaches run again."""
-    needed = {need for gate in gates for need in study.needs(gate)}
-    reached = [case for case in cases if case.solver in fault.solvers and (case.scene.name, case.solver) in needed]
-    if not reached:
+    needed = reached(study, gates, fault)
+    if not needed:
         return set()
+    again = [case for case in cases if (case.scene.name, case.solver) in needed]
     with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
         fault.seam.wrap(patch, fault.replacement)
-        faulty = finish(reached, study, results)
+        faulty = finish(again, study, results)
     whole(fault.name, faulty)
     return failed(Finished(sound.rows | faulty.rows, results, sound.derived), gates)
 

@@ -36,7 +36,7 @@ FEW = 4  # of a slow solver every so many of the starts
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 DDA = "dda"
-RIVALS = ("bar", "continuum")
+RIVALS = ("bar", "continuum", "fem")
 EXACT = {"bar": " (the exact bar, which fine finite elements converge to)"}
 WITHOUT_SCHEME = "continuum"
 

@@ -91,7 +91,7 @@ def _unknown_keys(
         inside = f"{place}.{name}" if place else name
         if name not in names:
             yield place, stated_at, name, value
-        elif inside == "sweep" and isinstance(value, dict):
+        elif inside == "sweep" and isinstance(value, dict) and value:  # that of a single case is empty
             keys = {"mode", "name", *tables, *_names("", tables)}  # what is no key of a table is refused elsewhere
             keys |= {f"{table}.{key}" for table in tables for key in _names(table, tables)}
             unknown = (field for field in value if key_of_any_entry(field, tables) not in keys)

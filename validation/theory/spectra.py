@@ -108,11 +108,12 @@ def bar_modes(scene: Scene, count: int) -> Array:
     low = np.pi * np.arange(count)
     high = low + np.pi / 2
     sign = np.where(np.arange(count) % 2, -1.0, 1.0)
-    for _ in range(200):  # until the ends are neighbours, also of the small root of a soft spring
+    while True:
         b = (low + high) / 2
+        if np.all((b == low) | (b == high)):  # neighbours, also of the small root of a soft spring
+            return b
         below = sign * (b * np.sin(b) - ratio * np.cos(b)) < 0
         low, high = np.where(below, b, low), np.where(below, high, b)
-    return (low + high) / 2
 
 
 def bar_shares(scene: Scene, quantity: str, b: Array) -> Array:

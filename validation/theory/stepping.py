@@ -270,12 +270,13 @@ class Stepping:
             polynomial = np.array([1.0, 1 - gg + square, square])
         else:
             numbers = self._numbers("polynomial")
-            inertia = np.polymul([1.0, 1 - gg, 0.0], [1 - numbers.am, 1.0])
-            kinematics = np.polyadd(np.polymul([numbers.beta, 0.5], [1.0, 1 - gg]), [gg * numbers.gamma, gg])
-            stiffness = omega_dt**2 * np.polymul([1 - numbers.af, 1.0], kinematics)
-            polynomial = np.polyadd(inertia, stiffness)
-            if numbers.am == 0 and numbers.af == 0:  # Newmark's: the third root is 0, of the factor z of both parts
-                polynomial, _ = np.polydiv(polynomial, [1.0, 1.0])
+            inertia = np.array([1.0, 1 - gg, 0.0])
+            stiffness = np.convolve([numbers.beta, 0.5], [1.0, 1 - gg])
+            stiffness[1:] += gg * numbers.gamma, gg
+            if numbers.am != 0 or numbers.af != 0:  # else the third root is 0, of the factor z of both parts: Newmark's
+                inertia = np.convolve(inertia, [1 - numbers.am, 1.0])
+                stiffness = np.convolve([1 - numbers.af, 1.0], stiffness)
+            polynomial = np.polyadd(inertia, omega_dt**2 * stiffness)
         turns = np.roots(polynomial).astype(complex)
         slope = np.polyder(polynomial)
         for _ in range(POLISHING):

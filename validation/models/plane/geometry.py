@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator, Sequence
 
@@ -34,6 +35,8 @@ def overlap(first: Vertices, second: Vertices) -> float:
     The outline of one is cut where it meets that of the other; the middle of each piece that lies inside is so far
     from the other outline. Where two outlines are the same, nothing of either lies inside: then an inner point does.
     """
+    if separated(first, second) or separated(second, first):
+        return 0.0
     depths = [0.0]
     for one, other in ((first, second), (second, first)):
         points = np.array([*_middles(one, other), inner_point(one)])
@@ -41,6 +44,19 @@ def overlap(first: Vertices, second: Vertices) -> float:
         if within.any():
             depths.append(float(np.max(distances(points[within], other))))
     return max(depths)
+
+
+def separated(one: Vertices, other: Vertices) -> bool:
+    """Return whether the line of an edge of an outline has all of it on one side, and the other one on the other."""
+    starts = np.array(one)
+    edges = np.roll(starts, -1, axis=0) - starts
+    lengths = np.hypot(edges[:, 0], edges[:, 1])
+    normals = np.array([-edges[:, 1], edges[:, 0]]) / lengths  # to the left of each edge: inwards
+    levels = np.sum(starts.T * normals, axis=0)
+    nearest = np.min(starts @ normals - levels, axis=0)
+    farthest = np.max(np.array(other) @ normals - levels, axis=0)
+    rounding = SAME * lengths
+    return bool(np.any((nearest >= -rounding) & (farthest <= rounding)))
 
 
 def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
@@ -63,6 +79,7 @@ def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
             yield start + (low + high) / 2 * edge
 
 
+@functools.lru_cache(maxsize=128)  # of a block with many neighbours it is asked for each of them
 def inner_point(outline: Vertices) -> Array:
     """Return a point inside an outline [m]: the centre of its largest triangle."""
     triangles = np.array(outline)[np.array(triangles_of(outline))]

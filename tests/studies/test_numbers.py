@@ -1,0 +1,85 @@
+"""What the formulas of each study give, in numbers kept in `numbers.toml`: bands of gates, rows, what chapters draw.
+
+Rows are computed here from stand-ins of runs, waves that a name decides, so that nothing is marched: what a row says of
+them means nothing, but a sign, a constant or a term of its formula that is another one shows. That formulas are right
+is told by the gates, which are long, and by tests with truths. A number is the sum of w log10(|value| / ROUNDING), w
+from 1 to 2, with the sign of the value; one that rounding decides is written as "~". `KEEP_PAGES=1` writes the file
+anew.
+"""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.stand_ins import Numbers, history, keep, kept, other, summed
+
+from validation.engine.finished import Finished
+from validation.runs.case_name import scene_of
+from validation.runs.row import Row
+from validation.runs.run import Outcome
+from validation.suite.folders import get_study, judged_studies
+
+KEPT = Path(__file__).with_name("numbers.toml")
+MOST = 9  # scenes of a row
+
+
+class Histories:
+    """Runs that did not take place, as `Results` has their histories."""
+
+    def __init__(self, cases, factor):
+        self.cases = cases
+        self.factor = factor
+
+    def history(self, key):
+        case = self.cases[key]
+        return history(case.scene, case.solver, factor=self.factor)
+
+
+def stand_in(key, case):
+    """Return the row of a run that did not take place."""
+    numbers = Numbers(case.scene.name, case.solver)
+    return Row(key, "", case.scene.name, case.solver, Outcome.COMPLETED, numbers, numbers, numbers, (), 0.01, 9)
+
+
+def values_in(data):
+    """Yield the numbers and words in what a chapter draws."""
+    if isinstance(data, dict):
+        data = list(data.values())
+    if isinstance(data, np.ndarray):
+        data = data.tolist()
+    if isinstance(data, (list, tuple)):
+        for part in data:
+            yield from values_in(part)
+    elif isinstance(data, (int, float, str)):
+        yield data
+
+
+def rows_of(study, factor=1.0):
+    """Return the numbers of a study's rows, each of the first cases of some scenes, by their names."""
+    cases = {f"{case.solver} {case.scene.name}": case for case in study.cases()}
+    rows = {(case.scene.name, case.solver): stand_in(key, case) for key, case in cases.items()}
+    finished = Finished(rows, Histories(cases, factor), study.recipes())
+    first = {}
+    for scene, name in study.recipes():
+        first.setdefault(name, {}).setdefault(scene_of(scene), scene)
+    values = {}
+    with np.errstate(all="ignore"):
+        for name, scenes in first.items():
+            for scene in list(scenes.values())[:MOST]:
+                metrics = finished.row(scene, name).metrics
+                values.setdefault(f"row {name}", []).extend([*metrics.values(), 7.0 * len(metrics)])
+    return {name: summed(found) for name, found in values.items()}
+
+
+def numbers(study):
+    edges = [edge for gate in study.gates() for edge in (gate.low, gate.high)]
+    return {"bands": summed(edges), "data": summed(values_in(dict(study.data()))), **rows_of(study)}
+
+
+@pytest.mark.parametrize("name", judged_studies())
+def test_formulas_give_what_they_gave(name):
+    found = numbers(get_study(name))
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, name, found, rows_of(get_study(name), 1 + 1e-11))
+    assert other(found, kept(KEPT)[name]) == {}
