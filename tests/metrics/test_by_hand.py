@@ -76,6 +76,7 @@ def test_angles_and_landings():
     assert math.isnan(rotation.crossing(time, values, 9.0)) and math.isnan(rotation.crossing(time, values, -2.0))
     gap = np.array([7.0, 5.0, 4.0, -1.0, 3.0])
     assert rotation.landing(time, gap) == pytest.approx(4.0 + 4.0 / 1.0 * 2.0)
+    assert rotation.landing(time, np.array([4.0, 1.0, -1.0, 2.0, 2.0])) == pytest.approx(2.0 + 1.0 / 3.0)
     assert math.isnan(rotation.landing(time, np.array([1.0, -1.0, 2.0, 2.0, 2.0])))
     assert math.isnan(rotation.landing(time, np.ones(5)))
     turned = History(time, {"rotation": np.array([0.25, 0.75, 0.5, 0.5, 2.0])})
@@ -178,6 +179,17 @@ def test_limits_and_horizons_are_those_of_what_is_asked(made):
     shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
     run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
     assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
+
+
+def test_the_pole_of_a_history_is_its_strongest(made):
+    n = np.arange(80)
+    x = 2.0 + 0.97**n * np.cos(0.4 * n) + 0.2 * 0.95**n * np.cos(1.1 * n)
+    of = replace(made, history=History(0.25 * n, {"displacement": x}))
+    assert of.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.25, rel=1e-8)
+    assert of.pole.amplitude == pytest.approx(0.5, rel=1e-6)
+    assert replace(of, static={"displacement": 0.0}).pole == UNDEFINED
+    assert replace(of, static={}).pole == NOT_REPORTED
+    assert replace(of, history=History(0.25 * n, {"displacement": np.append(x[1:], np.inf)})).pole == UNDEFINED
 
 
 def test_numbers_of_modes_by_hand(made):

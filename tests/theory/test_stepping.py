@@ -126,6 +126,11 @@ def test_the_response_of_a_mode_is_what_a_driven_history_settles_to():
         assert settled == pytest.approx(amplitude, rel=1e-9), stepping
 
 
+def test_the_velocity_of_the_leapfrog_is_the_mean_of_the_half_steps():
+    stepping = Stepping.named("leapfrog", 0.03)
+    assert stepping.velocity_factor([4.0, 31.0]) == pytest.approx(1j * np.sin([0.12, 0.93]) / 0.03, rel=1e-13)
+
+
 def test_schemes_of_one_table_are_one_scheme():
     pairs = [
         (NAMED("chung-hulbert", rho_inf=0.0), NAMED("wbz", rho_inf=0.0)),
