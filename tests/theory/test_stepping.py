@@ -184,6 +184,7 @@ def test_a_scheme_says_its_numbers_and_what_it_does():
         "chung-hulbert (rho_inf = 0.37)", "composite (rho_inf = 0.25, split = 0.4)", "leapfrog"
     ]  # fmt: skip
     assert chung.numbers == chung.name
+    assert [NAMED("composite", rho_inf=rho).split for rho in (None, 0.25)] == pytest.approx([2 - 2**0.5, 0.55848156])
     every = [half, AVERAGE, chung, NAMED("wbz", rho_inf=1.0), bathe, NAMED("leapfrog"), Stepping(1.0, 0.0, 0.5)]
     assert [one.damps for one in every] == [True, False, True, False, True, False, False]
     assert [one.has_contact_forces for one in every] == [True, True, True, True, True, False, False]
