@@ -151,6 +151,11 @@ def test_some_steps_and_rules_put_no_energy_into_a_contact():
         assert landing.cannot_gain(UNLOADED.with_values(values)) is expected, values
 
 
+def test_springs_too_soft_for_double_precision_are_refused():
+    with pytest.raises(FloatingPointError):
+        landing.stiffness_ratio(UNLOADED.with_values({"block.young": 1e300, "contact.stiffness": 1e-30}))
+
+
 def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch):
     """The rigid blocks of the study `rebound` have k down to 1e-16, at which strain rings 1e8 times in a contact."""
     above, below = (landing.own_landing(factor * landing.SOFTEST) for factor in (1.0, 1 - 1e-9))
