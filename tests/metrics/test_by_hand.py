@@ -106,6 +106,8 @@ def test_landings_by_hand():
     at_once = record(force=np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert contact.landing(at_once)[0] == -0.125
     assert contact.restitution(record(force=np.zeros(7))) == UNDEFINED
+    rising = record(velocity=np.array([-1.0, 0.5, -0.5, 1.0, 0.75, -3.0, 1.5]))
+    assert contact.restitution(rising) == UNDEFINED
     assert contact.restitution(record(velocity=None)) == NOT_REPORTED
 
 
