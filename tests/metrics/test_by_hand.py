@@ -169,6 +169,7 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     assert found.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.5, rel=1e-8)
     noise = np.random.default_rng(7).normal(size=80)
     assert swing(noise, 0.5).static == pytest.approx(np.mean(noise[-8:]))
+    assert swing(noise[:12], 0.5, order=2).static == pytest.approx(np.mean(noise[10:12]))
     assert swing(signal[:15], 0.5).pole is None
     assert poles(noise, 0.5, order=2) == [] and LARGEST_MISFIT < 1
     assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
