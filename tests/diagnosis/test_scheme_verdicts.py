@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-import re
-from collections import Counter
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from faults import seams
-from oracles import compared_schemes
-from oracles.compared_schemes import Case, dashpot_of, made, scene_of, verdict
+from oracles.compared import Case, dashpot_of, scene_of, verdict
 from oracles.scheme_histories import Body, Run
 
 from validation import load_scene, solve
@@ -192,7 +189,7 @@ def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number
     assert verdict(case, case.judged()) == "silent"
 
 
-# ---- faults, and the table ------------------------------------------------------------------------------------------
+# ---- faults ------------------------------------------------------------------------------------------
 
 
 @pytest.mark.long
@@ -202,27 +199,3 @@ def test_a_special_case_that_is_not_seen_is_bitten(monkeypatch):
     seams.DECISION_DETERMINED.put(monkeypatch, lambda *_: True)
     _, answer = judged("midpoint", {}, **LOCKED)
     assert answer.causes != ["scheme", "start"]
-
-
-@pytest.mark.long
-def test_a_solver_that_parts_before_the_first_row_explains_nothing():
-    """The horizon of `bar` beside this history is its first row."""
-    case = made(108)
-    assert verdict(case, case.judged()) != "wrong"
-
-
-@pytest.mark.long
-def test_no_made_history_is_given_a_wrong_cause_and_most_are_named():
-    """Of ten none is wrong, which one in four wrong ones would pass once in eighteen; the page counts three hundred."""
-    cases = [(case, case.judged()) for case in map(made, range(80, 110, 3))]
-    counts = Counter(verdict(case, answer) for case, answer in cases)
-    assert counts["wrong"] == 0, [case.seed for case, answer in cases if verdict(case, answer) == "wrong"]
-    assert counts["right"] > len(cases) / 2
-
-
-def test_the_counts_of_the_documentation_have_nothing_wrong():
-    page = compared_schemes.PAGE.read_text()
-    text = page[page.index(compared_schemes.BEGIN) : page.index(compared_schemes.END)]
-    total, *counts = (int(number) for number in re.findall(r"\d+", text.partition(". Named")[0].partition("Of ")[2]))
-    assert total == sum(counts) >= 100
-    assert counts[-1] == 0

@@ -6,7 +6,7 @@ import pytest
 from conftest import SCENE, typed
 
 from validation.errors import InputError
-from validation.gates.changes import against, changes, markdown, read_verdicts
+from validation.gates.changes import against, changes, markdown, read_verdicts, same_band
 
 GATE = '[run]\nsolvers = ["dda", "bar"]\n[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\n'
 
@@ -53,6 +53,7 @@ def test_what_became_of_a_gate(before, after, kind):
 def test_a_wider_band_is_worse_at_either_edge(band, kind):
     found = changes([verdict("a", "PASS")], [verdict("a", "PASS") | {"band": band}])
     assert [change.kind for change in found] == ([] if kind is None else [kind])
+    assert same_band(None, None) and not same_band(None, tuple(band)) and not same_band(tuple(band), None)
 
 
 def test_only_what_differs_is_told_and_the_worse_first():

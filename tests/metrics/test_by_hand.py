@@ -76,6 +76,7 @@ def test_angles_and_landings():
     assert math.isnan(rotation.crossing(time, values, 9.0)) and math.isnan(rotation.crossing(time, values, -2.0))
     gap = np.array([7.0, 5.0, 4.0, -1.0, 3.0])
     assert rotation.landing(time, gap) == pytest.approx(4.0 + 4.0 / 1.0 * 2.0)
+    assert rotation.landing(time, np.array([4.0, 1.0, -1.0, 2.0, 2.0])) == pytest.approx(2.0 + 1.0 / 3.0)
     assert math.isnan(rotation.landing(time, np.array([1.0, -1.0, 2.0, 2.0, 2.0])))
     assert math.isnan(rotation.landing(time, np.ones(5)))
     turned = History(time, {"rotation": np.array([0.25, 0.75, 0.5, 0.5, 2.0])})
@@ -105,6 +106,8 @@ def test_landings_by_hand():
     at_once = record(force=np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert contact.landing(at_once)[0] == -0.125
     assert contact.restitution(record(force=np.zeros(7))) == UNDEFINED
+    rising = record(velocity=np.array([-1.0, 0.5, -0.5, 1.0, 0.75, -3.0, 1.5]))
+    assert contact.restitution(rising) == UNDEFINED
     assert contact.restitution(record(velocity=None)) == NOT_REPORTED
 
 
@@ -166,6 +169,7 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     assert found.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.5, rel=1e-8)
     noise = np.random.default_rng(7).normal(size=80)
     assert swing(noise, 0.5).static == pytest.approx(np.mean(noise[-8:]))
+    assert swing(noise[:12], 0.5, order=2).static == pytest.approx(np.mean(noise[10:12]))
     assert swing(signal[:15], 0.5).pole is None
     assert poles(noise, 0.5, order=2) == [] and LARGEST_MISFIT < 1
     assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
@@ -178,6 +182,17 @@ def test_limits_and_horizons_are_those_of_what_is_asked(made):
     shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
     run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
     assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
+
+
+def test_the_pole_of_a_history_is_its_strongest(made):
+    n = np.arange(80)
+    x = 2.0 + 0.97**n * np.cos(0.4 * n) + 0.2 * 0.95**n * np.cos(1.1 * n)
+    of = replace(made, history=History(0.25 * n, {"displacement": x}))
+    assert of.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.25, rel=1e-8)
+    assert of.pole.amplitude == pytest.approx(0.5, rel=1e-6)
+    assert replace(of, static={"displacement": 0.0}).pole == UNDEFINED
+    assert replace(of, static={}).pole == NOT_REPORTED
+    assert replace(of, history=History(0.25 * n, {"displacement": np.append(x[1:], np.inf)})).pole == UNDEFINED
 
 
 def test_numbers_of_modes_by_hand(made):

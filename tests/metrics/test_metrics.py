@@ -74,7 +74,7 @@ def test_damping_of_an_operator_by_kind_of_roots():
     assert operator_frequency((root, root.conjugate()), 0.1) == pytest.approx(5.0, rel=1e-14)
     a, b = 0.3, 0.7  # decay rates of an overdamped mode: xi = (a + b) / (2 sqrt(a b))
     assert operator_damping((math.exp(-a), math.exp(-b))) == pytest.approx(0.5 / math.sqrt(0.21), rel=1e-14)
-    assert operator_damping((-0.5, 0.2)) == UNDEFINED
+    assert operator_damping((-0.5, 0.2)) == operator_damping((0.5, 0.0)) == UNDEFINED
     assert operator_frequency((-0.5, 0.2), 1.0) == UNDEFINED
 
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.staged import System, march
 from scipy.integrate import solve_ivp
 
 from validation import load_scene
@@ -150,6 +151,11 @@ def test_some_steps_and_rules_put_no_energy_into_a_contact():
         assert landing.cannot_gain(UNLOADED.with_values(values)) is expected, values
 
 
+def test_springs_too_soft_for_double_precision_are_refused():
+    with pytest.raises(FloatingPointError):
+        landing.stiffness_ratio(UNLOADED.with_values({"block.young": 1e300, "contact.stiffness": 1e-30}))
+
+
 def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch):
     """The rigid blocks of the study `rebound` have k down to 1e-16, at which strain rings 1e8 times in a contact."""
     above, below = (landing.own_landing(factor * landing.SOFTEST) for factor in (1.0, 1 - 1e-9))
@@ -177,7 +183,7 @@ def test_the_greatest_force_lies_between_that_of_the_two_masses():
 
 
 @pytest.mark.parametrize(
-    ("scheme", "ratio"), thinned([(one, r) for r in (0.3, 30.0) for one in (SCHEMES[3], SCHEMES[4], *SCHEMES[:3])], 4)
+    ("scheme", "ratio"), thinned([(one, r) for r in (0.3, 30.0) for one in (SCHEMES[3], *SCHEMES[:3], SCHEMES[4])], 4)
 )
 def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
     stepping = Stepping.of(on_springs(ratio, **scheme))
@@ -185,6 +191,19 @@ def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
         step = omega / landing.contact_frequency(on_springs(ratio))
         expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
+
+
+@pytest.mark.parametrize(("gg", "tau"), [(1.0, 0.09), (0.9, 7e-3)])
+def test_a_landing_on_a_rigid_stop_is_that_of_all_states_tried(gg, tau):
+    """In steps so short that their discount would damp a contact of a transit beyond its rebound."""
+    system = System(
+        np.diag([1, 1 / 12]), np.diag([0.0, 1.0]), lambda t: np.zeros(2), B=np.array([[1, -0.5]]), p=math.inf
+    )
+    above = np.array([gg * tau * 0.7, 0.0])
+    _, v, N = march(system, "newmark", tau, 130, above, np.array([-1.0, 0.0]), gg, zero=True, weights=(0.5625, 1.0))
+    lifted = np.flatnonzero((N[:-1, 0] > 0) & (N[1:, 0] == 0)) + 1
+    found = landing.restitutions(Stepping(1.0, 0.5625, 1.0, gg), math.inf, tau, 1.0, np.array([0.3]))
+    assert found[0] == pytest.approx(max(v[lifted, 0]), rel=1e-9) and found[0] > 1e-3
 
 
 def test_a_landing_of_very_many_steps_is_not_stepped():

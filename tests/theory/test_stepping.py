@@ -126,6 +126,11 @@ def test_the_response_of_a_mode_is_what_a_driven_history_settles_to():
         assert settled == pytest.approx(amplitude, rel=1e-9), stepping
 
 
+def test_the_velocity_of_the_leapfrog_is_the_mean_of_the_half_steps():
+    stepping = Stepping.named("leapfrog", 0.03)
+    assert stepping.velocity_factor([4.0, 31.0]) == pytest.approx(1j * np.sin([0.12, 0.93]) / 0.03, rel=1e-13)
+
+
 def test_schemes_of_one_table_are_one_scheme():
     pairs = [
         (NAMED("chung-hulbert", rho_inf=0.0), NAMED("wbz", rho_inf=0.0)),
@@ -179,6 +184,7 @@ def test_a_scheme_says_its_numbers_and_what_it_does():
         "chung-hulbert (rho_inf = 0.37)", "composite (rho_inf = 0.25, split = 0.4)", "leapfrog"
     ]  # fmt: skip
     assert chung.numbers == chung.name
+    assert [NAMED("composite", rho_inf=rho).split for rho in (None, 0.25)] == pytest.approx([2 - 2**0.5, 0.55848156])
     every = [half, AVERAGE, chung, NAMED("wbz", rho_inf=1.0), bathe, NAMED("leapfrog"), Stepping(1.0, 0.0, 0.5)]
     assert [one.damps for one in every] == [True, False, True, False, True, False, False]
     assert [one.has_contact_forces for one in every] == [True, True, True, True, True, False, False]
