@@ -13,12 +13,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.stand_ins import Numbers, history, keep, kept, other, summed
+from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.suite.folders import get_study, study_names
+from validation.suite.own_solver import gates
 
 KEPT = Path(__file__).with_name("numbers.toml")
 MOST = 12  # scenes of a row
@@ -83,3 +85,14 @@ def test_formulas_give_what_they_gave(name):
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, name, found, rows_of(get_study(name), 1 + 1e-11))
     assert other(found, kept(KEPT)[name]) == {}
+
+
+def test_gates_for_users_solvers_are_what_they_were(tmp_path):
+    edges = []
+    for gate in gates.START.gates():
+        edges += [gate.scene, gate.metric, gate.low, gate.high, gate.until or 0.0]
+    blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
+    found = {"gates": summed(edges), "kinds": summed(kind for scene in blocks for kind in gates.unseen([scene]))}
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "own-solver", found, found)
+    assert other(found, kept(KEPT)["own-solver"]) == {}
