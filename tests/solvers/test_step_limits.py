@@ -167,6 +167,15 @@ def test_blocks_that_are_no_part_of_a_height_are_refused(layers):
     assert "layer.thickness" in str(error.value)
 
 
+def test_a_column_that_nothing_moves_needs_an_input():
+    column = {"law": "unilateral", "motion": "pressure"} | RESTING
+    for still in (COLUMN, column | {"gravity": 0.0}):
+        with pytest.raises(InputError) as error:
+            scene(1e-4, 20, column=still)
+        assert error.value.field == "input"
+    assert scene(1e-4, 20, column=column | {"gravity": 9.81}).stated_input is None
+
+
 SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))
 
 

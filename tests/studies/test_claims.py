@@ -70,6 +70,20 @@ def test_the_page_in_docs_is_what_a_fresh_run_writes(finished):
     assert not re.search(r"e-1[0-9]", text)
 
 
+def test_the_page_has_every_claim_with_its_finding_and_a_condition_where_that_is_needed():
+    findings = [*Finding]
+    rows = []
+    expected = []
+    for number, claim in enumerate(CLAIMS):
+        finding = findings[number % len(findings)]
+        rows.append({"name": claim.id, "metrics": {"verdict": float(finding.value), "x": 1.0}})
+        condition = f" ({claim.condition})" if finding is Finding.CONDITIONAL else ""
+        expected.append(f"## {claim.id}: {finding.words}{condition}")
+    lines = page(CLAIMS_OF_THE_PAPER, rows).splitlines()
+    assert [line for line in lines if line.startswith("## ")] == expected
+    assert len(lines) == 3 + 4 * len(CLAIMS)
+
+
 def damped(delta):
     return delta + 0.05
 

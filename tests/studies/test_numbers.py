@@ -13,15 +13,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 from oracles.stand_ins import Numbers, history, keep, kept, other, summed
+from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.suite.folders import get_study, judged_studies
+from validation.suite.folders import get_study, study_names
+from validation.suite.own_solver import gates
 
 KEPT = Path(__file__).with_name("numbers.toml")
-MOST = 9  # scenes of a row
+MOST = 12  # scenes of a row
 
 
 class Histories:
@@ -77,9 +79,20 @@ def numbers(study):
     return {"bands": summed(edges), "data": summed(values_in(dict(study.data()))), **rows_of(study)}
 
 
-@pytest.mark.parametrize("name", judged_studies())
+@pytest.mark.parametrize("name", study_names())
 def test_formulas_give_what_they_gave(name):
     found = numbers(get_study(name))
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, name, found, rows_of(get_study(name), 1 + 1e-11))
     assert other(found, kept(KEPT)[name]) == {}
+
+
+def test_gates_for_users_solvers_are_what_they_were(tmp_path):
+    edges = []
+    for gate in gates.START.gates():
+        edges += [gate.scene, gate.metric, gate.low, gate.high, gate.until or 0.0]
+    blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
+    found = {"gates": summed(edges), "kinds": summed(kind for scene in blocks for kind in gates.unseen([scene]))}
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "own-solver", found, found)
+    assert other(found, kept(KEPT)["own-solver"]) == {}

@@ -1,0 +1,62 @@
+"""Scenes and frames as they are drawn, and what is remarked on scenes: numbers, kept in `drawn.toml`.
+
+`KEEP_PAGES=1` writes the file anew.
+"""
+
+import os
+import zlib
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+from oracles.stand_ins import history, keep, kept, other, summed
+from oracles.stated_scenes import SCENES, made
+
+from validation.report.figures.drawing import FigureHooks
+from validation.report.scene.hooks import ShowingHooks
+from validation.scenes.scene import load_scene
+
+KEPT = Path(__file__).with_name("drawn.toml")
+DRAWN = ("sliding", "turning", "opening sub-blocks", "shaken", "column that slips", "bars that open")
+OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "columns-slips", "boxes-pile", "beams-squares")
+MOVED = ("standing-truss-load", "pushing-held", "boxes-pile")
+VALUES = [  # what remarks on a block are made of: on both sides of what decides them
+    {"least root": -0.9, "e least": 0.2, "e most": 0.9, "e own": 0.5, "tan b": 0.5, "tan phi": 0.3, "w/h": 0.2},
+    {"dt seen": 1e-9, "e least": 0.7, "e most": 0.7, "e own": 0.2, "tan b": 0.1, "tan phi": 0.3, "w/h": 0.2},
+]
+
+
+def drawn(axes):
+    """Yield the coordinates and the words of what axes show."""
+    for artist in (*axes.lines, *axes.patches, *axes.texts, axes.title, axes.yaxis.label):
+        if hasattr(artist, "get_xydata"):
+            yield from np.ravel(artist.get_xydata()).tolist()
+        elif hasattr(artist, "get_xy") and not hasattr(artist, "get_width"):
+            yield from np.ravel(artist.get_xy()).tolist()
+        if hasattr(artist, "xyann"):
+            yield from np.ravel([artist.xy, artist.xyann]).tolist()
+        if hasattr(artist, "get_text"):
+            yield float(zlib.crc32(artist.get_text().encode()))
+    yield from np.ravel([axes.get_xlim(), axes.get_ylim()]).tolist()
+
+
+def numbers(name, directory):
+    scene = made(name, directory) if name in SCENES else load_scene(name).expand()[0]
+    axes = Figure().add_subplot()
+    FigureHooks.of(scene).draw(axes, scene)
+    remarks = [remark for values in VALUES for remark in ShowingHooks.of(scene).remarks(scene, values)]
+    found = {name: summed(drawn(axes)), f"{name}, remarks": summed(remarks)}
+    if name in MOVED:
+        steps = (0, scene.time.steps - 1)
+        figure = FigureHooks.of(scene).frames(scene, history(scene), steps, "dda", 30.0)
+        found[f"{name}, frames"] = summed(number for frame in figure.axes for number in drawn(frame))
+    return found
+
+
+def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):
+    found = {}
+    for name in (*DRAWN, *OF_PLANE):
+        found |= numbers(name, tmp_path)
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "drawn", found, found)
+    assert other(found, kept(KEPT)["drawn"]) == {}
