@@ -209,6 +209,12 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them():
                 assert abs(derived - series[0][k]) < 1e-50
 
 
+def test_the_parts_of_a_course_begin_at_once():
+    pieces = [drives.still().piece_at(0.0), *(drives.sine(size, 3.0)().piece_at(0.0) for size in (1.0, 2.0))]
+    course = drives.Course((-0.1, 0.3), tuple(pieces))
+    assert course.parts() == [(0.0, pieces[1]), (0.3, pieces[2])]
+
+
 @pytest.mark.parametrize(("modulus", "stiffness"), [(math.inf, 1e5), (1e9, 1e10)])
 @pytest.mark.parametrize(
     ("drive", "size"),  # the greatest value
