@@ -65,17 +65,8 @@ def pytest_rest_while_collecting():
         gc.enable()
 
 
-LONGEST = (  # files whose long tests take a minute and more: two workers that begin with them end together
-    "test_gates.py",
-    "diagnosis/test_calibration.py",
-    "house/test_docs.py",
-    "problems/test_cause.py",
-    "studies/test_kills.py",
-    "studies/test_slopes.py",
-    "report/test_readable.py",
-    "diagnosis/test_slopes.py",
-    "solvers/test_fenicsx.py",
-)
+# Two workers that begin with these files end together. The gates leave their runs to kill matrices and reports.
+LONGEST = ("test_gates", "test_docs", "test_cause", "test_kills", "test_readable", "test_fenicsx", "test_slopes")
 
 
 def pytest_configure(config):
@@ -86,14 +77,12 @@ def pytest_configure(config):
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
     """Mark all accuracy gates as long, for `studies/test_gates_in_short.py` judges those of first cases; sort files."""
-    of_files = Counter(item.path for item in items)
-    order = {}
     for item in items:
         if item.get_closest_marker("validation"):
             item.add_marker(pytest.mark.long)
-        is_long = [item.path.as_posix().endswith(f"/{name}") for name in LONGEST]
-        order[item] = (*is_long, True).index(True), -of_files[item.path]
-    items.sort(key=order.get)
+    tests = Counter(item.path for item in items)
+    order = {path: ((*LONGEST, path.stem).index(path.stem), -tests[path]) for path in tests}
+    items.sort(key=lambda item: order[item.path])
 
 
 def pytest_collection_finish():

@@ -115,6 +115,7 @@ def _laguerre(x: Array) -> Iterator[Array]:
     now = np.exp(-begun)
     exponent = begun - x / 2
     is_scaled = np.any(exponent < 0)
+    scale = np.exp(exponent)
     for j in itertools.count():
         x = x[..., 1:]
         now = now[..., 1:]
@@ -124,10 +125,14 @@ def _laguerre(x: Array) -> Iterator[Array]:
         if is_scaled:
             # The value returns to its scale; polynomials that have become huge are taken nearer to theirs.
             exponent = exponent[..., 1:]
-            value = value * np.exp(exponent)
-            down = np.where(np.abs(now) > HUGE, np.minimum(np.log(HUGE), -exponent), 0.0)
-            factor = np.exp(-down)
-            rise = rise * factor
-            now = now * factor
-            exponent = exponent + down
+            scale = scale[..., 1:]
+            value = value * scale
+            is_huge = np.abs(now) > HUGE
+            if is_huge.any():
+                down = np.minimum(np.log(HUGE), -exponent[is_huge])
+                factor = np.exp(-down)
+                rise[is_huge] *= factor
+                now[is_huge] *= factor
+                exponent[is_huge] += down
+                scale[is_huge] = np.exp(exponent[is_huge])
         yield value

@@ -6,8 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.contact_bodies import CASES, NEWMARK, OneBlock, SubBlocks, TurningBlock, put_stage, with_law
-from oracles.unilateral_checks import apart, size
+from oracles.contact_bodies import (
+    CASES,
+    NEWMARK,
+    OneBlock,
+    SubBlocks,
+    TurningBlock,
+    apart,
+    put_stage,
+    size,
+    with_law,
+)
 
 from dda import BaseMotion, Block, Load, Material, Unilateral, UnilateralModel
 from dda.contact.rows import FOUND, INSIDE, NONE, OUTCOMES

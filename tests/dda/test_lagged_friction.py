@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from oracles.frictional import square
 
-from dda import Scheme, Unilateral, UnilateralModel, solve_unilateral
+from dda import Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
 
 BANDS = (1e-3, 1e-6)  # of a model of 10 m: 2e-4 and 2e-7 of half of that
 TURNED = math.radians(20)
@@ -19,7 +18,8 @@ def stable(phi, rules="lagged", band=BANDS):
     """Return a block on a base under a force at 18.1 degrees, below its friction angle phi (deg)."""
     law = Unilateral(1e9, 4e8, band=band, friction=math.tan(math.radians(phi)), rules=rules)
     gravity, slope = math.hypot(*FORCE) / 10800, math.degrees(math.atan2(*FORCE))
-    return UnilateralModel(square(), law, gravity=gravity, slope=slope)
+    square = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0))
+    return UnilateralModel(square, law, gravity=gravity, slope=slope)
 
 
 def creep(model, dt, time=0.5):

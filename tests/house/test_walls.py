@@ -134,7 +134,7 @@ judge answer/rocking.csv rocking
 judge dda standing rocking
 advise damping figures-3-4 --set time.step=0.01
 advise response figures-3-4 --set time.step=0.01
-advise contact figures-3-4 --set time.step=0.01 --set contact.law=unilateral
+advise contact figures-3-4 --set time.step=0.01 --set time.steps=5 --set contact.law=unilateral
 advise step figures-3-4 --set time.step=0.01 --set time.steps=5 --damping 0.05
 """
 # What it does not, after the extra that does.

@@ -6,8 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.gates.gate import rounded
-from validation.metrics import columns, contact, growth, rotation
+from validation.metrics import columns, contact, growth, modes, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
 from validation.metrics.poles import LARGEST_MISFIT, poles, swing
@@ -15,6 +14,7 @@ from validation.metrics.transform import spectrum
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
 from validation.runs.contact import ContactRecord, Rebound
 from validation.runs.history import History
+from validation.runs.modes import Mode
 from validation.runs.run import Outcome
 
 TIME = 0.25 * np.arange(1, 8)
@@ -149,6 +149,12 @@ def test_pairs_by_hand():
     size = math.sqrt(sum((VALUES + 0.5) ** 2))
     assert pair("displacement.l2", first, second) == pytest.approx(math.sqrt(7 * 0.25) / size)
     assert pair("displacement.max", first, second) == pytest.approx(0.5 / 4.0)
+    for static, error in ((-3.0, 0.125), (-5.0, 0.1)):
+        assert pair("displacement.scaled", first, second, {"displacement.static": static}) == pytest.approx(error)
+    assert pair("displacement.scaled", first, second, {}) == NOT_REPORTED
+    assert pair("pressure.scaled", first, second, {"pressure.static": 1.0}) == NOT_REPORTED
+    longer = History(np.append(TIME, 2.0), {"displacement": np.append(VALUES, 90.0)})
+    assert pair("displacement.max", longer, second) == pair("displacement.max", first, second)
 
 
 def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
@@ -167,15 +173,28 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     assert only.damping == pytest.approx(-np.log(0.97) / abs(np.log(0.97) + 0.4j), rel=1e-8)
 
 
-def test_edges_of_bands_are_rounded_and_margins_told():
-    assert [rounded(value) for value in (3e-13, -3e-13, 123456.0, 1.2345e-10)] == [1e-12, -1e-12, 123500.0, 1.2e-10]
-
-
 def test_limits_and_horizons_are_those_of_what_is_asked(made):
     assert growth.limit(made) == NOT_REPORTED and growth.limit(replace(made, limit=lambda: 1.75)) == 1.75
     shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
     run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
     assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
+
+
+def test_numbers_of_modes_by_hand(made):
+    roots = (0.6 + 0.3j, 0.6 - 0.3j), (-0.9 + 0j, 0.4 + 0j)
+    of = replace(
+        made, modes=(Mode(9.0, 0.1, roots[0], 0.3), Mode(4.0, 0.7, roots[1], -0.9), Mode(6.5, 0.2, roots[0], 0.5))
+    )
+    assert [modes.natural(of, number) * 2 * math.pi for number in (1, 2, 3)] == pytest.approx([4.0, 6.5, 9.0])
+    assert (
+        modes.natural(of, 4) == NOT_REPORTED == modes.first_axial(made, "frequency") == modes.contact(made, "damping")
+    )
+    size = abs(np.log(0.6 + 0.3j))
+    assert modes.first_axial(of, "numerical_frequency") == pytest.approx(size / 0.25, rel=1e-13)
+    assert modes.first_axial(of, "damping") == pytest.approx(-math.log(math.hypot(0.6, 0.3)) / size, rel=1e-13)
+    assert modes.first_axial(of, "frequency") == 9.0
+    assert modes.contact(of, "least_root") == -0.9 and modes.contact(of, "damping") == UNDEFINED
+    assert modes.contact(of, "spectral_radius") == pytest.approx(0.9)
 
 
 def test_what_only_turns_has_no_centre_of_its_own():

@@ -9,8 +9,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
-from oracles.frictional import rubbing_model, shaken
-from oracles.unilateral_checks import DT, random_model
 
 from dda import (
     BaseMotion,
@@ -19,6 +17,7 @@ from dda import (
     Material,
     Scheme,
     Unilateral,
+    UnilateralModel,
     UnilateralOptions,
     named_scheme,
     opening_subdivided,
@@ -29,6 +28,55 @@ from dda.linear.natural_modes import free_modes
 from dda.march import run as made
 from dda.march.compiled import run_loop
 from dda.march.step import steps_by
+
+DT = 3e-4
+
+
+def random_model(seed, glued=None):
+    """Return a block at random data: outline, material, loads, gap and speed; some are symmetric."""
+    rng = np.random.default_rng(seed)
+    a, h = rng.uniform(0.8, 2.5, 2)
+    lean = rng.uniform(-0.3, 0.3) if seed % 3 == 0 else 0.0
+    corners = [[0, 0], [a, 0], [a + lean, h], [lean, h * (1 + 0.2 * (seed % 3 == 0))]]
+    young = 10 ** rng.uniform(8.5, 9.5)
+    p = young * 10 ** rng.uniform(-0.5, 2)
+    symmetric = seed % 3 == 1
+    shear = (rng.uniform(0.2, 1.0) if (glued if glued is not None else seed % 2) else 0.0) * p
+    return UnilateralModel(
+        Block(corners, Material(rng.uniform(1500, 3000), young, rng.uniform(-0.2, 0.4))),
+        Unilateral(p, shear, rng.uniform(0, 1e-3) * (seed % 4 == 0)),
+        pressure=young * rng.uniform(1e-3, 5e-3),
+        eccentricity=0.0 if symmetric else rng.uniform(-0.2, 0.2) * a,
+        traction=0.0 if symmetric else young * rng.uniform(-1e-4, 1e-4),
+        gravity=rng.uniform(0, 15),
+        velocity=rng.uniform(-1.5, 1.0),
+    )
+
+
+def apart(values, others):
+    """Return the greatest difference over the greatest of the other values."""
+    return np.max(np.abs(values - others)) / max(np.max(np.abs(others)), 1e-300)
+
+
+def size(result):
+    """Return the greatest energy of a history [J]."""
+    return max(np.max(np.abs(values)) for values in result.energies.values())
+
+
+def rubbing_model(seed):
+    """Return a random block whose corners rub: outline, loads, slope, friction and cohesion; some are symmetric."""
+    rng, model = np.random.default_rng(1000 + seed), random_model(seed, glued=True)
+    law = replace(model.contact, friction=rng.uniform(0.05, 1.0), cohesion=(seed % 5 == 2) * rng.uniform(0.0, 1e5))
+    if seed % 3 == 1:
+        return replace(model, contact=law)
+    sideways = model.block.material.young * rng.uniform(-1e-3, 1e-3)
+    return replace(model, contact=law, traction=sideways, slope=rng.uniform(-40, 40))
+
+
+def shaken(rng, size=1e-3):
+    """Return a base that moves to and fro in both directions."""
+    moved = np.concatenate([[[0.0, 0.0]], np.cumsum(rng.uniform(-size, size, (20, 2)), axis=0)])
+    return BaseMotion(np.linspace(0.0, 0.05, 21), moved)
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 from oracles.staged import System, march, of_second_order, theta
+from scipy.optimize import brentq
 
 
 @dataclass(frozen=True)
@@ -210,13 +211,8 @@ def _energy_conserving(k, C, w0, wf, opens):
             return -k * min(w0, 0.0)
         return -(energy(w1) - energy(w0)) / (w1 - w0)
 
-    low, high = wf - 1e-9, max(wf, 0.0) + abs(w0) + 1e-9
-    while low + 1e-17 < high and high - low > 1e-16 * max(abs(low), abs(high)):
-        middle = (low + high) / 2
-        if middle in (low, high):
-            break
-        low, high = (low, middle) if middle - wf - C * force(middle) > 0 else (middle, high)
-    return force((low + high) / 2)
+    high = max(wf, 0.0) + abs(w0) + 1e-9
+    return force(brentq(lambda w: w - wf - C * force(w), wf - 1e-9, high, xtol=1e-17, rtol=1e-15))
 
 
 def by_free_gap(run, alpha, delta, zero, force):

@@ -34,7 +34,6 @@ from peers.boxes import SLOW_CORRECTION, spring_step, substeps
 from peers.spatial import OUT_OF_PLANE, check_plane
 
 from validation.models.plane.boxes import boxes_of
-from validation.scenes import features
 from validation.scenes.scene import load_scene
 
 DOUBLE = 1e-9
@@ -161,19 +160,6 @@ def test_flies_as_its_integrator_does_and_turns_over_without_a_fold(program):
     np.testing.assert_allclose(answer["box_1.angle"], expected, rtol=0, atol=10 * program.rounding)
 
 
-@pytest.mark.parametrize("program", of(DAMPED))
-def test_bullet_as_it_comes_loses_velocity_at_a_rate_that_grows_with_it(program):
-    """The equation is v' = -0.04 v (1 + v / (1 m/s)), so that v / (1 + v) decays exponentially; so does the spin."""
-    box = {"lift": 6.0, "velocity": (1.0, 0.0), "tilt": 20.0, "spin": 1.0}
-    answer = program.solve(scene(box, rows=60, gravity=0.0))
-    ratio = 0.5 * math.exp(-0.04 * (1 - 0.5 / 60))
-    velocity = np.diff(answer["box_1.x"]) * 60
-    spin = np.diff(answer["box_1.angle"]) * 60
-    assert velocity[-1] == pytest.approx(ratio / (1 - ratio), rel=1e-3)
-    assert spin[-1] == pytest.approx(ratio / (1 - ratio), rel=1e-3)
-    assert answer["box_1.angle"][0] == pytest.approx(math.radians(20.0) + 1 / 60, rel=1e-3)
-
-
 @pytest.mark.parametrize(
     "program", [*without(DAMPED, *DRAKE, "siconos"), pytest.param(PROGRAMS["siconos"], id="siconos")]
 )
@@ -225,13 +211,6 @@ def test_turns_after_a_landing_on_a_corner_by_its_moment_of_inertia(program):
     assert spin == pytest.approx(lever * impulse / one.inertia, rel=0.02)
 
 
-@pytest.mark.parametrize("program", of("pymunk", "box2d", "bullet", "mujoco"))
-def test_returns_it_at_a_crawl_with_the_chosen_settings(program):
-    posed = scene({"tilt": 45.0, "lift": 0.02, "velocity": (0.0, -0.1)}, gravity=0.0, restitution=0.5)
-    answer = program.solve(posed)
-    assert (answer["box_1.y"][-1] - answer["box_1.y"][-6]) * 60 / 5 == pytest.approx(0.05, rel=0.02)
-
-
 @pytest.mark.parametrize("program", without(*SICONOS, *UPRIGHT))
 def test_a_box_that_falls_on_another_in_the_air_leaves_both_the_common_velocity(program):
     """Momentum, of masses of 500 and 2000 kg, without gravity or rebound; a fifth is what overlap adds, or damping."""
@@ -245,41 +224,6 @@ def test_a_box_that_falls_on_another_in_the_air_leaves_both_the_common_velocity(
     momentum = 500.0 * velocities[0] + 2000.0 * velocities[1]
     assert momentum == pytest.approx(-2000.0, rel=0.08 if program.solver is bullet.AsItComes else 1e-4)
     assert velocities == pytest.approx([-0.8, -0.8], rel=0.2)
-
-
-@pytest.mark.parametrize("program", without(*SICONOS, DAMPED, *DRAKE, *UPRIGHT, "exudyn-default"))
-def test_keeps_its_momentum_along_a_plane_without_friction(program):
-    restitution = 0.0 if program.solver is mujoco.AsItComes else 0.6
-    posed = scene({"tilt": 20.0, "lift": 0.2, "velocity": (0.7, 0.0), "spin": 1.0}, rows=60, restitution=restitution)
-    answer = program.solve(posed)
-    np.testing.assert_allclose(answer["box_1.x"], 0.7 * np.arange(1, 61) / 60, rtol=0, atol=program.rounding)
-    assert np.ptp(answer["box_1.y"]) > 0.1
-
-
-@pytest.mark.parametrize("program", without("drake-default"))
-def test_goes_with_a_ground_that_it_does_not_slip_on(program):
-    """Behind by two of the program's steps at most, or by the time in which MuJoCo's contact stops what slips.
-
-    As it comes MuJoCo creeps besides.
-    """
-    amplitude = 0.05
-    posed = scene(friction=60.0, base=(amplitude, 2.0))
-    answer = program.solve(posed)
-    base = np.array([boxes_of(posed).base(instant)[0] for instant in np.arange(1, 31) / 60])
-    fastest = amplitude * 4 * math.pi
-    late = 2 * program.own_step
-    if program.package == "mujoco":
-        late += math.sqrt(program.own_step * mujoco_boxes.TIME_CONSTANT)
-    creep = 0.01 if program.solver is mujoco.AsItComes else 1e-4
-    assert np.max(np.abs(answer["box_1.x"] - base)) < late * fastest + creep
-    assert np.max(base) > 0.09
-
-
-@pytest.mark.parametrize("program", without(*SICONOS, "drake-default", "exudyn-default"))
-def test_stays_where_it_is_on_a_ground_that_slips_below_it(program):
-    answer = program.solve(scene(base=(0.05, 2.0)))
-    assert np.max(np.abs(answer["box_1.x"])) < 1e-6
-    assert np.max(np.abs(answer["box_1.y"] - 0.5)) < 5e-3
 
 
 @pytest.mark.parametrize("program", without("drake-default"))
@@ -320,13 +264,6 @@ def test_a_spring_of_given_stiffness_gives_its_force_and_its_time(program, width
     assert velocity == pytest.approx(1.0, rel=0.01)
 
 
-@pytest.mark.parametrize("program", without(*SICONOS, *UPRIGHT))
-def test_gives_the_same_rows_every_time(program):
-    posed = scene({"tilt": 20.0, "lift": 0.1}, friction=30.0, rows=40)
-    first, second = program.solve(posed), program.solve(posed)
-    assert all(np.array_equal(first[name], second[name]) for name in first)
-
-
 REFUSED = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))["boxes"]
 
 
@@ -348,12 +285,6 @@ def test_a_program_that_is_not_there_is_told_with_its_recipe(monkeypatch):
             monkeypatch.setitem(sys.modules, module, None)
         with pytest.raises(NotImplementedError, match=re.escape(recipe)):
             program.solver().solve(scene())
-
-
-def test_says_what_it_is_and_takes_boxes():
-    for program in PROGRAMS.values():
-        assert set(program.solver().about) == {"program", "version", "recipe", "model", "settings"}
-        assert {features.PLANE, features.MOVING_BLOCKS} <= {*program.solver.handles}
 
 
 @pytest.mark.parametrize("solver", [pymunk.Pymunk, box2d.Box2D, bullet.Bullet])

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from peers.calculix import CalculiX
 from peers.calculix_block import block_deck
 from peers.calculix_column import acceleration, column_deck, parts_of
 from peers.calculix_deck import parsed
@@ -13,11 +12,6 @@ from validation.problems.problem import problem
 def column_scene(**column):
     scene = problem("column").scene
     return scene.with_values({f"column.{key}": value for key, value in column.items()})
-
-
-def test_features_without_a_model_are_not_handled():
-    absent = {"sub-blocks", "rigid contact", "dead bands", "lagged friction", "damping tables", "self-adaptive damping"}
-    assert not absent & CalculiX.handles
 
 
 @pytest.mark.parametrize(("name", "deck"), [("creep", block_deck), ("rocking", block_deck), ("column", column_deck)])

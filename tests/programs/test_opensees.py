@@ -1,21 +1,14 @@
 """OpenSees as a solver: its model is the block of one strain, its integrator is the suite's with 1/4 and 1/2."""
 
-import importlib.util
-
 import numpy as np
 import pytest
 from peers import opensees, opensees_models
 from peers.opensees import AsItComes, NotConverged, OpenSees
 
 from validation.scenes.scene import load_scene
-from validation.solvers.dda import DDA
 
-needs_program = pytest.mark.skipif(
-    importlib.util.find_spec("openseespy") is None, reason="NOT RUN: OpenSees is not installed"
-)
 PUSHED = {"block.poisson": 0.25, "load.eccentricity": 0.3, "load.traction": 2e5, "load.gravity": 15.0}
 SIZES = {"block.width": 3.0, "block.height": 1.25}
-OF_BLOCK = ["displacement", "horizontal_displacement", "rotation", "contact_pressure"]
 
 
 class Told:
@@ -95,35 +88,4 @@ def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver):
         solver().solve(load_scene("field-creep"))
 
 
-def test_what_symmetry_forbids_is_not_waited_for():
-    one = {"displacement": np.ones(4), "horizontal_displacement": np.full(4, 1e-18)}
-    other = {"displacement": np.ones(4), "horizontal_displacement": np.zeros(4)}
-    assert opensees._alike(one, other, tuple(one))
-    assert not opensees._alike(one, {**one, "displacement": np.full(4, 1.01)}, tuple(one))
-
-
 # ---- with it ------------------------------------------------------------------------------------------------------
-
-
-@needs_program
-@pytest.mark.parametrize(
-    ("name", "values"),
-    [
-        ("field-locked", {}),
-        ("field-locked", {**PUSHED, **SIZES, "contact.shear_stiffness": 3e8}),
-        ("field-locked", {**PUSHED, "block.hypothesis": "plane strain", "load.slope": -20.0}),
-        ("field-locked", {**PUSHED, "damping.mass": 20.0, "damping.stiffness": 2e-4}),
-        ("field-opening", {}),
-        ("field-opening", {"load.eccentricity": 0.2, "contact.shear_stiffness": 0.0}),
-        ("field-rebound", {"time.steps": 60}),
-        ("field-sliding", {}),
-    ],
-)
-def test_its_newmark_is_the_suites_with_a_quarter_and_a_half(name, values):
-    scheme = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "zero", "run.columns": OF_BLOCK}
-    scene = load_scene(name).with_values(values | scheme)
-    found, expected = AsItComes().solve(scene), DDA().solve(scene).history.columns
-    way = max(np.linalg.norm(expected[column]) for column in OF_BLOCK[:2])
-    for column in OF_BLOCK:
-        apart = np.linalg.norm(found[column] - expected[column])
-        assert apart <= 1e-9 * max(np.linalg.norm(expected[column]), way), column

@@ -11,7 +11,6 @@ from oracles.box_scenes import box_scene
 from peers import siconos
 from peers.siconos_column import Chain
 
-from validation import solve
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
@@ -26,22 +25,6 @@ def test_a_python_without_numpy_has_no_siconos():
 
 def scene(name, **values):
     return load_scene(f"field-{name}").with_values({key.replace("__", "."): value for key, value in values.items()})
-
-
-@pytest.mark.long
-def test_the_default_integrator_is_the_suites_newmark_with_a_quarter_and_a_half():
-    """With theta = 1/2: average acceleration, from an acceleration that balances the loads at t = 0."""
-    given = scene("locked", block__poisson=0.2, load__eccentricity=0.3, load__traction=1e6, run__columns=MOVED)
-    scheme = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-    predicted, found = solve(given.with_values(scheme), "dda").history, answer_of(siconos.AsItComes(), given)
-    for name in MOVED:
-        np.testing.assert_allclose(found[name], predicted.columns[name], rtol=0, atol=1e-9 * np.abs(found[name]).max())
-
-
-@pytest.mark.long
-def test_cohesion_is_refused_where_a_corner_opens_and_taken_where_none_does():
-    with pytest.raises(NotImplementedError, match=r"contact\.cohesion"):
-        answer_of(siconos.Siconos(), scene("sliding", time__steps=2, contact__gap=0.1, contact__cohesion=1e3))
 
 
 def test_the_springs_matrices_hold_the_suites_static_solution():

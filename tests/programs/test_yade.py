@@ -29,18 +29,6 @@ def test_two_bodies_have_the_frequencies_of_the_block_of_one_strain():
     np.testing.assert_allclose(np.sort(np.linalg.eigvals(bodies)), np.sort(np.linalg.eigvals(block)), rtol=1e-12)
 
 
-def test_the_linkage_has_the_masses_of_the_block():
-    scene = scene_of("creep", block={"side": 3.0})
-    left, right, *rotors, upper = yade_block.linkage(scene).bodies
-    m, a, arm = scene.block.mass, 3.0, 3.0 / 4
-    assert left.mass + right.mass + sum(r.mass for r in rotors) == pytest.approx(m / 4)
-    assert upper.mass == pytest.approx(3 * m / 4)
-    turning = 2 * (left.inertia + left.mass * a**2 / 4) + sum(r.inertia for r in rotors)
-    assert turning == pytest.approx(m * a**2 / 12)
-    apart = 2 * left.mass + sum(r.inertia for r in rotors) / arm**2
-    assert apart == pytest.approx(m / 3)
-
-
 def test_a_lattice_has_the_mass_and_the_softness_of_its_layers_and_joints():
     layers = [
         {"thickness": 3.0, "density": 2000.0, "young": 2e9},

@@ -25,6 +25,11 @@ def words(text):
     return re.sub(r"\s+", " ", re.sub(r"-\n", "", text))
 
 
+@pytest.fixture(autouse=True)
+def coarse_curves(monkeypatch):
+    monkeypatch.setattr("validation.advice.budget.POINTS", 13)  # of a curve that is drawn
+
+
 def made(studies, finished_cases, directory):
     results = beside(finished_cases, directory / "results")
     for name in studies:

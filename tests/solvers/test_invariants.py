@@ -111,7 +111,7 @@ def test_a_solver_takes_its_scenes_and_no_others(solver, records):
     assert [name for name in SCENES if adapter.refusal(made(name, records)) is None] == TAKES[solver]
 
 
-@some(EVERY, 29)
+@some(EVERY[3:] + EVERY[:3], 29)
 def test_units_are_free(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
@@ -120,7 +120,7 @@ def test_units_are_free(solver, name, records):
     assert_same(other, expected, 1e-9)
 
 
-@some(EVERY[5::2], 31)
+@some(EVERY[::2], 31)
 def test_what_comes_later_changes_nothing(solver, name, records):
     scene = asked(solver, made(name, records))
     longer = solved(solver, scene.with_values({"time.steps": 3 * scene.time.steps}))
@@ -128,7 +128,7 @@ def test_what_comes_later_changes_nothing(solver, name, records):
     assert_same(solved(solver, scene), beginning, 1e-9)
 
 
-@some(EVERY[2::2], 31)
+@some(EVERY[3::2], 31)
 def test_asked_again_for_one_column_it_gives_the_same(solver, name, records):
     scene = asked(solver, made(name, records))
     columns = solved(solver, scene)
@@ -177,7 +177,7 @@ def carried(scene):
     return mass, mass * scene.column.gravity
 
 
-@some(OPENED, 7)
+@some(OPENED[2:] + OPENED[:2], 7)
 def test_what_a_contact_does_keeps_momentum_and_energy(solver, name, records):
     """Momentum: m (V - V0) and the loads' impulse are the contact's; energy: stored and lost are those of the start."""
     scene = asked(solver, made(name, records))

@@ -116,18 +116,20 @@ class Driven(Solver):
 
 
 @pytest.mark.parametrize(
-    ("values", "outcome"),
+    ("values", "outcome", "last"),
     [
-        ([0.0, math.nan, 0.0], Outcome.NOT_A_NUMBER),
-        ([0.0, math.inf, 0.0], Outcome.OVERFLOW),
-        ([0.0, 0.0], Outcome.WRONG_SHAPE),
-        ([0.0, -1e15, 0.0], Outcome.UNBOUNDED),
-        ([0.0, -1.0, 0.0], Outcome.COMPLETED),
+        ([0.0, math.nan, 0.0], Outcome.NOT_A_NUMBER, "2"),
+        ([0.0, math.inf, 0.0], Outcome.OVERFLOW, "2"),
+        ([0.0, 0.0], Outcome.WRONG_SHAPE, "(3,)"),
+        ([0.0, -1e15, 0.0], Outcome.UNBOUNDED, "2"),
+        ([0.0, -1.0, 0.0], Outcome.COMPLETED, ""),
     ],
 )
-def test_solve_from_python_names_what_is_wrong_with_a_history(values, outcome):
+def test_solve_from_python_names_what_is_wrong_with_a_history_and_at_which_step(values, outcome, last):
     plain = scene(1e-3, 3, run={"columns": ["displacement"]})
-    assert solve(plain, Driven(values)).outcome is outcome
+    run = solve(plain, Driven(values))
+    assert run.outcome is outcome
+    assert "".join(run.notes).endswith(last)
 
 
 def test_the_motion_of_a_base_enters_the_bound(tmp_path):

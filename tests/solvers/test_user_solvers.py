@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from conftest import SCENE, cli
+from oracles.processes import answer_here
 
 from validation.engine.case import Case
 from validation.engine.measure import completed, execute
@@ -73,9 +74,10 @@ def test_a_module_that_is_not_found_is_bad_input(scene, name):
     assert os.getcwd() in str(told.value.advice)
 
 
-def test_a_user_solver_always_runs_afresh(scene, tmp_path):
+def test_a_user_solver_always_runs_afresh(scene, tmp_path, monkeypatch):
     from validation.engine.run import run_study
 
+    answer_here(monkeypatch)
     path = tmp_path / "own.toml"
     named = SCENE.replace("A small scene", "my_solver:solve")
     path.write_text(named + '[run]\nsolvers = ["named:Named", "dda"]\n')

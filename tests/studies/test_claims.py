@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import refused
+from conftest import refused, thinned
 from faults import seams
 from faults.fault import soft_springs, told, with_scheme
 from faults.kill_matrix import whole
@@ -131,7 +131,7 @@ def test_the_command_needs_results(tmp_path):
 WAYS = {0.01: 1.0790587, 0.002: 2.7461378, 0.001: 5.1759751}
 
 
-@pytest.mark.parametrize("step", WAYS)
+@pytest.mark.parametrize("step", thinned(WAYS, 3))
 def test_a_stable_block_slides_the_farther_the_finer_the_step_and_stands_in_the_end(step):
     case = next(s for s in load_scene("creep-claim").expand() if s.contact.rules == "consistent")
     columns = ["displacement", "contact_pressure", "horizontal_displacement", "slide_m", "slide_n"]

@@ -20,17 +20,7 @@ from faults.fault import (
     undiscounted,
     with_scheme,
 )
-from faults.kill_matrix import check_kill_matrix
-
-from validation.suite.folders import get_study
-
-SLOW = ("figure-7",)  # 20,000 steps: a few of the faults, enough to bite its gates
-FEW = (
-    "dda: springs p/2",
-    "dda: histories with another delta",
-    "fem: delta 0.1 % high",
-    "bar: base spring k/2",
-)
+from faults.kill_matrix import check_study
 
 FAULTS = [
     Fault("dda: gg missing in the predictor", ("dda",), seams.DDA_PREDICTOR, no_discount(0)),
@@ -68,20 +58,6 @@ FAULTS = [
 ]
 
 
-def check(slow, names, directory, finished_cases):
-    """Check the kill matrix of the longest scene or of the others with the faults of these names."""
-    cases = [case for case in get_study("core").cases() if case.scene.name.startswith(SLOW) == slow]
-    gates = [gate for gate in get_study("core").gates() if gate.scene.startswith(SLOW) == slow]
-    faults = [fault for fault in FAULTS if fault.name in names]
-    assert len(faults) == len(names)
-    check_kill_matrix(get_study("core"), cases, gates, faults, directory, finished_cases)
-
-
-@pytest.mark.long
-def test_every_gate_of_the_longest_scene_is_bitten(tmp_path, finished_cases):
-    check(True, FEW, tmp_path, finished_cases)
-
-
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check(False, [fault.name for fault in FAULTS], tmp_path, finished_cases)
+    check_study("core", FAULTS, tmp_path, finished_cases)

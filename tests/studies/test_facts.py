@@ -40,6 +40,7 @@ def judged(study, directory, only=None):
 OWNERS = {"methods": facts.FACTS, "slopes": "slope-facts", "waves": "waves-facts"}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("study", OWNERS)
 def test_facts_hold(study, tmp_path):
     statuses = judged(study, tmp_path)
@@ -71,6 +72,7 @@ FAULTS = {
 }  # fmt: skip
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_fault_is_bitten(fault, tmp_path, monkeypatch):
     module, name, change, study, row = FAULTS[fault]

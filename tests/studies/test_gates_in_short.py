@@ -15,7 +15,6 @@ from validation.suite.own_solver.session import GateRuns
 
 SHORT = {
     "beams": ("beams-squares",),
-    "boxes": ("boxes-landing",),
     "limits": ("*",),
     "opening": ("unlocked",),
     "rocking": ("rocking-swing",),

@@ -11,9 +11,11 @@ from conftest import typed
 import validation.studies
 from validation.errors import InputError
 from validation.gates.gate import Gate
+from validation.runs.results import Results
+from validation.runs.run import Outcome
 from validation.suite import matrix
 from validation.suite.folders import study_folders
-from validation.suite.matrix import phenomena, phenomenon, unstated
+from validation.suite.matrix import phenomena, phenomenon, unstated, verify
 
 MARGINS = tomllib.loads(Path(__file__).with_name("margins.toml").read_text(encoding="utf-8"))["margin"]
 STUDY = """
@@ -116,3 +118,12 @@ def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, 
     verdicts = {record["metric"]: record["verdict"] for record in json.loads(done.stdout)}
     assert verdicts == {"lead": "FAIL" if status else "PASS", "force": "PASS"}
     assert not list(tmp_path.glob("reports"))
+
+
+def test_a_phenomenon_is_run_and_judged_and_who_cannot_answer_is_told(few, finished_cases, tmp_path):
+    sliding = replace(phenomenon("boxes"), scenes=("boxes-sliding",))
+    verdicts, remarks = verify(sliding, Results(finished_cases))
+    assert ([str(verdict.status) for verdict in verdicts], remarks) == (["PASS", "PASS"], [])
+    verdicts, (remark,) = verify(sliding, Results(tmp_path), "dda-textbook")
+    assert [str(verdict.status) for verdict in verdicts] == ["NOT RUN", "NOT RUN"]
+    assert remark.split(": ")[:3] == ["1 of 2 runs", "dda-textbook", str(Outcome.NOT_APPLICABLE)]

@@ -12,11 +12,8 @@ from faults.kill_matrix import check_study
 from validation import solve
 from validation.studies.methods import formulas as methods
 from validation.studies.methods.methods import METHODS, SCHEMES, method
-from validation.suite.folders import get_study
-from validation.theory import rebound
 
 DDA = ("dda",)
-SHORT = ("methods-locked-ch-0.5[", "methods-locked-tr-bdf2[", "methods-locked-leapfrog[", "methods-sliding-ch-0.5[")
 
 
 def of_scheme(change):
@@ -79,54 +76,14 @@ FAULTS = [
 ]  # fmt: skip
 
 
-def check(faults, words, tmp_path, finished_cases):
-    without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # in test_facts.py
-    check_study(
-        "methods",
-        faults,
-        tmp_path,
-        finished_cases,
-        lambda gate: (gate.scene, gate.pair[0]) not in without_runs and gate.scene.startswith(words),
-    )
-
-
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check(FAULTS, "", tmp_path, finished_cases)
+    without_runs = {(row.scene, row.name) for row in methods.derived() if not row.needs}  # in test_facts.py
 
+    def is_checked(gate):
+        return (gate.scene, gate.pair[0]) not in without_runs
 
-@pytest.mark.long
-def test_gates_of_four_scenes_are_bitten(tmp_path, finished_cases):
-    check(FAULTS[:5], SHORT, tmp_path, finished_cases)
-
-
-@pytest.mark.long
-def test_the_gates_of_the_rigid_map_are_bitten(monkeypatch):
-    gates = [gate for gate in get_study("methods").gates() if gate.pair[0] == methods.RIGID_MAP]
-    rows = {row.scene: row for row in methods.derived() if row.name == methods.RIGID_MAP}
-
-    def failing():
-        values = {gate.id: rows[gate.scene].compute(None)[gate.metric] for gate in gates}
-        return {gate.id for gate in gates if not gate.low <= values[gate.id] <= gate.high}
-
-    assert len(gates) > 40 and not failing()
-    sound = rebound.rebound_statistics
-
-    def faulty(*arguments, **named):
-        return rebound.ReboundStatistics(*(value + 0.01 for value in sound(*arguments, **named)))
-
-    methods.rigid_statistics.cache_clear()
-    with monkeypatch.context() as patch:
-        patch.setattr(rebound, "rebound_statistics", faulty)
-        assert failing() == {gate.id for gate in gates}
-    methods.rigid_statistics.cache_clear()
-
-
-def test_what_gains_is_what_rebounds_faster_than_it_lands():
-    for one in METHODS:
-        if one.group != "explicit" and one.id != "conserving":
-            assert (methods.rigid_statistics(one).most > 1) == one.gains, one.id
-            assert (methods.rigid_statistics(one).mean_square > 1) == one.gains, one.id
+    check_study("methods", FAULTS, tmp_path, finished_cases, is_checked)
 
 
 def test_every_method_is_one_scheme_of_the_theory():

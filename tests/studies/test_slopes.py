@@ -68,19 +68,10 @@ def check_creep(faults, directory, finished_cases, scenes, is_checked=lambda gat
     )
 
 
-COARSE = "creep-steps[time.step=0.01"
 CREEP = [
     Fault("friction consistent", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "consistent")),
     Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
 ]
-
-
-@pytest.mark.long
-def test_creep_by_steps_and_by_lagged_rules_is_gated_and_bitten(tmp_path, finished_cases):
-    scenes = (creep.STEPS, creep.LAGGED)
-    check_creep(
-        CREEP, tmp_path, finished_cases, scenes, lambda g: g.scene.startswith(COARSE) or g.pair[0] == "at 10 ms"
-    )
 
 
 @pytest.mark.long

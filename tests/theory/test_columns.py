@@ -39,7 +39,6 @@ def test_the_far_face_of_a_block_turns_at_its_step(alpha):
         ((0.5, 1.0), 1.0, 5e-3, 10, 0.650),
         ((0.5, 1.0), 1.0, 20e-3, 10, 0.260),  # w1 dt = 1.9, where the formula of small steps has 0.155
         ((0.25, 0.5), 0.98, 1e-3, 10, 0.674),
-        ((0.25, 0.5), 0.98, 2e-4, 10, 0.135),
     ],
 )
 def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step, blocks, seconds):
@@ -54,22 +53,26 @@ def test_every_contact_at_rest_carries_what_is_above():
     assert columns.static_forces([3.0, 2.0, 1.0]) == [6.0, 3.0, 1.0]
 
 
-@pytest.mark.parametrize("base", [{}, {"base": "springs", "base_stiffness": 3e7}])
+@pytest.mark.parametrize("base", [{}, {"base": "springs", "base_stiffness": 3e7}, {"glue": 7e8}])
 def test_the_first_frequency_of_a_column_is_that_of_its_faces(base):
     """Blocks of one strain, two layers of them: the lowest eigenvalue of their faces, assembled."""
+    glued = "glue" in base
     layers = [(3.0, 2000.0, 2e9, 2), (2.0, 1700.0, 5e8, 3)]
     tables = [dict(zip(("thickness", "density", "young", "blocks"), layer, strict=True)) for layer in layers]
     column = {"motion": "shear", "layer": tables} | base
     course = {"input": {"shape": "ricker", "velocity": 0.1, "frequency": 2.0}, "time": {"step": 1e-3, "steps": 9}}
-    M, K = np.zeros((2, 6, 6))
-    K[0, 0] = base.get("base_stiffness", 1e18)
+    M, K = np.zeros((2, 10 if glued else 6, 10 if glued else 6))
+    K[0, 0] = base.get("base_stiffness", base.get("glue", 1e18))
     foot = 0
     for thickness, density, young, blocks in layers:
         for _ in range(blocks):
             part = slice(foot, foot + 2)
             M[part, part] += density * thickness / blocks / 6 * np.array([[2, 1], [1, 2]])
             K[part, part] += young / 2 / (thickness / blocks) * np.array([[1, -1], [-1, 1]])
-            foot += 1
+            if glued and foot:
+                joint = slice(foot - 1, foot + 1)
+                K[joint, joint] += 7e8 * np.array([[1, -1], [-1, 1]])
+            foot += 1 + glued
     lowest = math.sqrt(eigh(K, M, eigvals_only=True)[0])
     section = Scene.model_validate({"name": "two layers", "column": column} | course).column
     assert columns.first_frequency(section) == pytest.approx(lowest, rel=1e-6)

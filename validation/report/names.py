@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping
+from functools import cached_property
 from typing import Any
 
 from validation.runs.history import History
@@ -56,8 +57,14 @@ class Readable(Results):
 
     def verdicts(self, study: str | None = None) -> list[VerdictRecord]:
         """Return the verdicts, of one study or of all."""
-        verdicts = [with_texts(v, _change(v["study"]), NOT_SHOWN) for v in super().readable_verdicts()]
-        return [v for v in verdicts if study is None or v["study"] == study]
+        names = {v["study"] for v in self._readable_verdicts}
+        asked = {name: _change(name) for name in names if study is None or page_name(name) == study}
+        return [with_texts(v, asked[v["study"]], NOT_SHOWN) for v in self._readable_verdicts if v["study"] in asked]
+
+    @cached_property
+    def _readable_verdicts(self) -> list[VerdictRecord]:
+        """The verdicts as they are kept, read once: every chapter asks for its own."""
+        return super().readable_verdicts()
 
     def history(self, key: str) -> History | None:
         """Return a history, whose columns may have names of a user's solver."""

@@ -10,6 +10,8 @@ def printable(text: str) -> str:
 
 def shown(text: str) -> str:
     """Return a text whose control characters and lone surrogates are written as escapes."""
+    if text.isprintable():
+        return text
     return "".join(c if c.isprintable() or c == "\u00a0" else c.encode("unicode_escape").decode() for c in text)
 
 

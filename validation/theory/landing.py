@@ -34,6 +34,10 @@ PHASES = np.linspace(0.0, 1.0, 33)
 """Landings within a step: e is continuous in the phase and made of straight lines, so that ends and kinks count."""
 SAMPLES = 60
 """Samples of the shorter period, between which the end of a contact or of a flight is looked for."""
+PARTS = 100
+"""Parts of what brackets such an end, of which one is divided again."""
+REFINEMENTS = 9
+"""Divisions: 1e-18 of a sample, below the rounding of a time."""
 FLIGHT = 8.0
 """Transits h/c after the first contact, beyond which a contact is no part of the same landing."""
 SOFTEST = 1e-6
@@ -118,7 +122,7 @@ def own_landing(ratio: float) -> OwnLanding:
     """Return the landing of the block of one strain on springs of the stiffness ratio k = 2 p h / (E' a).
 
     Each stretch between two switches is a sum of two modes; its end is bracketed on a grid of sixtieths of the
-    shorter period and found by bisection.
+    shorter period, which are divided again and again.
 
     Raises
     ------
@@ -180,14 +184,11 @@ def _end(motion: _Motion, longest: float, opens: bool) -> tuple[float, float]:
         crossed = 1 + np.flatnonzero(gaps[1:] > 0 if opens else gaps[1:] < 0)
         if crossed.size:
             last = int(crossed[0])
-            low, high = times[last - 1], times[last]
-            for _ in range(60):
-                middle = (low + high) / 2
-                if (motion.gap(np.array([middle]))[0] > 0) == opens:
-                    high = middle
-                else:
-                    low = middle
-            return float(high), max(depth, 0.0) if opens else 0.0
+            for _ in range(REFINEMENTS):
+                times = np.linspace(times[last - 1], times[last], PARTS + 1)
+                beyond = (motion.gap(times) > 0) == opens
+                last = int(np.argmax(beyond[1:])) + 1 if beyond[1:].any() else PARTS
+            return float(times[last]), max(depth, 0.0) if opens else 0.0
         start += 4 * SAMPLES
     return math.inf, depth
 

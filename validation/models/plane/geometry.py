@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator, Sequence
 
@@ -78,6 +79,7 @@ def _middles(one: Vertices, other: Vertices) -> Iterator[Array]:
             yield start + (low + high) / 2 * edge
 
 
+@functools.lru_cache(maxsize=128)  # of a block with many neighbours it is asked for each of them
 def inner_point(outline: Vertices) -> Array:
     """Return a point inside an outline [m]: the centre of its largest triangle."""
     triangles = np.array(outline)[np.array(triangles_of(outline))]

@@ -18,6 +18,7 @@ from scipy.optimize import brentq, linprog
 from validation.models.plane.blocks import Vertices as Outline
 from validation.models.plane.blocks import centroid
 from validation.models.plane.generators import ArchSection, ColumnsSection, GeneratorSection
+from validation.runs.history import Array
 from validation.scenes.outline import area
 
 NEAR = 1e-6  # m, by which a corner that touches an edge may be beside it
@@ -62,6 +63,49 @@ def contact_points(outlines: Sequence[Outline]) -> Iterator[ContactPoint]:
                 yield ContactPoint(block, on, complex(ring[number]), complex(-1j * along[edge, 0]))
 
 
+class Balance(NamedTuple):
+    """The equations of blocks at rest: forces at contact points, each along its normal and along its edge."""
+
+    forces: Array  # of every unit force on the blocks that move, rows x, y and moment of each
+    weights: Array  # what they bear, over the greatest of these
+
+    def is_possible(self, mu: float | None) -> bool:
+        """Return whether forces at contacts of friction mu bear the weights; where mu is None nothing can slide."""
+        count = self.forces.shape[1]
+        slides = None if mu is None else np.kron(np.eye(count // 2), [[-mu, 1.0], [-mu, -1.0]])
+        solution = linprog(
+            np.zeros(count),
+            A_ub=slides,
+            b_ub=None if slides is None else np.zeros(len(slides)),
+            A_eq=self.forces,
+            b_eq=self.weights,
+            bounds=[(0.0, None), (None, None)] * (count // 2),
+            method="highs",
+        )
+        return bool(solution.status == 0)
+
+
+def balance_of(
+    outlines: Sequence[Outline], held: Sequence[bool], gravity: tuple[float, float] = (0.0, -1.0)
+) -> Balance:
+    """Return the balance of blocks of one density; the parameters are those of `can_rest`."""
+    points = list(contact_points(outlines))
+    balance = np.zeros((len(outlines), 3, 2 * len(points)))
+    weights = np.zeros((len(outlines), 3))
+    for number, outline in enumerate(outlines):
+        x, y = centroid(outline)
+        borne = -area(outline) * np.array(gravity) / math.hypot(*gravity)
+        weights[number] = [*borne, x * borne[1] - y * borne[0]]
+    for column, point in enumerate(points):
+        for place, direction in enumerate((point.normal, -1j * point.normal)):
+            force = [direction.real, direction.imag, (point.place.conjugate() * direction).imag]
+            balance[point.block, :, 2 * column + place] += force
+            balance[point.on, :, 2 * column + place] -= force
+    moving = ~np.array(held)
+    borne = weights[moving].ravel()
+    return Balance(balance[moving].reshape(-1, 2 * len(points)), borne / np.max(np.abs(borne)))
+
+
 def can_rest(
     outlines: Sequence[Outline], held: Sequence[bool], mu: float | None, gravity: tuple[float, float] = (0.0, -1.0)
 ) -> bool:
@@ -76,30 +120,7 @@ def can_rest(
     gravity
         In which direction the weights act.
     """
-    points = list(contact_points(outlines))
-    balance = np.zeros((len(outlines), 3, 2 * len(points)))
-    weights = np.zeros((len(outlines), 3))
-    for number, outline in enumerate(outlines):
-        x, y = centroid(outline)
-        borne = -area(outline) * np.array(gravity) / math.hypot(*gravity)
-        weights[number] = [*borne, x * borne[1] - y * borne[0]]
-    for column, point in enumerate(points):
-        for place, direction in enumerate((point.normal, -1j * point.normal)):
-            force = [direction.real, direction.imag, (point.place.conjugate() * direction).imag]
-            balance[point.block, :, 2 * column + place] += force
-            balance[point.on, :, 2 * column + place] -= force
-    moving = ~np.array(held)
-    slides = None if mu is None else np.kron(np.eye(len(points)), [[-mu, 1.0], [-mu, -1.0]])
-    solution = linprog(
-        np.zeros(2 * len(points)),
-        A_ub=slides,
-        b_ub=None if slides is None else np.zeros(len(slides)),
-        A_eq=balance[moving].reshape(-1, 2 * len(points)),
-        b_eq=weights[moving].ravel() / np.max(np.abs(weights[moving])),
-        bounds=[(0.0, None), (None, None)] * len(points),
-        method="highs",
-    )
-    return bool(solution.status == 0)
+    return balance_of(outlines, held, gravity).is_possible(mu)
 
 
 def drawn(section: GeneratorSection) -> tuple[list[Outline], list[bool]]:
@@ -154,10 +175,10 @@ def stepped_friction(heights: tuple[float, ...], width: float, rise: float, dip:
     Below the least no contact forces balance the weights. In between it is the history that decides.
     """
     columns = ColumnsSection(name="column", width=width, heights=heights, dip=math.degrees(dip), rise=rise)
-    outlines, held = drawn(columns)
+    balance = balance_of(*drawn(columns))
     least = math.tan(dip) / 2  # in which nothing stands; above 1 the recursion has no sliding
     push = brentq(lambda mu: recursion(heights, width, rise, dip, mu) - LEAST_PUSH, math.tan(dip), 0.99, xtol=1e-12)
-    return float(push), last_that_rests(lambda mu: can_rest(outlines, held, mu), 1.0, least)
+    return float(push), last_that_rests(balance.is_possible, 1.0, least)
 
 
 def keyed_dip(height: float, count: int, width: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 from collections.abc import Collection, Iterable, Sequence
 from pathlib import Path
@@ -94,6 +95,7 @@ def case_label(name: str, scene: Scene, without: Collection[str] = ()) -> str:
     return ", ".join(parts) or AS_STATED
 
 
+@functools.cache
 def _symbol(field: str) -> tuple[str, str]:
     """Return the symbol of a key and its unit, as they stand beside a number."""
     tables = tables_of_scenes()
