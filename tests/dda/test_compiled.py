@@ -237,6 +237,7 @@ def test_without_numba_and_where_it_fails_the_plain_functions_run(fresh, monkeyp
     assert ran() == (compiled.PLAIN, RAN[1])
 
 
+@pytest.mark.long
 def test_a_function_or_a_number_that_was_replaced_counts(fresh, monkeypatch):
     assert ran() == RAN
     for name, value, numbers in (("FACTOR", 5.0, [1.0, 2.0, 3.0]), ("halved", abs, [5.0, 6.0, 7.0])):
