@@ -76,6 +76,11 @@ class BlockSystem:
         """Names of all columns: with an observed point those of one block."""
         return COLUMNS if self.observed is not None else ("contact_pressure",)
 
+    @property
+    def base_moves(self) -> bool:
+        """Whether what is fixed has a motion."""
+        return self.motion is not None
+
     @cached_property
     def load_size(self) -> float:
         """Largest of the constant loads as a stress, 1 Pa where the base alone acts [Pa]."""

@@ -41,6 +41,7 @@ class Equations:
     names = (DISPLACEMENT, PRESSURE)
     load_size = 1.0
     motion = None
+    base_moves = True
 
     @property
     def reached(self) -> Equations:

@@ -36,6 +36,11 @@ class TwoBlockModel(LoadedBlock):
         """Motion of the base."""
         return self.load.motion
 
+    @property
+    def base_moves(self) -> bool:
+        """Whether the base has a motion."""
+        return self.motion is not None
+
     @cached_property
     def load_size(self) -> float:
         """Largest of the constant loads as a stress, gravity as rho g sqrt(area) [Pa]."""

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array
-from dda.model.checks import check_columns, check_damping
+from dda.model.checks import check_columns, check_damping, check_moves
 from dda.model.load import BaseMotion
 from dda.scheme import roots
 from dda.scheme.harmonic import Complex
@@ -42,6 +42,10 @@ class LinearBody(Protocol):
     @property
     def motion(self) -> BaseMotion | None:
         """That of the base."""
+
+    @property
+    def base_moves(self) -> bool:
+        """Whether the equations have the motion of the base."""
 
     @property
     def load_size(self) -> float:
@@ -132,9 +136,11 @@ def response(
     Raises
     ------
     ValueError
-        If a column is unknown, gg = 0 has no limit that is exact in time, or the base moves under viscous damping.
+        If a column is unknown, gg = 0 has no limit that is exact in time, or the base moves under viscous damping or
+        without a motion of its own.
     """
     check_columns(body.names, columns)
+    check_moves(body.base_moves, along)
     check_damping(scheme.damped, along is not None)
     system = body.reached
     F = system.F * (body.load_size if along is None else 0.0)

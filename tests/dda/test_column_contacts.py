@@ -41,7 +41,7 @@ NEWMARK = [(*AVERAGE, "consistent"), (*CONSTANT, "zero"), (0.3025, 0.6, "zero"),
 
 def check_against_the_papers(problem, scheme, name, parameters, rigid=False):
     """Assert all that is observed of a column, to rounding; return how often its contacts switch."""
-    steps = 40
+    steps = 25
     form, column = Assembly(problem), column_of(problem)
     if rigid:  # the uppermost contact
         form.stiffness[-1] = RIGID

@@ -129,6 +129,7 @@ def ran(steps=1, loop=loop, numbers=None):
 RAN = (compiled.COMPILED, [2.5, 3.5, 4.5])
 
 
+@pytest.mark.long
 def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(fresh, monkeypatch):
     assert ran() == RAN
     kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}
@@ -170,6 +171,7 @@ def test_steps_decide_what_is_compiled_what_is_read_and_what_is_made_each_time(m
         assert [compiled.is_worthwhile(loop, n, ()) for n in (steps[0] - 1, *steps)] == worthwhile
 
 
+@pytest.mark.long
 def test_what_is_kept_is_read_for_shorter_histories_of_the_same_sizes_than_are_compiled(fresh, monkeypatch):
     monkeypatch.setattr(compiled, "SHORT", 10)
     monkeypatch.setattr(compiled, "LONG", 30)
@@ -235,6 +237,7 @@ def test_without_numba_and_where_it_fails_the_plain_functions_run(fresh, monkeyp
     assert ran() == (compiled.PLAIN, RAN[1])
 
 
+@pytest.mark.long
 def test_a_function_or_a_number_that_was_replaced_counts(fresh, monkeypatch):
     assert ran() == RAN
     for name, value, numbers in (("FACTOR", 5.0, [1.0, 2.0, 3.0]), ("halved", abs, [5.0, 6.0, 7.0])):

@@ -8,17 +8,17 @@ from oracles.contact_bodies import DT, apart, shaken
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
 
 PLACE = ("horizontal_displacement", "displacement", "rotation")
-KNOWN = [  # times, and where the centroid is then (u, v, r), from events to 13 digits
-    (0.01, (1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3)),
-    pytest.param(0.03, (-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3), marks=pytest.mark.long),
+KNOWN = [  # times, where the centroid is then (u, v, r), from events to 13 digits, and how far 600 steps may be off
+    (0.01, (1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3), 2e-5),
+    pytest.param(0.03, (-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3), 6e-4, marks=pytest.mark.long),
 ]
 
 
-@pytest.mark.parametrize(("time", "known"), KNOWN)
-def test_a_history_is_near_that_of_its_events(time, known):
+@pytest.mark.parametrize(("time", "known", "off"), KNOWN)
+def test_a_history_is_near_that_of_its_events(time, known, off):
     coarse, fine = (error(steps, time, known) for steps in (200, 600))
     assert fine < coarse / 4  # second order: a ninth, but for where a switch falls within its step
-    assert fine < 6e-4 * np.linalg.norm(known)
+    assert fine < off * np.linalg.norm(known)
 
 
 def error(steps, time, known):

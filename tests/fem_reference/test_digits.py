@@ -2,10 +2,12 @@
 
 from itertools import product
 
+import numpy as np
 import pytest
 from conftest import thinned
 from oracles.matrices_in_balls import lost
 
+from fem_reference.problem.digits import bounded
 from validation import load_scene
 
 LIMIT = 1e-9  # over the maximum: what fem promises for p/E from 1e-3 to 1e12, and bar for every one
@@ -43,3 +45,10 @@ def test_nine_digits_are_kept(solver, values, step, scheme):
 def test_a_block_whose_modes_are_all_infinitely_fast_for_the_step_is_stepped():
     """Its stiffness is 1 to rounding, or a little more, in the reduced elements' own measure."""
     assert lost(extreme({"block.density": 1e-6}, 1e3), "fem") <= LIMIT
+
+
+def test_a_history_is_infinite_from_its_first_overflow_on():
+    unit = np.array([[1.5, -2.0, 1e300, 3.0], [0.5, np.nan, 7.0, 0.0]])
+    for pressure, first in ((1.0, [1.5, -2.0, 1e300, 3.0]), (-1e9, [-1.5e9, 2e9, np.inf, np.inf])):
+        assert bounded(unit, pressure).tolist() == [first, [0.5 * pressure, np.inf, np.inf, np.inf]]
+    assert not bounded(unit, 0.0).any()

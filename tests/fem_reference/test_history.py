@@ -20,25 +20,25 @@ def errors(result, reference):
 @pytest.mark.parametrize(
     ("change", "unknowns", "saving"),
     [
-        ({}, 9, "one column of elements"),
-        ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 81, "half the block"),
-        ({"foundation": "patch", "patch_width": 0.31}, 81, "half the block"),
-        ({"foundation": "corner", "poisson": 0.2}, 81, "half the block"),
+        ({}, 5, "one column of elements"),
+        ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 25, "half the block"),
+        ({"foundation": "patch", "patch_width": 0.31}, 25, "half the block"),
+        ({"foundation": "corner", "poisson": 0.2}, 25, "half the block"),
     ],
 )
 def test_savings_change_nothing(change, unknowns, saving):
-    problem = make(**change, elements=4)
-    saved, whole = solve(problem, AVERAGE, 30), solve(problem, AVERAGE, 30, full=True)
-    assert errors(saved, whole) <= 1e-11  # rounding of thirty solves
-    assert (saved.unknowns, whole.unknowns) == (unknowns, 2 * 9**2)
+    problem = make(**change, elements=2)
+    saved, whole = solve(problem, AVERAGE, 12), solve(problem, AVERAGE, 12, full=True)
+    assert errors(saved, whole) <= 1e-11  # rounding of its solves
+    assert (saved.unknowns, whole.unknowns) == (unknowns, 2 * 5**2)
     assert saving in saved.notes and saving not in whole.notes
     assert saved.notes[-1] == "stepped: few steps" and whole.notes[-1] == "stepped: all savings off"
     assert saved.factorisations == 2
-    assert saved.solves == 31
+    assert saved.solves == 13
 
 
 def test_sparse_and_dense_modes_agree(monkeypatch):
-    problem = make(poisson=0.45, p=2e10, elements=3)
+    problem = make(poisson=0.45, p=2e10, elements=2)
     dense = modes(problem, CONSTANT)
     seams.FEM_DENSE.put(monkeypatch, 10)
     sparse = modes(problem, CONSTANT)

@@ -57,7 +57,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     friction = None if angle is None else Friction(angle, 1e4)
     start = Unilateral(1e-3, -0.1, "glued" if shear else "frictionless", friction=friction)
-    block = solve_unilateral(problem, CONSTANT, 50, start, full=True)
+    block = solve_unilateral(problem, CONSTANT, 30, start, full=True)
     law = {"friction": None, "cohesion": 0.0}
     if angle is not None:
         law = {"friction": math.tan(math.radians(angle)), "cohesion": 1e4 * side / 2}
@@ -68,7 +68,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     )  # fmt: skip
     law |= {"stiffness": stiffness, "shear_stiffness": shear, "gap": 1e-3}
     model = PlaneModel([body], patches(0, None, 0.0, side, 0.0, width, **law), SHAKEN)
-    found = model.history(CONSTANT, 50, model.observer((1.0, 1.0), (1.0, 1.0)))
+    found = model.history(CONSTANT, 30, model.observer((1.0, 1.0), (1.0, 1.0)))
     columns = block.columns
     place = np.abs(columns["displacement"]).max()
     force = np.abs(columns["contact_pressure"]).max()
@@ -77,7 +77,7 @@ def test_one_body_on_the_base_is_the_block(shear, angle, width, degree):
     assert apart(found.normal.sum(axis=1) / side, columns["contact_pressure"]) < 1e-11
     assert apart(found.shear.sum(axis=1) / side, columns["base_shear"], force) < 1e-11
     if angle is not None:
-        assert np.abs(found.slip).max() > 1e-3
+        assert np.abs(found.slip).max() > 1e-4
     work = np.abs(columns["load_energy"]).max()
     for name, values in found.energy.items():
         assert apart(values, columns[name], work) < 1e-11
@@ -112,7 +112,7 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
 
 def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     """Free bodies, an oblique impact with friction: no rigid motion has forces of its own."""
-    lower = rectangle(0.0, 0.0, 2.0, 1.0, velocity=(0.3, 0.5), spin=0.02, elements=3)
+    lower = rectangle(0.0, 0.0, 2.0, 1.0, velocity=(0.3, 0.5), spin=0.02, elements=2)
     polygon = ((0.5, 1.01), (2.5, 1.01), (2.2, 1.9), (0.7, 2.2))
     upper = PlaneBody((polygon,), DENSITY, 2 * YOUNG, 0.3, velocity=(-1.0, -1.0), elements=2)
     law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
@@ -203,7 +203,7 @@ def test_bodies_that_begin_at_rest_stay_there():
     rows = np.vstack([model.means(0), model.means(1)])
     assert rows[7] @ model.rest < rows[1] @ model.rest - 0.01 < -0.02
     consistent = replace(CONSTANT, start="consistent")
-    found = model.history(consistent, 20, rows, settled=True)
+    found = model.history(consistent, 4, rows, settled=True)
     at_rest = rows @ model.rest
     for number, values in found.columns.items():
         assert np.abs(values - at_rest[int(number)]).max() < 1e-12

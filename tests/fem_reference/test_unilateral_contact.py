@@ -125,6 +125,16 @@ def test_an_unstable_scheme_ends_with_its_overflow():
     assert all(np.all(np.isfinite(column)) for column in run.columns.values())
 
 
+def test_states_are_changed_singly_a_hundred_times_a_point_or_four_with_friction():
+    """Of points that touch alone each change takes energy; beside friction they may go round."""
+    model = points.build(make(elements=2))
+    for friction, singly in ((None, 100), (Friction(10.0, 1e3), 4)):
+        system = model.system("glued" if friction else "frictionless", friction)
+        (stage,) = ContactStepper(system, SCHEME)._stages(0.7)
+        assert stage.law.single_limit == singly * np.count_nonzero(~system.rows.slips) > 0
+        assert (stage.h, stage.gg) == pytest.approx((0.7e-3, 0.9**0.7), rel=1e-14)
+
+
 def test_a_step_from_a_velocity_without_bound_solves_no_contact():
     model = points.build(make(elements=2))
     one = ContactStepper(model.system(), SCHEME)
