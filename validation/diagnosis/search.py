@@ -45,7 +45,7 @@ STANDS_OUT = 10.0  # times more that the scene must leave for each change: noise
 AROUND = 5e-5  # relative L2 that moving geometry and a base leave, which every program treats in its own way
 AROUND_OPEN = 3e-4  # the same where the contact opens: each landing is late or early by what the base leaves
 NEGLIGIBLE, NEGLIGIBLE_SHARE = 1e-6, 1e-3  # relative L2 that rounded constants leave, and share of the difference
-WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, if that is there at all
+WITHOUT_IT = 2.0  # times more that a fit leaves without what surrounds the block, or a number, if that is there at all
 SHARE = 0.02  # of what is to be explained, at most, that they may leave
 FACTORS = ("density-factor", "young-factor", "side-factor", "springs-factor", "load-factor")
 SURROUNDINGS = ("springs-factor", "own-weight", "geometry-updated")
@@ -374,7 +374,8 @@ def is_determined(target: Target, scene_fit: Fit, explanation: Explanation) -> b
     # not by the tolerance of a base: a heavy one hardly feels its springs, and digits tell them all the same
     leaves_digits = [target.explained(target.inner(f.residual, f.variant)) for f in fit(target, starts, ROUNDS)]
     of_none = specials[: len(special_cases)]
-    is_none = any(each.misfit <= NEGLIGIBLE or accepted(target, scene_fit, each) for each in of_none)
+    least = max(NEGLIGIBLE, WITHOUT_IT * solution.misfit)
+    is_none = any(each.misfit <= least or accepted(target, scene_fit, each) for each in of_none)
     return not (is_none or any(leaves_digits))
 
 
