@@ -137,13 +137,15 @@ def verdict_of_fifty(case, answer):
 
 
 def verdict_of_slips(case, answer):
-    """Return whether the answer is right, silent or wrong.
+    """Return whether the answer is right, has the true causes among those alike, is silent or wrong.
 
     A cause that noise or rounding hides leaves the history the scene's own: "same" is then no wrong cause.
     """
     named, true = set(answer.causes or [SAME]), set(case.causes)
     if named == true or (named, true) == ({"base-compliance"}, {"springs-factor"}):
         return "right"
+    if any(set(one["causes"]) == true for one in answer.alike):  # two of a product stand for two others
+        return "alike"
     if UNKNOWN in named:
         return "silent"
     return "same" if named == {SAME} else "wrong"
@@ -316,7 +318,7 @@ WORDS = {
 FEWER = {name: WORDS[name] for name in ("right", "silent", "wrong")}
 KINDS = {  # cases, verdict and its words
     "fifty": (lambda seed: fifty()[seed], verdict_of_fifty, FEWER),
-    "slips": (slipped, verdict_of_slips, {name: words for name, words in WORDS.items() if name != "alike"}),
+    "slips": (slipped, verdict_of_slips, WORDS),
     "schemes": (other_scheme, verdict, WORDS),
 }
 
