@@ -39,7 +39,6 @@ MORE = [  # gg, start, formulas, springs, load and shifts are among the fifty of
     ({"hht": -0.1}, ["scheme", "start"], {}),
     ({"ramp": 0.01}, ["load-ramp"], {"load-ramp": 0.01}),
     ({"E": 1e12}, ["young-factor"], {"young-factor": 1e3}),
-    ({"E": 1.2e9, "p": 1.2e9}, ["young-factor", "springs-factor"], {"young-factor": 1.2, "springs-factor": 1.2}),
 ]
 
 
@@ -105,6 +104,15 @@ def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells():
     assert [one["causes"] for one in half.alike] == [["step-factor"], ["side-factor", "load-factor"]]
     assert half.alike[0]["values"]["step-factor"] == pytest.approx(2**0.5, rel=1e-5)
     assert "gravity" in half.alike[0]["further_scene"]
+
+
+@pytest.mark.long
+def test_two_numbers_of_a_product_stand_for_two_others():
+    both = judged(E=1.2e9, p=1.2e9)
+    assert (both.causes, both.values) == (["unexplained"], {})
+    found = {tuple(one["causes"]): one["values"] for one in both.alike}
+    assert found["young-factor", "springs-factor"] == pytest.approx({"young-factor": 1.2, "springs-factor": 1.2})
+    assert found["density-factor", "load-factor"] == pytest.approx({"density-factor": 1 / 1.2, "load-factor": 1 / 1.2})
 
 
 def test_the_evidence_says_which_column_is_right_by_itself():

@@ -34,7 +34,7 @@ from validation.diagnosis.readings import (
     words_of_slips,
 )
 from validation.diagnosis.scene_keys import assignments
-from validation.diagnosis.search import Verdict, as_it_is, relatives, simple, twofold
+from validation.diagnosis.search import FACTORS, Verdict, as_it_is, relatives, simple, twofold
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -267,8 +267,9 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
 def _answer(case: Case, verdict: Verdict) -> Answer:
     target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
     same_rows = relatives(target, scene_variant, verdict)
-    # of several changes no other ones, as few, may give the rows: two numbers of a product stand for two others
-    ties = [each for each in same_rows if 1 < len(verdict.best.ids) >= len(each.ids)]
+    # of several factors no other ones, as few, may give the rows: two numbers of a product stand for two others
+    is_product = len(verdict.best.ids) > 1 and {*verdict.best.ids} <= {*FACTORS}
+    ties = [each for each in same_rows if is_product and len(each.ids) <= len(verdict.best.ids)]
     if ties:
         verdict = replace(verdict, explained=False, alike=tuple(ties))
     stages = _stages(case)
