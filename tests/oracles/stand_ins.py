@@ -86,7 +86,7 @@ def keep(path, name, found, changed):
     path.write_text(text, encoding="utf-8")
 
 
-def other(found, before):
+def differing(found, before):
     """Return the numbers that are not what they were; NaN where one has come or gone."""
     both = {key: (found.get(key, math.nan), before.get(key, math.nan)) for key in found.keys() | before.keys()}
     return {key: now for key, (now, then) in both.items() if then != "~" and not abs(now - then) <= 2e-4}

@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 
 import numpy as np
-from oracles.stand_ins import history, keep, kept, other, summed
+from oracles.stand_ins import differing, history, keep, kept, summed
 
 from validation.problems.problem import ProblemHooks, names, problem
 
@@ -38,4 +38,4 @@ def test_problems_ask_and_measure_as_before():
             changed |= numbers(name, 1 + 1e-11)
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "problems", found, changed)
-    assert other(found, kept(KEPT)["problems"]) == {}
+    assert differing(found, kept(KEPT)["problems"]) == {}

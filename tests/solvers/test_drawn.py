@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from oracles.stand_ins import history, keep, kept, other, summed
+from oracles.stand_ins import differing, history, keep, kept, summed
 from oracles.stated_scenes import SCENES, made
 
 from validation.report.figures.drawing import FigureHooks
@@ -59,4 +59,4 @@ def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):
         found |= numbers(name, tmp_path)
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "drawn", found, found)
-    assert other(found, kept(KEPT)["drawn"]) == {}
+    assert differing(found, kept(KEPT)["drawn"]) == {}

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.stand_ins import Numbers, history, keep, kept, other, summed
+from oracles.stand_ins import Numbers, differing, history, keep, kept, summed
 from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
@@ -84,7 +84,7 @@ def test_formulas_give_what_they_gave(name):
     found = numbers(get_study(name))
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, name, found, rows_of(get_study(name), 1 + 1e-11))
-    assert other(found, kept(KEPT)[name]) == {}
+    assert differing(found, kept(KEPT)[name]) == {}
 
 
 def test_gates_for_users_solvers_are_what_they_were(tmp_path):
@@ -95,4 +95,4 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
     found = {"gates": summed(edges), "kinds": summed(kind for scene in blocks for kind in gates.unseen([scene]))}
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "own-solver", found, found)
-    assert other(found, kept(KEPT)["own-solver"]) == {}
+    assert differing(found, kept(KEPT)["own-solver"]) == {}

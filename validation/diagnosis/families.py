@@ -19,12 +19,10 @@ ONE_SCHEME = "nothing: it is one scheme by two names"
 WIDER = "load.eccentricity, or a printed mass: the width of the block and of its base"
 
 
-def relatives(
-    target: Target, scene: Variant, found: Sequence[Explanation], ids: Sequence[str], v: Variant
-) -> list[dict[str, Any]]:
+def relatives(target: Target, scene: Variant, verdict: Verdict, ids: Sequence[str], v: Variant) -> list[dict[str, Any]]:
     """Return what gives the same rows as the named causes.
 
-    Most of it was found by running the other candidates. Three are in no candidate: the rows depend on m/(k dt^2), E/p
+    Most of it is found by running the other candidates. Three are in no candidate: the rows depend on m/(k dt^2), E/p
     and load/p only (m the mass, k the springs), so that another step is another density, a wider block one on softer
     springs, and a base without mass stands in series with them.
     """
@@ -45,8 +43,8 @@ def relatives(
         # per unit of width, pressure, mass and stiffness of the block stay; the two springs share a wider base
         wider = significant(math.exp(v.softness), 6)
         alike.append(_relative(["width-factor"], {"width-factor": wider}, WIDER))
-    others_found = [_of_explanation(target, each, scene) for each in found]
-    return [*alike, *(one for one in others_found if not set(ids) < set(one["causes"]))]
+    found = [_of_explanation(target, each, scene) for each in verdict.same_rows]
+    return [*alike, *(one for one in found if not set(ids) < set(one["causes"]))]
 
 
 def sign_or_gravity(target: Target, ids: Sequence[str], corrected: Sequence[Slip]) -> list[dict[str, Any]]:

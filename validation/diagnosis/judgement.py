@@ -34,7 +34,7 @@ from validation.diagnosis.readings import (
     words_of_slips,
 )
 from validation.diagnosis.scene_keys import assignments
-from validation.diagnosis.search import FACTORS, Verdict, as_it_is, relatives, simple, twofold
+from validation.diagnosis.search import Verdict, as_it_is, simple, twofold, with_same_rows
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import OPENING, Flags, Histories, Rectangle, Variant, own_variant, rectangle_of
 from validation.errors import InputError
@@ -266,12 +266,7 @@ def _stages(case: Case, factor: float | None = None) -> list[Stage]:
 
 def _answer(case: Case, verdict: Verdict) -> Answer:
     target, scene_variant, best_fit = case.target, case.scene_variant, verdict.best.fit
-    same_rows = relatives(target, scene_variant, verdict)
-    # of several factors no other ones, as few, may give the rows: two numbers of a product stand for two others
-    is_product = len(verdict.best.ids) > 1 and {*verdict.best.ids} <= {*FACTORS}
-    ties = [each for each in same_rows if is_product and len(each.ids) <= len(verdict.best.ids)]
-    if ties:
-        verdict = replace(verdict, explained=False, alike=tuple(ties))
+    verdict = with_same_rows(target, scene_variant, verdict)
     stages = _stages(case)
     corrected = case.reading.corrected
     error = intervals(best_fit)["softness"].half_width if "softness" in best_fit.free else 0.0
@@ -300,7 +295,7 @@ def _answer(case: Case, verdict: Verdict) -> Answer:
     limits = [name for name in causes.BAND_FIELDS if name in ends]
     values |= {name: causes.roundest(*ends[name]) for name in limits}
     alike = either or families.as_good(target, verdict)
-    alike = alike or families.relatives(target, scene_variant, same_rows, ids, v)
+    alike = alike or families.relatives(target, scene_variant, verdict, ids, v)
     nearest: dict[str, Any] | None = None
     if not (verdict.explained or alike):
         numbers = causes.values_of(target.column, all_causes, best_fit.variant)

@@ -151,6 +151,7 @@ class Verdict:
     reached: bool = False  # something leaves digits and noise only, also where no cause is named
     aliases: tuple[Explanation, ...] = ()  # other names of the best one: one scheme at any time step
     others: tuple[Explanation, ...] = ()  # less likely ones that explain it, too
+    same_rows: tuple[Explanation, ...] = ()  # what gives the rows of the named one themselves
 
     @property
     def explains(self) -> bool:
@@ -293,6 +294,18 @@ def relatives(target: Target, scene: Variant, verdict: Verdict) -> list[Explanat
         same += [f for f in fitted(clean, scene, pairs) if f.fit.misfit <= SAME_PROGRAM]
     distinct = {f.ids: f for f in reversed(same) if is_determined(clean, fit_one(clean, scene), f)}
     return list(distinct.values())[:MOST_ALIKE]
+
+
+def with_same_rows(target: Target, scene: Variant, verdict: Verdict) -> Verdict:
+    """Return a verdict with what gives the rows of the named causes themselves.
+
+    Of several factors none is named where other ones, as few, do: two numbers of a product stand for two others.
+    """
+    same_rows = tuple(relatives(target, scene, verdict))
+    count = len(verdict.best.ids)
+    is_product = count > 1 and set(verdict.best.ids) <= {*FACTORS}
+    ties = tuple(each for each in same_rows if is_product and len(each.ids) <= count)
+    return replace(verdict, explained=False, alike=ties) if ties else replace(verdict, same_rows=same_rows)
 
 
 def same_program(target: Target, one: Variant, other: Variant) -> bool:

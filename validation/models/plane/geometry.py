@@ -46,15 +46,15 @@ def overlap(first: Vertices, second: Vertices) -> float:
     return max(depths)
 
 
-def separated(one: Vertices, other: Vertices) -> bool:
-    """Return whether the line of an edge of an outline has all of it on one side, and the other one on the other."""
-    starts = np.array(one)
+def separated(outline: Vertices, neighbour: Vertices) -> bool:
+    """Return whether the line of an edge of an outline has all of it on one side, and its neighbour on the other."""
+    starts = np.array(outline)
     edges = np.roll(starts, -1, axis=0) - starts
     lengths = np.hypot(edges[:, 0], edges[:, 1])
     normals = np.array([-edges[:, 1], edges[:, 0]]) / lengths  # to the left of each edge: inwards
     levels = np.sum(starts.T * normals, axis=0)
     nearest = np.min(starts @ normals - levels, axis=0)
-    farthest = np.max(np.array(other) @ normals - levels, axis=0)
+    farthest = np.max(np.array(neighbour) @ normals - levels, axis=0)
     rounding = SAME * lengths
     return bool(np.any((nearest >= -rounding) & (farthest <= rounding)))
 
