@@ -1,8 +1,10 @@
 """What tests of the report share."""
 
 import os
+import re
 import textwrap
 from dataclasses import fields
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -41,10 +43,24 @@ def kept():
     return check
 
 
+def is_told(word):
+    """Whether a word is a number, a key, a sign or has one."""
+    return re.search(r"[\d|@_=]", word) is not None
+
+
+def shortened(text):
+    """Return a text of which many words in a row that are only words have become their first and last two."""
+    shown = []
+    for told, run in groupby(text.replace("\xa0", "~").split(" "), is_told):
+        words = list(run)
+        shown += words if told or len(words) < 7 else [*words[:2], "…", *words[-2:]]
+    return " ".join(shown)
+
+
 def lines_of(block):
     """Return the kind of a block and what of it is not the default, a line for each row; `~` is a space that holds."""
     if isinstance(block, str):
-        return textwrap.wrap(block.replace("\xa0", "~"), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
+        return textwrap.wrap(shortened(block), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
     if isinstance(block, TableColumn):
         return [f"{block.kind}: {block.group} / {block.title}"]
     if isinstance(block, tuple):
@@ -63,10 +79,20 @@ def kept_figures():
     """Hold figures to a page in `pages`, as `kept` holds blocks."""
 
     def check(name, figures):
-        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items())) + "\n"
-        _held(name, text)
+        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
+        _held(name, with_line_numbers(text) + "\n")
 
     return check
+
+
+def with_line_numbers(text):
+    """Return a text in which a long line that stands above as well is the number of that one."""
+    lines = text.splitlines()
+    places = {line: number for number, line in reversed([*enumerate(lines, start=1)])}
+    return "\n".join(
+        f"  = line {places[line]}" if places[line] < number and len(line) > 20 else line
+        for number, line in enumerate(lines, start=1)
+    )
 
 
 def _held(name, text):
