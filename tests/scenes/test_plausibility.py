@@ -15,10 +15,7 @@ from validation.scenes.plausibility import implausible_values, plausibility_warn
 from validation.scenes.scene import load_scene, parse_scene, scene_names
 
 ROCK = {"block": {"side": 2.0, "density": 2700.0, "young": 3e10}, "contact": {"stiffness": 1e9}}
-CASES = [
-    tuple(row.values())
-    for row in tomllib.loads(Path(__file__).with_name("implausible.toml").read_text(encoding="utf-8"))["warned"]
-]
+WARNED = tomllib.loads(Path(__file__).with_name("implausible.toml").read_text(encoding="utf-8"))["warned"]
 
 
 def rock(**tables):
@@ -27,11 +24,12 @@ def rock(**tables):
     return parse_scene({"name": "rock"} | data, "rock.toml")
 
 
-@pytest.mark.parametrize(("values", "field", "kind", "advice"), CASES)
-def test_a_value_in_another_unit_is_named_with_what_to_write(values, field, kind, advice):
-    (found,) = implausible_values(rock().with_values(values))
-    assert (found.field, found.kind) == (field, kind)
-    assert advice in found.sentence and 'extreme = "why"' in found.sentence
+def test_a_value_in_another_unit_is_named_with_what_to_write():
+    for values, kind, advice, *other in WARNED:
+        (found,) = implausible_values(rock().with_values(values))
+        (field,) = other or [*values][-1:]
+        assert (found.field, found.kind) == (field, kind), values
+        assert advice in found.sentence and 'extreme = "why"' in found.sentence, values
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 25))
