@@ -116,19 +116,6 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(scene_file,
     assert out.read_text() == GOOD
 
 
-@pytest.mark.parametrize(("text", "status"), thinned([(WIDE, 0), (TIGHT, 1)], 2))
-@pytest.mark.long
-def test_a_reader_that_has_gone_does_not_change_the_status(text, status, scene_file, tmp_path):
-    scene_file.write_text(text)
-    reading, writing = os.pipe()
-    os.close(reading)
-    with os.fdopen(writing, "w") as gone:
-        done = subprocess.run(
-            command("run", scene_file, "--results", tmp_path / "r"), stdout=gone, stderr=subprocess.PIPE, timeout=100
-        )
-    assert (done.returncode, done.stderr.strip()) == (status, b"")
-
-
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
 @pytest.mark.parametrize("words", thinned(["--help", "list", "run small.toml"], 3))
 def test_a_full_output_is_one_line(words, scene_file):
