@@ -24,7 +24,7 @@ def told(monkeypatch):
         found.append(status)
         raise Ended
 
-    monkeypatch.setattr(os, "_exit", leave)
+    monkeypatch.setattr(os, os._exit.__name__, leave)
     monkeypatch.setattr(os, "write", lambda stream, text: found.append((stream, text)))
     signals._received.clear()
     signals._pending_messages[:] = [signals.INTERRUPTED_MESSAGE]

@@ -31,6 +31,8 @@ except SystemExit:
 """,
     "plug-in": "import validation.entry.plugin",
     "dda": "import dda",
+}
+HEAVIER = {
     "scene of dda": """
 from validation import load_scene, solve
 solve(load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4}), "dda")
@@ -62,14 +64,13 @@ def imports(path):
     return {name for names in IMPORT.findall(text(path)) for name in names if name}
 
 
-@pytest.fixture(scope="module")
-def modules():
-    """Return the modules that one fresh interpreter holds after each of `STEPS`, by its name."""
+def modules(steps):
+    """Return the modules that one fresh interpreter holds after each of some steps, by its name."""
     shown = "\nimport sys; print('\\nloaded:', *sys.modules)"
-    code = "\n".join(f"{code}{shown}" for code in STEPS.values())
+    code = "\n".join(f"{code}{shown}" for code in steps.values())
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, cwd=ROOT)
     lines = [line.split()[1:] for line in done.stdout.splitlines() if line.startswith("loaded: ")]
-    return dict(zip(STEPS, map(set, lines), strict=True))
+    return dict(zip(steps, map(set, lines), strict=True))
 
 
 def packages(names):
@@ -233,14 +234,16 @@ def test_no_print_no_exit_no_assert_in_library_code():
                 assert not {"print", "sys.exit", "exit"} & set(calls), path
 
 
-def test_a_scene_of_dda_needs_no_finite_elements_and_the_bar_no_ball_arithmetic(modules):
-    assert not packages(modules["scene of dda"]) & {"skfem", "matplotlib", "fem_reference", "typst", "meshio"}
-    assert not packages(modules["bar"]) & {"skfem", "meshio", "matplotlib", "flint"}
+@pytest.mark.long
+def test_a_scene_of_dda_needs_no_finite_elements_and_the_bar_no_ball_arithmetic():
+    loaded = modules(HEAVIER)
+    assert not packages(loaded["scene of dda"]) & {"skfem", "matplotlib", "fem_reference", "typst", "meshio"}
+    assert not packages(loaded["bar"]) & {"skfem", "meshio", "matplotlib", "flint"}
 
 
-def test_start_up_loads_little(modules):
+def test_start_up_loads_little():
     """What bounds its time on any machine: the libraries by name, and how many modules beside those of a bare start."""
-    bare, page, plugin, dda = (modules[name] for name in ("bare", "help page", "plug-in", "dda"))
+    bare, page, plugin, dda = modules(STEPS).values()
     assert not packages(plugin) & {"numpy", "scipy", "pydantic"}
     assert packages(dda - plugin) == {"numpy", "dda"}
     assert len([name for name in dda if name.startswith("dda")]) < 90  # 50

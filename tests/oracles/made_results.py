@@ -218,7 +218,8 @@ def _axis(axis):
     low, high = sorted(axis.get_view_interval())
     inside = [tick for tick in ticks if low <= tick <= high]
     words = list(getattr(axis.get_major_formatter(), "seq", ()))
-    sides = [label.get_horizontalalignment()[0] for label in axis.get_ticklabels()[:: len(words) - 1 or 1] if words]
+    labels = axis.get_ticklabels()[:: len(words) - 1 or 1] if words else []  # which take long to make
+    sides = [label.get_horizontalalignment()[0] for label in labels]
     hidden = axis.get_tick_params()
     unlabelled = "" if hidden.get("labelleft", hidden.get("labelbottom")) else " unlabelled"
     named = f" as {words} {''.join(sides)}" * bool(words) + unlabelled
