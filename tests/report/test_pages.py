@@ -10,6 +10,7 @@ from oracles.made_cases import made_case, made_group, made_history
 from validation.metrics.catalogue import CATALOGUE
 from validation.report import book
 from validation.report.appendix.pages import appendix
+from validation.report.chapters import budget
 from validation.report.chapters.data import groups_of_studies
 from validation.report.chapters.scene import scene_page, slide_figure
 from validation.report.figures import motion, response
@@ -51,6 +52,18 @@ def test_each_kind_of_scene_has_its_page_and_drawing(name, kept, kept_figures, d
     scene = load_scene(name).expand()[0]
     kept(f"scene-{name}", scene_page(made_group(made_case(scene, {"dda": {}})), tmp_path))
     kept_figures(f"drawing-{name}", drawn)
+
+
+def test_a_budget_says_how_the_discount_is_held_and_how_far_the_frequencies_are_off():
+    for floors, rate, gg, told in (
+        ((1.05, 1.052), None, 1.0, ["is 1.050 to 1.052 times"]),
+        ((None, 1.05), 3.0, 0.9, ["is 1.050 times", "as a rate"]),
+        ((None,), None, 0.9, ["gg acts per step"]),
+    ):
+        budgets = [{"floor": floor, "gg_rate": rate, "gg": gg} for floor in floors]
+        said = budget._caption(budgets)
+        words = ("is 1.050 to 1.052 times", "is 1.050 times", "as a rate", "gg acts per step")
+        assert [word for word in words if word in said] == told
 
 
 def test_scenes_are_drawn_inside_their_axes():

@@ -208,6 +208,25 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kind, tmp_path):
         assert f"<caption>{block.caption}</caption>" in page("t", [block]) and block.notes[0] in shown
 
 
+def test_blocks_stand_apart_in_a_terminal_and_a_callout_close_to_what_it_is_of():
+    blocks = [
+        kinds.PageBreak(),
+        Heading("A title"),
+        Callout("mind", "warn"),
+        Callout("it fails", "fail"),
+        kinds.Beside((Paragraph("left"),), (Listing("one\n two"),), 0.5),
+        Points((("Head.", "text"),)),
+        table(("word", "number"), [("x", "1.5"), ("of both",)], "Of all", ("so",)),
+        Links((Link("a.html", "Title", "what is there"),)),
+    ]
+    lines = [*terminal.lines(blocks, 40)]
+    assert [line for line in lines if line[1]] == [("it fails", "FAIL")]
+    assert [text.rstrip() for text, _ in lines] == [
+        *("A title", "! mind", "it fails", "", "left", "", "one", " two", "", "Head. text", ""),
+        *("Of all", "word  number", "x        1.5", "of both", "so", "", "a.html  Title  what is there"),
+    ]
+
+
 # ---- calculators ----------------------------------------------------------------------------------------------------
 
 
