@@ -62,16 +62,18 @@ def lines_of(block):
     if isinstance(block, str):
         return textwrap.wrap(shortened(block), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
     if isinstance(block, TableColumn):
-        return [f"{block.kind}: {block.group} / {block.title}"]
+        kind = "" if block.kind == "text" else f"{block.kind}: "
+        return [f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)]
     if isinstance(block, tuple):
         return lines_of(" | ".join(block))
-    lines = [f"{type(block).__name__}"]
+    lines = []
     for field in fields(block):
         value = getattr(block, field.name)
         if value != field.default:
             inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
-            lines += lines_of(f"{field.name}: {'' if inner else value}") + inner
-    return [lines[0], *(f"  {line}" for line in lines[1:])]
+            name = "" if field.name in ("text", "rows", "items") else f"{field.name}: "
+            lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]
+    return [f"{type(block).__name__}", *(f"  {line}" for line in lines)]
 
 
 @pytest.fixture

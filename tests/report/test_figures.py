@@ -62,6 +62,7 @@ def test_each_solver_has_one_style_and_no_two_share_it():
     assert len({style.color for style in others}) == 6 and {(style.width, style.layer) for style in others} == {
         (1.0, 2)
     }
+    assert curves.style_of("exact") == curves.LineStyle("#444444", (), 0.8, 1)
     assert curves.style_of("abaqus") == curves.LineStyle("#cc79a7", (1.5, 1.0), 1.0, 2)  # depends on the name alone
 
 

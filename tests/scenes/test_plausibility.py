@@ -1,13 +1,11 @@
 """Values that were probably not meant: which are warned of, and what to write; built-in scenes are left alone."""
 
-import json
-import re
 import tomllib
 import warnings
 from pathlib import Path
 
 import pytest
-from conftest import thinned, typed
+from conftest import thinned
 
 import validation
 from validation.errors import PlausibilityWarning
@@ -49,19 +47,3 @@ def test_python_warns_once_a_scene_and_not_once_a_solver():
             validation.solve(scene, solver)
         validation.damping(scene)
     assert [(warning.category, warning.filename) for warning in caught] == [(PlausibilityWarning, "rock")]
-
-
-@pytest.mark.long
-def test_commands_warn_on_standard_error_once(tmp_path):
-    lines = ['title = "t"', "[block]", "side = 2.0", "density = 2.7", "young = 3e10", "[contact]", "stiffness = 1e9"]
-    scene = tmp_path / "mine.toml"
-    scene.write_text("\n".join([*lines, "[load]", "pressure = 5e6", "[time]", "step = 0.002", "steps = 5\n"]))
-    results = ["--results", str(tmp_path / "results")]
-    for words in (["show"], ["solve"], ["advise", "step", "--damping", "0.05"], ["run", *results]):
-        done = typed(*words, str(scene))
-        assert re.findall(r"^warning: mine: (\S+)", done.stderr, re.M) == ["block.density"], words
-        assert done.returncode == 0, words
-    data = json.loads(typed("show", str(scene), "--json").stdout)
-    assert len(data["warnings"]) == 1
-    scene.write_text('extreme = "foam"\n' + scene.read_text())
-    assert typed("solve", str(scene)).stderr.count("warning") == 0
