@@ -15,11 +15,16 @@ from conftest import typed
 from validation import load_scene, response
 from validation.advice import across
 from validation.cli import app, run, verify
+from validation.cli import compare as cli_compare
 from validation.cli import judge as cli_judge
 from validation.cli import waves as cli_waves
+from validation.diagnosis.evidence import Stage
+from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.problems.answers import Answer, AnswerSet, stated_by
+from validation.report import book
 from validation.report.figures import response as figures
+from validation.report.site import pages
 from validation.runs.run import Outcome, Run
 from validation.suite import judging
 
@@ -149,3 +154,108 @@ def test_on_a_terminal_what_a_new_scene_needs_is_asked(tmp_path, monkeypatch):
     printed("new", "told.toml", "--kind", "slope", "--rock", "basalt", "--width", "3", cwd=tmp_path)
     assert "block" not in asked and "granite" not in asked
     assert (tmp_path / "told.toml").read_text() == (tmp_path / "asked.toml").read_text()
+
+
+# ---- what is handed on ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("words", "asked", "said"),
+    [
+        ("", [("pdf", "reports/report.pdf", None, False)], "wrote reports/report.pdf\n"),
+        ("core --out a.PDF --appendix", [("pdf", "a.PDF", ["core"], True)], "wrote a.PDF\n"),
+        ("core --figures f", [("figures", "f", ["core"])], "wrote f/one.svg\nwrote f/two.svg\n"),
+        ("--site s --docs ../d/", [("site", "s", None, "../d")], "wrote s/index.html (2.5 MB in all)\n"),
+        ("--site s --out b.pdf", [("pdf", "b.pdf", None, False), ("site", "s", None, "")], "wrote b.pdf\nwrote s/"),
+    ],
+)
+def test_a_report_is_written_where_and_of_what_it_is_asked_for(words, asked, said, monkeypatch):
+    found = []
+
+    def site(store, place, names, progress, docs):
+        found.append(("site", str(place), names, docs))
+        return place / "index.html"
+
+    def drawn(store, place, names):
+        found.append(("figures", str(place), names))
+        return [place / "one.svg", place / "two.svg"]
+
+    monkeypatch.setattr(book, "build", lambda store, *rest: found.append(("pdf", str(rest[0]), *rest[1:])))
+    monkeypatch.setattr(book, "write_figures", drawn)
+    monkeypatch.setattr(book, "unread_studies", lambda store, studies: {"old": "it is of another version"})
+    monkeypatch.setattr(book, "ordered_studies", lambda store: ["old"])
+    monkeypatch.setattr(pages, "build", site)
+    monkeypatch.setattr(pages, "size", lambda place: 2_500_000)
+    done = typed("report", *words.split())
+    assert (done.returncode, found, done.stderr) == (0, asked, "note: old is left out: it is of another version\n")
+    assert done.stdout.startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("words", "studies", "machine"),
+    [
+        ("", ["core"], (False, 1, 1, None)),
+        ("figure-8 --jobs 3 --full", ["figure-8"], (True, 1, 3, None)),
+        ("figure-8 figure-9 --ranks 2 --scheduler tcp://a:1", ["figure-8", "figure-9"], (False, 2, 1, "tcp://a:1")),
+        ("cost --scene field-locked --set time.steps=9", ["cost-of-field-locked"], (False, 1, 1, None)),
+    ],
+)
+def test_a_run_is_of_the_studies_that_are_named_on_the_machine_that_is_stated(words, studies, machine, monkeypatch):
+    found = []
+
+    def stop(*given):
+        found.extend(given)
+        raise InputError("so far")
+
+    monkeypatch.setattr(run, run._run_studies.__name__, stop)
+    done = typed("run", *words.split(), "--results", "r", "--require", "fem")
+    assert done.stderr == "error: so far\n"
+    named, results, on, judging = found
+    assert [study.name for study in named] == studies and str(results.directory) == "r"
+    assert (on.full, on.ranks, on.jobs, on.scheduler) == machine
+    assert (judging.required, judging.verbose, judging.quiet) == (["fem"], False, False)
+    two = typed("run", "cost", "core", "--scene", "figure-8")
+    assert (two.returncode, two.stderr[:17]) == (2, "error: --scene: g")
+
+
+def test_causes_that_give_the_same_history_are_told_apart():
+    stages = (Stage("one", True, "so", {}), Stage("two", False, "not so", {}), Stage("three", None, "who knows", {}))
+    alike = {"causes": ["scheme", "gg"], "values": {"gg": 0.98765432}, "further_scene": "a longer run"}
+    answer = SimpleNamespace(
+        sentence="It departs.", remedy="--scale time=2", causes=("start", "gg"), values={"gg": 0.98765432},
+        alike=[alike], evidence=stages, opened=(3, 17), told={}, untold=[{"E": 1.0, "p": -0.5}], notes=("mind",),
+    )  # fmt: skip
+    lines = [" ".join(line.split()) for line in cli_compare._lines(answer)]
+    assert lines == [
+        "It departs.",
+        "to read the history so, add --scale time=2",
+        "causes",
+        "start the other initial acceleration",
+        "gg 0.98765 a different velocity discount gg",
+        "scheme and gg 0.98765 would give the same history here; to tell them apart, try a longer run",
+        *("evidence", "one right so", "two wrong not so", "three - who knows"),
+        "the contact opened: first step 3, last 17",
+        *("", "not determined by the data: +1.00 E, -0.50 p", "note: mind"),
+    ]
+    answer.remedy = "--set time.gg=0.9"
+    assert [*cli_compare._lines(answer)][1] == "to run the scene so, add --set time.gg=0.9"
+
+
+def test_answers_that_are_kept_and_written_as_a_pdf_are_named(monkeypatch, tmp_path):
+    judged = [SimpleNamespace(judged=True)]
+    found = []
+
+    def written(out, blocks):
+        found.append((out.name, blocks(tmp_path)))
+        return out
+
+    monkeypatch.setattr(judging, "judged_sets", lambda sets, progress: judged)
+    monkeypatch.setattr("validation.problems.answers.keep", lambda sets, keep: [keep / "a", keep / "b"])
+    monkeypatch.setattr("validation.report.chapters.answers.first_page", lambda sets: [len(sets)])
+    monkeypatch.setattr("validation.report.render.pdf.write_document", written)
+    monkeypatch.setattr("validation.report.site.submissions.write_site", lambda sets, out, progress: out / "index.html")
+    for out, wrote in (("p.pdf", ["wrote p.pdf"]), ("site", ["wrote site/index.html"]), (None, [])):
+        told = cli_judge._judged_and_written((), None if out is None else Path(out), Path("k"), None)
+        assert told == (judged, ["kept in k/a", "kept in k/b", *wrote])
+    assert cli_judge._judged_and_written((), None, None, None) == (judged, [])
+    assert found == [("p.pdf", [1])]
