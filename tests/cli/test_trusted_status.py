@@ -1,8 +1,6 @@
 """The exit status of a run: no 0 where nothing was measured, where a baseline is no baseline, where names collide."""
 
 import json
-import os
-import resource
 import subprocess
 import sys
 from dataclasses import replace
@@ -77,25 +75,6 @@ def test_a_baseline_that_is_none_is_refused_before_anything_runs(name, scene_fil
 
 def command(*arguments):
     return [sys.executable, "-m", "validation", *map(str, arguments)]
-
-
-@pytest.mark.parametrize("ending", thinned(["xdmf", "vtu"], 2))
-@pytest.mark.long
-def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending, scene_file, tmp_path):
-    out = tmp_path / f"f.{ending}"
-    out.write_text(GOOD)
-    done = subprocess.run(  # a limit on the size of files stands for a full disk
-        command("solve", scene_file, "--solver", "fem", "--fields", out),
-        capture_output=True,
-        text=True,
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # a compiled file would be cut off at the limit, and kept
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)),
-        check=False,
-        timeout=100,
-    )
-    assert done.returncode == 2 and "--fields" in done.stderr
-    assert out.read_text() == GOOD
-    assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
 
 
 def test_fields_are_not_written_after_an_overflow(scene_file, tmp_path):

@@ -16,13 +16,12 @@ from validation.report.chapters.scene import scene_page, slide_figure
 from validation.report.figures import motion, response
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HistoryPanel
-from validation.report.figures.drawing import scene_figure
 from validation.report.figures.histories import Margins
 from validation.report.figures.solution import solution_figure
 from validation.report.figures.space_time import SpaceTime, space_time_figure
 from validation.report.front import front_pages
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.scenes.scene import load_scene, scene_names
+from validation.scenes.scene import load_scene
 from validation.suite.folders import study_folders
 
 STUDIES = ("mine", "two", "solo")
@@ -64,15 +63,6 @@ def test_a_budget_says_how_the_discount_is_held_and_how_far_the_frequencies_are_
         said = budget._caption(budgets)
         words = ("is 1.050 to 1.052 times", "is 1.050 times", "as a rate", "gg acts per step")
         assert [word for word in words if word in said] == told
-
-
-def test_scenes_are_drawn_inside_their_axes():
-    for name in scene_names()[::24]:  # of every family some
-        (axes,) = scene_figure(load_scene(name).expand()[0]).axes
-        corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
-        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-        assert left <= corners[:, 0].min() and corners[:, 0].max() <= right, name
-        assert low <= corners[:, 1].min() and corners[:, 1].max() <= high, name
 
 
 # ---- units ----------------------------------------------------------------------------------------------------------
