@@ -1,18 +1,18 @@
 """What commands print, kept word by word: the one place for wordings. Numbers may differ where no digit is meant.
 
 The numbers are computed apart beside the functions that they come from; here a page is only held to what it was. A page
-that is changed on purpose is written anew by ``python tests/cli/test_pages.py``; a command line
-behind it becomes another page. `pages.txt` reads as a terminal does: ``$`` and the command, what it prints, its status
-where that is not 0, nor 2 after an error; of a page that is like another one ``| grep -E`` keeps the lines that are
-its own.
+that is changed on purpose is written anew by ``KEEP_PAGES=1 pytest tests/cli/test_pages.py``, and so is one of which
+`pages.txt` holds no more than the command. It reads as a terminal does: ``$`` and the command, what it prints, its
+status where that is not 0, nor 2 after an error; of a page that is like another one ``| grep -E`` keeps the lines that
+are its own.
 """
 
 import atexit
 import json
+import os
 import re
 import shlex
 import shutil
-import sys
 import tempfile
 from functools import cache
 from itertools import groupby
@@ -157,6 +157,9 @@ def check(lines):
     for line in lines:
         kept, files = KEPT[line], sorted(desk().iterdir())
         printed = page(line)
+        if os.environ.get("KEEP_PAGES"):
+            KEPT[line] = kept = printed
+            PAGES.write_text("\n".join(f"$ {one}\n{text}" for one, text in KEPT.items()), encoding="utf-8")
         assert not kept.startswith("error: ") or sorted(desk().iterdir()) == files, line
         assert NUMBER.sub("#", printed) == NUMBER.sub("#", kept), line
         numbers = [[float(text) for text in NUMBER.findall(text)] for text in (printed, kept)]
@@ -172,10 +175,3 @@ def test_a_command_prints_what_it_did(command, lines):
 @pytest.mark.parametrize("line", [line for line in KEPT if SLOW.match(line)])
 def test_a_command_that_takes_seconds_prints_what_it_did(line):
     check([line])
-
-
-if __name__ == "__main__":
-    sys.path[:0] = [str(Path(__file__).parents[2]), str(Path(__file__).parents[1])]
-    printed = {line: page(line) for line in [*ORDERED, *sys.argv[1:]]}  # as the tests: some find what others wrote
-    pages = [f"$ {line}\n{printed[line]}" for line in [*KEPT, *sys.argv[1:]]]
-    PAGES.write_text("\n".join(pages), encoding="utf-8")
