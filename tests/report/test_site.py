@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import tomllib
+from html import unescape
 from html.parser import HTMLParser
 from typing import get_args
 from urllib.parse import urlencode
@@ -91,6 +92,8 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     assert sorted(pictures) == sorted(scenes + studies)
     assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
     assert "FAIL" in files["index.html"] and REASON in files["index.html"]
+    titles = [unescape(re.search("<title>([^<]*)", text)[1]) for _, text in sorted(files.items()) if "<title>" in text]
+    assert titles[3:] == [f"{FAILING}: plain", f"passing: {HOSTILE}", "plain", HOSTILE]
 
 
 def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path, monkeypatch):
@@ -133,8 +136,10 @@ def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as
             pages.build(results, out)
     assert set(texts(out)) == {pages.MARK, "scene-old.html"}
     monkeypatch.setattr(pages, "scene_page", lambda group, _: [Paragraph(group.title)])
+    told = []
     for place in (out, tmp_path / "other"):
-        pages.build(results, place)
+        pages.build(results, place, progress=lambda *given: told.append(given))
+    assert told == [(number, 2, name) for number, name in enumerate((FAILING, "passing"))] * 2
     assert texts(out) == texts(tmp_path / "other") and "scene-passing.html" in texts(out)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]
 
