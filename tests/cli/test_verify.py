@@ -73,3 +73,45 @@ def test_a_solver_of_a_user_has_the_limit_of_time_that_is_stated(monkeypatch):
     monkeypatch.setattr(plugin, "shadowed", lambda: "x is in the way")
     with pytest.raises(pytest.UsageError, match="x is in the way"):
         plugin.pytest_configure(config)
+
+
+def test_what_the_gates_tell_of_a_users_solver_stands_at_the_end(monkeypatch):
+    """Of the calls of gates alone, once, after everything else; a session that judged none is told."""
+    own = "validation.suite.own_solver"
+    monkeypatch.setattr(f"{own}.session.GateReport", SimpleNamespace)
+    monkeypatch.setattr(f"{own}.block.block", lambda reports, every: [f"{len(reports)} {reports[0].value} {every}"])
+    monkeypatch.setattr(f"{own}.block.wrapped", lambda lines: [*lines, "and more"])
+
+    def report(when, outcome, name=plugin.STATEMENT):
+        place = ("a/test_gates.py", 1, "x")
+        told = [(name, json.dumps({"value": 1.5}))]
+        node = f"a/{plugin.GATE}x]"
+        return pytest.TestReport(node, place, {}, outcome, None, when, user_properties=told)
+
+    assert plugin.pytest_report_teststatus(report("call", "failed")) == (plugin.FAILED, "F", "FAILED")
+    for other in (report("call", "passed"), report("setup", "failed"), report("call", "failed", "theirs")):
+        assert plugin.pytest_report_teststatus(other) is None
+
+    def summary(*reports, user="mine:solve"):
+        said = []
+        reporter = SimpleNamespace(
+            stats={"": [*reports, "no report"]}, write_line=said.append, write_sep=lambda *words: said.append(words)
+        )
+        options = {"--dda-solver": user, "verbose": 1}
+        config = SimpleNamespace(
+            getoption=lambda name, default=None: options[name],
+            pluginmanager=SimpleNamespace(get_plugin=lambda name: reporter),
+        )
+        ending = plugin.pytest_terminal_summary(reporter, config)
+        next(ending)
+        assert said == []
+        with pytest.raises(StopIteration):
+            next(ending)
+        return said
+
+    two = (report("call", "passed"), report("call", "failed"), report("setup", "passed"))
+    told = [("=", "mine:solve: what the gates tell"), "2 1.5 True", "and more"]
+    assert summary(*two) == told
+    assert summary(*two, user=None) == [] == summary(report("call", "passed", "theirs"))
+    (alone,) = summary(report("setup", "skipped", "theirs"))
+    assert alone.endswith("status 1")

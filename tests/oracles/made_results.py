@@ -225,7 +225,11 @@ def _axis(axis):
     hidden = axis.get_tick_params()
     unlabelled = "" if hidden.get("labelleft", hidden.get("labelbottom")) else " unlabelled"
     named = f" as {words} {''.join(sides)}" * bool(words) + unlabelled
-    return f"{axis.get_label_text()!r} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}{minor}{named}"
+    place = axis.label.get_position()[0] if axis.axis_name == "y" else 0
+    at = f" at {place:.3g}" if place else ""
+    return (
+        f"{axis.get_label_text()!r}{at} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}{minor}{named}"
+    )
 
 
 def _range(values):
