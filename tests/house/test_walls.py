@@ -219,6 +219,7 @@ def test_a_scene_of_dda_needs_no_finite_elements_and_the_bar_no_ball_arithmetic(
     assert not packages(loaded["bar"]) & {"skfem", "meshio", "matplotlib", "flint"}
 
 
+@pytest.mark.long
 def test_start_up_loads_little():
     """What bounds its time on any machine: the libraries by name, and how many modules beside those of a bare start."""
     bare, page, plugin, dda = modules(STEPS).values()
