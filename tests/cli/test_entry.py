@@ -1,6 +1,7 @@
 """The entry point: no traceback and no warning for numbers out of range, the version, and a command that is none."""
 
 import importlib.metadata
+import signal
 import warnings
 
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from conftest import refused, typed
 
 from validation.cli import entry
+from validation.entry import command, siblings
 
 OUT_OF_RANGE = """
 advise response figures-3-4 --set time.step=0.002 --points 100000000000000
@@ -38,6 +40,8 @@ def test_numbers_out_of_range_are_one_line(line):
         np.linalg.LinAlgError("Eigenvalues did not converge"),
         RuntimeError("Factor is exactly singular"),
         ValueError("array must not contain infs or NaNs"),
+        ModuleNotFoundError("No module named 'meshio.vtu'", name="meshio.vtu"),
+        OSError(28, "No space left on device", "history.csv"),
     ],
     ids=lambda error: type(error).__name__,
 )
@@ -49,13 +53,23 @@ def test_errors_of_numbers_are_bad_input(error, monkeypatch):
     assert refused("list").startswith("error: ")
 
 
-def test_an_error_of_the_program_stays_one(monkeypatch):
+@pytest.mark.parametrize("error", [ValueError("fault"), ModuleNotFoundError("fault", name="os.fault")])
+def test_an_error_of_the_program_stays_one(error, monkeypatch):
     def fail(**options):
-        raise ValueError("fault")
+        raise error
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
-    with pytest.raises(ValueError, match="fault"):
+    with pytest.raises(type(error), match="fault"):
         typed("list")
+
+
+def test_a_reader_that_has_gone_is_no_failure(monkeypatch):
+    def fail(**options):
+        raise BrokenPipeError
+
+    monkeypatch.setattr(entry, "command_line", lambda: fail)
+    done = typed("list")
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch):
@@ -76,3 +90,33 @@ def test_no_command_shows_the_commands_once():
     done = typed()
     assert done.returncode == 2 and not done.stderr.strip()
     assert done.stdout.count("export-pack") == 1
+
+
+# ---- what starts first ----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_a_command_starts_on_one_thread_unless_a_folder_is_in_its_way(monkeypatch, capsys):
+    calls = []
+    monkeypatch.setattr("validation.runs.threads.limit_process", lambda: calls.append("limited"))
+    monkeypatch.setattr("validation.cli.main", lambda: calls.append("run"))
+    monkeypatch.setattr(command, "shadowed", lambda: None)
+    for handler, left in ((signal.default_int_handler, signal.SIG_DFL), (signal.SIG_IGN, signal.SIG_IGN)):
+        signal.signal(signal.SIGINT, handler)
+        command.main()
+        assert signal.getsignal(signal.SIGINT) is left
+    assert calls == ["limited", "run"] * 2
+    monkeypatch.setattr(command, "shadowed", lambda: "x is in the way")
+    with pytest.raises(SystemExit) as stopped:
+        command.main()
+    assert (stopped.value.code, capsys.readouterr().err, len(calls)) == (2, "error: x is in the way\n", 4)
+
+
+def test_what_has_the_name_of_a_package_of_ours_is_named_and_what_is_nowhere_is_not(monkeypatch, tmp_path):
+    siblings.check()
+    monkeypatch.setattr(siblings, "PACKAGES", ("no_such_package", "heapq"))  # one of a single file
+    assert siblings.shadowed().startswith(f"{importlib.import_module('heapq').__file__} is in the way of ")
+    monkeypatch.setattr(siblings, "PACKAGES", ("dda",))
+    monkeypatch.setattr(siblings, "HOME", tmp_path)
+    with pytest.raises(ImportError, match=rf"dda is in the way of the package dda .* in {tmp_path};"):
+        siblings.check()

@@ -105,3 +105,5 @@ def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
     monkeypatch.setattr("validation.problems.pack.write_pack", work)
     assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: shown\n"
     assert stopped == [True]
+    monkeypatch.setattr("validation.problems.pack.write_pack", lambda *arguments: 7)
+    assert re.fullmatch(r"wrote pack: 7 [a-z ]+\n", typed("export-pack", "pack", cwd=tmp_path).stdout)

@@ -60,18 +60,6 @@ def test_a_page_of_advice_keeps_its_lines_in_a_terminal(monkeypatch):
     assert sum(line.startswith("  ") for line in page) == 6  # five facts, a setting
 
 
-def test_every_key_of_a_scene_is_described_once():
-    names = set()
-    for place, table in tables_of_scenes().items():
-        described_names = {name for name, _, _ in keys_of(table)}
-        tables = {name for name in table.model_fields if f"{place}.{name}" in tables_of_scenes()}
-        names_in_files = {field.alias or name for name, field in table.model_fields.items()}
-        assert place == "gate" or described_names == names_in_files - tables
-        names |= {f"{place}.{name}" for name in described_names}
-    lines = [line.split(maxsplit=1)[0] for line in typed("list", "keys").stdout.splitlines() if line.strip()]
-    assert names <= {*lines}
-
-
 @pytest.mark.parametrize("place", [place for place in tables_of_scenes() if place != "gate"])
 def test_what_a_key_goes_with_is_a_key_and_one_of_its_words(place):
     for name, _, key in keys_of(tables_of_scenes()[place]):

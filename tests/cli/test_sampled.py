@@ -1,7 +1,5 @@
 """Gates for a disagreement are not proposed; modes are told where samples show an alias of them."""
 
-from conftest import typed
-
 from validation.advice.coarse import KINDS
 from validation.cli.printing import tables
 
@@ -26,9 +24,3 @@ def test_a_gate_is_proposed_for_a_scene_that_its_steps_resolve():
     coarse = " ".join(tables._next([compared("s", 0.1), compared("t", 0.1)], alarms, True))
     assert "one" in coarse and not any(word in coarse for word in ("two", "three", "[[gate]]"))
     assert "[0.0, 0.02]" in " ".join(tables._next([compared("s", 0.1), compared("u", 0.02)], alarms, True))
-
-
-def test_modes_are_told_where_a_frequency_is_aliased_and_no_bar_answers():
-    values = ("time.alpha=0.1", "time.delta=0.6", "time.allow_unstable=true", "time.step=0.05")
-    sets = [word for value in values for word in ("--set", value)]
-    assert typed("advise", "damping", "figures-3-4", *sets).returncode == 0

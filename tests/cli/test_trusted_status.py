@@ -1,8 +1,6 @@
 """The exit status of a run: no 0 where nothing was measured, where a baseline is no baseline, where names collide."""
 
 import json
-import os
-import resource
 import subprocess
 import sys
 from dataclasses import replace
@@ -79,25 +77,6 @@ def command(*arguments):
     return [sys.executable, "-m", "validation", *map(str, arguments)]
 
 
-@pytest.mark.parametrize("ending", thinned(["xdmf", "vtu"], 2))
-@pytest.mark.long
-def test_fields_on_a_full_disk_leave_a_good_file_as_it_was(ending, scene_file, tmp_path):
-    out = tmp_path / f"f.{ending}"
-    out.write_text(GOOD)
-    done = subprocess.run(  # a limit on the size of files stands for a full disk
-        command("solve", scene_file, "--solver", "fem", "--fields", out),
-        capture_output=True,
-        text=True,
-        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},  # a compiled file would be cut off at the limit, and kept
-        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (300, 300)),
-        check=False,
-        timeout=100,
-    )
-    assert done.returncode == 2 and "--fields" in done.stderr
-    assert out.read_text() == GOOD
-    assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
-
-
 def test_fields_are_not_written_after_an_overflow(scene_file, tmp_path):
     out = tmp_path / "f.vtu"
     out.write_text(GOOD)
@@ -114,19 +93,6 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(scene_file,
     monkeypatch.setattr("validation.engine.measure.completed", lambda *arguments: run)
     assert "--fields" in refused("solve", scene_file, "--solver", "fem", "--fields", out)
     assert out.read_text() == GOOD
-
-
-@pytest.mark.parametrize(("text", "status"), thinned([(WIDE, 0), (TIGHT, 1)], 2))
-@pytest.mark.long
-def test_a_reader_that_has_gone_does_not_change_the_status(text, status, scene_file, tmp_path):
-    scene_file.write_text(text)
-    reading, writing = os.pipe()
-    os.close(reading)
-    with os.fdopen(writing, "w") as gone:
-        done = subprocess.run(
-            command("run", scene_file, "--results", tmp_path / "r"), stdout=gone, stderr=subprocess.PIPE, timeout=100
-        )
-    assert (done.returncode, done.stderr.strip()) == (status, b"")
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")

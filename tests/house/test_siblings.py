@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from validation.entry.siblings import HOME, PACKAGES, shadowed
+from validation.entry.siblings import HOME, shadowed
 
 ENTRY = HOME / "validation/entry"
 PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.plugin"]
@@ -19,19 +19,6 @@ STARTS = {
 }
 SOLVE = ["solve", "figures-3-4", "--set", "time.step=0.002"]
 SOLVER = "def solve(scene):\n    return [0.0] * scene.time.steps, [0.0] * scene.time.steps\n"
-# As an editable install does: our packages come after all of Python's path.
-EDITABLE = """
-import importlib.util, pathlib, sys
-class Editable:
-    def find_spec(name, path=None, target=None):
-        file = pathlib.Path({home!r}, name, "__init__.py")
-        return importlib.util.spec_from_file_location(name, file) if file.is_file() else None
-sys.meta_path.append(Editable)
-sys.path.insert(0, {place!r})
-sys.path.append({entry!r})
-from dda_validation.siblings import shadowed
-print(shadowed())
-"""
 
 
 def test_our_own_packages_are_not_in_the_way():
@@ -80,7 +67,7 @@ def start(words, place, *path):
     )
 
 
-@pytest.mark.parametrize("name", STARTS)
+@pytest.mark.parametrize("name", ["command", pytest.param("plug-in", marks=pytest.mark.long)])
 def test_the_folder_is_named_and_nothing_runs(name, place, installed):
     words, status, package = STARTS[name]
     folder = add_package(place, package)
@@ -89,20 +76,6 @@ def test_the_folder_is_named_and_nothing_runs(name, place, installed):
     assert done.returncode == status, output
     assert f"{folder} is {IN_THE_WAY} {package}" in output
     assert "Traceback" not in output
-
-
-def test_the_first_name_from_python_finds_out(place):
-    folder = add_package(place, "fem_reference")
-    done = start(["-c", "import validation\nfrom validation import solve"], place, place)
-    assert done.stderr.splitlines()[-1].startswith(f"ImportError: {folder} is {IN_THE_WAY} ")
-
-
-@pytest.mark.parametrize("package", PACKAGES[:1])
-def test_a_folder_without_code_hides_an_editable_install(package, place, installed):
-    (place / package).mkdir()
-    code = EDITABLE.format(home=str(HOME), place=str(place), entry=str(installed))
-    done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, timeout=120)
-    assert done.stdout.startswith(f"{place / package} is {IN_THE_WAY} {package}"), done.stderr
 
 
 @pytest.mark.long

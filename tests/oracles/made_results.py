@@ -218,11 +218,18 @@ def _axis(axis):
     low, high = sorted(axis.get_view_interval())
     inside = [tick for tick in ticks if low <= tick <= high]
     words = list(getattr(axis.get_major_formatter(), "seq", ()))
-    sides = [label.get_horizontalalignment()[0] for label in axis.get_ticklabels()[:: len(words) - 1 or 1] if words]
+    labels = axis.get_ticklabels()[:: len(words) - 1 or 1] if words else []  # which take long to make
+    sides = [label.get_horizontalalignment()[0] for label in labels]
+    between = [tick for tick in axis.get_minor_locator()() if low <= tick <= high]
+    minor = f" and {len(between)} between" if between else ""
     hidden = axis.get_tick_params()
     unlabelled = "" if hidden.get("labelleft", hidden.get("labelbottom")) else " unlabelled"
     named = f" as {words} {''.join(sides)}" * bool(words) + unlabelled
-    return f"{axis.get_label_text()!r} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}{named}"
+    place = axis.label.get_position()[0] if axis.axis_name == "y" else 0
+    at = f" at {place:.3g}" if place else ""
+    return (
+        f"{axis.get_label_text()!r}{at} {axis.get_scale()} {_short((low, high))}, ticks {_short(inside)}{minor}{named}"
+    )
 
 
 def _range(values):

@@ -1,8 +1,10 @@
 """What tests of the report share."""
 
 import os
+import re
 import textwrap
 from dataclasses import fields
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -41,21 +43,37 @@ def kept():
     return check
 
 
+def is_told(word):
+    """Whether a word is a number, a key, a sign or has one."""
+    return re.search(r"[\d|@_=]", word) is not None
+
+
+def shortened(text):
+    """Return a text of which many words in a row that are only words have become their first and last two."""
+    shown = []
+    for told, run in groupby(text.replace("\xa0", "~").split(" "), is_told):
+        words = list(run)
+        shown += words if told or len(words) < 7 else [*words[:2], "…", *words[-2:]]
+    return " ".join(shown)
+
+
 def lines_of(block):
     """Return the kind of a block and what of it is not the default, a line for each row; `~` is a space that holds."""
     if isinstance(block, str):
-        return textwrap.wrap(block.replace("\xa0", "~"), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
+        return textwrap.wrap(shortened(block), 118, subsequent_indent="  ", break_on_hyphens=False) or [""]
     if isinstance(block, TableColumn):
-        return [f"{block.kind}: {block.group} / {block.title}"]
+        kind = "" if block.kind == "text" else f"{block.kind}: "
+        return [f"{kind}{block.group} / {block.title}".replace(" / ", "", not block.group)]
     if isinstance(block, tuple):
         return lines_of(" | ".join(block))
-    lines = [f"{type(block).__name__}"]
+    lines = []
     for field in fields(block):
         value = getattr(block, field.name)
         if value != field.default:
             inner = [line for one in value for line in lines_of(one)] if isinstance(value, tuple) else []
-            lines += lines_of(f"{field.name}: {'' if inner else value}") + inner
-    return [lines[0], *(f"  {line}" for line in lines[1:])]
+            name = "" if field.name in ("text", "rows", "items") else f"{field.name}: "
+            lines += lines_of(f"{name}{value}") if not inner else [*[name.rstrip()] * bool(name), *inner]
+    return [f"{type(block).__name__}", *(f"  {line}" for line in lines)]
 
 
 @pytest.fixture
@@ -63,10 +81,20 @@ def kept_figures():
     """Hold figures to a page in `pages`, as `kept` holds blocks."""
 
     def check(name, figures):
-        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items())) + "\n"
-        _held(name, text)
+        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
+        _held(name, with_line_numbers(text) + "\n")
 
     return check
+
+
+def with_line_numbers(text):
+    """Return a text in which a long line that stands above as well is the number of that one."""
+    lines = text.splitlines()
+    places = {line: number for number, line in reversed([*enumerate(lines, start=1)])}
+    return "\n".join(
+        f"  = line {places[line]}" if places[line] < number and len(line) > 20 else line
+        for number, line in enumerate(lines, start=1)
+    )
 
 
 def _held(name, text):

@@ -1,12 +1,9 @@
 """The pages that are read first: every number in sentence, table and chart, from closed forms or from made rows."""
 
-import math
-
 import numpy as np
 import pytest
 from oracles.made_cases import kept_study, line_in, lines_of, made_case, made_group, made_row, rules_of
 
-from dda.scheme import spectral
 from validation.report.blocks import Table
 from validation.report.chapters.gates import verdict_line
 from validation.report.figures.curves import GREY, style_of
@@ -14,34 +11,9 @@ from validation.report.figures.model import model_figure
 from validation.report.front import OVERVIEW_SCENES, front_chapter, front_pages
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
-from validation.studies.core import closed, decisions
+from validation.studies.core import decisions
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 100})
-FREQUENCIES = {10.0: 498.812}  # rad/s, of the paper's block
-
-
-def test_a_step_for_a_ratio_gives_that_ratio_and_is_the_least():
-    for ratio, frequency in FREQUENCIES.items():
-        scene = closed.stiffer(PAPER, ratio)
-        (step,) = closed.steps_for(scene, [0.05])
-        assert step is not None and closed.first_damping(closed.timed(scene, step=step)) == pytest.approx(
-            0.05, rel=1e-9
-        )
-        assert step == pytest.approx(4 * 0.05 / frequency, rel=0.02)  # xi is about w dt / 4
-    assert closed.steps_for(PAPER, [0.5]) == [None]  # 0.373 is the greatest
-    assert closed.steps_for(PAPER.with_values({"time.alpha": 0.25, "time.delta": 0.5}), [0.05]) == [None]
-
-
-def test_the_first_frequency_as_stepped_is_that_of_the_eigenvalues_of_the_step():
-    for ratio in (0.1, 1.0, 10.0, 100.0):
-        p, m = ratio * 1e9, 10_800.0
-        K, M = np.array([[2 * p, -2 * p], [-2 * p, 4e9 + 2 * p]]), np.diag([m, m / 3])
-        w = math.sqrt(min(np.linalg.eigvals(np.linalg.solve(M, K)).real))
-        for step in (1e-4, 2e-3, 5e-3):
-            root = spectral.eigenvalues(w * step, 0.5, 1.0, 1.0)
-            stepped = np.abs(np.log(root[np.abs(root) > 1e-9])).max() / step
-            scene = closed.timed(closed.stiffer(PAPER, ratio), step=step)
-            assert decisions.stepped_frequency(scene) == pytest.approx(stepped, rel=1e-9)
 
 
 @pytest.mark.parametrize(

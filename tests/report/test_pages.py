@@ -10,18 +10,18 @@ from oracles.made_cases import made_case, made_group, made_history
 from validation.metrics.catalogue import CATALOGUE
 from validation.report import book
 from validation.report.appendix.pages import appendix
+from validation.report.chapters import budget
 from validation.report.chapters.data import groups_of_studies
 from validation.report.chapters.scene import scene_page, slide_figure
 from validation.report.figures import motion, response
 from validation.report.figures.charts import ChartLine, ChartPanel, chart_figure
 from validation.report.figures.curves import HistoryPanel
-from validation.report.figures.drawing import scene_figure
 from validation.report.figures.histories import Margins
 from validation.report.figures.solution import solution_figure
 from validation.report.figures.space_time import SpaceTime, space_time_figure
 from validation.report.front import front_pages
 from validation.runs.history import DISPLACEMENT, PRESSURE
-from validation.scenes.scene import load_scene, scene_names
+from validation.scenes.scene import load_scene
 from validation.suite.folders import study_folders
 
 STUDIES = ("mine", "two", "solo")
@@ -32,8 +32,8 @@ def test_a_chapter_says_and_draws_what_its_rows_hold(study, made_results, kept, 
     """Of `two`, whose scenes are told as those of the others, what the differences are made of."""
     blocks = book.chapter_blocks(made_results, study, tmp_path)
     kept(f"chapter-{study}", blocks[-3:] if study == "two" else blocks)
-    shown = "ledger" if study == "two" else ""
-    kept_figures(f"figures-{study}", {name: figure for name, figure in drawn.items() if shown in name})
+    shown = {"mine": ("budget", "lead"), "two": ("ledger",), "solo": ("history",)}[study]
+    kept_figures(f"figures-{study}", {name: drawn[name] for name in drawn if name.rpartition("-")[2][:-4] in shown})
 
 
 def test_the_first_and_the_last_pages_say_what_is_of_all_studies(made_results, kept):
@@ -53,13 +53,16 @@ def test_each_kind_of_scene_has_its_page_and_drawing(name, kept, kept_figures, d
     kept_figures(f"drawing-{name}", drawn)
 
 
-def test_scenes_are_drawn_inside_their_axes():
-    for name in scene_names()[::24]:  # of every family some
-        (axes,) = scene_figure(load_scene(name).expand()[0]).axes
-        corners = np.vstack([patch.get_path().vertices for patch in axes.patches])
-        (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
-        assert left <= corners[:, 0].min() and corners[:, 0].max() <= right, name
-        assert low <= corners[:, 1].min() and corners[:, 1].max() <= high, name
+def test_a_budget_says_how_the_discount_is_held_and_how_far_the_frequencies_are_off():
+    for floors, rate, gg, told in (
+        ((1.05, 1.052), None, 1.0, ["is 1.050 to 1.052 times"]),
+        ((None, 1.05), 3.0, 0.9, ["is 1.050 times", "as a rate"]),
+        ((None,), None, 0.9, ["gg acts per step"]),
+    ):
+        budgets = [{"floor": floor, "gg_rate": rate, "gg": gg} for floor in floors]
+        said = budget._caption(budgets)
+        words = ("is 1.050 to 1.052 times", "is 1.050 times", "as a rate", "gg acts per step")
+        assert [word for word in words if word in said] == told
 
 
 # ---- units ----------------------------------------------------------------------------------------------------------
@@ -151,8 +154,8 @@ def figures(group):
         "fast": motion.history_figure([fast], "displacement", apart=True),
         "slide": slide,
         "charts": chart_figure(three[3:]),
-        "shared": chart_figure(three[:1] * 2, 40.0, Margins(), shared=True),
         "rows": chart_figure(three, [(30.0, 4.0), (20.0, 0.0)], Margins(top=12.0)),
+        "shared": chart_figure(three[:1] * 2, 40.0, Margins(), shared=True),
         "solution": solution_figure(
             made_history(0.1, [1.0, 2.0], [3.0, 4.0]), ["displacement", "contact_pressure"], "dda"
         ),

@@ -3,10 +3,8 @@
 from functools import cache
 
 import numpy as np
-import pytest
 from oracles.made_cases import kept_study, made_history, made_row
 
-from validation.engine.finished import Finished
 from validation.report.blocks import FigureBlock, Paragraph
 from validation.report.chapters.registry import chapter_of
 from validation.runs.results import Results
@@ -82,18 +80,3 @@ def test_figures_begin_at_step_one_in_their_units_and_name_what_is_left_out(kept
     blocks = page(tmp_path, *cases, derived=derived)
     kept("paper", [block for block in blocks if isinstance(block, FigureBlock)])
     kept_figures("figures-paper", {name: drawn[name] for name in sorted(drawn)[:3]})
-
-
-def test_a_period_is_counted_in_steps_and_angles_are_those_within_figure_1(tmp_path):
-    """A period of 2 pi / 300 = 21 ms has ten steps of 2 ms and two of 10 ms; w dt = 0.09 lies outside the figure."""
-    recipes = {(row.scene, row.name): row for row in get_study("paper").derived()}
-    metrics = {"mode1.frequency": 300.0, "contact.frequency": 9000.0}
-    rows = {(scene, solver): made_row(solver, metrics, scene) for (scene, _), row in recipes.items()
-            for _, solver in row.needs}  # fmt: skip
-    finished = Finished(rows, Results(tmp_path))
-    values = {key: row.compute(finished) for key, row in recipes.items() if row.name in ("period", "w dt")}
-    steps = {step: values[f"figures-3-4[time.step={step}]", "period"] for step in (0.01, 0.002)}
-    assert steps[0.01]["continuum"] == "none" and steps[0.002]["continuum"] == "curve"
-    assert steps[0.002]["steps"] == pytest.approx(10.472, rel=1e-4)
-    angles = {tuple(sorted(row)) for (_, name), row in values.items() if name == "w dt"}
-    assert angles >= {("contact",), ("contact", "mode1")}

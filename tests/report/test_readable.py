@@ -35,7 +35,9 @@ def made(studies, finished_cases, directory):
     for name in studies:
         run_study(get_study(name), results)
     assert sorted(ordered_studies(results)) == sorted(studies)
-    return PdfReader(build(results, directory / "report.pdf"))
+    read = PdfReader(build(results, directory / "report.pdf"))
+    assert "cannot be drawn" not in words(" ".join(page.extract_text() for page in read.pages))
+    return read
 
 
 def reported():

@@ -9,11 +9,12 @@ from oracles.made_results import made_rows
 
 from validation.errors import InputError
 from validation.report import book
-from validation.report.blocks import FigureBlock, Table, TableColumn
+from validation.report.blocks import FigureBlock, Paragraph, Table, TableColumn
 from validation.report.book import build, write_figures
 from validation.report.chapters import answers as chapters_answers
 from validation.report.chapters import gates as chapters_gates
 from validation.report.chapters import scene as chapters
+from validation.report.chapters import summary
 from validation.report.chapters import text as chapters_text
 from validation.report.chapters.data import groups_of_studies
 from validation.report.front import front_pages
@@ -136,3 +137,10 @@ def test_numbers():
 )
 def test_cases_are_labelled_in_the_symbols_of_the_text(scenes, labels):
     assert chapters_text.case_labels([scene.name for scene in scenes], scenes) == labels
+
+
+def test_a_discount_is_told_as_it_is_stated(kept):
+    stated = ({"time.gg": 0.9}, {"time.gg": 0.0}, {"time.gg_rate": 3.0}, {})
+    scenes = [MANY.with_values({"time.step": 0.002, **values}) for values in stated]
+    asked = [*([scene] for scene in scenes), scenes[:2]]
+    kept("discounts", [Paragraph(summary._discount(one)) for one in asked])

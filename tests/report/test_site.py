@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import tomllib
+from html import unescape
 from html.parser import HTMLParser
 from typing import get_args
 from urllib.parse import urlencode
@@ -91,6 +92,8 @@ def test_a_page_for_each_study_and_scene_and_no_link_leads_nowhere(site):
     assert sorted(pictures) == sorted(scenes + studies)
     assert "article 7480937" in files["index.html"] and 'id="feng2017"' in files["references.html"]
     assert "FAIL" in files["index.html"] and REASON in files["index.html"]
+    titles = [unescape(re.search("<title>([^<]*)", text)[1]) for _, text in sorted(files.items()) if "<title>" in text]
+    assert titles[3:] == [f"{FAILING}: plain", f"passing: {HOSTILE}", "plain", HOSTILE]
 
 
 def test_the_decisions_come_first_where_a_study_has_them(core_results, drawn, tmp_path, monkeypatch):
@@ -133,8 +136,10 @@ def test_the_same_results_give_the_same_bytes_and_an_earlier_site_is_replaced_as
             pages.build(results, out)
     assert set(texts(out)) == {pages.MARK, "scene-old.html"}
     monkeypatch.setattr(pages, "scene_page", lambda group, _: [Paragraph(group.title)])
+    told = []
     for place in (out, tmp_path / "other"):
-        pages.build(results, place)
+        pages.build(results, place, progress=lambda *given: told.append(given))
+    assert told == [(number, 2, name) for number, name in enumerate((FAILING, "passing"))] * 2
     assert texts(out) == texts(tmp_path / "other") and "scene-passing.html" in texts(out)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["other", "out"]
 
@@ -206,6 +211,25 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kind, tmp_path):
         assert kind is kinds.FigureBlock or "word" in shown
     if kind is kinds.Table:
         assert f"<caption>{block.caption}</caption>" in page("t", [block]) and block.notes[0] in shown
+
+
+def test_blocks_stand_apart_in_a_terminal_and_a_callout_close_to_what_it_is_of():
+    blocks = [
+        kinds.PageBreak(),
+        Heading("A title"),
+        Callout("mind", "warn"),
+        Callout("it fails", "fail"),
+        kinds.Beside((Paragraph("left"),), (Listing("one\n two"),), 0.5),
+        Points((("Head.", "text"),)),
+        table(("word", "number"), [("x", "1.5"), ("of both",)], "Of all", ("so",)),
+        Links((Link("a.html", "Title", "what is there"),)),
+    ]
+    lines = [*terminal.lines(blocks, 40)]
+    assert [line for line in lines if line[1]] == [("it fails", "FAIL")]
+    assert [text.rstrip() for text, _ in lines] == [
+        *("A title", "! mind", "it fails", "", "left", "", "one", " two", "", "Head. text", ""),
+        *("Of all", "word  number", "x        1.5", "of both", "so", "", "a.html  Title  what is there"),
+    ]
 
 
 # ---- calculators ----------------------------------------------------------------------------------------------------

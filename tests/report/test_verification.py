@@ -3,6 +3,7 @@
 import pytest
 
 from validation.gates.gate import Gate, Status, Verdict, judge
+from validation.report import verification
 from validation.report.verification import matrix_table, phenomenon_table, standing, verdict_blocks
 from validation.suite.matrix import Phenomenon
 
@@ -13,7 +14,7 @@ OTHER = Gate("response-d", ("bar", "continuum"), "pressure.l2", 0.1, 0.3, "two",
 ROUNDING = Gate("response-e", ("fem",), "displacement.static", 2 - 1e-13, 2 + 1e-13, "three", "exact")
 
 
-def test_a_phenomenon_stands_by_its_tightest_gates(kept):
+def test_a_phenomenon_stands_by_its_tightest_gates(kept, monkeypatch):
     shown = Phenomenon("Swings", "response", "@feng2017")
     shown.__dict__["gates"] = (WIDE, TIGHT, IDLE, OTHER, ROUNDING)
     measured = [judge(WIDE, 0.03), judge(TIGHT, 0.015), judge(OTHER, 0.35), judge(ROUNDING, 2.0)]
@@ -27,3 +28,11 @@ def test_a_phenomenon_stands_by_its_tightest_gates(kept):
     kept("verification", [phenomenon_table(listed), matrix_table(listed), *few])
     (more,) = set(every[1].rows) - set(few[1].rows)
     assert more[1].startswith(WIDE.scene) and (more[0], more[-1]) == ("PASS", "25 %")
+    assert verification.matrix([]) == []
+    monkeypatch.setattr(verification, "standings", lambda verdicts: listed)
+    heading, *tables, missing = verification.matrix(records)
+    assert (heading.level, tables) == (2, [phenomenon_table(listed), matrix_table(listed)])
+    assert len(missing.rows) > 3 and all(len(row) == 2 and all(row) for row in missing.rows)
+    tiny = Gate("s", ("dda",), "displacement.static", 0.0, 1.0, "so")
+    assert [verification.noted_value(tiny, value) for value in (0.0, 1e-15, 0.25)] == ["<1×10⁻⁹", "<1×10⁻⁹", "0.25"]
+    assert verification.noted_value(Gate("s", ("dda",), "displacement.static", 0.0, 0.0, "so"), 0.0) == "0"

@@ -25,7 +25,10 @@ def changed(data, values):
     data = copy.deepcopy(data)
     for field, value in values.items():
         table, key = holder(data, field)
-        table[key] = value
+        if isinstance(table, list):
+            table.append(value)
+        else:
+            table[key] = value
     return data
 
 

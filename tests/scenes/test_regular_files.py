@@ -71,14 +71,6 @@ def test_devices_and_directories_are_named(tmp_path):
             assert (error.value.source, error.value.value) == (place, f"a {kind}")
 
 
-def test_a_scene_in_a_sweep_is_looked_at_as_well(pipe, tmp_path):
-    path = tmp_path / "swept.toml"
-    path.write_text(SCENE + f'[sweep]\n"load.base_motion" = ["{pipe.name}"]\n')
-    with pytest.raises(InputError) as error:
-        load_scene(path).expand()
-    assert (error.value.field, error.value.value) == ("load", "a pipe")
-
-
 def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path):
     path = tmp_path / "record.csv"
     path.write_bytes(MARK + TABLE)

@@ -5,11 +5,12 @@ import functools
 import operator
 import tomllib
 
+import numpy as np
 import pytest
 from conftest import SCENE
 
 from validation.errors import InputError
-from validation.scenes.scene import load_scene, parse_assignment, parse_scene
+from validation.scenes.scene import LONGEST_VALUE, load_scene, parse_assignment, parse_scene
 
 
 def changed(**changes):
@@ -111,5 +112,14 @@ def test_assignments_are_toml_or_words():
     assert parse_assignment("time.step=0.1") == ("time.step", 0.1)
     assert parse_assignment("time.start=consistent") == ("time.start", "consistent")
     assert parse_assignment('fem.mesh="a=b"') == ("fem.mesh", "a=b")
-    with pytest.raises(InputError, match="key=value"):
-        parse_assignment("time.step")
+    assert parse_assignment("a=" + "x" * LONGEST_VALUE)[1] == "x" * LONGEST_VALUE
+    for text in ("time.step", " =1", "time.step=0.1\n", "time.step=0.1\r", "a=" + "x" * (LONGEST_VALUE + 1)):
+        with pytest.raises(InputError) as error:
+            parse_assignment(text)
+        assert error.value.field == "--set"
+
+
+def test_a_load_that_rises_gives_the_impulse_of_its_ramp():
+    times = np.array([0.1, 0.2, 0.3])
+    assert parse(load__ramp=0.2).load.acted(times) == pytest.approx([0.025, 0.1, 0.2])
+    assert np.array_equal(parse().load.acted(times), times)

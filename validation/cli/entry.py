@@ -107,7 +107,7 @@ def main() -> None:
     if status == INTERRUPTED:  # which typer may have made of the interruption itself
         _exit_status(sys.stdout.flush)
         end()
-    sys.exit(_exit_status(sys.stdout.flush) or status)
+    sys.exit(_exit_status(sys.stdout.flush) or status)  # noqa: TID251 - it is the end of the process
 
 
 @cache

@@ -72,7 +72,7 @@ def page(
             anchors.add(place)
     environment = _environment(package)
     return environment.get_template(template).render(
-        title=title, blocks=data, file=file, name=name, menu=menu, imprint=readable(imprint), figure=figure,
+        title=unescaped(title), blocks=data, file=file, name=name, menu=menu, imprint=readable(imprint), figure=figure,
         scenes=scenes, style=STYLE, script=SCRIPT, sources=references(), **values,
     )  # fmt: skip
 
