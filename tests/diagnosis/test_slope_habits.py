@@ -256,7 +256,8 @@ def test_candidates_of_a_slope_are_these():
     assert cohesion.changed(math.log(0.3)) == {"contact.cohesion": pytest.approx(0.3 * limit)}
     assert cohesion.value(0.0) == pytest.approx(limit)
     assert [change.changed(0.0)["time.alpha"] for change in found["scheme"]].count(0.0) == 0
-    assert len(found["scheme"]) == 12 and len(found["start"]) == 1
+    assert len(found["scheme"]) == 12
+    assert [change.changed(0.0)["time.start"] for change in found["start"]] == ["consistent"]
 
 
 def test_signs_and_a_unit_of_both_columns_are_read_off_the_first_rows(monkeypatch):

@@ -1,0 +1,176 @@
+"""Two causes at once, and what a fit leaves open, among few candidates and over few steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from validation.diagnosis import search
+from validation.diagnosis.causes import band_interval, roundest
+from validation.diagnosis.fits.fit import fit_one
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.moves import Move
+from validation.diagnosis.search import Explanation, simple, twofold, with_same_rows
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant
+
+BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
+OWN = Variant(0.5, 1.0, 1.0)
+STEPS = np.full(30, 2e-3)
+AVERAGE = {"alpha": 0.25, "delta": 0.5}
+FEW = [  # candidates
+    Move("scheme", AVERAGE),
+    Move("scheme", {"start": "consistent", **AVERAGE}),
+    Move("gg", {}, ("gg",), (0.97,)),
+    Move("density-factor", {}, ("density",), (0.7,)),
+    Move("springs-factor", {}, ("softness",), (-0.3, 0.3)),
+    Move("viscous-damping", {}, ("viscous",), (3.0,)),
+    Move("stiffness-damping", {}, ("structural",), (1e-4,)),
+    Move("own-weight", {}, ("weight",), (0.5,)),
+    Move("geometry-updated", {"point": 1.0}),  # which costs no loop over the steps
+]
+
+
+@pytest.fixture(autouse=True)
+def few_moves(monkeypatch):
+    monkeypatch.setattr(search, "moves", lambda target, scene: FEW)
+    monkeypatch.setattr(search, "dead_bands", lambda *given: iter(()))
+    monkeypatch.setattr(search, "BASES", search.BASES[:1])
+
+
+def target_of(theirs, columns=2, block=BLOCK, steps=STEPS):
+    run = histories(block, [theirs], steps)
+    both = np.array([run.displacement[:, 0], run.pressure[:, 0]])
+    return Target(block, steps, np.arange(len(steps)), both[:columns])
+
+
+def told(theirs, columns=2, scene=OWN):
+    target = target_of(theirs, columns)
+    one = simple(target, scene)
+    two = one if one.explains else twofold(target, scene, one)
+    return target, one, two
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ids", "numbers"),
+    [
+        ({"density": 0.8, "gg": 0.96}, ("gg", "density-factor"), {"gg": 0.96, "density": 0.8}),
+        ({"gg": 0.96} | AVERAGE, ("scheme", "gg"), {"gg": 0.96}),
+        (
+            {"viscous": 9.0, "structural": 3e-4},
+            ("viscous-damping", "stiffness-damping"),
+            {"viscous": 9.0, "structural": 3e-4},
+        ),
+        (
+            {"gg": 0.96, "weight": 1.0, "softness": 0.03, "point": 1.0},
+            ("gg", "springs-factor", "own-weight", "geometry-updated"),
+            {"gg": 0.96, "weight": 1.0, "softness": 0.03},
+        ),
+    ],
+)
+def test_two_causes_are_found_where_one_explains_nothing(theirs, ids, numbers):
+    _, one, two = told(replace(OWN, **theirs))
+    assert not one.explains and one.single[0].fit.misfit <= one.single[-1].fit.misfit
+    assert two.explained and {*two.best.ids} == {*ids}
+    found = two.best.fit
+    assert {name: getattr(found.variant, name) for name in numbers} == pytest.approx(numbers, rel=1e-4)
+    assert found.misfit < 1e-7 and two.left < 1e-5
+
+
+def test_what_surrounds_a_block_is_found_by_itself():
+    theirs = replace(OWN, weight=0.97, softness=0.02, point=1.0)
+    _, one, _ = told(theirs)
+    assert one.explained and {*one.best.ids} == {*search.SURROUNDINGS}
+    heavy = replace(OWN, base=7.0, softness=0.03)
+    _, one, _ = told(heavy)
+    assert one.best.ids == ("springs-factor",) and one.explained
+    assert (one.best.fit.variant.base, one.best.fit.variant.softness) == (
+        pytest.approx(7.0, rel=1e-3),
+        pytest.approx(0.03, rel=1e-3),
+    )
+
+
+def test_two_factors_of_a_product_stand_for_two_others():
+    theirs = replace(OWN, softness=-0.2, density=1.1)
+    target, _, two = told(theirs, columns=1)
+    assert two.explained and {*two.best.ids} == {"density-factor", "springs-factor"}
+    ties = with_same_rows(target, OWN, two)
+    assert (ties.explained, [{*each.ids} for each in ties.alike]) == (True, [])
+    alone = simple(target_of(replace(OWN, density=0.8)), OWN)
+    assert with_same_rows(target, OWN, alone).same_rows == ()
+    assert with_same_rows(target, OWN, replace(alone, explained=False)).same_rows == ()
+
+
+def test_candidates_of_pairs_begin_where_they_are_best_alone_and_change_different_things():
+    alone = [Explanation((FEW[3],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
+    few = {move.id: move for move in search._few(target_of(OWN), OWN, alone)}
+    assert few["density-factor"].starts == (1.7,)
+    assert few["springs-factor"].starts == (-0.3,)
+    assert [move.changes for move in search._few(target_of(OWN), OWN, alone) if move.id == "scheme"] == [AVERAGE]
+    assert search._together(FEW[3:6]) and not search._together(FEW[:2])
+    assert not search._together([FEW[2], Move("start", {"gg": 1.0})])
+
+
+def test_two_variants_are_one_program_at_every_step():
+    target = target_of(OWN)
+    average = replace(OWN, start="consistent", **AVERAGE)
+    one = replace(average, family="chung-hulbert", spectral=1.0)
+    assert search.same_program(target, average, one)
+    assert not search.same_program(target, average, replace(one, spectral=0.999))
+    assert not search.same_program(target, average, replace(average, alpha=0.25 + 1e-6))
+
+
+def test_a_base_is_accepted_where_without_it_much_more_is_left():
+    base = replace(OWN, softness=0.03, updated=True)
+    target = target_of(base)
+    other = Target(BLOCK, STEPS, target.rows, target.recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
+    scene = fit_one(other, OWN)
+    assert search.accepted(other, scene, fit_one(other, base))
+    assert not search.accepted(other, scene, fit_one(other, replace(base, softness=0.04)))
+    plain = Target(BLOCK, STEPS, target.rows, target_of(OWN).recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
+    assert not search.accepted(
+        plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
+    )
+
+
+# ---- limits of contact -----------------------------------------------------------------------------------------------
+
+STIFF = replace(BLOCK, young=3e9, density=2900.0, normal=6e10, shear=6e10, pressure=6e6)
+
+
+@pytest.mark.parametrize("field", ["band", "hold"])
+def test_a_limit_lies_between_two_that_happened(field):
+    steps = np.full(60, 2e-4)
+    theirs = replace(OWN, opens=True, **{field: 1e-3 if field == "band" else 3e-5})
+    target = target_of(theirs, 1, STIFF, steps)
+    cause = {"band": "dead-band", "hold": "opening-tension"}[field]
+    unit = 1.0 if field == "band" else STIFF.normal / STIFF.width
+    low, high = band_interval(target, theirs, cause)
+    assert low < getattr(theirs, field) * unit < high
+
+    def misfit(limit):
+        return fit_one(target, replace(theirs, **{field: limit / unit})).misfit
+
+    for end, outward in ((low, -1), (high, 1)):
+        assert misfit(end * (1 - outward * 2e-3)) < 1e-9, "the same rows"
+        assert misfit(end * (1 + outward * 2e-3)) > 1e-6, "others"
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "number"),
+    [
+        (0.93, 1.07, 1.0),
+        (2.1, 2.9, 2.0),
+        (2.41, 2.52, 2.5),
+        (8.0, 13.0, 10.0),
+        (0.00123, 0.00127, 0.0012),
+        (3.33, 3.34, 3.3),
+    ],
+)
+def test_the_roundest_number_has_the_fewest_digits(low, high, number):
+    found = roundest(low, high)
+    assert low <= found <= high
+    assert len(f"{found:.9g}") <= len(f"{(low * high) ** 0.5:.9g}")
