@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from oracles.stand_ins import differing, keep, kept, summed
+from oracles.stand_ins import differing, keep, kept, numbers_in, summed
 
 from validation.diagnosis.columns import of_scene
 from validation.diagnosis.fits.target import Target
@@ -54,20 +54,6 @@ VARIANTS = {
     "other": (BLOCK, replace(OWN, family="chung-hulbert", spectral=0.6, gg=0.99)),
     "explicit": (BLOCK, replace(OWN, family="leapfrog", opens=True)),
 }
-
-
-def numbers_in(value):
-    """Yield the numbers and words of plain data, one by one."""
-    if isinstance(value, dict):
-        for name in sorted(value):
-            yield name
-            yield from numbers_in(value[name])
-    elif isinstance(value, list | tuple):
-        yield len(value)
-        for part in value:
-            yield from numbers_in(part)
-    else:
-        yield value if isinstance(value, str | float | int) else 0.5
 
 
 def changes_of(scene):
