@@ -97,27 +97,6 @@ def test_a_long_settling_is_the_envelope_of_the_history():
     assert rough == pytest.approx(exact, rel=0.1)
 
 
-def test_a_rate_is_kept_as_a_rate():
-    scene = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg_rate": 40.0})
-    advice = advise(scene, damping=0.06)
-    assert "rate" in advice.sentence
-    for solution in advice.solutions:
-        assert solution.gg == pytest.approx(math.exp(-40 * solution.value), rel=1e-14)
-        assert solution.gg_rate == pytest.approx(40.0, rel=1e-9)
-    gg = advise(scene, damping=0.06, solve_for="gg").solutions[0]
-    assert gg.gg_rate == pytest.approx(-math.log(gg.value) / scene.time.step)
-
-
-def test_a_discount_and_the_steps_damp_at_two_time_steps():
-    """Of (1/2, 1) xi is about w dt / 4 + (1 - gg) / (2 w dt): the same at a short step and at a long one."""
-    scene = BASE.with_values({"time.gg": 0.9})
-    found = advise(scene, damping=0.3)
-    short, long = (solution.value for solution in found.solutions)
-    assert 3 * short < long
-    for step in (short, long):
-        assert damping(scene.with_values({"time.step": step})).modes[0].damping == pytest.approx(0.3, rel=1e-9)
-
-
 def test_the_scheme_family_is_the_boundary_of_14():
     solution = advise(BASE, damping=0.05, solve_for="scheme").solutions[0]
     assert solution.alpha == pytest.approx((0.5 + solution.delta) ** 2 / 4, rel=1e-15)  # above it roots turn real

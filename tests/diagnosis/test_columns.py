@@ -12,10 +12,8 @@ from oracles.scheme_histories import rounded
 
 from validation import solve
 from validation.diagnosis import columns
-from validation.diagnosis.causes import CAUSES
 from validation.diagnosis.columns import ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import numbers_of_column, numbers_of_layers, places
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading
 from validation.errors import InputError
@@ -155,48 +153,3 @@ def test_times_that_are_not_uniform_are_refused():
     foreign = history(DROPPED, {}, DIGITS)
     with pytest.raises(InputError, match="uniform"):
         compare(DROPPED, replace(foreign, time=foreign.time**1.01))
-
-
-# ---- candidates ------------------------------------------------------------------------------------------------------
-
-
-PRESSED = {"motion": "pressure", "law": "unilateral", "stiffness": 2e9, "gravity": 9.81}
-SITE = {"friction": 20.7, "gravity": 9.81, "base": "transmitting", "base_density": 2200.0, "base_speed": 1460.0}
-PULSE = {"shape": "half-sine", "duration": 3e-3}
-MOVED = {"input": PULSE | {"at": "base", "velocity": 1.3}}
-
-
-@pytest.mark.parametrize(
-    ("column", "layer", "drive"),
-    [
-        (PRESSED | {"gap": 3e-4, "joint": [SOFT_BASE]}, {"velocity": -1.2}, {}),
-        (PRESSED | {"settled": True}, {}, {"input": PULSE | {"at": "top", "pressure": 2.7e6}}),
-        (PRESSED | {"settled": True}, {}, MOVED),
-        ({"motion": "shear", "law": "frictional", "stiffness": 2e9, "strength": 1e5}, {}, MOVED),
-        ({"motion": "shear", "law": "frictional", "stiffness": 2e9} | SITE, {}, MOVED),
-    ],
-)
-def test_every_candidate_is_in_the_catalogue_and_runs(column, layer, drive):
-    scene = scene_of(column, layer, {"step": 1.3e-4, "steps": 10}, **drive)
-    candidates = list(of_scene(scene))
-    assert {candidate.id for candidate in candidates} <= set(CAUSES)
-    record = beside(scene, Foreign(scene.time.step * np.arange(1.0, 11.0), np.ones(10), np.ones(10)))
-    for candidate in candidates:
-        start = candidate.starts[0] if candidate.starts else 0.0
-        assert record.run(candidate.changed(start), 10) is not None, candidate.id
-
-
-def test_numbers_of_contacts_are_those_that_are_stated():
-    assert list(places(DROPPED, "stiffness")) == ["everywhere", "without a joint", "0"]
-    assert list(places(SHEARED, "strength")) == ["without a joint"]
-    assert places(SHEARED, "gap") == {}
-    numbers = list(numbers_of_column(DROPPED))
-    assert not any("modulus" in number.name for number in numbers)  # of rigid blocks
-    (springs,) = (number for number in numbers if number.id == "springs-factor" and "all" in number.name)
-    assert list(numbers_of_layers(DROPPED)) == []
-    layers = [{"thickness": 1.0, "density": density, "young": 1e9} for density in (2e3, 2e3, 3e3)]
-    (*_, third) = numbers_of_layers(DROPPED.with_values({"column.layer": layers}))
-    changed = third.changed(DROPPED.with_values({"column.layer": layers}), 1.5)["column.layer"]
-    assert [layer["density"] for layer in changed] == [2e3, 2e3, 4.5e3] and "layer 3" in third.name
-    halved = DROPPED.with_values(springs.changed(DROPPED, 0.5)).column
-    assert {contact.stiffness for contact in halved.contacts} == {5e8}

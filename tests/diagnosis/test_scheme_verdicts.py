@@ -141,14 +141,6 @@ def test_a_method_is_named_by_six_digits(method, numbers, of_run, causes):
     assert verdict(case, answer) == "right"
 
 
-@pytest.mark.long
-def test_leapfrog_is_no_hht_and_is_told_by_both_names():
-    """Hilber, Hughes and Taylor's formulas at alpha_f = 1, far beyond 1/3, have its rows."""
-    _, answer = judged("leapfrog", {}, dt=5e-4)
-    assert answer.causes == ["leapfrog"]
-    assert [one["causes"] for one in answer.alike] == [["scheme", "start"]]
-
-
 def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact():
     """The roots of a step have 1 - q2 z and 1 - split z / 2 below: a split of 2 q2 exchanges them."""
     variant = Variant(0.25, 0.5, 1.0, "consistent", family="composite", split=0.7, spectral=0.3)
@@ -161,14 +153,6 @@ def test_two_splits_of_a_composite_scheme_are_one_in_locked_contact():
     for rho_inf in (0.0, 0.6):
         usual = replace(variant, split=0.0, spectral=rho_inf)  # of equal matrices in both stages
         assert companion_split(usual) == pytest.approx(equal_split(rho_inf), rel=1e-12)
-
-
-@pytest.mark.long
-def test_generalised_alpha_with_other_weights_is_not_taken_for_one_of_one_number():
-    """Short steps, nine digits: Chung and Hulbert's at rho_inf = 0.368 comes within 2e-7, and is not it."""
-    run = Run("weights", {"am": -0.2, "af": 0.2, "zero": False, "form": "force"}, Body(p=5e9), 5.2e-5, 25)
-    case = Case(run, scene_of(run), 9, with_pressure=False)
-    assert verdict(case, case.judged()) == "silent"
 
 
 # ---- faults ------------------------------------------------------------------------------------------

@@ -13,7 +13,7 @@ from validation.diagnosis.causes import band_interval, roundest
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move
-from validation.diagnosis.search import Explanation, simple, twofold, with_same_rows
+from validation.diagnosis.search import Explanation, Verdict, simple, twofold, with_same_rows
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
 
@@ -93,15 +93,22 @@ def test_what_surrounds_a_block_is_found_by_itself():
     )
 
 
-def test_two_factors_of_a_product_stand_for_two_others():
-    theirs = replace(OWN, softness=-0.2, density=1.1)
-    target, _, two = told(theirs, columns=1)
-    assert two.explained and {*two.best.ids} == {"density-factor", "springs-factor"}
+def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
+    """Block and springs 1.2 times as stiff: the rows of a block of 1 / 1.2 of the mass under as much of the load."""
+    young = Move("young-factor", {}, ("young",), (1.3,))
+    load = Move("load-factor", {}, ("load",), (0.8,))
+    monkeypatch.setattr(search, "moves", lambda target, scene: [*FEW[2:5], young, load, *FEW[-2:]])
+    target, _, two = told(replace(OWN, young=1.2, softness=-np.log(1.2)), columns=1)
     ties = with_same_rows(target, OWN, two)
-    assert (ties.explained, [{*each.ids} for each in ties.alike]) == (True, [])
-    alone = simple(target_of(replace(OWN, density=0.8)), OWN)
-    assert with_same_rows(target, OWN, alone).same_rows == ()
-    assert with_same_rows(target, OWN, replace(alone, explained=False)).same_rows == ()
+    pairs = {frozenset(each.ids): each.fit.variant for each in (ties.best, *ties.alike)}
+    assert not ties.explained and len(pairs) == 2
+    stiffer = pairs[frozenset(["young-factor", "springs-factor"])]
+    lighter = pairs[frozenset(["density-factor", "load-factor"])]
+    assert (stiffer.young, np.exp(-stiffer.softness)) == pytest.approx((1.2, 1.2), rel=1e-4)
+    assert (lighter.density, lighter.load) == pytest.approx((1 / 1.2, 1 / 1.2), rel=1e-4)
+    for explained in (True, False):
+        alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
+        assert with_same_rows(target, OWN, alone).same_rows == ()
 
 
 def test_candidates_of_pairs_begin_where_they_are_best_alone_and_change_different_things():

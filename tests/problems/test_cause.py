@@ -15,17 +15,6 @@ from validation.runs.history import History
 from validation.solvers.registry import get_solver
 
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
-IDS = {
-    "contact.stiffness": "springs-factor",
-    "block.young": "young-factor",
-    "load.pressure": "load-factor",
-}
-
-
-def datum(name, key):
-    """Return a datum of a problem's scene."""
-    section, _, entry = key.partition(".")
-    return getattr(getattr(problem(name).scene, section), entry)
 
 
 def fine(name, values, times=32, scheme=AVERAGE):
@@ -62,23 +51,6 @@ def test_ddas_habit_and_another_integrator():
     assert (average.ids, average.values["alpha"]) == (("scheme",), 0.25)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("key", "factor", "times"),
-    [
-        ("contact.stiffness", 1.05, 32),
-        ("block.density", 1.2, 32),
-        ("block.young", 1e-3, 128),
-    ],
-)
-def test_a_wrong_datum_in_an_exact_program(key, factor, times):
-    found = named("locked", fine("locked", {key: factor * datum("locked", key)}, times))
-    # another density has the motion of another time, which is said
-    cause = "time-factor" if key == "block.density" else IDS[key]
-    assert found.ids == (cause,)
-    assert found.values[cause] == pytest.approx(factor**-0.5 if key == "block.density" else factor, rel=2e-3)
-
-
 def test_what_gives_the_same_rows_has_one_name():
     """A program may be wrong in Poisson's ratio, the speed below the base or an inertia: no datum of its own."""
     scene = problem("column").scene
@@ -111,18 +83,6 @@ def test_no_cause_of_a_random_history_is_wrong():
 
 
 # ---- columns whose contacts open or slip ----------------------------------------------------------------------------
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("name", "values"), [("mass-ratio", {}), ("stack", AVERAGE), ("joint", {})])
-def test_schemes_of_columns_on_contacts_are_named(name, values):
-    posed = problem(name)
-    run = get_solver("dda").solve(posed.scene.with_values(values)).history
-    if judge(posed, run).status is Status.FAIL:
-        identified = cause(posed, run, standard(posed))
-        assert identified.ids == ("scheme",)
-        assert identified.values["alpha"] == values.get("time.alpha", 0.5)
-        assert (" blocks" in identified.sentence) is (name == "joint")  # rigid ones have no error of their number
 
 
 def test_columns_on_contacts_in_millimetres_are_named():
