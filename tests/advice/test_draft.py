@@ -1,7 +1,5 @@
 """What `new` writes: a scene that loads and runs, with springs and steps by their closed forms."""
 
-import math
-
 import pytest
 from conftest import refused, thinned, typed
 
@@ -28,18 +26,6 @@ def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind, rock, tmp
     before = (tmp_path / "mine.toml").read_bytes()
     assert "mine.toml" in refused("new", "mine.toml", cwd=tmp_path)
     assert (tmp_path / "mine.toml").read_bytes() == before
-
-
-def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path):
-    path = tmp_path / "column.toml"
-    path.write_text(draft({"kind": "column", "height": 100.0, "frequency": 200.0}, default))
-    scene = load_scene(path)
-    (layer,) = scene.column.layer
-    speed = math.sqrt(layer.young / (2.5 * layer.density))
-    assert layer.blocks == math.ceil(10 * 100.0 * 200.0 / speed)
-    assert scene.time.step == pytest.approx(1 / (40 * 200.0), rel=0.05)
-    assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
-    assert scene.time.duration == pytest.approx(4 / 200.0 + 4 * 100.0 / speed, rel=1e-3)  # there and back
 
 
 def test_numbers_that_do_not_go_together_are_refused_before_a_file_is_written(tmp_path):

@@ -96,17 +96,24 @@ def test_a_quake_is_followed_in_the_contact_force_too():
 
 
 def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(monkeypatch):
-    monkeypatch.setattr(goals, "REFINEMENTS", 3)
-    monkeypatch.setattr(goals, "ELEMENTS", 2)
-    for scene, goal, others in (
-        (PAPER.with_values({"load.pressure": 0.0}), "static", ("wave",)),
-        (load_scene("quadrilateral"), "impact", ()),
-    ):
-        with pytest.raises(InputError) as error:
-            recommend(scene, goal, Question())
-        answer = overview(scene, Question(goals=(goal, *others)))
-        assert answer.refused == {goal: error.value.rule}
-        assert tuple(offer.goal for offer in answer.recommendations) == others
+    unloaded = PAPER.with_values({"load.pressure": 0.0, "time.steps": 20})
+    with pytest.raises(InputError) as static:
+        recommend(unloaded, "static", Question())
+    with pytest.raises(InputError) as impact:
+        recommend(load_scene("quadrilateral"), "impact", Question())
+    told = []
+
+    def answered(scene, goal, question):
+        if goal in ("static", "impact"):
+            raise static.value
+        return (goal,)
+
+    monkeypatch.setattr(goals, "recommend", answered)
+    question = Question(error=0.03, goals=("static", "wave", "quake"), progress=lambda *done: told.append(done))
+    answer = overview(unloaded, question)
+    assert (answer.refused, answer.recommendations) == ({"static": static.value.rule}, ("wave", "quake"))
+    assert impact.value.rule != static.value.rule and answer.error == 0.03
+    assert [done[:2] for done in told] == [(number, 4) for number in range(4)]
 
 
 # ---- columns and beams ----------------------------------------------------------------------------------------------

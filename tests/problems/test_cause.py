@@ -6,7 +6,6 @@ import pytest
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.gates.gate import Status
 from validation.problems import cause as module
-from validation.problems import models
 from validation.problems.bands import standard
 from validation.problems.cause import NOT_EXPLAINED, cause
 from validation.problems.judge import judge
@@ -44,11 +43,6 @@ def test_ddas_habit_and_another_integrator():
     assert (habit.ids, habit.values["alpha"]) == (("scheme",), 0.5)
     passing = fine("locked", {}, round(asked.scene.time.step / habit.passing_step), scheme={})
     assert judge(asked, passing).status is Status.PASS
-    interchanged = asked.scene.with_values({"time.alpha": 1.0, "time.delta": 0.5})
-    slip = named("locked", get_solver("dda").solve(interchanged).history)
-    assert slip.ids == ("scheme",) and models.INTERCHANGED in slip.sentence
-    average = named("locked", fine("locked", {}, 1))
-    assert (average.ids, average.values["alpha"]) == (("scheme",), 0.25)
 
 
 def test_what_gives_the_same_rows_has_one_name():
