@@ -79,6 +79,7 @@ def test_the_example_of_ntdda():
     assert example["values"]["base-compliance"] == pytest.approx(0.0015, abs=1e-4)
 
 
+@pytest.mark.long
 def test_numbers_of_the_examples_readme():
     foreign = read(EXAMPLE / "ntdda-p1E-dt2ms_meas.m")
     column = rectangle_of(load_scene(EXAMPLE / "scene.toml"))
@@ -116,6 +117,7 @@ def test_a_program_of_another_make(program, opened, tmp_path):
 # ---- the command line -----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_the_report_is_one_page_and_a_remedy_reads_the_history(tmp_path):
     exact = solve(scene(time__steps=16), "dda")
     path = tmp_path / "theirs.csv"

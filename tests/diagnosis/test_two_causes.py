@@ -7,6 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from oracles.few_moves import AVERAGE, FEW, among
 
 from validation.diagnosis import search
 from validation.diagnosis.causes import band_interval, roundest
@@ -20,25 +21,11 @@ from validation.diagnosis.variant import Rectangle, Variant
 BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
 OWN = Variant(0.5, 1.0, 1.0)
 STEPS = np.full(30, 2e-3)
-AVERAGE = {"alpha": 0.25, "delta": 0.5}
-FEW = [  # candidates
-    Move("scheme", AVERAGE),
-    Move("scheme", {"start": "consistent", **AVERAGE}),
-    Move("gg", {}, ("gg",), (0.97,)),
-    Move("density-factor", {}, ("density",), (0.7,)),
-    Move("springs-factor", {}, ("softness",), (-0.3, 0.3)),
-    Move("viscous-damping", {}, ("viscous",), (3.0,)),
-    Move("stiffness-damping", {}, ("structural",), (1e-4,)),
-    Move("own-weight", {}, ("weight",), (0.5,)),
-    Move("geometry-updated", {"point": 1.0}),  # which costs no loop over the steps
-]
 
 
 @pytest.fixture(autouse=True)
 def few_moves(monkeypatch):
-    monkeypatch.setattr(search, "moves", lambda target, scene: FEW)
-    monkeypatch.setattr(search, "dead_bands", lambda *given: iter(()))
-    monkeypatch.setattr(search, "BASES", search.BASES[:1])
+    among(monkeypatch, FEW)
 
 
 def target_of(theirs, columns=2, block=BLOCK, steps=STEPS):
@@ -57,7 +44,6 @@ def told(theirs, columns=2, scene=OWN):
 @pytest.mark.parametrize(
     ("theirs", "ids", "numbers"),
     [
-        ({"density": 0.8, "gg": 0.96}, ("gg", "density-factor"), {"gg": 0.96, "density": 0.8}),
         ({"gg": 0.96} | AVERAGE, ("scheme", "gg"), {"gg": 0.96}),
         (
             {"viscous": 9.0, "structural": 3e-4},

@@ -79,6 +79,7 @@ def test_no_cause_of_a_random_history_is_wrong():
 # ---- columns whose contacts open or slip ----------------------------------------------------------------------------
 
 
+@pytest.mark.long
 def test_columns_on_contacts_in_millimetres_are_named():
     name = "mass-ratio"
     exact = standard(problem(name)).exact
