@@ -22,7 +22,7 @@ from dda.linear import elimination
 from dda.linear.krylov import amplitudes
 from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block, displacement_rows
-from dda.model.load import BaseMotion, falling
+from dda.model.load import BaseMotion, directions_of, falling
 from dda.result.result import COLUMNS
 from dda.scheme.harmonic import Complex, answering
 from dda.scheme.newmark import Scheme
@@ -77,9 +77,9 @@ class BlockSystem:
         return COLUMNS if self.observed is not None else ("contact_pressure",)
 
     @property
-    def base_moves(self) -> bool:
-        """Whether what is fixed has a motion."""
-        return self.motion is not None
+    def moving(self) -> Array:
+        """Whether what is fixed moves in x and in y, 1 or 0 each."""
+        return directions_of(self.motion)
 
     @cached_property
     def load_size(self) -> float:
@@ -107,7 +107,7 @@ class BlockSystem:
             kappa=kappa,
             C=C,
             F=shapes.T @ self._load() / (self.load_size or 1.0),
-            inertia=np.concatenate(rigid) @ np.array([*self._moving, 0.0]),
+            inertia=np.concatenate(rigid) @ np.array([*(self.moving if np.any(self.moving) else (0.0, 1.0)), 0.0]),
             observers=observers,
             pressure=-(G @ np.array(self.base_normal)) / self.base_length,
         )
@@ -116,13 +116,6 @@ class BlockSystem:
     def reached(self) -> Equations:
         """The equations without the modes and gaps that no load can reach."""
         return self.equations.reduced()
-
-    @property
-    def _moving(self) -> Array:
-        """Return the directions in which the base moves, 1 or 0 in x and y; upwards without such a motion."""
-        if self.motion is None or not np.any(self.motion.displacement):
-            return np.array([0.0, 1.0])
-        return np.asarray(np.any(np.asarray(self.motion.displacement) != 0, axis=0), float)
 
     def _load(self) -> Array:
         """Return surface loads and weights, six for each block."""

@@ -41,7 +41,7 @@ class Equations:
     names = (DISPLACEMENT, PRESSURE)
     load_size = 1.0
     motion = None
-    base_moves = True
+    moving = np.ones(2)
 
     @property
     def reached(self) -> Equations:

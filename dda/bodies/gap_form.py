@@ -30,7 +30,7 @@ from dda.contact.springs import Contact, base_directions
 from dda.linear.natural_modes import free_modes, graded_modes
 from dda.model.arrays import Array, ArrayPair, Columns, without_rounding
 from dda.model.block import Block
-from dda.model.load import Load, pressed_part
+from dda.model.load import Load, directions_of, pressed_part
 from dda.model.material import Material
 from dda.model.polygon import AreaIntegrals, area_integrals
 from dda.result.result import COLUMNS
@@ -228,8 +228,7 @@ def _edge(ends: Array, extent: Array, traction: Array, moves: Array) -> Array:
 def _translation(axes: Array, load: Load) -> Array:
     """Return x of the rigid translation by 1 m in x and in y, zero where the base does not move so."""
     R = np.zeros((6, 2))
-    if load.motion is not None:
-        R[:2] = axes * np.any(np.asarray(load.motion.displacement) != 0, axis=0)
+    R[:2] = axes * directions_of(load.motion)
     return R
 
 

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from dda.bodies.gap_form import GapForm, gap_form
 from dda.contact.springs import Contact, contact_stiffness
 from dda.model.arrays import Array, Columns
-from dda.model.load import BaseMotion, LoadedBlock, pressed_part
+from dda.model.load import BaseMotion, LoadedBlock, directions_of, pressed_part
 from dda.result.result import COLUMNS
 
 
@@ -37,9 +37,9 @@ class TwoBlockModel(LoadedBlock):
         return self.load.motion
 
     @property
-    def base_moves(self) -> bool:
-        """Whether the base has a motion."""
-        return self.motion is not None
+    def moving(self) -> Array:
+        """Whether the base moves in x and in y, 1 or 0 each."""
+        return directions_of(self.motion)
 
     @cached_property
     def load_size(self) -> float:

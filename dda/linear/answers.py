@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array
-from dda.model.checks import check_columns, check_damping, check_moves
+from dda.model.checks import check_columns, check_damping
 from dda.model.load import BaseMotion
 from dda.scheme import roots
 from dda.scheme.harmonic import Complex
@@ -44,8 +44,8 @@ class LinearBody(Protocol):
         """That of the base."""
 
     @property
-    def base_moves(self) -> bool:
-        """Whether the equations have the motion of the base."""
+    def moving(self) -> Array:
+        """Whether the equations have the motion of the base in x and in y, 1 or 0 each."""
 
     @property
     def load_size(self) -> float:
@@ -136,16 +136,26 @@ def response(
     Raises
     ------
     ValueError
-        If a column is unknown, gg = 0 has no limit that is exact in time, or the base moves under viscous damping or
-        without a motion of its own.
+        If a column is unknown, gg = 0 has no limit that is exact in time, or the base moves under viscous damping,
+        without a motion of its own or in a direction in which that does not move it.
     """
     check_columns(body.names, columns)
-    check_moves(body.base_moves, along)
+    if along is not None:
+        _check_along(body.moving, along)
     check_damping(scheme.damped, along is not None)
     system = body.reached
     F = system.F * (body.load_size if along is None else 0.0)
     base = np.zeros(2) if along is None else np.array(along)
     return dict(zip(columns, system.steady(system.rows(columns), F, base, scheme, frequencies, exact), strict=True))
+
+
+def _check_along(moving: Array, along: tuple[float, float]) -> None:
+    """Raise ValueError for a vector with a part in a direction, 1 or 0 for x and y, in which the base does not move."""
+    if not np.any(moving):
+        raise ValueError(f"along: needs a base of prescribed motion, `motion` of the loads, got {along!r} without one")
+    if np.any(np.asarray(along)[moving == 0] != 0):
+        only = "xy"[int(np.argmax(moving))]
+        raise ValueError(f"along: must lie in {only}, as `motion` of the loads moves the base, got {along!r}")
 
 
 def highest_frequency(body: LinearBody) -> float:

@@ -49,9 +49,3 @@ def check_damping(damped: bool, moving: bool) -> None:
     """Raise ValueError for viscous damping on a moving base, whose velocity the scheme does not know."""
     if damped and moving:
         raise ValueError("damping: mass and stiffness damping do not go with a base that moves, got both")
-
-
-def check_moves(moves: bool, along: object) -> None:
-    """Raise ValueError for a direction of the base of a body whose base has no motion."""
-    if along is not None and not moves:
-        raise ValueError(f"along: needs a base of prescribed motion, `motion` of the loads, got {along!r} without one")

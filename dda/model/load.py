@@ -54,6 +54,12 @@ class BaseMotion:
         return BaseMotion(self.time, np.asarray(self.displacement, float) @ axes.T)
 
 
+def directions_of(motion: BaseMotion | None) -> Array:
+    """Return whether a base moves in x and in y, 1 or 0 each, (2,): in neither without a motion."""
+    moved = np.zeros((1, 2)) if motion is None else np.asarray(motion.displacement, float)
+    return np.asarray(np.any(moved != 0, axis=0), float)
+
+
 @dataclass(frozen=True)
 class Load:
     """Loads of one block or of a system of blocks, all switched on at t = 0, at once or in a ramp.

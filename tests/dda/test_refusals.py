@@ -74,9 +74,11 @@ def cut(columns=2, rows=2, glue=1e9, pattern="squares", **given):
     return dda.subdivided(model("locked", given), columns, rows, glue, pattern)
 
 
-def response(along, wide=False):
-    """Return what a block, or sub-blocks in a wide matrix, answer to a base that has no motion."""
-    body = dda.subdivided(MODELS["locked"], 8, 8, 1e11) if wide else MODELS["locked"]
+def response(along, moved=None, wide=False):
+    """Return what a block, or sub-blocks in a wide matrix, answer to a base that moves to some place, or does not."""
+    motion = moved and dda.BaseMotion([1.0], [moved])
+    block = replace(MODELS["locked"], load=dda.Load(motion=motion))
+    body = dda.subdivided(block, 8, 8, 1e11) if wide else block
     return dda.response(body, SCHEMES["constant"], [7.0], along=along)
 
 

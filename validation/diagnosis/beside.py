@@ -139,6 +139,7 @@ class SceneSearch:
     NAMES: ClassVar[tuple[str, ...]]  # of the columns, the displacement first
     WOULD_TELL: ClassVar[str]  # a further scene that tells causes apart
     is_slow = False  # whether a run takes so long that few candidates are fitted
+    is_meshed = False  # whether it also takes too long for candidates that come to nothing in the first rows
     model = ""  # name of the solver whose runs they are, where it is another one than `dda`
     model_words = ""
 
@@ -180,6 +181,11 @@ class SceneSearch:
             Whether a number is larger by `SHIFT`, as rounding makes it in another code.
         """
         raise NotImplementedError
+
+    @cached_property
+    def changes(self) -> list[Candidate]:
+        """The candidates, each of them once."""
+        return list(self.candidates())
 
     # ---- runs -------------------------------------------------------------------------------------------------------
 
@@ -273,21 +279,26 @@ class SceneSearch:
 
     # ---- the search -------------------------------------------------------------------------------------------------
 
-    def explanations(self) -> list[RunExplanation]:
-        """Return all candidates that were pursued to the last row, the one that leaves least first."""
+    def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
+        """Return all candidates that were pursued to the last row, the one that leaves least first.
+
+        Parameters
+        ----------
+        begun
+            The candidates, with numbers to begin from, where another search has found which can be meant.
+        """
         departing = self.departing
         if len(departing) < LEAST_ROWS or largest(self.over(self.scene_run, self.rows)) <= APART:
             return []
-        changes = list(self.candidates())
         groups = [min(self.rows, int(departing[0]) + FIRST_ROWS)]  # of rows, twice as many from group to group
         while groups[-1] < self.rows:
             groups.append(min(self.rows, 2 * groups[-1]))
-        candidates = [Fitted(change, 0.0, math.inf) for change in changes]
+        candidates = list(begun) or [Fitted(change, 0.0, math.inf) for change in self.changes]
         for number, rows in enumerate(groups):
             # what remains of these rows if every one leaves as much as an explanation never may
             near = APART * math.sqrt(rows * len(self.allowed))
             candidates = self._fitted(candidates, rows, number, near)
-            if number + 1 >= PATIENCE:
+            if number + 1 >= (1 if self.is_meshed else PATIENCE):
                 bar = max(NEAR * norm(self.over(self.scene_run, rows)), near)
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say
@@ -295,7 +306,7 @@ class SceneSearch:
         explanations = sorted(map(self.judged, sensible), key=rank)
         explanations = [each for each in explanations if each.ratio > APART or self._is_determined(each.candidate)]
         if explanations and explanations[0].explains and explanations[0].candidate.change.starts:
-            explanations += self._relatives(changes, explanations, groups[0])
+            explanations += self._relatives(explanations, groups[0])
         return sorted(explanations, key=rank)
 
     def alike(self, explanations: Sequence[RunExplanation]) -> list[RunExplanation]:
@@ -329,16 +340,14 @@ class SceneSearch:
         ratio = largest(self.over(columns, rows, spread[:, :rows]))
         return RunExplanation(candidate, ratio, self.left(columns), ratio > 1 and self.is_noise(columns))
 
-    def _relatives(
-        self, changes: Sequence[Candidate], explanations: Sequence[RunExplanation], rows: int
-    ) -> list[RunExplanation]:
+    def _relatives(self, explanations: Sequence[RunExplanation], rows: int) -> list[RunExplanation]:
         """Return what gives the rows of the best number by a power of its factor, and was not found by a fit.
 
         Equations of motion have numbers in products only: a fit that ends elsewhere must not make a cause unique.
         """
         at_hand = {id(explanation.candidate.change) for explanation in explanations if explanation.ratio <= APART}
         further = []
-        for change in changes:
+        for change in self.changes:
             if id(change) in at_hand or not change.starts:
                 continue
             for power in POWERS:
@@ -366,7 +375,10 @@ class SceneSearch:
             return fitted(of_change, nearest_start(of_change, candidate.change), ROUNDS, NUDGE, SETTLED)
 
         if self.is_slow and not number:
-            begun = [nearest_start(partial(residual, each.change), each.change) for each in candidates]
+            begun = [
+                each if math.isfinite(each.remainder) else nearest_start(partial(residual, each.change), each.change)
+                for each in candidates
+            ]
             candidates = nearest(begun, PURSUED, near)
         return [at_best(candidate) for candidate in candidates]
 

@@ -14,12 +14,12 @@ import numpy as np
 
 from validation.diagnosis import evidence
 from validation.diagnosis.answer import Answer
-from validation.diagnosis.beside import Candidate, RunVerdict, SceneSearch, answer_of, verdict_of
+from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
 from validation.diagnosis.evidence import Departure
-from validation.diagnosis.fits.bar import Bar
+from validation.diagnosis.fits.bar import Bar, norm
 from validation.diagnosis.numbers import Values
-from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
+from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading, slips, without_slips
 from validation.diagnosis.variant import rectangle_of
@@ -33,6 +33,8 @@ CANDIDATES = {"springs-factor", "density-factor", "young-factor", "load-factor",
 DISCOUNTS = (0.998, 0.99, 0.97, 0.94, 0.9, 0.8)
 STARTS = tuple(float(f) for f in np.geomspace(0.25, 4.0, 17))
 FEW = 4  # of a slow solver every so many of the starts
+COARSE = 8  # elements a side of the mesh on which candidates are found that a finer one then has to bear out
+BEYOND_MESH = 30.0  # times what the coarse mesh leaves of the scene's own run that it may leave of another number's
 MESH = 5e-3  # relative L2 that a coarse mesh leaves beside the exact bar: eight linear elements a side at 0.5 ms
 SHARE = 0.05  # of what is to be explained, at most, that it may leave
 DDA = "dda"
@@ -49,7 +51,7 @@ class SolverSearch(SceneSearch):
 
     def __init__(self, scene: Scene, reading: Reading, name: str) -> None:
         self.solver = get_solver(name)
-        self.is_slow = self.solver.meshed
+        self.is_slow = self.is_meshed = self.solver.meshed
         if name != DDA:
             self.model = name
             self.model_words = name + EXACT.get(name, "")
@@ -64,6 +66,17 @@ class SolverSearch(SceneSearch):
             yield of_discount(self.scene, DISCOUNTS)
         starts = STARTS[:: FEW if self.is_slow else 1]
         yield from (each for each in of_numbers(self.scene, starts, units=False) if each.id in CANDIDATES)
+
+    def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
+        """Return the candidates as `SceneSearch` does; of a fine mesh those that a coarse one takes for possible."""
+        mesh = self.scene.fem
+        if begun or not self.is_meshed or mesh.mesh is not None or mesh.per_side <= COARSE:
+            return super().explanations(begun)
+        coarse = SolverSearch(self.scene.with_values({"fem.elements": COARSE}), self.reading, self.solver.name)
+        coarse.changes = self.changes  # of numbers that have nothing to do with a mesh
+        error = norm(coarse.scene_run - self.scene_run) / norm(self.scene_run)
+        near = [each for each in coarse.explanations() if each.explains or each.left <= BEYOND_MESH * error]
+        return super().explanations([each.candidate for each in near]) if near else []
 
     def solved(self, values: Values, steps: int, is_shifted: bool) -> Array | None:
         """Return displacement and pressure of a change, springs stiffer by `SHIFT` where it is shifted."""
