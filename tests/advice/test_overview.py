@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import re
+from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from validation.advice import goals, overview
@@ -124,3 +126,38 @@ def test_kinds_of_scenes_of_which_nothing_is_known_are_refused():
         with pytest.raises(InputError) as refusal:
             ask()
         assert refusal.value.source == scene.name
+
+
+@pytest.mark.parametrize(
+    ("values", "reference", "finer"),
+    [
+        ({}, "bar", 1),
+        ({"block.poisson": 0.2, "time.gg": 0.98, "time.steps": 500}, "fem", 8),
+        ({"contact.law": "unilateral", "time.gg": 0.98}, "block-events", 1),
+    ],
+)
+def test_the_present_run_is_measured_against_what_is_exact(values, reference, finer, monkeypatch):
+    asked = {}
+
+    def made(case, name):
+        asked[name] = case.time
+        time = case.time.step * np.arange(1, case.time.steps + 1)
+        off = 0.02 if name == "dda" else 0.0
+        columns = {
+            "displacement": -0.01 * (1 + off) * np.sin(30 * time),
+            "contact_pressure": 1e6 * (1 - 2 * off) * time,
+        }
+        return SimpleNamespace(history=History(time, columns))
+
+    monkeypatch.setattr(overview, "solve", made)
+    scene = PAPER.with_values({"time.steps": 60} | values)
+    error = overview._present_error(scene)
+    assert (error.displacement, error.force) == (pytest.approx(0.02), pytest.approx(0.04))
+    steps = min(scene.time.steps, 400)
+    assert error.window == pytest.approx(steps * 0.002) and asked["dda"].steps == steps
+    (name,) = asked.keys() - {"dda"}
+    assert (name == reference or reference == "bar") and asked[name].steps == finer * steps
+    assert asked[name].step == pytest.approx(0.002 / finer)
+    assert asked[name].discount == 1.0  # which has no kinetic damping
+    monkeypatch.setattr(overview, "solve", lambda case, name: SimpleNamespace(history=None))
+    assert overview._present_error(scene) is None
