@@ -10,7 +10,7 @@ from validation import InputError, advise, damping, load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
-EXAMPLES = settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+EXAMPLES = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
 
 

@@ -74,16 +74,3 @@ def test_no_cause_of_a_random_history_is_wrong():
         found = History(exact.time, seen)
         if judge(problem(name), found).status is Status.FAIL:
             assert cause(problem(name), found, standard(problem(name))).sentence.startswith(NOT_EXPLAINED)
-
-
-# ---- columns whose contacts open or slip ----------------------------------------------------------------------------
-
-
-@pytest.mark.long
-def test_columns_on_contacts_in_millimetres_are_named():
-    name = "mass-ratio"
-    exact = standard(problem(name)).exact
-    lengths = [key for key in exact.columns if key.startswith(("displacement", "gap", "slip"))]
-    scaled = {key: x * (1e3 if key in lengths else 1.0) for key, x in exact.columns.items()}
-    identified = named(name, History(exact.time, scaled))
-    assert (identified.ids, identified.values) == (("unit",), dict.fromkeys(lengths, 1e3))
