@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from oracles.few_moves import AVERAGE, FEW, among
 
-from validation.diagnosis import search
+from validation.diagnosis import judgement, search
 from validation.diagnosis.causes import band_interval, roundest
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move
+from validation.diagnosis.schemes import companion_split
 from validation.diagnosis.search import Explanation, Verdict, simple, twofold, with_same_rows
 from validation.diagnosis.stepping import histories
 from validation.diagnosis.variant import Rectangle, Variant
@@ -127,6 +128,29 @@ def test_a_base_is_accepted_where_without_it_much_more_is_left():
     assert not search.accepted(
         plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
     )
+
+
+def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
+    scheme = replace(OWN, family="composite", split=0.7, spectral=0.3, start="consistent")
+    other = companion_split(scheme)
+    target = target_of(scheme)
+    assert judgement._told_apart(target, scheme).split == pytest.approx(min(0.7, other))
+    words = judgement._undecided(target, scheme, ["composite"])["split"]
+    assert "0.7" in words and f"{other:.4g}" in words
+    opens = replace(scheme, opens=True)
+    assert judgement._told_apart(target_of(opens), opens).split == 0.7
+    usual = replace(scheme, split=0.0)
+    assert " or " not in judgement._undecided(target_of(usual), usual, ["composite"])["split"]
+    dashpot = replace(OWN, contact="dashpot", dashpot=0.4, clipped=False, opens=True, **AVERAGE)
+    pulling = target_of(dashpot, block=STIFF, steps=np.full(60, 2e-4))
+    assert not judgement._told_apart(pulling, dashpot).clipped
+    held = replace(dashpot, opens=False)
+    assert judgement._told_apart(target_of(held), held).clipped
+    told_clipped = judgement._undecided(pulling, dashpot, ["contact-dashpot"])["clipping"]
+    assert told_clipped != judgement._undecided(target_of(dashpot), dashpot, ["contact-dashpot"])["clipping"]
+    gaps = replace(OWN, family="hht", spectral=0.2, contact="mean gap", opens=True)
+    assert "form" in judgement._undecided(target_of(gaps), gaps, ["hht"])
+    assert judgement._undecided(target_of(OWN), OWN, ["gg"]) == {}
 
 
 # ---- limits of contact -----------------------------------------------------------------------------------------------
