@@ -86,7 +86,8 @@ def numbers_of_advice(step=0.002):
         found[f"slope {name}"] = (friction.sliding(scene).as_dict(), [*alarms_of(scene)])
     for kind, rock in zip(KINDS, cycle(ROCKS), strict=False):
         found[f"new {kind}"] = typed(kind, rock, 1.1)
-    found["budgets"] = budget.budgets([block.with_values(BLOCKS[name]) for name in ("plain", "discount")])
+    ends = [{"time.step": step} for step in (4e-7, 0.4)]
+    found["budgets"] = budget.budgets([block.with_values(values) for values in (*ends, BLOCKS["discount"])])
     return {name: summed(numbers_in([*plain(value)])) for name, value in found.items()}
 
 
