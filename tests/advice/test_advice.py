@@ -10,7 +10,7 @@ from validation import InputError, advise, damping, load_scene
 
 BASE = load_scene("figures-3-4").with_values({"time.step": 0.002})
 LIGHT = load_scene("figure-9").with_values({"time.gg": 0.98})
-EXAMPLES = settings(max_examples=200, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
+EXAMPLES = settings(max_examples=60, deadline=None, derandomize=True, suppress_health_check=list(HealthCheck))
 SCHEMES = st.sampled_from([(0.5, 1.0), (0.25, 0.5), (0.5625, 1.0), (0.3025, 0.6), (0.7, 1.3), (1 / 6, 0.5), (1.1, 1.7)])
 
 
@@ -95,27 +95,6 @@ def test_a_long_settling_is_the_envelope_of_the_history():
         rough, source = advice._settling(case)
     assert source == "envelope"
     assert rough == pytest.approx(exact, rel=0.1)
-
-
-def test_a_rate_is_kept_as_a_rate():
-    scene = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg_rate": 40.0})
-    advice = advise(scene, damping=0.06)
-    assert "rate" in advice.sentence
-    for solution in advice.solutions:
-        assert solution.gg == pytest.approx(math.exp(-40 * solution.value), rel=1e-14)
-        assert solution.gg_rate == pytest.approx(40.0, rel=1e-9)
-    gg = advise(scene, damping=0.06, solve_for="gg").solutions[0]
-    assert gg.gg_rate == pytest.approx(-math.log(gg.value) / scene.time.step)
-
-
-def test_a_discount_and_the_steps_damp_at_two_time_steps():
-    """Of (1/2, 1) xi is about w dt / 4 + (1 - gg) / (2 w dt): the same at a short step and at a long one."""
-    scene = BASE.with_values({"time.gg": 0.9})
-    found = advise(scene, damping=0.3)
-    short, long = (solution.value for solution in found.solutions)
-    assert 3 * short < long
-    for step in (short, long):
-        assert damping(scene.with_values({"time.step": step})).modes[0].damping == pytest.approx(0.3, rel=1e-9)
 
 
 def test_the_scheme_family_is_the_boundary_of_14():

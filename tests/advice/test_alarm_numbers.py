@@ -1,20 +1,16 @@
 """The numbers in alarms and damping budgets, against histories made by hand and closed forms written apart."""
 
-import math
 import re
 from dataclasses import replace
 from types import SimpleNamespace
 
 import pytest
 from oracles.made_cases import made_row
-from oracles.stepped_vibration import two_unknowns
 
-from validation.advice import budget
 from validation.advice.alarms import alarms, fixed_discount
 from validation.advice.block_alarms import TENSION
 from validation.advice.spectra import ModeDamping, runs
 from validation.scenes.scene import load_scene
-from validation.theory.stepping import Stepping
 
 STEPS = 4
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": STEPS})
@@ -79,31 +75,3 @@ def test_what_has_no_damping_ratio_of_its_own_is_not_split():
 
 
 # ---- the damping budget -------------------------------------------------------------------------------------------
-
-OBLONG = {
-    "block.width": 1.0,
-    "block.height": 3.0,
-    "block.density": 2500.0,
-    "block.young": 4e9,
-    "contact.stiffness": 2e10,
-    "time.gg": 0.97,
-    "time.alpha": 0.36,
-    "time.delta": 0.7,
-}
-
-
-def test_a_budget_is_of_both_frequencies_with_and_without_the_discount_and_beside_the_bars():
-    """The bar's w = (b/h) sqrt(E/rho) with b tan b = 2 p h / (E w) = 30."""
-    scene = SCENE.with_values(OBLONG)
-    (found,) = budget.budgets([scene])
-    both = two_unknowns(scene.block, scene.contact.stiffness)
-    b = both[0] / found["floor"] * 3 / math.sqrt(4e9 / 2500)
-    assert b * math.tan(b) == pytest.approx(30, rel=1e-3)
-    for name, w in zip(("first axial", "contact"), both, strict=True):
-        curves = found["modes"][name]
-        for i in (0, 40, 70):
-            dt = found["dt"][i]
-            discounted, plain = (Stepping(dt, 0.36, 0.7, gg).damping_ratio(w * dt) for gg in (0.97, 1.0))
-            parts = [curves[part][i] for part in ("total", "algorithmic", "kinetic")]
-            assert parts == pytest.approx([discounted, plain, discounted - plain], rel=1e-3)
-    assert next(budget.budgets([scene.with_values({"block.poisson": 0.2})]))["floor"] is None

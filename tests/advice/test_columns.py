@@ -95,6 +95,6 @@ def test_no_rest_is_told_of_a_stack_that_its_weight_does_not_bring_there(column,
 
 
 def test_what_takes_too_long_is_not_said_to_rest(monkeypatch):
-    monkeypatch.setattr(columns, "LONGEST", 10_000)
+    monkeypatch.setattr(columns, "LONGEST", 2_000)
     resting = columns.rest(stack())
-    assert (resting.seconds, resting.run) == (None, pytest.approx(1.0))
+    assert (resting.seconds, resting.run) == (None, pytest.approx(0.5))

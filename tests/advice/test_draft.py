@@ -1,17 +1,12 @@
 """What `new` writes: a scene that loads and runs, with springs and steps by their closed forms."""
 
-import math
-import tomllib
-
 import pytest
 from conftest import refused, thinned, typed
 
 from validation import load_scene, solve
-from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, ROCKS, draft
+from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, draft
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
-
-KNOWN = ROCKS["granite"]
 
 
 def default(question, value):
@@ -31,45 +26,6 @@ def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind, rock, tmp
     before = (tmp_path / "mine.toml").read_bytes()
     assert "mine.toml" in refused("new", "mine.toml", cwd=tmp_path)
     assert (tmp_path / "mine.toml").read_bytes() == before
-
-
-def test_a_column_has_ten_blocks_a_wavelength_and_forty_steps_a_period(tmp_path):
-    path = tmp_path / "column.toml"
-    path.write_text(draft({"kind": "column", "height": 100.0, "frequency": 200.0}, default))
-    scene = load_scene(path)
-    (layer,) = scene.column.layer
-    speed = math.sqrt(layer.young / (2.5 * layer.density))
-    assert layer.blocks == math.ceil(10 * 100.0 * 200.0 / speed)
-    assert scene.time.step == pytest.approx(1 / (40 * 200.0), rel=0.05)
-    assert scene.column.base_speed == pytest.approx(speed, rel=1e-3)
-    assert scene.time.duration == pytest.approx(4 / 200.0 + 4 * 100.0 / speed, rel=1e-3)  # there and back
-
-
-def test_numbers_of_other_kinds_follow_from_size_and_rock():
-    """Granite's; a block on one spring, of a pile or a wall, does one radian a step."""
-    young, density = KNOWN["young"], KNOWN["density"]
-
-    def drafted(**options):
-        return tomllib.loads(draft(options, default))
-
-    for kind, side in (("plate", 5.0), ("disc", 3.0)):
-        body = drafted(kind=kind, width=side, **({"height": 2.0} if kind == "plate" else {}))
-        assert body["time"]["step"] == pytest.approx(1000 * side * math.sqrt(density / young), rel=0.05), kind
-    block = drafted(kind="block", width=3.0, height=1.5)
-    assert block["contact"]["stiffness"] == pytest.approx(young * 3.0 / (1.5 * 0.05), rel=0.05)
-    assert block["time"]["step"] == pytest.approx(0.2 * 1.5 / math.sqrt(3 * young / density), rel=0.05)
-    beam = drafted(kind="beam", width=6.0, height=1.3)
-    assert beam["plane"]["subdivide"] == [20, 4]
-    for kind, blocks, count, mass in (
-        ("stack", 3, 3, 2.0 * 1.0 * density),
-        ("wall", 3, 9, 2.0 * 1.0 * density),
-        ("arch", 5, 5, math.pi * 1.0 * 1.0 / 5 * density),
-        ("blocks-on-slope", 3, 3, 2.0 * 1.0 * density),
-    ):
-        moving = drafted(kind=kind, width=2.0, height=1.0, blocks=blocks)
-        stiffness = moving["plane"]["contact"]["stiffness"]
-        assert stiffness == pytest.approx(count * mass * 9.81 / 1e-3, rel=0.05), kind
-        assert moving["time"]["step"] == pytest.approx(math.sqrt(mass / stiffness), rel=0.4), kind  # of one digit
 
 
 def test_numbers_that_do_not_go_together_are_refused_before_a_file_is_written(tmp_path):

@@ -1,5 +1,7 @@
 """What `advise` recommends, against closed forms, an elastic bar by its transform and runs made apart."""
 
+import math
+
 import numpy as np
 import pytest
 
@@ -96,17 +98,37 @@ def test_a_quake_is_followed_in_the_contact_force_too():
 
 
 def test_a_goal_that_does_not_apply_says_why_and_the_others_are_answered(monkeypatch):
-    monkeypatch.setattr(goals, "REFINEMENTS", 3)
-    monkeypatch.setattr(goals, "ELEMENTS", 2)
-    for scene, goal, others in (
-        (PAPER.with_values({"load.pressure": 0.0}), "static", ("wave",)),
-        (load_scene("quadrilateral"), "impact", ()),
-    ):
-        with pytest.raises(InputError) as error:
-            recommend(scene, goal, Question())
-        answer = overview(scene, Question(goals=(goal, *others)))
-        assert answer.refused == {goal: error.value.rule}
-        assert tuple(offer.goal for offer in answer.recommendations) == others
+    unloaded = PAPER.with_values({"load.pressure": 0.0, "time.steps": 20})
+    with pytest.raises(InputError) as static:
+        recommend(unloaded, "static", Question())
+    with pytest.raises(InputError) as impact:
+        recommend(load_scene("quadrilateral"), "impact", Question())
+    told = []
+
+    def answered(scene, goal, question):
+        if goal in ("static", "impact"):
+            raise static.value
+        return (goal,)
+
+    monkeypatch.setattr(goals, "recommend", answered)
+    question = Question(error=0.03, goals=("static", "wave", "quake"), progress=lambda *done: told.append(done))
+    answer = overview(unloaded, question)
+    assert (answer.refused, answer.recommendations) == ({"static": static.value.rule}, ("wave", "quake"))
+    assert impact.value.rule != static.value.rule and answer.error == 0.03
+    assert [done[:2] for done in told] == [(number, 4) for number in range(4)]
+
+
+@pytest.mark.parametrize(
+    ("errors", "every"),
+    [({16: 0.16, 8: 0.08, 4: 0.04, 2: 0.02}, 4), ({16: 0.16, 8: 0.01, 4: 0.06, 2: 0.02, 1: 0.01}, 2), ({}, 1)],
+)
+def test_the_longest_step_keeps_the_error_at_half_of_it_too(errors, every):
+    def measured(settings, multiple, steps):
+        return (errors[multiple], errors[multiple] / 2) if errors else None
+
+    found = goals.Trials({"time.gg": 0.9}, 0.25, 66, measured).longest_step(16, 0.05)
+    assert found.settings == {"time.gg": 0.9, "time.step": 0.25 * every} and found.steps == 66 // every
+    assert found.error == errors.get(every, math.inf)
 
 
 # ---- columns and beams ----------------------------------------------------------------------------------------------

@@ -12,10 +12,8 @@ from oracles.scheme_histories import rounded
 
 from validation import solve
 from validation.diagnosis import columns
-from validation.diagnosis.causes import CAUSES
-from validation.diagnosis.columns import BONDED, ColumnSearch, of_scene
+from validation.diagnosis.columns import ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
-from validation.diagnosis.numbers import numbers_of_column, numbers_of_layers, places
 from validation.diagnosis.reading import Foreign, steppings
 from validation.diagnosis.readings import Reading
 from validation.errors import InputError
@@ -78,11 +76,7 @@ def test_the_scene_s_own_history_is_the_scene_s(scene):
 @pytest.mark.parametrize(
     ("scene", "values", "cause", "number"),
     [
-        (DROPPED, {"column__gravity": 0.0}, "gravity-factor", 0.0),
         (SHEARED, {"column__strength": 1.5e4}, "strength-factor", 0.75),
-        (DROPPED, {"column__gap": 0.0}, "gap-factor", 0.0),
-        (DROPPED, {"time__alpha": 0.5, "time__delta": 1.0}, "scheme", None),
-        (SHEARED, {"input__duration": 0.02}, "duration-factor", 2 / 3),
         (SHEARED, {"column__strength": 2e-5}, "no-friction", None),  # and no factor of almost nothing
         (DROPPED, {"column__joint": [SOFT_BASE]}, "springs-factor", 0.7),
     ],
@@ -108,56 +102,12 @@ def test_one_of_few_candidates_is_named(monkeypatch):
     assert any(stage.agrees is False for stage in answer.evidence)  # a fault explained is a fault
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("scene", "change", "cause"),
-    [
-        (SHEARED, {BONDED: True}, "no-slip"),
-        (DROPPED, {BONDED: True}, "contact-locked"),
-        (SHEARED, {"column.stiffness": math.inf, BONDED: True}, "contact-welded"),
-    ],
-)
-def test_contacts_that_hold_are_named(scene, change, cause):
-    run = beside(scene, history(scene, {}, DIGITS)).run(change, scene.time.steps)
-    assert run is not None
-    time = scene.time.step * np.arange(1, scene.time.steps + 1)
-    answer = compare(scene, Foreign(time, *(rounded(column, DIGITS) for column in run)))
-    assert answer.causes == [cause]  # a strength that is never reached has no number
-
-
 def beside(scene, foreign):
     reading = Reading(steppings(foreign, scene.time.step)[0], np.array([foreign.displacement, foreign.pressure]))
     return ColumnSearch(reading.scene_of(scene), reading)
 
 
 # ---- what is not -----------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.long
-def test_two_things_changed_are_not_explained_and_the_rows_that_agree_are_told():
-    answer = judged(DROPPED, column__gap=6e-4, column__stiffness=0.9e9)
-    assert (answer.causes, answer.values) == (["unexplained"], {})
-    landed = int(2e-3 / DROPPED.time.step)  # up to which nothing but the weight acts
-    assert answer.departure.step > landed
-    assert f" {answer.departure.step - 1} " in answer.sentence
-    assert 0 < answer.unexplained <= 1
-
-
-@pytest.mark.long
-def test_what_gives_the_same_rows_is_listed_and_none_is_named():
-    """Displacements of rigid blocks depend on stiffness over density alone."""
-    joint = {"height": 0.0, "stiffness": 0.8e9, "gap": 2e-3}
-    answer = judged(DROPPED, pressure=False, column__stiffness=0.8e9, column__joint=[joint])
-    assert answer.causes == ["unexplained"]
-    factors = {one["causes"][0]: one["values"][one["causes"][0]] for one in answer.alike}
-    assert factors == {"springs-factor": pytest.approx(0.8), "density-factor": pytest.approx(1.25)}
-
-
-@pytest.mark.long
-def test_a_reversed_input_in_shear_has_the_rows_of_a_reversed_sign():
-    answer = judged(SHEARED, input__velocity=-0.2)
-    assert answer.causes == ["unexplained"]
-    assert sorted(one["causes"][0] for one in answer.alike) == ["load-factor", "sign"]
 
 
 def test_rows_behind_the_horizon_are_not_judged(monkeypatch):
@@ -203,48 +153,3 @@ def test_times_that_are_not_uniform_are_refused():
     foreign = history(DROPPED, {}, DIGITS)
     with pytest.raises(InputError, match="uniform"):
         compare(DROPPED, replace(foreign, time=foreign.time**1.01))
-
-
-# ---- candidates ------------------------------------------------------------------------------------------------------
-
-
-PRESSED = {"motion": "pressure", "law": "unilateral", "stiffness": 2e9, "gravity": 9.81}
-SITE = {"friction": 20.7, "gravity": 9.81, "base": "transmitting", "base_density": 2200.0, "base_speed": 1460.0}
-PULSE = {"shape": "half-sine", "duration": 3e-3}
-MOVED = {"input": PULSE | {"at": "base", "velocity": 1.3}}
-
-
-@pytest.mark.parametrize(
-    ("column", "layer", "drive"),
-    [
-        (PRESSED | {"gap": 3e-4, "joint": [SOFT_BASE]}, {"velocity": -1.2}, {}),
-        (PRESSED | {"settled": True}, {}, {"input": PULSE | {"at": "top", "pressure": 2.7e6}}),
-        (PRESSED | {"settled": True}, {}, MOVED),
-        ({"motion": "shear", "law": "frictional", "stiffness": 2e9, "strength": 1e5}, {}, MOVED),
-        ({"motion": "shear", "law": "frictional", "stiffness": 2e9} | SITE, {}, MOVED),
-    ],
-)
-def test_every_candidate_is_in_the_catalogue_and_runs(column, layer, drive):
-    scene = scene_of(column, layer, {"step": 1.3e-4, "steps": 10}, **drive)
-    candidates = list(of_scene(scene))
-    assert {candidate.id for candidate in candidates} <= set(CAUSES)
-    record = beside(scene, Foreign(scene.time.step * np.arange(1.0, 11.0), np.ones(10), np.ones(10)))
-    for candidate in candidates:
-        start = candidate.starts[0] if candidate.starts else 0.0
-        assert record.run(candidate.changed(start), 10) is not None, candidate.id
-
-
-def test_numbers_of_contacts_are_those_that_are_stated():
-    assert list(places(DROPPED, "stiffness")) == ["everywhere", "without a joint", "0"]
-    assert list(places(SHEARED, "strength")) == ["without a joint"]
-    assert places(SHEARED, "gap") == {}
-    numbers = list(numbers_of_column(DROPPED))
-    assert not any("modulus" in number.name for number in numbers)  # of rigid blocks
-    (springs,) = (number for number in numbers if number.id == "springs-factor" and "all" in number.name)
-    assert list(numbers_of_layers(DROPPED)) == []
-    layers = [{"thickness": 1.0, "density": density, "young": 1e9} for density in (2e3, 2e3, 3e3)]
-    (*_, third) = numbers_of_layers(DROPPED.with_values({"column.layer": layers}))
-    changed = third.changed(DROPPED.with_values({"column.layer": layers}), 1.5)["column.layer"]
-    assert [layer["density"] for layer in changed] == [2e3, 2e3, 4.5e3] and "layer 3" in third.name
-    halved = DROPPED.with_values(springs.changed(DROPPED, 0.5)).column
-    assert {contact.stiffness for contact in halved.contacts} == {5e8}

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from oracles.few_moves import FEW, among
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
@@ -31,7 +32,8 @@ def answer_of(base, columns):
         pytest.param({"rho": 2970.0}, ["single-rows", "density-factor"], marks=pytest.mark.long),
     ],
 )
-def test_a_row_printed_twice_is_told_by_its_step(slip, causes):
+def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
+    among(monkeypatch, FEW)
     displacement, pressure = (printed(values, 8) for values in run(replace(STIFF, **slip)))
     displacement[40] = displacement[39]
     pressure[40] = pressure[39]
@@ -39,15 +41,6 @@ def test_a_row_printed_twice_is_told_by_its_step(slip, causes):
     assert answer.causes == causes
     assert answer.values["single-rows"] == 41
     assert {stage.name: stage.agrees for stage in answer.evidence}["rows"] is False
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("error", [1e-2, 3e-6])
-def test_one_wrong_row_does_not_pass_however_small_it_is_in_the_mean(error):
-    displacement, pressure = (printed(values, 9) for values in run(replace(STIFF, steps=400)))
-    displacement[200] = float(f"{displacement[200] * (1 + error):.8e}")
-    answer = answer_of(replace(STIFF, steps=400), (displacement, pressure))
-    assert (answer.causes, answer.values) == (["single-rows"], {"single-rows": 201})
 
 
 @pytest.mark.parametrize(
@@ -63,18 +56,6 @@ def test_white_noise_on_a_right_history_is_noise(base, size, seed):
     noise = np.random.default_rng(seed).standard_normal((2, base.steps))
     columns = [x + size * np.max(np.abs(x)) * e for x, e in zip(run(base), noise, strict=True)]
     assert answer_of(base, (columns[0], columns[1])).causes == []
-
-
-@pytest.mark.long
-def test_noise_beside_few_digits_hides_no_discount():
-    """Rows near zero have digits far below the noise, and are not weighed by these."""
-    base = Plain(steps=60, alpha=0.25, delta=0.5, consistent=True)
-    noise = np.random.default_rng(0).standard_normal((2, base.steps))
-    columns = run(replace(base, gg=0.97))
-    noisy = [printed(x + 1e-6 * np.max(np.abs(x)) * e, 5) for x, e in zip(columns, noise, strict=True)]
-    answer = answer_of(base, (noisy[0], noisy[1]))
-    assert answer.causes == ["gg"]
-    assert answer.values["gg"] == pytest.approx(0.97, abs=1e-5)
 
 
 def test_five_digits_in_millimetres_are_a_unit_not_a_load():

@@ -69,6 +69,20 @@ def summed(values):
     return total
 
 
+def numbers_in(value):
+    """Yield the numbers and words of plain data, one by one."""
+    if isinstance(value, dict):
+        for name in sorted(value):
+            yield name
+            yield from numbers_in(value[name])
+    elif isinstance(value, list | tuple):
+        yield len(value)
+        for part in value:
+            yield from numbers_in(part)
+    else:
+        yield value if isinstance(value, str | float | int) else 0.5  # what is none, or an object
+
+
 def kept(path):
     """Return the tables of numbers that a file keeps."""
     return tomllib.loads(path.read_text(encoding="utf-8")) if path.exists() else {}

@@ -37,7 +37,10 @@ def test_the_blocks_ones_load_numpy_and_scipy_only():
     assert not third & set(done.stdout.split())
 
 
-@pytest.mark.parametrize(("name", "function"), [("locked", "locked_block"), ("opening", "unilateral_block")])
+@pytest.mark.parametrize(
+    ("name", "function"),
+    [("locked", "locked_block"), pytest.param("opening", "unilateral_block", marks=pytest.mark.long)],
+)
 def test_a_block_is_that_of_the_scene(name, function):
     asked = problem(name)
     wanted = motion_of(asked.scene, asked.truth)

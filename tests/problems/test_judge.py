@@ -1,6 +1,7 @@
 """Judging answers to problems: wrong histories fail, both sides of a band, what is absent is told."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -204,6 +205,15 @@ def test_boxes_are_judged_by_their_numbers(name):
     assert judgement.verdict == "PASS"
     assert judgement.criteria and len(judgement.criteria) == len(judgement.quantities)
     assert all(one.allowed is not None and one.allowed <= 0.026 for one in judgement.criteria)
+
+
+def test_a_number_that_the_positions_hold_and_do_not_give_fails_by_infinitely_much():
+    one = problem("standing")
+    exact = standard(one).exact
+    never = replace(one.numbers[0], measure=lambda history: None)
+    judgement = judge(replace(one, numbers=(never, *one.numbers[1:])), exact)
+    assert (judgement.status, judgement.deciding.name, judgement.deciding.error) == (Status.FAIL, never.name, math.inf)
+    assert judgement.within == 0.0 < judge(one, exact).within
 
 
 def test_a_number_of_a_withheld_column_is_not_reported():

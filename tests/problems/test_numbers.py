@@ -8,11 +8,26 @@ import os
 from pathlib import Path
 
 import numpy as np
-from oracles.stand_ins import differing, history, keep, kept, summed
+from oracles.stand_ins import differing, history, keep, kept, numbers_in, summed
 
 from validation.problems.problem import ProblemHooks, names, problem
+from validation.scenes.plain import scene_data
+from validation.scenes.scene import load_scene
 
 KEPT = Path(__file__).with_name("numbers.toml")
+POISSON = {"block.poisson": 0.2, "block.hypothesis": "plane strain"}
+SCENES = {  # beside those of the problems, whose digests `packs.json` keeps
+    "eccentric": ("field-locked", {"load.eccentricity": 0.1, "load.traction": 3.0, "block.side": 3.0}),
+    "sheared": ("field-locked", POISSON | {"contact.shear_stiffness": 7.0, "load.gravity": 3.0, "load.slope": 5.0}),
+    "gap": ("field-opening", {"contact.gap": 0.1, "contact.friction": 20.0, "contact.cohesion": 5.0}),
+    "shaken": ("columns-shaken", {}),
+    "cosine": ("columns-joint", {"input.shape": "cosine"}),
+    "slips": ("columns-slips", {}),
+    "springs": ("columns-mass-ratio", {"column.base": "springs", "column.base_stiffness": 3e9}),
+    "settled": ("field-stack", {"column.settled": True}),
+    "rigid": ("field-cradle", {"column.stiffness": "inf"}),
+    "rigid joint": ("field-joint", {"column.joint": [{"height": 40.0, "stiffness": "inf"}]}),
+}
 
 
 def numbers(name, factor=1.0):
@@ -39,3 +54,13 @@ def test_problems_ask_and_measure_as_before():
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "problems", found, changed)
     assert differing(found, kept(KEPT)["problems"]) == {}
+
+
+def test_scenes_are_stated_as_before():
+    """Without what is None, in plain numbers and "inf"."""
+    found = {}
+    for name, (scene, values) in SCENES.items():
+        found[name] = summed(numbers_in(scene_data(load_scene(scene).with_values(values))))
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "scenes", found, {})
+    assert differing(found, kept(KEPT)["scenes"]) == {}

@@ -13,7 +13,7 @@ from validation.problems import pack
 from validation.problems.answers import read_sets
 from validation.problems.data import PACK, AnswersData, ProblemData
 from validation.problems.judge import judge
-from validation.problems.problem import ASKS, names, problem
+from validation.problems.problem import names, problem
 from validation.runs.defects import DefectsError
 
 QUICK = ("locked", "rocking", "column", "mass-ratio")
@@ -114,15 +114,6 @@ def test_an_interrupted_pack_leaves_the_earlier_one(tmp_path, monkeypatch):
     refused("export-pack", tmp_path / "new")
     assert (place / "mark").exists()
     assert [path.name for path in tmp_path.iterdir()] == ["pack"]
-
-
-@pytest.mark.long
-def test_the_command_writes_a_whole_pack(tmp_path):
-    done = typed("export-pack", tmp_path / "pack")
-    assert done.returncode == 0, done.stderr
-    assert str(len(names())) in done.stdout
-    ((answers),) = [one.answers for one in read_sets(filled(tmp_path / "pack", tmp_path / "mine", *ASKS))]
-    assert [judge(answer.problem, answer.history).verdict for answer in answers] == ["PASS"] * len(ASKS)
 
 
 def test_the_folder_for_all_problems_is_read_when_it_is_filled_in(written, tmp_path):

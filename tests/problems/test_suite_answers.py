@@ -23,11 +23,11 @@ QUICK = ("locked", "column", "mass-ratio")  # to have an exact motion, and to ru
 PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
 
 
-def each(names):
-    return [name if name in QUICK else pytest.param(name, marks=pytest.mark.long) for name in names]
+def each(names, quick=QUICK):
+    return [name if name in quick else pytest.param(name, marks=pytest.mark.long) for name in names]
 
 
-@pytest.mark.parametrize("name", each(OF_BLOCKS))
+@pytest.mark.parametrize("name", each(OF_BLOCKS, ("locked",)))
 def test_at_fine_steps_dda_passes(name):
     """Its error is that of its scheme, far below what one per cent of the data changes."""
     one = problem(name)

@@ -1,0 +1,102 @@
+"""What advice is known without a run, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` renews it."""
+
+import os
+import tomllib
+from itertools import cycle
+from pathlib import Path
+
+from oracles.stand_ins import differing, keep, kept, numbers_in, summed
+
+from validation import advise, damping, load_scene
+from validation.advice import budget, columns, contact, friction
+from validation.advice.coarse import coarse_alarms
+from validation.advice.draft import KINDS, ROCKS, draft
+from validation.advice.hooks import AdviceHooks
+from validation.advice.wave_advice import advise_wave
+
+KEPT = Path(__file__).with_name("numbers.toml")
+PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002, "load.gravity": 9.81})
+BLOCKS = {
+    "plain": {},
+    "discount": {"time.gg": 0.97, "time.alpha": 0.36, "time.delta": 0.7},
+    "rate": {"time.gg_rate": 30.0, "time.alpha": 0.25, "time.delta": 0.5, "block.poisson": 0.2},
+    "scheme": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.4},
+    "explicit": {"time.scheme": "leapfrog", "time.start": "consistent", "time.step": 5e-4},
+    "opens": {"contact.law": "unilateral", "block.velocity": -0.7, "contact.gap": 0.01},
+}
+COLUMNS = {
+    "site": ("waves-site", {"time.allow_unstable": True}),
+    "joint": ("waves-joint", {"time.allow_unstable": True}),
+    "shaken": ("columns-shaken", {}),
+    "stack": ("field-stack", {"column.gravity": 9.81, "time.gg": 0.99}),
+    "slips": ("columns-slips", {"time.alpha": 0.25, "time.delta": 0.5}),
+    "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5}),
+}
+TARGETS = ((0.02, "dt"), (0.3, "gg"), (0.1, "scheme"))
+SLOPES = ("slope-drag", "creep-steps", "slope-sliding")
+
+
+def first_of(name):
+    return load_scene(name).expand()[0]
+
+
+def alarms_of(scene):
+    """Yield what is warned of before a run, in numbers."""
+    for alarm in (*coarse_alarms(scene, 20.0), *AdviceHooks.of(scene).alarms(scene)):
+        yield alarm.kind, dict(alarm.values)
+
+
+def of_block(scene):
+    """Yield what is known of a block on its springs."""
+    yield [*alarms_of(scene)]
+    if scene.contact.law == "locked":
+        yield damping(scene).as_dict()
+        for target, solve_for in TARGETS if scene.time.scheme == "newmark" else ():
+            answer = advise(scene, damping=target, solve_for=solve_for).as_dict()
+            yield {key: value for key, value in answer.items() if key != "sentence"}
+    if scene.time.scheme == "newmark":
+        landing = contact.restitution(scene)
+        yield contact.omega(scene), landing and [landing.low, landing.mean, landing.high, landing.own]
+        yield [*contact.needed(scene, 0.7, 1e-4)], [*contact.needed(scene, 0.0, 1e-4, lambda p: 1e5 / p)]
+
+
+def of_column(scene):
+    """Yield what is known of a column, and of its wave."""
+    yield [*alarms_of(scene)]
+    if scene.column.law == "bonded":
+        wave = advise_wave(scene, 12.0, 0.1).as_dict()
+        yield {key: value for key, value in wave.items() if isinstance(value, float | int | dict)}
+    else:
+        known = columns.limits(scene)
+        yield known and vars(known)
+
+
+def typed(kind, rock, question):
+    """Return the scene that `new` writes of answers that are a little larger than what is offered."""
+    return tomllib.loads(draft({"kind": kind, "rock": rock}, lambda name, value: round(question * value, 3)))
+
+
+def numbers_of_advice(step=0.002):
+    block = PAPER.with_values({"time.step": step})
+    found = {f"block {name}": of_block(block.with_values(values)) for name, values in BLOCKS.items()}
+    for name, (scene, values) in COLUMNS.items():
+        found[f"column {name}"] = of_column(first_of(scene).with_values(values))
+    for name in SLOPES:
+        scene = first_of(name)
+        found[f"slope {name}"] = (friction.sliding(scene).as_dict(), [*alarms_of(scene)])
+    for kind, rock in zip(KINDS, cycle(ROCKS), strict=False):
+        found[f"new {kind}"] = typed(kind, rock, 1.1)
+    ends = [{"time.step": step} for step in (4e-7, 0.4)]
+    found["budgets"] = budget.budgets([block.with_values(values) for values in (*ends, BLOCKS["discount"])])
+    return {name: summed(numbers_in([*plain(value)])) for name, value in found.items()}
+
+
+def plain(value):
+    return [value] if isinstance(value, dict) else value
+
+
+def test_advice_is_as_before():
+    found = numbers_of_advice()
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "advice", found, numbers_of_advice(0.002 * (1 + 1e-11)))
+    assert differing(found, kept(KEPT)["advice"]) == {}

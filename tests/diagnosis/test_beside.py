@@ -1,0 +1,364 @@
+"""The search beside runs of a scene, with a formula in the place of the runs: a swing whose numbers are candidates."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.diagnosis.beside import (
+    FARTHEST,
+    LEAST_ROWS,
+    MOST_ALIKE,
+    NOISY,
+    RunExplanation,
+    RunVerdict,
+    SceneSearch,
+    answer_of,
+    verdict_of,
+)
+from validation.diagnosis.evidence import Departure
+from validation.diagnosis.numbers import CandidateChange, fixed
+from validation.diagnosis.one_change import Fitted
+from validation.diagnosis.reading import Foreign, Stepping
+from validation.diagnosis.readings import Reading, Slip
+from validation.errors import InputError
+
+STEP = 0.01
+ROWS = 60
+SCENE = load_scene("figures-3-4").with_values({"time.gg": 0.99})
+
+
+class Swing(SceneSearch):
+    """Runs of a mass on a damped spring under a load, whose numbers are those of a change."""
+
+    NAMES = ("displacement", "contact_pressure")
+    WOULD_TELL = "WOULD TELL"
+
+    def __init__(self, recorded, changes=(), apart=0.0, step=1, rounding=None):
+        self.changes = changes
+        self.apart = apart
+        rows = np.arange(step - 1, step * recorded.shape[1], step)
+        stepping = Stepping(np.full(step * recorded.shape[1], STEP), rows)
+        super().__init__(SCENE, Reading(stepping, recorded, rounding))
+
+    def candidates(self):
+        return iter(self.changes)
+
+    def solved(self, values, steps, is_shifted):
+        if values.get("fails"):
+            return None
+        columns = columns_of(values, steps)
+        return columns * (1 + is_shifted * self.apart * 2.0 ** np.arange(columns.shape[1]))
+
+
+def columns_of(values, steps=ROWS):
+    """Return displacement and pressure of a swing."""
+    n = {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7, "parts": 1} | values
+    t = STEP / n["parts"] * np.arange(1, n["parts"] * steps + 1)
+    x = n["q"] / n["k"] * (np.exp(-n["d"] * t) * np.cos(np.sqrt(n["k"] / n["m"]) * t) - 1)
+    return np.array([x, -n["k"] * x])
+
+
+def factor(name, key, power=1.0, starts=(0.7, 1.4), own=None):
+    """Return the change by which a number is larger by a power of a factor."""
+    own = own or {"m": 1.3, "k": 1700.0, "q": 25.0, "d": 0.7}[key]
+    words = f"{name} {{:.4g}}".format
+    return CandidateChange(
+        name, words, math.exp, lambda u: {key: own * math.exp(power * u)}, tuple(map(math.log, starts))
+    )
+
+
+MASS = factor("density-factor", "m")
+LIGHTNESS = factor("young-factor", "m", -1.0)
+LOAD = factor("load-factor", "q")
+SPRINGS = factor("springs-factor", "k")
+DAMPED = fixed("no-friction", "more damping", {"d": 2.1})
+
+
+def named(search):
+    return [(one.id, one.value) for one in search.alike(search.explanations())]
+
+
+def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits():
+    changes = (DAMPED, SPRINGS, LOAD, MASS)
+    search = Swing(columns_of({"m": 1.3 * 1.17}), changes)
+    found = search.explanations()
+    assert [one.id for one in found] == ["density-factor"]  # others are left where they come no nearer
+    assert named(search) == [("density-factor", 1.17)]
+    assert found[0].ratio <= 1 and not found[0].is_noise and found[0].left < 1e-9
+    verdict = verdict_of(search, found)
+    assert (verdict.explained, verdict.causes, verdict.alike) == (True, {"density-factor": 1.17}, [])
+    assert verdict.words == {"density-factor": "density-factor 1.17"}
+    assert verdict.best == pytest.approx({"m": 1.3 * 1.17}, rel=1e-9)
+    assert verdict.left == pytest.approx(0, abs=1e-10)
+    slow = Swing(columns_of({"m": 1.3 * 1.17}), changes)
+    slow.is_slow = True
+    assert named(slow) == [("density-factor", 1.17)]
+    assert named(Swing(columns_of({"d": 2.1}), changes)) == [("no-friction", None)]
+    assert verdict_of(search, []).causes == {}
+
+
+def test_numbers_of_one_product_stand_for_each_other_also_where_no_fit_comes_to_them():
+    recorded = columns_of({"m": 1.3 / 1.3})[:1]
+    lost = factor("young-factor", "m", -1.0, (1e3,))  # from so far away a fit ends elsewhere
+    for other, value in ((LIGHTNESS, 1.3), (lost, 1.3), (factor("side-factor", "m", -0.5, (1e3,)), 1.69)):
+        search = Swing(recorded, (MASS, other, LOAD))
+        found = search.explanations()
+        assert {one.id: one.value for one in search.alike(found)} == {
+            "density-factor": pytest.approx(1 / 1.3, rel=1e-5),
+            other.id: pytest.approx(value, rel=1e-5),
+        }
+        verdict = verdict_of(search, found)
+        assert not verdict.explained
+        (one,) = (one for one in verdict.alike if one["causes"] == [other.id])
+        assert one["values"] == {other.id: pytest.approx(value, rel=1e-5)} and one["further_scene"]
+
+
+def test_a_number_with_which_no_row_changes_is_none():
+    def heavy(u):  # beyond a factor of two nothing changes any more
+        return {"d": 0.7 + min(u, math.log(2.0))}
+
+    change = CandidateChange("gg", "{:.4g}".format, math.exp, heavy, (0.5, 0.6))
+    assert named(Swing(columns_of(heavy(0.4)), (change,))) == [("gg", pytest.approx(math.exp(0.4), rel=1e-5))]
+    assert named(Swing(columns_of(heavy(1.2)), (replace(change, starts=(0.5, 1.2)),))) == []
+    far = factor("springs-factor", "m", 1e-3)  # of a factor of ten thousand and more: forgotten, or in other units
+    assert named(Swing(columns_of({"m": 1.3 * math.exp(9.1e-3)}), (far,))) == [
+        ("springs-factor", pytest.approx(8955.29))
+    ]
+    assert named(Swing(columns_of({"m": 1.3 * math.exp(9.3e-3)}), (far,))) == []
+
+
+def test_a_history_departs_by_enough_rows_for_a_cause():
+    for rows, ids in ((LEAST_ROWS, ["density-factor"]), (LEAST_ROWS - 1, [])):
+        late = Swing(columns_of({"m": 1.5}, rows), (MASS,))
+        assert [one.id for one in late.explanations()] == ids
+        assert len(late.departing) == rows
+    scene = columns_of({})
+    for times, ids in ((9.0, []), (11.0, ["load-factor"])):  # of what may remain
+        near = Swing(scene * (1 + times * 1e-8), (factor("load-factor", "q", 1.0, (0.9, 1.1)),))
+        assert [one.id for one in near.explanations()] == ids
+    moved = scene.copy()
+    moved[:, 20:] *= 1.002
+    search = Swing(moved, (LOAD,))
+    assert search.departing.tolist() == list(range(20, 60))
+    assert search.departure(RunVerdict(search, False)) == Departure(21, "offset")
+    assert Swing(scene).departure(RunVerdict(search, True)) is None
+
+
+def test_rows_are_judged_up_to_where_two_correct_codes_agree():
+    """The shifted run is 2^n times 1e-16 away: of the largest value a millionth from row 36 on."""
+    scene = columns_of({})
+    search = Swing(scene, apart=1e-16)
+    apart = np.abs(scene) * 1e-16 * 2.0 ** np.arange(ROWS)
+    beyond = np.flatnonzero(np.any(apart > 1e-6 * np.max(np.abs(scene), axis=1, keepdims=True), axis=0))[0]
+    assert search.rows == beyond == 36
+    sizes = np.max(np.abs(scene), axis=1, keepdims=True)
+    expected = 1e-8 * sizes + np.maximum.accumulate(apart, axis=1)[:, :beyond]
+    assert search.allowed == pytest.approx(expected, rel=1e-4)
+    stated = Swing(scene, rounding=np.full(scene.shape, 0.3)).allowed
+    assert stated == pytest.approx(np.broadcast_to(0.3 + 1e-8 * sizes, scene.shape), rel=1e-12)
+    printed = Swing(np.round(scene, 4)).allowed
+    assert printed[0] == pytest.approx(np.full(ROWS, 1e-4 + 1e-8 * np.max(np.abs(scene[0]))), rel=1e-3)
+    changed = scene.copy()
+    changed[:, beyond:] = 0.0
+    assert Swing(changed, apart=1e-16).is_scene()
+    changed[:, beyond - 1] *= 1.5
+    assert not Swing(changed, apart=1e-16).is_scene()
+    assert not Swing(scene, apart=2e-9).is_scene()  # of some ten rows too few
+    assert np.all(np.isinf(search.spread({"fails": True}, scene)))
+    assert search.judged(Fitted(fixed("gg", "", {"fails": True}), 0.0, 0.0)).ratio == FARTHEST
+    assert np.all(search.over(None, 5) == FARTHEST)
+    assert np.all(search.over(scene * math.nan, 5) == FARTHEST)
+    assert search.over(-1e12 * scene, 5) == pytest.approx(FARTHEST * np.sign(scene[:, :5]))
+
+
+def test_a_scene_that_does_not_run_is_refused(monkeypatch):
+    monkeypatch.setattr(Swing, "solved", lambda *given: None)
+    with pytest.raises(InputError) as refusal:
+        Swing(columns_of({}))
+    assert refusal.value.source == SCENE.name
+
+
+def test_every_row_is_that_of_its_step_also_of_a_program_with_more_steps():
+    fine = columns_of({"d": 0.9}, 3 * ROWS)[:, 2::3]
+    search = Swing(fine, step=3)
+    assert search.time == pytest.approx(0.03 * np.arange(1, ROWS + 1))
+    assert search.run({"d": 0.9}, 7) == pytest.approx(fine[:, :7], rel=1e-12)
+    assert search.run({"d": 0.9, "parts": 4}, 7) == pytest.approx(fine[:, :7], rel=1e-12)
+    assert search.run({"fails": True}, 7) is None
+    one = Swing(fine[:1], step=3)
+    assert one.run({"d": 0.9}, ROWS) == pytest.approx(fine[:1], rel=1e-12)
+    departs = Swing(fine * np.where(np.arange(ROWS) < 4, 1, 1.3), step=3)
+    assert one.rows == ROWS and departs.departure(RunVerdict(departs, False)).step == 3
+
+
+def test_what_remains_is_measured_by_column():
+    scene = columns_of({})
+    search = Swing(scene * [[1.0], [1.25]])
+    sizes = np.linalg.norm(scene, axis=1)
+    assert search.misfits(search.scene_run) == pytest.approx([0.0, 0.25 / 1.25])
+    assert search.misfits(search.scene_run * 0) == pytest.approx([1.0, 1.0])
+    rms = 0.25 * sizes[1] / math.sqrt(ROWS) / (1.25 * np.max(np.abs(scene[1])))
+    assert search.left(search.scene_run) == pytest.approx(rms)
+    assert [search.is_scene(tolerance) for tolerance in (0.19, 0.21)] == [False, True]
+    assert Swing(scene, apart=1e-3).left(scene) == math.inf
+    still = Swing(0 * scene)
+    assert still.misfits(still.scene_run) == pytest.approx([1.0, 1.0])
+
+
+@pytest.mark.parametrize(
+    ("size", "rows", "wrong", "is_noise"),
+    [
+        (1e-3, ROWS, 0.0, True),
+        (1e-3, NOISY - 1, 0.0, False),  # too few for all lags
+        (3e-2, ROWS, 0.0, False),  # too large
+        (1e-3, ROWS, 8e-3, False),  # a row by itself
+    ],
+)
+def test_noise_is_small_and_white_and_without_rows_that_stand_out(size, rows, wrong, is_noise):
+    scene = columns_of({}, rows)
+    noise = np.random.default_rng(5).standard_normal(scene.shape)
+    noise[:, rows // 2] += wrong / size
+    noisy = Swing(scene + size * noise * np.max(np.abs(scene), axis=1, keepdims=True))
+    assert noisy.is_noise(noisy.scene_run) is is_noise
+    assert noisy.is_scene() is is_noise
+    shaped = np.sin(0.2 * np.arange(rows)) * size * np.max(np.abs(scene), axis=1, keepdims=True)
+    assert not Swing(scene + shaped).is_noise(scene)
+
+
+def test_beside_noise_a_cause_stands_out_or_is_listed_with_others():
+    true = columns_of({"m": 1.3 * 1.17})
+    noise = 2e-3 * np.random.default_rng(5).standard_normal(true.shape) * np.max(np.abs(true), axis=1, keepdims=True)
+    search = Swing(true + noise, (MASS, LOAD))
+    (found,) = search.alike(search.explanations())
+    assert found.id == "density-factor" and found.is_noise and found.ratio > 1
+    assert found.value == pytest.approx(1.17, rel=1e-3)
+
+    def explanation(left, is_noise=False, ratio=99.0):
+        change = fixed("gg", "", {}, 1e3 * left)
+        return RunExplanation(Fitted(change, 0.0, 0.0), ratio, left, is_noise)
+
+    best = explanation(1e-3, True)
+    others = [explanation(2.9e-3, True), explanation(2.8e-3), explanation(3.1e-3, True), explanation(5.0, ratio=9.9)]
+    assert [one.left for one in search.alike([best, *others])] == [1e-3, 2.9e-3, 5.0]
+    search.model = "bar"  # what a mesh leaves has a shape
+    assert [one.left for one in search.alike([best, *others])] == [1e-3, 2.9e-3, 2.8e-3, 5.0]
+    assert search.alike(others[1:]) == search.alike([]) == []
+    many = [explanation(0.1 * i, ratio=0.5) for i in range(1, 9)]
+    assert len(verdict_of(search, many).alike) == MOST_ALIKE
+
+
+def test_two_explanations_of_one_number_are_one():
+    def scheme(alpha, start):
+        return fixed("scheme", "", {"time.alpha": alpha, "time.delta": 0.5, "time.start": start})
+
+    def listed(*changes):
+        found = [RunExplanation(Fitted(one, 0.2, 0.0), 0.5, 1e-3 * i) for i, one in enumerate(changes)]
+        return [one.left for one in Swing(columns_of({})).alike(found)]
+
+    assert listed(scheme(0.25, "zero"), scheme(0.25, "consistent"), scheme(0.3, "zero")) == [0.0, 2e-3]
+    plain = fixed("gg", "", {}, math.exp(0.2))
+    fitted = CandidateChange("gg", str, math.exp, lambda u: {}, (0.1,))
+    assert listed(fitted, plain) == [1e-3]
+    assert listed(fitted, fixed("gg", "", {}, math.exp(0.2) * 1.00013)) == [0.0, 1e-3]
+    assert listed(fitted, fixed("gg", "", {})) == listed(fitted, fitted) == [0.0, 1e-3]
+    assert listed(fixed("sign", "", {}, 1.0), plain) == [0.0, 1e-3]
+
+
+# ---- the answer ------------------------------------------------------------------------------------------------------
+
+FOREIGN = Foreign(np.ones(1), np.ones(1), notes=("note of the file",))
+STAGES = {"reading": True, "displacement": False, "contact_pressure": False}
+
+
+def agreements(answer):
+    return {stage.name: stage.agrees for stage in answer.evidence}
+
+
+def test_an_answer_holds_the_verdict_the_scheme_and_the_three_curves():
+    search = Swing(columns_of({"m": 1.3 * 1.17}), (MASS,))
+    answer = answer_of(FOREIGN, verdict_of(search, search.explanations()), notes=["another"])
+    assert (answer.causes, answer.values, answer.unexplained) == (["density-factor"], {"density-factor": 1.17}, 0)
+    assert answer.scheme == {"alpha": 0.5, "delta": 1.0, "gg": 0.99} and answer.departs
+    assert answer.departure == Departure(1, "phase")
+    assert answer.misfit < 1e-9 and (answer.nearest, answer.alike, answer.slips) == (None, [], ())
+    assert answer.notes == ("note of the file", "another")
+    assert agreements(answer) == STAGES
+    assert [stage.numbers.get("first_row") for stage in answer.evidence] == [None, 1.0, 1.0]
+    runs = {"the file": columns_of({"m": 1.3 * 1.17}), "dda": columns_of({}), "best": columns_of({"m": 1.3 * 1.17})}
+    assert list(answer.curves) == list(runs) == list(answer.pressures)
+    for name, (displacement, pressure) in runs.items():
+        assert answer.curves[name][0] == pytest.approx(STEP * np.arange(1, ROWS + 1))
+        assert answer.curves[name][1] == pytest.approx(displacement, rel=1e-7)
+        assert answer.pressures[name] == pytest.approx(pressure, rel=1e-7)
+    alone = Swing(columns_of({})[:1])
+    same = answer_of(FOREIGN, RunVerdict(alone, True))
+    assert (same.causes, same.departure, same.pressures, same.unexplained) == ([], None, {}, 0.0)
+    assert agreements(same) == {"reading": True, "displacement": True}
+
+
+@pytest.mark.parametrize(
+    ("causes", "best", "scheme"),
+    [
+        ({"scheme": None}, {"time.alpha": 0.25, "time.delta": 0.5}, {"alpha": 0.25, "delta": 0.5, "gg": 0.99}),
+        ({"start": None}, {"time.alpha": 0.3, "time.delta": 0.6}, {"alpha": 0.3, "delta": 0.6, "gg": 0.99}),
+        ({"gg": 0.95}, {"time.gg": 0.95}, {"alpha": 0.5, "delta": 1.0, "gg": 0.95}),
+        ({"exact-in-time": None}, {}, {"alpha": None, "delta": None, "gg": None}),
+    ],
+)
+def test_the_scheme_of_an_answer_is_that_of_its_causes(causes, best, scheme):
+    search = Swing(columns_of({"d": 0.9}))
+    words = dict.fromkeys(causes, "WORDS")
+    answer = answer_of(FOREIGN, RunVerdict(search, True, causes, words, {"d": 0.9} | best))
+    assert (answer.causes, answer.scheme) == (list(causes), scheme)
+    assert ("exact in time" in answer.sentence) is ("exact-in-time" in causes)
+    assert ("WORDS" in answer.sentence) is True
+    assert answer.values == {name: value for name, value in causes.items() if value is not None}
+
+
+def test_what_is_not_explained_says_how_much_is_left_and_which_rows_agree():
+    moved = columns_of({"m": 1.3 * 1.17, "d": 0.9})
+    moved[:, :4] = columns_of({})[:, :4]
+    search = Swing(moved, (MASS,))
+    best = search.explanations()
+    answer = answer_of(FOREIGN, verdict_of(search, best))
+    share = math.hypot(*search.misfits(search.run(best[0].values, ROWS))) / math.hypot(
+        *search.misfits(search.scene_run)
+    )
+    assert (answer.causes, answer.values, answer.departure.step) == (["unexplained"], {}, 5)
+    assert answer.unexplained == pytest.approx(share, rel=1e-3) and 0.05 < share < 0.9
+    assert answer.nearest["causes"] == ["density-factor"] and answer.nearest["left"] == answer.unexplained
+    assert answer.nearest["values"]["density-factor"] == pytest.approx(1.17, rel=0.1)
+    assert " 4 " in answer.sentence and "0.04 s" in answer.sentence and "WOULD TELL" in answer.sentence
+    nothing = answer_of(FOREIGN, RunVerdict(search, False))
+    assert (nothing.unexplained, nothing.nearest) == (1.0, None)
+    from_first = answer_of(FOREIGN, RunVerdict(Swing(columns_of({"m": 3.0})), False))
+    assert "no row agrees" in from_first.sentence
+    worse = answer_of(FOREIGN, RunVerdict(search, False, {"gg": 0.5}, {"gg": ""}, {"d": 60.0}))
+    assert worse.unexplained == 1.0
+    equal = answer_of(FOREIGN, RunVerdict(Swing(columns_of({})), False))
+    assert equal.unexplained == 1.0 and "first 60 rows" in equal.sentence
+
+
+def test_what_surrounds_a_block_is_no_fault_and_slips_of_reading_are_causes():
+    search = Swing(columns_of({"k": 1600.0}), apart=1e-16)
+    found = RunVerdict(search, True, {"base-compliance": 0.03}, {"base-compliance": "BASE"}, {"k": 1600.0})
+    answer = answer_of(FOREIGN, found)
+    assert answer.causes == ["base-compliance"] and answer.departure is None
+    assert agreements(answer) == {"reading": True, "displacement": None, "contact_pressure": None, "horizon": None}
+    (stage,) = (stage for stage in answer.evidence if stage.name == "horizon")
+    assert stage.numbers == {"rows": search.rows, "time": pytest.approx(STEP * search.rows)}
+    assert stage.words in answer.notes
+    search.reading = replace(search.reading, corrected=(Slip("unit", "displacement", 1e3),))
+    for explained, causes in ((True, ["unit", "base-compliance"]), (False, ["unexplained"])):
+        answer = answer_of(FOREIGN, replace(found, explained=explained))
+        assert answer.causes == causes
+        assert bool(answer.slips) is explained
+        assert answer.departure is not None and agreements(answer)["reading"] is False
+    alike = [{"causes": ["gg"], "values": {"gg": 0.5}, "further_scene": "FURTHER"}]
+    several = answer_of(FOREIGN, replace(found, explained=False, alike=alike))
+    assert (several.nearest, several.alike) == (None, alike) and "FURTHER" in several.sentence

@@ -1,0 +1,305 @@
+"""The habits of other programs on a slope, with a formula in the place of the runs."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from validation import load_scene
+from validation.diagnosis import slopes
+from validation.diagnosis.evidence import Departure
+from validation.diagnosis.numbers import fixed
+from validation.diagnosis.one_change import Fitted
+from validation.diagnosis.reading import Foreign, Stepping
+from validation.diagnosis.readings import Reading
+from validation.diagnosis.slopes import Habits, SlopeSearch, answer_on, candidates, habits_of, verdict_on
+from validation.diagnosis.variant import GRAVITY
+
+STEPS = 40
+SCENE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
+SCENE = SCENE.with_values({"time.steps": STEPS})
+STEP = SCENE.time.step
+AREA = 4.0
+MASS = SCENE.block.density * AREA
+OPENS = 9  # row after which a corner is open, as long as it is not deeper than its dead band
+DEEPER = 1e-4  # m a row
+
+
+def motion(values, steps):
+    """Return columns of a block that swings on its springs and slides, whose corner lands by its dead band."""
+
+    def of(key):
+        section, _, entry = key.partition(".")
+        return values.get(key, getattr(getattr(SCENE, section), entry, None))
+
+    n = np.arange(1, steps + 1)
+    time = of("time.step") * n
+    slope = math.radians(of("load.slope"))
+    weight = MASS * of("load.gravity")
+    across = weight * math.cos(slope)
+    along = weight * math.sin(slope)
+    springs = across / (2 * of("contact.stiffness"))
+    decay = 12.0 * of("time.delta") / of("time.gg") ** 40
+    swing = 1 - np.exp(-decay * time) * np.cos(time * math.sqrt(2 * of("contact.stiffness") / MASS))
+    down = springs * swing + across / (4 * of("block.young")) * (1 - np.exp(-60.0 * time))
+    limit = across * math.tan(math.radians(of("contact.friction") or 0.0))
+    stretch = along / (2 * of("contact.shear_stiffness"))
+    slip = max(along - 0.8 * limit, 0.0) / MASS * time**2 / 2 - 2 * (of("contact.cohesion") or 0.0) / MASS * time**3
+    if of("contact.rules") == "lagged":
+        slip = slip + 2e-6 * limit / (MASS * 9.81) * np.maximum(n - 5, 0)
+    depth = DEEPER * (n - OPENS - 3)  # of the corner that opens, below the base
+    is_open = (n > OPENS) & (depth <= of("contact.band")[0])
+    landed = 1 + 0.05 * ((n > OPENS) & ~is_open)
+    place = {"displacement": -down * landed, "horizontal_displacement": stretch * swing + slip}
+    place |= {"state_m": np.where(is_open, 0.0, 1.0), "gap_m": np.where(is_open, -depth, -down)}
+    place |= {"state_n": np.ones(steps), "gap_n": -down - depth}
+    return place
+
+
+class Formula(SlopeSearch):
+    """Runs by the formula, of a program with `theirs`."""
+
+    apart = 0.0
+
+    def columns(self, values, steps, *names):
+        if values.get("fails"):
+            return None
+        place = motion({"time.gg": 1.0} | values, steps)
+        return np.array([place[name] for name in names])
+
+    def solved(self, values, steps, is_shifted):
+        columns = self.columns(values, steps, *self.NAMES)
+        return columns if columns is None or not is_shifted else columns * (1 + 1e-13)
+
+
+def made(values, steps=STEPS):
+    place = motion({"time.gg": 1.0} | values, steps)
+    return np.array([place[name] for name in SlopeSearch.NAMES])
+
+
+def beside(recorded):
+    steps = recorded.shape[1]
+    return Formula(SCENE, Reading(Stepping(np.full(steps, STEP), np.arange(steps)), recorded, np.zeros(recorded.shape)))
+
+
+@pytest.fixture(autouse=True)
+def few_starts(monkeypatch):
+    monkeypatch.setattr(slopes, "SOFTNESSES", (0.0, -0.5))
+    monkeypatch.setattr(slopes, "STAGES", (8, 16, 30, 40))
+    monkeypatch.setattr(slopes, "BANDS", (0.1, 10.0, 8))
+
+
+COMPLIANCE = math.expm1(0.003) * 2 / 3  # the springs give way twice as much as the block
+THEIRS = [
+    (Habits("consistent"), {}),
+    (Habits("lagged"), {"lagged-friction": None}),
+    (Habits("consistent", weight=1.0, softness=0.003), {"base-compliance": COMPLIANCE, "own-weight": 1.0}),
+    (
+        Habits("lagged", weight=1.0, softness=0.003, along=False),
+        {"lagged-friction": None, "base-compliance": COMPLIANCE, "own-weight": 1.0},
+    ),
+    (Habits("consistent", softness=-math.log(2)), {"springs-factor": 2.0}),
+    (Habits("lagged", softness=-math.log(1.5), along=False), {"normal-springs-factor": 1.5, "lagged-friction": None}),
+    (Habits("lagged", 1.23e-3, weight=1.0), {"lagged-friction": None, "dead-band": 1.2e-3, "own-weight": 1.0}),
+]
+
+
+@pytest.mark.parametrize(("theirs", "causes"), THEIRS)
+def test_habits_are_found_by_the_rows_that_they_give(theirs, causes):
+    search = beside(made(theirs.values(SCENE)))
+    ranked = habits_of(search)
+    assert len(ranked) == 1 + (theirs.rules == "lagged")
+    habits, run = ranked[-1]
+    assert run.explains and run.left < 1e-6
+    assert (habits.rules, habits.along or not theirs.softness) == (theirs.rules, theirs.along)
+    assert habits.weight == pytest.approx(theirs.weight, abs=1e-6)
+    assert habits.softness == pytest.approx(theirs.softness, abs=1e-7) and habits.error < 1e-6
+    assert habits.causes(search) == {
+        name: value if value is None else pytest.approx(value, rel=2e-3) for name, value in causes.items()
+    }
+
+
+def told(recorded):
+    search = beside(recorded)
+    return answer_on(search, Foreign(search.time, recorded[0], sideways=recorded[1]))
+
+
+def test_an_answer_names_the_law_with_what_each_leaves_and_when_both_corners_are_open(monkeypatch):
+    theirs = Habits("lagged", weight=1.0, softness=0.003)
+    answer = told(made(theirs.values(SCENE)))
+    assert answer.causes == ["lagged-friction", "base-compliance", "own-weight"]
+    assert answer.values == {"own-weight": 1.0, "base-compliance": pytest.approx(COMPLIANCE, rel=1e-5)}
+    assert [one["causes"] for one in answer.alike] == [["springs-factor"]]
+    assert answer.alike[0]["values"]["springs-factor"] == pytest.approx(math.exp(-0.003), rel=1e-5)
+    stage = answer.evidence[-1]
+    assert (stage.name, stage.agrees) == ("friction", False)
+    assert stage.numbers["lagged"] < 1e-6 < 1e-4 < stage.numbers["consistent"]
+    assert answer.departure == Departure(6, "offset")  # the first row that lags, on what surrounds the block
+    assert answer.opened is None
+    assert told(made({})).causes == []
+    corners = np.ones((2, STEPS))
+    corners[:, 7:9] = corners[0, 3] = 0.0
+    monkeypatch.setattr(Formula, "corners", lambda search, values: (-corners, corners))
+    assert told(made(theirs.values(SCENE))).opened == (8, 9)
+    assert told(made({"time.delta": 1.1, "load.gravity": 99.0})).opened is None  # which nothing explains
+
+
+@pytest.mark.parametrize(
+    ("values", "cause", "number", "agrees"),
+    [
+        (
+            {"contact.friction": 22.3},
+            "friction-factor",
+            math.tan(math.radians(22.3)) / math.tan(math.radians(22)),
+            False,
+        ),
+        ({"contact.cohesion": 3e4}, "cohesion", 3e4, False),
+        ({"load.slope": 20.2}, "slope-factor", 1.01, True),
+        ({"block.young": 1.1e9}, "young-factor", 1.1, True),
+        ({"contact.shear_stiffness": 4.4e8}, "shear-springs-factor", 1.1, False),
+        ({"contact.stiffness": 1.1e9}, "normal-springs-factor", 1.1, True),
+    ],
+)
+def test_a_number_that_is_wrong_is_named_where_no_habit_explains_the_rows(values, cause, number, agrees):
+    answer = told(made(values))
+    assert answer.causes == [cause]
+    assert answer.values == {cause: pytest.approx(number, rel=1e-5)}
+    assert answer.evidence[-1].agrees is agrees
+    assert answer.departure.step == 1
+
+
+def test_what_a_base_with_mass_leaves_is_small_beside_another_law(monkeypatch):
+    """A wave that no candidate has: up to a hundredth of the motion, and to 3 % of what other habits leave."""
+    monkeypatch.setattr(Formula, "explanations", lambda search: [])
+    base = made(Habits("consistent", weight=1.0, softness=0.003).values(SCENE))
+    wave = np.sin(0.7 * np.arange(STEPS)) * np.max(np.abs(base), axis=1, keepdims=True) * math.sqrt(2)
+    for size, others_left, causes in (
+        (0.5e-3, math.inf, ["base-compliance", "own-weight"]),
+        (0.5e-3, 0.02, ["base-compliance", "own-weight"]),
+        (0.5e-3, 0.01, ["unexplained"]),
+        (1.2e-2, math.inf, ["unexplained"]),
+    ):
+        recorded = base + size * wave
+        search = beside(recorded)
+        ranked = [(Habits("consistent", weight=1.0, softness=0.003), of_base(search))]
+        ranked += [(Habits("lagged"), replace(ranked[0][1], left=others_left))]
+        verdict = verdict_on(search, ranked)
+        assert verdict.explained is (causes != ["unexplained"])
+        stage = slopes._friction_stage(verdict, ranked)
+        assert stage.numbers == {
+            "consistent": ranked[0][1].left,
+            "lagged": None if others_left == math.inf else others_left,
+        }
+        assert stage.agrees is (True if verdict.explained else None)
+
+
+def of_base(search):
+    habits = Habits("consistent", weight=1.0, softness=0.003)
+    return search.judged(Fitted(fixed("habits", "", habits.values(SCENE)), 0.0, math.nan))
+
+
+def test_a_base_is_no_number_of_springs_and_half_a_weight_is_none():
+    def causes(*given, **fields):
+        return [*Habits("consistent", *given, **fields).causes(beside(made({})))]
+
+    for softness, cause in (
+        (7e-4, ["springs-factor"]),
+        (8e-4, ["base-compliance"]),
+        (0.0722, ["base-compliance"]),
+        (0.074, ["springs-factor"]),
+        (-8e-4, ["springs-factor"]),
+    ):
+        assert causes(softness=softness) == cause, softness
+    assert causes(softness=-math.log(0.98), error=0.0) == ["springs-factor"]  # of two digits
+    assert causes(softness=-math.log(0.98), error=2e-3) == ["base-compliance"]
+    assert [Habits("", weight=weight).is_usual for weight in (0.0, 0.94, 0.96, 1.04, 1.06, 0.03)] == [
+        True,
+        False,
+        True,
+        True,
+        False,
+        False,
+    ]
+
+
+def test_habits_are_values_of_the_scene():
+    values = Habits("lagged", 2e-3, 0.7, 0.2, along=False).values(SCENE)
+    g, angle = SCENE.load.gravity, math.radians(20.0)
+    pull = (g * math.sin(angle), g * math.cos(angle) + 0.7 * GRAVITY)
+    assert values == {
+        "contact.rules": "lagged",
+        "contact.band": pytest.approx([2e-3, 2e-6]),
+        "load.gravity": pytest.approx(math.hypot(*pull)),
+        "load.slope": pytest.approx(math.degrees(math.atan2(*pull))),
+        "contact.stiffness": pytest.approx(1e9 * math.exp(-0.2)),
+        "contact.shear_stiffness": 4e8,
+    }
+    lifted = Habits("consistent", weight=-50.0, softness=0.2).values(SCENE)
+    assert lifted["load.slope"] == pytest.approx(math.degrees(math.atan2(pull[0], 0.02 * GRAVITY)))
+    assert lifted["contact.shear_stiffness"] == pytest.approx(4e8 * math.exp(-0.2)) and "contact.band" not in lifted
+
+
+def test_candidates_of_a_slope_are_these():
+    found = {}
+    for change in candidates(SCENE):
+        found.setdefault(change.id, []).append(change)
+    (normal,) = found["normal-springs-factor"]
+    assert normal.changed(math.log(1.2)) == {"contact.stiffness": pytest.approx(1.2e9), "contact.shear_stiffness": 4e8}
+    (cohesion,) = found["cohesion"]
+    limit = math.tan(math.radians(22)) * MASS * SCENE.load.gravity * math.cos(math.radians(20)) / 2.0
+    assert cohesion.changed(math.log(0.3)) == {"contact.cohesion": pytest.approx(0.3 * limit)}
+    assert cohesion.value(0.0) == pytest.approx(limit)
+    assert [change.changed(0.0)["time.alpha"] for change in found["scheme"]].count(0.0) == 0
+    assert len(found["scheme"]) == 12
+    assert [change.changed(0.0)["time.start"] for change in found["start"]] == ["consistent"]
+
+
+def test_signs_and_a_unit_of_both_columns_are_read_off_the_first_rows(monkeypatch):
+    monkeypatch.setattr(slopes, "SlopeSearch", Formula)
+    own = made({})
+    time = STEP * np.arange(1, STEPS + 1)
+    for signs, factor, corrected in (
+        ((1, 1), 1.0, []),
+        ((-1, 1), 1.0, [("sign", "displacement", -1.0)]),
+        (
+            (1, -1),
+            1e3,
+            [
+                ("unit", "displacement", 1e3),
+                ("sign", "horizontal_displacement", -1.0),
+                ("unit", "horizontal_displacement", 1e3),
+            ],
+        ),
+        ((1, 1), 3.1, []),
+        ((1, 1), 10**2.6, [("unit", "displacement", 1e3), ("unit", "horizontal_displacement", 1e3)]),
+    ):
+        place = own * factor * np.array(signs)[:, None]
+        reading = slopes.search_of(SCENE, Foreign(time, place[0], sideways=place[1])).reading
+        assert [(slip.cause, slip.column, slip.factor) for slip in reading.corrected] == corrected
+        scale = 1e3 if corrected and factor > 1 else 1.0
+        assert reading.recorded == pytest.approx(own * factor / scale)
+    assert slopes.search_of(SCENE, Foreign(time, 0 * own[0], sideways=0 * own[1])).reading.corrected == ()
+
+
+def test_runs_of_the_suite_shifted_by_rounding_and_refused_where_they_do_not_run(monkeypatch):
+    asked = []
+    monkeypatch.setattr(SlopeSearch, "columns", lambda search, values, steps, *names: asked.append(values) or made({}))
+    search = SlopeSearch(SCENE, beside(made({})).reading)
+    search.solved({"contact.stiffness": 2e9}, STEPS, True)
+    shifted = {"contact.stiffness": 2e9, "contact.shear_stiffness": 4e8, "contact.friction": 22.0}
+    assert {key: value / shifted[key] - 1 for key, value in asked[-1].items()} == pytest.approx(
+        dict.fromkeys(shifted, 1e-12), rel=1e-3
+    )
+    monkeypatch.undo()
+    assert search.columns({"time.step": -1.0}, 4, "displacement") is None
+    run = search.columns({}, 4, "displacement", "state_n")
+    assert run.shape == (2, 4) and run[1].tolist() == [1.0] * 4
+    assert search.corners({"time.step": -1.0}) is None and len(search.corners({})[0]) == 2
+    assert beside(made({})).remainder({"fails": True}, 3).tolist() == [[1.0] * 3] * 2
+    one = beside(1.5 * made({})).remainder({}, 9)
+    sizes = np.max(np.abs(made({})[:, :9]), axis=1, keepdims=True)
+    assert one == pytest.approx(-0.5 * made({})[:, :9] / (1.5 * sizes))

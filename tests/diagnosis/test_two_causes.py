@@ -1,0 +1,218 @@
+"""Two causes at once, and what a fit leaves open, among few candidates and over few steps."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from oracles.few_moves import AVERAGE, FEW, among
+
+from validation.diagnosis import families, judgement, search
+from validation.diagnosis.causes import band_interval, roundest
+from validation.diagnosis.fits.fit import fit_one
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.moves import Move
+from validation.diagnosis.schemes import companion_split
+from validation.diagnosis.search import Explanation, Verdict, simple, twofold, with_same_rows
+from validation.diagnosis.stepping import histories
+from validation.diagnosis.variant import Rectangle, Variant
+
+BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
+OWN = Variant(0.5, 1.0, 1.0)
+STEPS = np.full(30, 2e-3)
+
+
+@pytest.fixture(autouse=True)
+def few_moves(monkeypatch):
+    among(monkeypatch, FEW)
+
+
+def target_of(theirs, columns=2, block=BLOCK, steps=STEPS):
+    run = histories(block, [theirs], steps)
+    both = np.array([run.displacement[:, 0], run.pressure[:, 0]])
+    return Target(block, steps, np.arange(len(steps)), both[:columns])
+
+
+def told(theirs, columns=2, scene=OWN):
+    target = target_of(theirs, columns)
+    one = simple(target, scene)
+    two = one if one.explains else twofold(target, scene, one)
+    return target, one, two
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ids", "numbers"),
+    [
+        ({"gg": 0.96} | AVERAGE, ("scheme", "gg"), {"gg": 0.96}),
+        (
+            {"viscous": 9.0, "structural": 3e-4},
+            ("viscous-damping", "stiffness-damping"),
+            {"viscous": 9.0, "structural": 3e-4},
+        ),
+        (
+            {"gg": 0.96, "weight": 1.0, "softness": 0.03, "point": 1.0},
+            ("gg", "springs-factor", "own-weight", "geometry-updated"),
+            {"gg": 0.96, "weight": 1.0, "softness": 0.03},
+        ),
+    ],
+)
+def test_two_causes_are_found_where_one_explains_nothing(theirs, ids, numbers):
+    _, one, two = told(replace(OWN, **theirs))
+    assert not one.explains and one.single[0].fit.misfit <= one.single[-1].fit.misfit
+    assert two.explained and {*two.best.ids} == {*ids}
+    found = two.best.fit
+    assert {name: getattr(found.variant, name) for name in numbers} == pytest.approx(numbers, rel=1e-4)
+    assert found.misfit < 1e-7 and two.left < 1e-5
+
+
+def test_what_surrounds_a_block_is_found_by_itself():
+    theirs = replace(OWN, weight=0.97, softness=0.02, point=1.0)
+    _, one, _ = told(theirs)
+    assert one.explained and {*one.best.ids} == {*search.SURROUNDINGS}
+    heavy = replace(OWN, base=7.0, softness=0.03)
+    _, one, _ = told(heavy)
+    assert one.best.ids == ("springs-factor",) and one.explained
+    assert (one.best.fit.variant.base, one.best.fit.variant.softness) == (
+        pytest.approx(7.0, rel=1e-3),
+        pytest.approx(0.03, rel=1e-3),
+    )
+
+
+def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
+    """Block and springs 1.2 times as stiff: the rows of a block of 1 / 1.2 of the mass under as much of the load."""
+    young = Move("young-factor", {}, ("young",), (1.3,))
+    load = Move("load-factor", {}, ("load",), (0.8,))
+    monkeypatch.setattr(search, "moves", lambda target, scene: [*FEW[2:5], young, load, *FEW[-2:]])
+    target, _, two = told(replace(OWN, young=1.2, softness=-np.log(1.2)), columns=1)
+    ties = with_same_rows(target, OWN, two)
+    pairs = {frozenset(each.ids): each.fit.variant for each in (ties.best, *ties.alike)}
+    assert not ties.explained and len(pairs) == 2
+    stiffer = pairs[frozenset(["young-factor", "springs-factor"])]
+    lighter = pairs[frozenset(["density-factor", "load-factor"])]
+    assert (stiffer.young, np.exp(-stiffer.softness)) == pytest.approx((1.2, 1.2), rel=1e-4)
+    assert (lighter.density, lighter.load) == pytest.approx((1 / 1.2, 1 / 1.2), rel=1e-4)
+    for explained in (True, False):
+        alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
+        assert with_same_rows(target, OWN, alone).same_rows == ()
+
+
+def test_candidates_of_pairs_begin_where_they_are_best_alone_and_change_different_things():
+    alone = [Explanation((FEW[3],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
+    few = {move.id: move for move in search._few(target_of(OWN), OWN, alone)}
+    assert few["density-factor"].starts == (1.7,)
+    assert few["springs-factor"].starts == (-0.3,)
+    assert [move.changes for move in search._few(target_of(OWN), OWN, alone) if move.id == "scheme"] == [AVERAGE]
+    assert search._together(FEW[3:6]) and not search._together(FEW[:2])
+    assert not search._together([FEW[2], Move("start", {"gg": 1.0})])
+
+
+def test_two_variants_are_one_program_at_every_step():
+    target = target_of(OWN)
+    average = replace(OWN, start="consistent", **AVERAGE)
+    one = replace(average, family="chung-hulbert", spectral=1.0)
+    assert search.same_program(target, average, one)
+    assert not search.same_program(target, average, replace(one, spectral=0.999))
+    assert not search.same_program(target, average, replace(average, alpha=0.25 + 1e-6))
+
+
+def test_a_base_is_accepted_where_without_it_much_more_is_left():
+    base = replace(OWN, softness=0.03, updated=True)
+    target = target_of(base)
+    other = Target(BLOCK, STEPS, target.rows, target.recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
+    scene = fit_one(other, OWN)
+    assert search.accepted(other, scene, fit_one(other, base))
+    assert not search.accepted(other, scene, fit_one(other, replace(base, softness=0.04)))
+    plain = Target(BLOCK, STEPS, target.rows, target_of(OWN).recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
+    assert not search.accepted(
+        plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
+    )
+
+
+def test_what_gives_the_rows_of_a_cause_is_told_with_its_numbers():
+    target = target_of(OWN)
+
+    def told_of(*ids, others=(), block=BLOCK, **numbers):
+        v = replace(OWN, **numbers)
+        fit = SimpleNamespace(variant=v)
+        same_rows = [Explanation(tuple(Move(name) for name in names), fit) for names in others]
+        told = families.relatives(replace(target, column=block), OWN, SimpleNamespace(same_rows=same_rows), ids, v)
+        return {tuple(one["causes"]): one["values"] for one in told}
+
+    half = ("density-factor",)
+    assert told_of(*half, density=0.5) == {("step-factor",): {"step-factor": pytest.approx(2**0.5, rel=1e-5)}}
+    assert told_of(*half, density=0.5, block=replace(BLOCK, gravity=9.81)) == {}
+    further = told_of("load-factor", load=1.5, others=[("load-factor", "gg"), ("gg",), ("load-factor",)])
+    assert further == {("gg",): {"gg": 1.0}, ("load-factor",): {"load-factor": 1.5}}  # not what has a part more
+    wider = {"width-factor": pytest.approx(1.03, rel=1e-5)}
+    softer = {"springs-factor": pytest.approx(1 / 1.03, rel=1e-5)}
+    base = {"softness": np.log(1.03)}
+    assert told_of("base-compliance", **base) == {("springs-factor",): softer, ("width-factor",): wider}
+    assert told_of("springs-factor", **base) == {("width-factor",): wider}
+    assert told_of("springs-factor", block=replace(BLOCK, poisson=0.1), **base) == {}
+    assert told_of("base-compliance", "gg", gg=0.9, **base) == {("gg", "springs-factor"): {"gg": 0.9} | softer}
+    assert told_of("base-compliance", "gg", gg=0.9, **base | {"base": 3.0}) == {}
+
+
+def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
+    scheme = replace(OWN, family="composite", split=0.7, spectral=0.3, start="consistent")
+    other = companion_split(scheme)
+    target = target_of(scheme)
+    assert judgement._told_apart(target, scheme).split == pytest.approx(min(0.7, other))
+    words = judgement._undecided(target, scheme, ["composite"])["split"]
+    assert "0.7" in words and f"{other:.4g}" in words
+    opens = replace(scheme, opens=True)
+    assert judgement._told_apart(target_of(opens), opens).split == 0.7
+    usual = replace(scheme, split=0.0)
+    assert " or " not in judgement._undecided(target_of(usual), usual, ["composite"])["split"]
+    dashpot = replace(OWN, contact="dashpot", dashpot=0.4, clipped=False, opens=True, **AVERAGE)
+    pulling = target_of(dashpot, block=STIFF, steps=np.full(60, 2e-4))
+    assert not judgement._told_apart(pulling, dashpot).clipped
+    held = replace(dashpot, opens=False)
+    assert judgement._told_apart(target_of(held), held).clipped
+    told_clipped = judgement._undecided(pulling, dashpot, ["contact-dashpot"])["clipping"]
+    assert told_clipped != judgement._undecided(target_of(dashpot), dashpot, ["contact-dashpot"])["clipping"]
+    gaps = replace(OWN, family="hht", spectral=0.2, contact="mean gap", opens=True)
+    assert "form" in judgement._undecided(target_of(gaps), gaps, ["hht"])
+    assert judgement._undecided(target_of(OWN), OWN, ["gg"]) == {}
+
+
+# ---- limits of contact -----------------------------------------------------------------------------------------------
+
+STIFF = replace(BLOCK, young=3e9, density=2900.0, normal=6e10, shear=6e10, pressure=6e6)
+
+
+@pytest.mark.parametrize("field", ["band", "hold"])
+def test_a_limit_lies_between_two_that_happened(field):
+    steps = np.full(60, 2e-4)
+    theirs = replace(OWN, opens=True, **{field: 1e-3 if field == "band" else 3e-5})
+    target = target_of(theirs, 1, STIFF, steps)
+    cause = {"band": "dead-band", "hold": "opening-tension"}[field]
+    unit = 1.0 if field == "band" else STIFF.normal / STIFF.width
+    low, high = band_interval(target, theirs, cause)
+    assert low < getattr(theirs, field) * unit < high
+
+    def misfit(limit):
+        return fit_one(target, replace(theirs, **{field: limit / unit})).misfit
+
+    for end, outward in ((low, -1), (high, 1)):
+        assert misfit(end * (1 - outward * 2e-3)) < 1e-9, "the same rows"
+        assert misfit(end * (1 + outward * 2e-3)) > 1e-6, "others"
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "number"),
+    [
+        (0.93, 1.07, 1.0),
+        (2.1, 2.9, 2.0),
+        (2.41, 2.52, 2.5),
+        (8.0, 13.0, 10.0),
+        (0.00123, 0.00127, 0.0012),
+        (3.33, 3.34, 3.3),
+    ],
+)
+def test_the_roundest_number_has_the_fewest_digits(low, high, number):
+    found = roundest(low, high)
+    assert low <= found <= high
+    assert len(f"{found:.9g}") <= len(f"{(low * high) ** 0.5:.9g}")

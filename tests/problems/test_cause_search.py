@@ -1,0 +1,325 @@
+"""The search for the cause of a failure, with a formula in the place of the runs: a swing on two springs in series."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from oracles import swings
+
+from validation.diagnosis.answer import Answer
+from validation.diagnosis.families import ONE_SCHEME
+from validation.errors import InputError
+from validation.problems import cause as module
+from validation.problems import models
+from validation.problems.bands import standard_of
+from validation.problems.cause import Cause, cause, compared, springs_alike
+from validation.problems.models import Base, Runs
+from validation.runs.history import History
+from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+
+SCENE = load_scene("field-locked")
+OPENING = load_scene("field-opening")
+AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
+COLUMNS = ("displacement", "contact_pressure")
+
+
+def motion(values=(), exact=False, scene=SCENE):
+    return swings.motion(scene, values, exact)
+
+
+EXACT = motion(exact=True)
+LARGER = {"the springs": {"contact.stiffness": 1.01e9}, "the density": {"block.density": 2727.0}}
+STANDARD = standard_of(EXACT, {name: motion(values, exact=True) for name, values in LARGER.items()})
+
+
+@pytest.fixture(autouse=True)
+def by_formula(monkeypatch):
+    monkeypatch.setattr(models, "_run_by", lambda scene, values, name: motion(values, name != "dda", scene))
+    monkeypatch.setattr(models, "runs_of", Runs)
+    monkeypatch.setattr(module, "runs_of", Runs)
+    monkeypatch.setattr(module, "compared", lambda scene, history: None)
+
+
+def found(history, scene=SCENE):
+    return cause(SimpleNamespace(scene=scene), history, STANDARD)
+
+
+def changed(**columns):
+    """Return the exact motion with other columns."""
+    return History(EXACT.time, dict(EXACT.columns) | columns)
+
+
+FACTORS = [
+    ({"contact.stiffness": 1.3e9}, "springs-factor", 1.3),
+    ({"contact.stiffness": 1e6}, "springs-factor", 1e-3),
+    ({"damping.stiffness": 3e-5}, "stiffness-damping", 3e-5),
+    ({"contact.law": "unilateral"}, "contact-opened", None),
+]
+
+
+@pytest.mark.parametrize(("values", "name", "number"), FACTORS)
+def test_a_wrong_number_in_an_exact_program_is_named(values, name, number):
+    one = found(motion(values, exact=True))
+    assert one.ids == (name,)
+    assert one.values == ({} if number is None else {name: pytest.approx(number, rel=1e-5)})
+    assert (one.left <= 0.1, one.base, one.passing_step, one.would_tell) == (True, None, None, "")
+    if number is not None:
+        assert one.sentence.count(f"{one.values[name]:.4g}") == 1
+
+
+def moved(late=0.0, rate=1.0):
+    """Return the exact motion at other instants, at rest before t = 0."""
+    fine = motion({"time.step": SCENE.time.step / 1e3, "time.steps": 60_000}, exact=True)
+    instants = np.maximum(rate * (EXACT.time - late * SCENE.time.step), 0.0)
+    time = np.r_[0.0, fine.time]
+    return {name: np.interp(instants, time, np.r_[0.0, x]) for name, x in fine.columns.items()}
+
+
+def test_rows_and_columns_may_be_wrong_by_themselves():
+    x = EXACT.columns["displacement"]
+    late = moved(late=0.4)
+    for history, name, value, word in (
+        (changed(displacement=1.07 * x), "factor", 1.07, "displacement is"),
+        (changed(**moved(late=-1.3)), "shift", -1.3, "all columns are 1.3 steps early"),
+        (changed(contact_pressure=late["contact_pressure"]), "shift", 0.4, "contact_pressure is"),
+    ):
+        one = found(history)
+        assert one.ids == (name,), word
+        assert one.values[name] == pytest.approx(value, rel=2e-3) and word in one.sentence
+    faster = found(changed(**moved(rate=0.93)))
+    assert (faster.ids, len(faster.alike)) == (("density-factor",), 1)  # from rest, without weight, mass sets the rate
+    assert faster.values["density-factor"] == pytest.approx(0.93**-2, rel=1e-5)
+    assert "time runs 0.93 times" in faster.alike[0] and f"a density of {0.93**-2:.4g} " in faster.alike[0]
+
+
+def test_what_gives_the_same_rows_is_told_and_of_too_many_none_is_named():
+    one = found(motion({"load.pressure": 0.8 * SCENE.load.pressure}, exact=True))
+    assert (one.ids, one.values) == (("load-factor",), {"load-factor": pytest.approx(0.8, rel=1e-5)})
+    assert len(one.alike) == 1 and one.alike[0] in one.sentence and "all columns" in one.alike[0]
+
+    def named(*lefts, ids=("gg",), values=True):
+        causes = [Cause(f"S{i}", ids, {"gg": 0.9 - i / 10} if values else {}, (), left) for i, left in enumerate(lefts)]
+        return module._named(causes)
+
+    assert named(1e-4, 0.0098).alike == ("S1",)  # within ten times a thousandth of the band
+    assert named(1e-4, 0.0102).alike == () == named(1e-4, 1e-4, values=False).alike
+    assert named(0.02, 0.19, 0.21).alike == ("S1",)
+    many = named(*4 * [1e-4])
+    assert (many.ids, len(many.alike), many.would_tell) == ((), 4, module.OTHERS_WOULD)
+    assert "gg 0.9, gg 0.8" in many.sentence and named(*3 * [1e-4]).ids == ("gg",)
+    two = [
+        Cause("A; and B", ("scheme", "gg"), {"gg": 0.9}, (), 0.0),
+        Cause("A; and C", ("scheme", "x"), {"x": 1.0}, (), 0.0),
+    ]
+    assert module._named(two).sentence == "A; and B (the same rows: C)"
+    alone = Cause("ALONE", ("x",), {"x": 2.0}, (), 1e-5)
+    assert module._named([*two, alone]) is alone  # fewer causes
+    usual = [Cause(name, (name,), {name: 1.5}, (), 0.0) for name in ("time-factor", "unheard", "factor", "load-factor")]
+    ranked = sorted([*usual, Cause("law", ("law",))], key=module._rank)
+    assert [one.sentence for one in ranked] == ["law", "load-factor", "factor", "time-factor", "unheard"]
+
+
+SCHEMES = [
+    ({}, {"alpha": 0.5, "delta": 1.0, "step": 0.002}, "DDA's usual scheme"),
+    (AVERAGE, {"alpha": 0.25, "delta": 0.5, "step": 0.002}, "the error of its step"),
+    ({"time.alpha": 1.0, "time.delta": 0.5}, {"alpha": 1.0, "delta": 0.5, "step": 0.002}, models.INTERCHANGED),
+    ({"time.start": "consistent"}, {"alpha": 0.5, "delta": 1.0, "step": 0.002}, "initial acceleration consistent"),
+]
+
+
+@pytest.mark.parametrize(("values", "numbers", "words"), SCHEMES)
+def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words):
+    one = found(motion(values))
+    assert (one.ids, one.values) == (("scheme",), numbers)
+    assert words in one.sentence
+    runs = Runs(SCENE, STANDARD)
+    shares = []
+    for step in (one.passing_step, 2 * one.passing_step):
+        every = round(SCENE.time.step / step)
+        shares.append(runs.apart(runs.sampled(Base("", values, every)), EXACT.columns))
+    assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
+
+
+def test_a_scheme_at_half_the_step_is_no_step_of_the_scene():
+    half = motion(AVERAGE | {"time.step": 0.001, "time.steps": 100})
+    one = found(History(EXACT.time, {name: x[1::2] for name, x in half.columns.items()}))
+    assert (one.ids, one.values["step"]) == (("scheme",), 0.001)
+    assert "at this step" not in one.sentence and "0.001 s" in one.sentence
+
+
+def test_another_number_beside_the_usual_scheme_is_told_with_it():
+    one = found(motion({"time.gg": 0.97}))
+    assert one.ids == ("scheme", "gg") and one.values["gg"] == pytest.approx(0.97, rel=1e-5)
+    assert one.base is None and "; and " in one.sentence
+
+
+def test_what_nothing_gives_back_is_left_to_compare(monkeypatch):
+    wave = 1 + 0.3 * np.sin(np.arange(len(EXACT.time)))
+    strange = changed(**{name: wave * x for name, x in EXACT.columns.items()})
+    one = found(strange)
+    assert (one.ids, one.sentence, one.left, one.would_tell) == ((), module.NOT_EXPLAINED, math.inf, module.WOULD_TELL)
+    monkeypatch.setattr(module, "compared", lambda scene, history: Cause("COMPARED", ("gg",)))
+    assert found(strange).sentence == "COMPARED"
+
+
+def test_nothing_that_moves_no_numbers_and_other_units_need_no_search():
+    x = EXACT.columns["displacement"]
+    none = {name: 0.99e-7 * values for name, values in EXACT.columns.items()}
+    assert found(changed(**none)).ids == ("nothing-moves",)
+    assert found(changed(**(none | {"displacement": 1.2e-7 * x}))).ids != ("nothing-moves",)
+    holes = np.where(np.arange(len(x)) == 6, math.inf, x)
+    broken = found(changed(displacement=holes))
+    assert broken.ids == ("not-finite",) and "displacement" in broken.sentence and " 7 " in broken.sentence
+    for factor, ids in ((1e3, ("unit",)), (0.985e-6, ("unit",)), (1.03e3, ())):
+        one = found(changed(displacement=factor * x))
+        assert one.ids == ids or (not ids and "unit" not in one.ids), factor
+        assert not ids or list(one.values) == ["displacement"]
+
+
+# ---- runs ------------------------------------------------------------------------------------------------------------
+
+
+def test_a_run_stands_for_the_exact_motion_where_it_is_near_enough(monkeypatch):
+    runs = Runs(SCENE, STANDARD)
+    base = runs.exact()
+    assert (base.exact, base.every, base.solver) == (True, 8, "")
+    assert (base.values["time.alpha"], base.alpha(SCENE.time), Base("x", {}).delta(SCENE.time)) == (0.25, 0.25, 1.0)
+    assert [one.every for one in runs._accurate()] == [1, 8, 32, 128]
+    assert len(runs.dense(base).time) == 8 * 57  # an eighth further than the scene
+    assert [len(x) for x in runs.sampled(base).values()] == [50, 50]
+    assert runs.sampled(base)["displacement"] == pytest.approx(runs.dense(base).displacement[7:400:8])
+    assert len(runs.dense(Base("words", {}, 4)).time) == 4 * 50
+    assert [one.every for one in Runs(OPENING, STANDARD)._accurate()] == [1, 8, 32]
+    (of_bars,) = Runs(load_scene("field-cradle"), STANDARD)._accurate()
+    assert (of_bars.solver, of_bars.every) == ("bars-events", 8)
+    assert runs.dense(replace(base, solver="block-events", every=1)).displacement[:50] == pytest.approx(
+        EXACT.displacement
+    )
+    off = History(EXACT.time, {name: 1.01 * x for name, x in EXACT.columns.items()})
+    assert Runs(SCENE, replace(STANDARD, exact=off)).exact() is None
+    monkeypatch.setattr(models, "_run_by", lambda *given: None)
+    assert Runs(SCENE, STANDARD).exact() is None and Runs(SCENE, STANDARD).sampled(base) is None
+
+
+def test_columns_are_apart_by_their_norms_and_bands():
+    runs = Runs(SCENE, STANDARD)
+    band = STANDARD.bands["displacement"]
+    rows = np.arange(len(EXACT.time)) < band.rows
+    off = {"displacement": EXACT.displacement * np.where(rows, 1 + 2.5 * band.high, 9.0)}
+    assert runs.apart(off, EXACT.columns) == pytest.approx(2.5)
+    assert runs.apart({"rotation": off["displacement"]}, EXACT.columns) == 0.0
+    assert runs.apart({"displacement": math.nan * EXACT.displacement}, EXACT.columns) == math.inf
+
+
+def test_programs_step_by_these_schemes():
+    schemes = [*Runs(SCENE, STANDARD).schemes()]
+    pairs = [
+        (
+            one.values.get("time.alpha", 0.5),
+            one.values.get("time.delta", 1.0),
+            one.values.get("time.start", "zero"),
+            one.every,
+        )
+        for one in schemes
+    ]
+    assert len(pairs) == len(set(pairs)) == 22
+    assert pairs[0] == (0.5, 1.0, "zero", 1) and pairs[-4:] == [
+        (0.5, 1.0, "consistent", 2),
+        (0.25, 0.5, "consistent", 2),
+        (0.5, 1.0, "consistent", 4),
+        (0.25, 0.5, "consistent", 4),
+    ]
+    assert [pair for pair, one in zip(pairs, schemes, strict=True) if one.usual] == [
+        pairs[0],
+        (0.25, 0.5, "consistent", 1),
+    ]
+    assert [pair[:2] for pair, one in zip(pairs, schemes, strict=True) if models.INTERCHANGED in one.words] == [
+        (1.0, 0.5),
+        (0.5, 0.25),
+    ]
+    assert len([*Runs(load_scene("field-rocking"), STANDARD).schemes()]) == 1
+
+
+def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
+    run_by = models.Runs.dense.__globals__["_run_by"]
+    assert run_by is models._run_by
+    monkeypatch.undo()
+    ends = {
+        "refusal": lambda scene: None,
+        "solve": lambda scene: SimpleNamespace(outcome=Outcome.COMPLETED, history=EXACT),
+    }
+
+    def given(**other):
+        monkeypatch.setattr(models, "get_solver", lambda name: SimpleNamespace(**(ends | other)))
+        return models._run_by(SCENE, {"time.steps": 7}, "dda")
+
+    def fails(scene):
+        raise ZeroDivisionError
+
+    assert given() is EXACT
+    assert given(refusal=lambda scene: "no" if scene.time.steps == 7 else None) is None
+    assert given(solve=fails) is None
+    assert given(solve=lambda scene: SimpleNamespace(outcome=Outcome.OVERFLOW, history=EXACT)) is None
+    assert models._run_by(SCENE, {"time.steps": -1}, "dda") is None
+
+
+# ---- words and `compare` ---------------------------------------------------------------------------------------------
+
+
+def test_springs_and_densities_that_do_the_same_are_told():
+    assert f"{1 / 0.8:.4g} " in springs_alike(OPENING, "width-factor", 0.8)
+    assert springs_alike(OPENING, "height-factor", 0.8) == ""
+    assert springs_alike(OPENING.with_values({"contact.friction": 20.0}), "width-factor", 0.8) == ""
+    assert "1.235 " in module._by_mass(SCENE, 0.9)
+    for values in ({"load.gravity": 9.81}, {"block.velocity": -1.0, "contact.law": "unilateral"}):
+        assert module._by_mass(SCENE.with_values(values), 0.9) == ""
+    assert module._by_mass(load_scene("field-column"), 0.9) == ""
+    base = Base("WORDS", AVERAGE)
+    assert " blocks" in module._scheme_sentence(base, load_scene("field-joint"))
+    assert " blocks" not in module._scheme_sentence(base, load_scene("field-stack"))
+    assert "damping" in module._scheme_sentence(base, SCENE.with_values({"time.gg": 0.9}))
+
+
+def test_time_runs_within_bounds_and_columns_start_where_they_are():
+    runs = Runs(SCENE, STANDARD)
+    dense = runs.dense(Base("", {}))
+    for rate, late in ((1.11, 0.0), (0.49, 0.0), (1.0, 2.01), (1.0, -2.01)):
+        assert module._moved(runs, dense, EXACT.columns, COLUMNS, rate, late) is None
+    short = History(dense.time[:50], {name: x[:50] for name, x in dense.columns.items()})
+    assert module._moved(runs, short, EXACT.columns, COLUMNS, 1.0, -0.5) is None
+    late = module._moved(runs, dense, EXACT.columns, COLUMNS[:1], 1.0, 2.0)
+    assert late["displacement"] == pytest.approx(np.r_[0.0, 0.0, dense.displacement[:48]], abs=1e-12)
+    assert late["contact_pressure"] is EXACT.columns["contact_pressure"]
+    stack = Runs(load_scene("field-stack").with_values({"time.step": 0.002, "time.steps": 50}), STANDARD)
+    assert module._moved(stack, dense, EXACT.columns, COLUMNS, 1.0, 2.0)["displacement"][0] == dense.displacement[0]
+
+
+def test_compare_is_asked_where_it_can_look(monkeypatch):
+    monkeypatch.undo()
+    answer = Answer("SENTENCE", ["gg"], {}, None, values={"gg": 0.9}, misfit=0.3)
+    asked = []
+
+    def given(**fields):
+        monkeypatch.setattr(
+            module, "compare", lambda scene, foreign: asked.append(foreign) or replace(answer, **fields)
+        )
+        return compared(SCENE, EXACT)
+
+    one = given()
+    assert (one.sentence, one.ids, one.values, one.left) == ("SENTENCE", ("gg",), {"gg": 0.9}, 0.3)
+    assert asked[0].displacement is EXACT.displacement and asked[0].pressure is EXACT.columns["contact_pressure"]
+    assert given(causes=[]).ids == ("scheme",)
+    assert given(causes=["unexplained"]) is None
+    assert given(alike=[{"further_scene": ONE_SCHEME}]) is not None and given(alike=[{"further_scene": "x"}]) is None
+    assert compared(SCENE, History(EXACT.time, {"rotation": EXACT.displacement})) is None
+
+    def refuses(scene, foreign):
+        raise InputError("no")
+
+    monkeypatch.setattr(module, "compare", refuses)
+    assert compared(SCENE, EXACT) is None
