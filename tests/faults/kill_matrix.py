@@ -3,6 +3,7 @@
 Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
 """
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,7 +16,8 @@ from validation.gates.gate import Status
 from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.suite.folders import get_study
+from validation.suite.folders import get_study, judged_studies
+from validation.suite.own_solver.gates import asked
 
 
 class Overlay(Results):
@@ -42,7 +44,13 @@ def whole(fault, faulty):
 def cases_of(study, gates):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
-    return [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+    return as_gates_run([case for case in study.cases() if (case.scene.name, case.solver) in needed])
+
+
+def as_gates_run(cases):
+    """Return cases with the metrics alone that gates ask for, whose rows `validation/test_gates.py` has finished."""
+    metrics = asked(tuple(judged_studies()))
+    return [replace(case, only=metrics.get((case.scene.name, case.solver), frozenset())) for case in cases]
 
 
 def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True):
