@@ -112,11 +112,11 @@ def _outline(blocks: Sequence[Block], joints: Sequence[Joint]) -> Iterator[Piece
     slack = SAME_LINE * float(np.max(np.ptp(np.vstack([block.corners for block in blocks]), axis=0)))
     for number, block in enumerate(blocks):
         for index in range(len(block.corners)):
-            start, end = block.edge(index)
+            start, end = (tuple(corner.tolist()) for corner in block.edge(index))
             parts = [common_part((start, end), piece, slack) for piece in joined.get(number, [])]
             covered = sorted((part for part in parts if part), key=lambda part: math.dist(part[0], start))
-            place = (float(start[0]), float(start[1]))
-            for low, high in [*covered, (tuple(end.tolist()), place)]:
+            place = start
+            for low, high in [*covered, (end, place)]:
                 if math.dist(low, start) - math.dist(place, start) > slack:
                     yield number, place, low
                 place = max(place, high, key=lambda p: math.dist(p, start))

@@ -22,7 +22,6 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from dda.model.arrays import Array, without_rounding
 from dda.model.block import Block, displacement_rows
@@ -163,7 +162,9 @@ def _gradient(body: int, along: Array) -> Array:
     return rows
 
 
-def common_part(edge: ArrayLike, other: ArrayLike, slack: float) -> tuple[Point, Point] | None:
+def common_part(
+    edge: Sequence[Sequence[float]], other: Sequence[Sequence[float]], slack: float
+) -> tuple[Point, Point] | None:
     """Return the ends of what an edge shares with another one on its line, in its own direction.
 
     Parameters
@@ -171,16 +172,22 @@ def common_part(edge: ArrayLike, other: ArrayLike, slack: float) -> tuple[Point,
     slack
         How far the other one may lie beside the line; what is shorter is none [m].
     """
-    start, end = np.asarray(edge, float)
-    side = end - start
-    length = float(np.hypot(*side))
-    away = np.subtract(other, start)
-    beside = np.abs(side[0] * away[:, 1] - side[1] * away[:, 0]) / length
-    low, high = np.clip(np.sort(away @ side), 0.0, length**2) / length**2
-    if np.max(beside) > slack or not (high - low) * length > slack:
+    (x, y), (end_x, end_y) = edge
+    along_x = end_x - x
+    along_y = end_y - y
+    length = math.hypot(along_x, along_y)
+    shares = []
+    for other_x, other_y in other:
+        away_x = other_x - x
+        away_y = other_y - y
+        if abs(along_x * away_y - along_y * away_x) / length > slack:
+            return None
+        share = (along_x * away_x + along_y * away_y) / length**2
+        shares.append(min(max(share, 0.0), 1.0))
+    low, high = sorted(shares)
+    if not (high - low) * length > slack:
         return None
-    (x1, y1), (x2, y2) = (start + share * side for share in (low, high))
-    return (float(x1), float(y1)), (float(x2), float(y2))
+    return (x + low * along_x, y + low * along_y), (x + high * along_x, y + high * along_y)
 
 
 def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[Joint]:
@@ -210,7 +217,7 @@ def shared_edges(blocks: Sequence[Block], normal: float, shear: float) -> list[J
         beside = np.all((lows[window] <= high) & (highs[window] >= low), axis=1)
         near = beside & np.all(np.abs((ends[window] - a) @ n) <= slack, axis=1)
         for k in window[near]:
-            part = common_part((a, b), ends[k], slack)
+            part = common_part((a.tolist(), b.tolist()), ends[k].tolist(), slack)
             if part is not None:
                 joints.append(Joint(i, int(owners[k]), *part, normal, shear))
     return joints

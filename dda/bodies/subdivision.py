@@ -46,7 +46,7 @@ def subdivided(model: TwoBlockModel, columns: int, rows: int, glue: float, patte
     place = _corner_map(model, columns, rows)
     cells = _cells(columns, rows, pattern)
     _, normal, a = base_directions(model.block, model.base)
-    pressed = pressed_part(*model.block.edge(model.top), load.eccentricity)
+    pressed = [end.tolist() for end in pressed_part(*model.block.edge(model.top), load.eccentricity)]
     edges: dict[tuple[Corner, Corner], int] = {}
     for number, cell in enumerate(cells):
         for i, start in enumerate(cell):

@@ -152,15 +152,19 @@ class BarsMotion:
         if not 0 <= height <= data.length:
             raise ValueError(f"height: must be from 0 to {data.length!r}, got {height!r}")
         gravity = self.problem.fall
+        with precision(bits_of(self.digits)):
+            x = data.travel * arb(height) / arb(data.length)
+            rest, static_stress = self.problem.static_point(bar, arb(height))
+            waves = [(self.up[bar], x), (self.down[bar], data.travel - x)]
+            rest -= sum((wave.at(-delay)[1] for wave, delay in waves), arb(0))
 
         def row(time: arb) -> list[float]:
-            x = data.travel * arb(height) / arb(data.length)
-            displacement, stress = self.problem.static_point(bar, arb(height))
-            displacement -= gravity * time * time / 2
+            displacement = rest - gravity * time * time / 2
+            stress = static_stress
             velocities = []
-            for wave, delay in ((self.up[bar], x), (self.down[bar], data.travel - x)):
+            for wave, delay in waves:
                 velocity, moved = wave.at(time - delay)
-                displacement += moved - wave.at(-delay)[1]
+                displacement += moved
                 velocities.append(velocity)
             up, down = velocities
             stress += (up - down) * data.impedance

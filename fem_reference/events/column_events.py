@@ -25,7 +25,7 @@ from fem_reference.events.contacts import OPEN, STICKS, States, direction
 from fem_reference.events.enclosure import ZERO, bits_of, precision, term_count
 from fem_reference.events.march import March
 from fem_reference.events.report import ROUNDING, Instant, ProvenMotion, with_enough_digits
-from fem_reference.events.series import Start, floats
+from fem_reference.events.series import Start
 from fem_reference.events.switches import Work
 from fem_reference.problem.problem import Array
 
@@ -97,44 +97,22 @@ class ColumnMotion(ProvenMotion):
         ValueError
             If an instant is not from 0 to `end`.
         """
-        return ColumnHistory(**self.columns(self.model, times, REPORT_DIGITS))
-
-    @cached_property
-    def _ways(self) -> Array:
-        """Lengths of the ways that the references have gone until each node [m], shape (nodes, contacts)."""
-        slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
-        return np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0)
-
-    def _at(self, instant: Instant) -> dict[str, Any]:
-        """All columns but the time at an instant."""
-        model = self.model
         problem = self.problem
-        start = instant.start
-        states = instant.node.states
-        base, pressure = (piece.series(start.time, 1.0, 3) for piece in instant.node.pieces)
-        # the last entry is where `BASE` points to
-        u = np.append(floats(start.u), float(base[0]))
-        v = np.append(floats(start.v), float(base[1]))
-        a = np.append(floats(model.accelerations(states, start, instant.node.pieces))[:, 0], 2 * float(base[2]))
-        of_joints = np.zeros((4, len(problem.blocks)))  # forces, stretches, slips and states
-        springs = 0.0
-        friction = 0.0
-        for c, (contact, state, reference) in enumerate(zip(model.contacts, states, start.references, strict=True)):
-            slip = contact.reference(state, instant.rows) if direction(state) else reference
-            force = float(instant.forces[c])
-            if model.unilateral:
-                force = max(force, 0.0)
-            of_joints[:, contact.number] = force, float(instant.rows[c]), float(slip), state
-            springs += force**2 / (2 * float(contact.stiffness + contact.shear_stiffness))
-            way = self._ways[instant.number, c] + abs(float(slip - reference))
-            friction += float(contact.cohesion or 0) * way
-        feet, tops = np.transpose(model.faces)
+        motion = self.columns(self.model, times, REPORT_DIGITS)
+        u = motion["displacement"]
+        v = motion["velocity"]
+        a = motion["acceleration"]
+        force = motion["force"]
+        feet, tops = np.transpose(self.model.faces)
         mass = np.array([block.density * block.height for block in problem.blocks])
         moduli = [block.modulus / block.height if math.isfinite(block.modulus) else 0.0 for block in problem.blocks]
+        stiffness = [float(contact.stiffness + contact.shear_stiffness) for contact in self.model.contacts]
+        cohesion = [float(contact.cohesion or 0) for contact in self.model.contacts]
+        numbers = [contact.number for contact in self.model.contacts]
         squares = v[feet] ** 2 + v[feet] * v[tops] + v[tops] ** 2
-        inertia = mass * ((a[feet] + a[tops]) / 2 + problem.gravity)
+        inertia = mass[:, None] * ((a[feet] + a[tops]) / 2 + problem.gravity)
         # the force on the foot of each block, by the law of its joint or else by the momentum of what is above it
-        faces = np.append(of_joints[0], float(pressure[0]))
+        faces = np.vstack([force, motion["pressure"]])
         for i in range(len(problem.blocks) - 1, -1, -1):
             if problem.joints[i] is None:
                 faces[i] = faces[i + 1] + inertia[i]
@@ -142,22 +120,65 @@ class ColumnMotion(ProvenMotion):
             faces[0] = 0.0
         elif problem.base == "transmitting":
             faces[0] = problem.impedance * (2 * v[-1] - v[0])
+        return ColumnHistory(
+            time=motion["time"],
+            foot=u[feet],
+            top=u[tops],
+            foot_velocity=v[feet],
+            top_velocity=v[tops],
+            force=force,
+            stretch=motion["stretch"],
+            slip=motion["slip"],
+            states=motion["states"],
+            face_force=faces,
+            kinetic=mass @ squares / 6,
+            strain=moduli @ (u[tops] - u[feet]) ** 2 / 2,
+            springs=(force[numbers] ** 2 / (2 * np.array(stiffness)[:, None])).sum(axis=0),
+            potential=problem.gravity * mass @ (u[feet] + u[tops]) / 2,
+            friction=cohesion @ motion["way"],
+            displacement_radius=motion["radius"] + ROUNDING * np.abs(u[:-1]).max(axis=0),
+        )
+
+    @cached_property
+    def _ways(self) -> list[list[float]]:
+        """Lengths of the ways that the references have gone until each node [m], shape (nodes, contacts)."""
+        slips = np.array([[float(r) for r in node.start.references] for node in self.nodes])
+        ways: list[list[float]] = np.cumsum(np.abs(np.diff(slips, axis=0, prepend=slips[:1])), axis=0).tolist()
+        return ways
+
+    def _at(self, instant: Instant) -> dict[str, Any]:
+        """Return what `at` reads of an instant; the last of the faces is where `BASE` points to."""
+        model = self.model
+        start = instant.start
+        states = instant.node.states
+        base, pressure = (piece.series(start.time, 1.0, 3) for piece in instant.node.pieces)
+        accelerations = model.accelerations(states, start, instant.node.pieces)
+        forces = [0.0] * len(self.problem.blocks)
+        stretches = [*forces]
+        slips = [*forces]
+        states_of_joints = [0] * len(forces)
+        ways = []
+        for c, (contact, state, reference) in enumerate(zip(model.contacts, states, start.references, strict=True)):
+            slip = contact.reference(state, instant.rows) if direction(state) else reference
+            force = float(instant.forces[c])
+            if model.unilateral:
+                force = max(force, 0.0)
+            forces[contact.number] = force
+            stretches[contact.number] = float(instant.rows[c])
+            slips[contact.number] = float(slip)
+            states_of_joints[contact.number] = state
+            ways.append(self._ways[instant.number][c] + abs(float(slip - reference)))
         return {
-            "foot": u[feet],
-            "top": u[tops],
-            "foot_velocity": v[feet],
-            "top_velocity": v[tops],
-            "force": of_joints[0],
-            "stretch": of_joints[1],
-            "slip": of_joints[2],
-            "states": of_joints[3].astype(int),
-            "face_force": faces,
-            "kinetic": mass @ squares / 6,
-            "strain": moduli @ (u[tops] - u[feet]) ** 2 / 2,
-            "springs": springs,
-            "potential": problem.gravity * mass @ (u[feet] + u[tops]) / 2,
-            "friction": friction,
-            "displacement_radius": instant.radius.max() + ROUNDING * np.abs(u[:-1]).max(),
+            "displacement": [*map(float, start.u.entries()), float(base[0])],
+            "velocity": [*map(float, start.v.entries()), float(base[1])],
+            "acceleration": [*map(float, accelerations.entries()[::2]), 2 * float(base[2])],
+            "force": forces,
+            "stretch": stretches,
+            "slip": slips,
+            "states": states_of_joints,
+            "way": ways,
+            "pressure": float(pressure[0]),
+            "radius": instant.radius.max(),
         }
 
 

@@ -86,12 +86,14 @@ class ProvenMotion:
                 if number != last:
                     step = step_length(model, node.states, node.pieces)
                     segment = expand(model, node.states, node.start, node.pieces, step)
+                    first_radius = model.growth(node.states, node.error, 0.0)
+                    rate = model.rate(node.states)
                     last = number
                 elapsed = arb(time) - node.start.time
                 u, v = segment.state(elapsed / arb(step))
                 start = Start(arb(time), u, v, node.start.references)
                 rows, forces = model.forces(node.states, start, node.pieces)
-                radius = model.growth(node.states, node.error, float(elapsed))
+                radius = first_radius * math.exp(rate * float(elapsed))
                 columns.append(self._at(Instant(number, node, start, rows, forces, radius)))
         return {"time": t} | {
             name: np.array([column[name] for column in columns]).T[..., : len(t)] for name in columns[0]

@@ -3,6 +3,7 @@
 Only the cases of the solvers that a fault reaches run again, the others are taken from the sound run.
 """
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,7 +16,8 @@ from validation.gates.gate import Status
 from validation.runs.case_name import scene_of
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.suite.folders import get_study
+from validation.suite.folders import get_study, judged_studies
+from validation.suite.own_solver.gates import asked
 
 
 class Overlay(Results):
@@ -42,23 +44,31 @@ def whole(fault, faulty):
 def cases_of(study, gates):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
-    return [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+    return as_gates_run([case for case in study.cases() if (case.scene.name, case.solver) in needed])
 
 
-def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True):
+def as_gates_run(cases):
+    """Return cases with the metrics alone that gates ask for, whose rows `validation/test_gates.py` has finished."""
+    metrics = asked(tuple(judged_studies()))
+    return [replace(case, only=metrics.get((case.scene.name, case.solver), frozenset())) for case in cases]
+
+
+def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True, first=None):
     """Check the kill matrix of a study, or of some of its gates."""
     study = get_study(name)
     gates = [gate for gate in study.gates() if is_checked(gate)]
-    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases)
+    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases, first)
 
 
-def check_kill_matrix(study, cases, gates, faults, directory, finished_cases):
+def check_kill_matrix(study, cases, gates, faults, directory, finished_cases, first=None):
     """Run the cases sound, and with faults until every gate is bitten and every fault seen.
 
     Scenes whose runs take least come first. In each the fault is tried that has bitten most of what is unbitten there
     on scenes of its family, or on others; of several what costs least. A fault that no gate has seen then goes on
-    through all scenes. What runs once with a fault is kept.
+    through all scenes. What runs once with a fault is kept. Where a run is dear, ``first`` names for a scene the faults
+    that are tried before the others.
     """
+    first = first or {}
     sound = finish(cases, study, Results(finished_cases))
     assert not failed(sound, gates)
     seconds = {case: sum(row.seconds.values()) for case, row in sound.rows.items()}
@@ -85,7 +95,9 @@ def check_kill_matrix(study, cases, gates, faults, directory, finished_cases):
     def promise(fault, some):
         seen = bites[fault.name]
         known = [seen.get(kind(gate), seen.get(kind(gate)[1:])) for gate in some]
-        return known.count(True), -known.count(False), -cost(reached(study, some, fault) - runs[fault.name])
+        is_first = fault.name in first.get(scene_of(some[0].scene), ())
+        seconds_more = cost(reached(study, some, fault) - runs[fault.name])
+        return is_first, known.count(True), -known.count(False), -seconds_more
 
     def unbitten(some):
         bitten = set().union(*kills.values())

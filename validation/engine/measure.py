@@ -102,7 +102,8 @@ def _executed(case: Case, key: str, study: str) -> tuple[Row, History | None]:
     row.line()  # what cannot be kept is found here
     if run.history is None or run.outcome not in WITH_HISTORY:
         return row, None
-    return row, replace(_requested_columns(run.history, scene), between=_between(solver, case))
+    between = _between(solver, case) if case.only is None else None  # reports draw it, and no metric is made of it
+    return row, replace(_requested_columns(run.history, scene), between=between)
 
 
 def _between(solver: Solver, case: Case) -> History | None:
