@@ -8,7 +8,6 @@ import pytest
 from conftest import thinned
 
 from dda.plane.first_contact import CORNER_CORNER, CORNER_EDGE, EDGE_EDGE, first_contact
-from validation.theory.first_touch import MovingPolygon, first_touches
 
 SQUARE = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
 LEDGE = np.array([(0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0)])  # an L
@@ -115,34 +114,3 @@ def test_no_contact_until_then(motion, until):
 def test_polygons_that_overlap_are_refused(place):
     with pytest.raises(ValueError, match=r"^polygons: must not overlap"):
         contact_of(SQUARE, (*place, 0, 0, 0, 0), SQUARE, AT_REST)
-
-
-def star(random, corners):
-    """Return a polygon, mostly not convex."""
-    angles = 2 * np.pi * (np.arange(corners) + random.uniform(0.1, 0.9, corners)) / corners
-    return random.uniform(0.4, 1.0, corners)[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])
-
-
-def as_moving(polygon, motion):
-    """Return a polygon at its first angle, for the search by roots."""
-    x, y, angle, vx, vy, spin = motion
-    turn = np.array([[math.cos(angle), math.sin(angle)], [-math.sin(angle), math.cos(angle)]])
-    return MovingPolygon(polygon @ turn, (x, y), (vx, vy), spin)
-
-
-@pytest.mark.parametrize("seed", thinned(range(0, 24, 2), 4))
-def test_the_first_crossing_by_roots_agrees(seed):
-    random = np.random.default_rng(seed)
-    A = star(random, 3 + seed % 5)
-    B = star(random, 3 + seed % 4)
-    side = random.uniform(0, 2 * np.pi)
-    aim = random.normal(0, 0.6, 2) - 2.2 * np.array([np.cos(side), np.sin(side)])
-    motion_A = (2.2 * np.cos(side), 2.2 * np.sin(side), random.uniform(0, 6), *aim, random.normal(0, 2))
-    motion_B = (0, 0, random.uniform(0, 6), *random.normal(0, 0.2, 2), random.normal(0, 2))
-    crossings = first_touches(as_moving(A, motion_A), as_moving(B, motion_B), 2.0, 0.0)
-    contact = first_contact(A, B, motion_A, motion_B, 2.0)
-    assert (contact is None) == (not crossings)
-    for crossing in crossings:
-        assert contact.time == pytest.approx(crossing.time, abs=1e-12)
-        point = (crossing.block, crossing.corner, crossing.edge)
-        assert point in [point[:3] for touch in contact.touches for point in touch.points]

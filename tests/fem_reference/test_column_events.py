@@ -65,12 +65,12 @@ def test_the_printed_digits_of_known_columns_come_out(name):
 
 def test_energy_is_conserved_with_what_friction_takes():
     for name in ("A4",):
-        energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 60)).energy
+        energy = motion_of(name).at(np.linspace(0, COLUMNS[name].end, 25)).energy
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
     problem = replace(COLUMNS["S3"].problem, base_motion=drives.still)
     motion = solve(problem, 0.05)
     assert len(motion.switches) > 1
-    state = motion.at(np.linspace(0, 0.05, 60))
+    state = motion.at(np.linspace(0, 0.05, 25))
     np.testing.assert_allclose(state.energy, state.energy[0], rtol=1e-12)
     assert state.friction[-1] > 0.1 * state.energy[0]
 

@@ -11,6 +11,7 @@ from oracles.elements import make
 
 from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import columns, compilation, law
+from fem_reference.contact.march import march
 
 ENERGIES = (*columns.ENERGY_COLUMNS, *columns.LOSS_COLUMNS)
 LENGTHS = ("displacement", "horizontal_displacement", "rotation", "largest_gap", "largest_penetration", "largest_slide")
@@ -75,6 +76,17 @@ def test_natural_modes_are_the_same_block(long, contact, young):
     assert 0 < whole.columns["open_share"].mean() < 1
     # the highest mode is 1e3 to 1e4 times as stiff as the lowest one, and 60 % of all numbers are rounded by it
     assert off(modal, whole) <= 1e-9
+
+
+def test_a_march_without_a_fallback_is_helped_where_its_iteration_does_not_end(long):
+    """As the compiled one, whose place plain Python takes here."""
+    problem, scheme = block(LAWS[0], 1e9)
+    contact = replace(LAWS[0], limit=1)
+    runs = []
+    for run in (None, march):
+        long.setattr(compilation, "compiled", lambda run=run: (run, "plain"))
+        runs.append(solve_unilateral(problem, scheme, 60, contact))
+    assert off(*runs) == 0 and np.count_nonzero(runs[0].columns["solves"] > 1) > 1
 
 
 def test_a_short_history_runs_as_it_stands():
