@@ -41,7 +41,7 @@ NEWMARK = [(*AVERAGE, "consistent"), (*CONSTANT, "zero"), (0.3025, 0.6, "zero"),
 
 def check_against_the_papers(problem, scheme, name, parameters, rigid=False):
     """Assert all that is observed of a column, to rounding; return how often its contacts switch."""
-    steps = 25
+    steps = 18
     form, column = Assembly(problem), column_of(problem)
     if rigid:  # the uppermost contact
         form.stiffness[-1] = RIGID
@@ -216,7 +216,7 @@ def test_runs_that_are_repeated_are_compiled_the_earlier(monkeypatch):
 )
 def test_a_long_column_whose_rows_never_open_steps_in_arrays_as_others_do(impedance, foot, weights):
     """What keeps its energies is searched on lists; glue is a joint at every face."""
-    t = 2e-5 * np.arange(101)
+    t = 2e-5 * np.arange(61)
     drive = Drive(1e-3 * np.sin(200 * t), 0.2 * np.cos(200 * t), -40 * np.sin(200 * t), 1e5 * np.cos(90 * t))
     names = ["displacement", "contact_pressure", "displacement_1", "velocity_1", "stress_1"]
     joints = [Spring(float(k), foot or 1e9 * k) for k in range(0 if foot else 2, 14, 1 if foot else 2)]
@@ -249,7 +249,14 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
 
 
 def test_a_column_that_starts_settled_stays_there():
-    column = column_of(COLUMNS["A3"].problem)
+    on_springs = column_of(COLUMNS["A3"].problem)
+    welded = replace(on_springs, joints=on_springs.joints[1:])
+    rigid_foot = replace(welded, layers=[replace(welded.layers[0], young=RIGID), *welded.layers[1:]])
+    for column in (on_springs, welded, rigid_foot):
+        check_that_it_stays(column)
+
+
+def check_that_it_stays(column):
     middles = (column.faces[:-1] + column.heights / 2).tolist()
     names = [f"displacement_{k + 1}" for k in range(6)]
     scheme = Scheme(0.25, 0.5, 1.0, 1e-5, "consistent")

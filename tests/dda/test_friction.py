@@ -7,28 +7,6 @@ from oracles.contact_bodies import DT, apart, shaken
 
 from dda import BaseMotion, Block, Material, Scheme, Unilateral, UnilateralModel, solve_unilateral
 
-PLACE = ("horizontal_displacement", "displacement", "rotation")
-KNOWN = [  # times, where the centroid is then (u, v, r), from events to 13 digits, and how far 600 steps may be off
-    (0.01, (1.432096486408e-3, -1.344857861701e-2, -1.327505388538e-3), 2e-5),
-    pytest.param(0.03, (-3.680080923643e-4, -1.251962754476e-2, -1.923369471946e-3), 6e-4, marks=pytest.mark.long),
-]
-
-
-@pytest.mark.parametrize(("time", "known", "off"), KNOWN)
-def test_a_history_is_near_that_of_its_events(time, known, off):
-    coarse, fine = (error(steps, time, known) for steps in (200, 600))
-    assert fine < coarse / 4  # second order: a ninth, but for where a switch falls within its step
-    assert fine < off * np.linalg.norm(known)
-
-
-def error(steps, time, known):
-    """Return the length of the error of the centroid's (u, v, r) at a time."""
-    block = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0))
-    model = UnilateralModel(block, Unilateral(1e9, 1e9, friction=0.5), 5e6, eccentricity=0.3)
-    result = solve_unilateral(model, Scheme(0.25, 0.5, 1.0, time / steps, "consistent"), steps, PLACE)
-    assert result.outcome == "completed" and not np.any(result.step_cuts)
-    return np.linalg.norm([result.columns[name][-1] for name in PLACE] - np.array(known))
-
 
 @pytest.mark.parametrize("turned", thinned([50.0, -30.0], 2))
 def test_a_polygon_on_any_edge_slides_as_it_does_on_a_level_one(turned):

@@ -92,15 +92,22 @@ def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_eliminati
             assert whole[name] == pytest.approx(values, rel=1e-8, abs=1e-9 * largest), name
 
 
-def test_a_column_on_a_shaken_base_is_stepped_to_its_response():
-    w = 2 * np.pi * 40.0
-    scheme = replace(SCHEME, step=5e-4, alpha=0.6, gg=0.8)
-    t = scheme.instants(500)
+@pytest.mark.parametrize(
+    ("impedance", "glue", "joints"),
+    [(3e5, 4e8, [Spring(1.0, 2e8)]), (None, None, []), (None, None, [Spring(0.0, 4e8)])],
+)
+def test_a_column_is_stepped_to_its_response(impedance, glue, joints):
+    """Under a pressure that vibrates, and on a base that does."""
+    w = 2 * np.pi * 20.0
+    scheme = Scheme(0.6, 1.0, 0.93, 4e-4)
+    layers = [Layer(1.0, 2000.0, 5e7), Layer(0.7, 2500.0, 8e7)]
+    body = Column(layers, glue=glue, joints=joints, impedance=impedance)
+    t = scheme.instants(550)
     sine = np.array([np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)])
-    for spring in ([Spring(0.0, 4e9)], []):
-        body = Column([Layer(3.0, 2500.0, 2e9, 0.2, 3)], joints=spring)
-        stepped = solve_column(body, scheme, Drive(*sine, 0 * t))
-        amplitudes = dda.response(equations(body), scheme, [40.0], along=(1.0, 0.0))
-        for name, (amplitude,) in amplitudes.items():
-            expected = (amplitude * np.exp(1j * w * stepped.time)).imag[-100:]
-            assert np.max(np.abs(stepped.columns[name][-100:] - expected)) < 1e-9 * abs(amplitude), (name, spring)
+    for along, drive in ((None, Drive(*(0 * sine), np.sin(w * t))), ((1.0, 0.0), Drive(*sine, 0 * t))):
+        stepped = solve_column(body, scheme, drive)
+        for name, (amplitude,) in dda.response(equations(body), scheme, [20.0], along=along).items():
+            expected = (amplitude * np.exp(1j * w * stepped.time)).imag
+            rest = (stepped.columns[name] - expected)[-125:]
+            rest -= np.mean(rest)  # on a dashpot alone a column stays where its start has brought it
+            assert np.max(np.abs(rest)) < 1e-7 * abs(amplitude), (name, along)

@@ -34,6 +34,7 @@ def filled(kind, n, m, symmetric=True, most=10_000):
     for i, j in neighbours(kind, n):
         matrix.number[i, j] = matrix.number[j, i] = 0
     total = order_blocks(matrix)
+    matrix.blocks[:] = 7.0  # of a step before
     clear_blocks(matrix, total)
     dense = np.zeros((n, m, n, m))
     dense[np.arange(n), :, np.arange(n)] = 40.0 * np.eye(m)
@@ -41,7 +42,7 @@ def filled(kind, n, m, symmetric=True, most=10_000):
         block = random.normal(size=(m, m))
         dense[i, :, j] = block
         dense[j, :, i] = block.T if symmetric else random.normal(size=(m, m))
-    for i, j in np.argwhere(matrix.number != MISSING):
+    for i, j in np.argwhere(np.any(dense != 0, axis=(1, 3))):
         matrix.blocks[matrix.number[i, j]] = dense[i, :, j]
     return matrix, dense.reshape(n * m, n * m), total
 

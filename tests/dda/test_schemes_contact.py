@@ -1,10 +1,7 @@
 """Schemes by name where contact opens or slips: one block, columns, sub-blocks."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
-from conftest import thinned
 from oracles.contact_bodies import apart, shaken
 from oracles.scheme_cases import few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
@@ -18,13 +15,8 @@ from dda import (
     UnilateralModel,
     UnilateralOptions,
     opening_subdivided,
-    response,
     solve_unilateral,
 )
-from dda.bodies.column import Column, Layer, Spring
-from dda.bodies.column_equations import equations
-from dda.bodies.column_history import solve_column
-from dda.bodies.column_march import Drive
 from dda.bodies.opening_block import unknowns_of
 from dda.linear.natural_modes import free_modes
 
@@ -57,34 +49,6 @@ def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values):
 
 
 # ---- columns ---------------------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(("impedance", "glue"), thinned([(3e5, 4e8), (3e5, None), (None, None)], 2))
-@few_schemes
-def test_a_bonded_column_steps_to_its_response(name, values, impedance, glue):
-    frequency, steps = 20.0, 700
-    scheme = scheme_of(name, values, 4e-4, 0.93)
-    if glue and name != "leapfrog":  # no acceleration is consistent of a foot without mass
-        scheme = replace(scheme, start="zero")
-    layers = [Layer(1.0, 2000.0, 5e7), Layer(0.7, 2500.0, 8e7)]
-    bonded = Column(layers, glue=glue, joints=[Spring(1.0, 2e8)], impedance=impedance)
-    t = scheme.instants(steps)
-    pressure = np.cos(2 * np.pi * frequency * t)
-    drive = Drive(0 * t, 0 * t, 0 * t, pressure)
-    if name == "leapfrog" and impedance:
-        with pytest.raises(ValueError, match=r"^impedance: "):
-            solve_column(bonded, scheme, drive)
-        return
-    result = solve_column(bonded, scheme, drive)
-    if name == "composite":
-        with pytest.raises(ValueError, match=r"^scheme: "):
-            response(equations(bonded), scheme, [frequency])
-        return
-    for column, (amplitude,) in response(equations(bonded), scheme, [frequency]).items():
-        expected = (amplitude * np.exp(2j * np.pi * frequency * result.time)).real
-        rest = (result.columns[column] - expected)[-250:]  # five periods
-        rest -= np.mean(rest)  # on a dashpot alone a column stays where its start has brought it
-        assert np.max(np.abs(rest)) < 1e-6 * abs(amplitude), column
 
 
 # ---- sub-blocks ------------------------------------------------------------------------------------------------------

@@ -31,8 +31,8 @@ def square(ratio, mu=0.0, side=2.0):
 )
 def test_it_loses_digits_with_stiff_springs(alpha, delta, ratio, low, high):
     model, scheme = square(ratio), Scheme(alpha, delta, 1.0, 1e-3)
-    _, exact = block_in_digits.locked_history(model, scheme, 150)
-    lost = block_in_digits.lost(solve_textbook(model, scheme, 150).columns["contact_pressure"], exact)
+    _, exact = block_in_digits.locked_history(model, scheme, 100)
+    lost = block_in_digits.lost(solve_textbook(model, scheme, 100).columns["contact_pressure"], exact)
     assert low <= lost < high
 
 

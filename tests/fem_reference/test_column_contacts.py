@@ -154,3 +154,22 @@ def test_contacts_that_never_slip_are_bonded_springs():
         size = np.abs(other.columns[name]).max()
         assert one.columns[name] == pytest.approx(other.columns[name], abs=1e-8 * size)
     assert one.factorisations == 1 and np.all(one.step_solves == 1)
+
+
+@pytest.mark.parametrize("modal", [False, True])
+def test_a_settled_column_carries_its_weight_and_stays(modal, monkeypatch):
+    """On a base that has moved, over gaps: what the springs and each stratum give way under what is above."""
+    if modal:
+        monkeypatch.setattr(compilation, "LONG", 1)
+        monkeypatch.setattr(compilation, "compiled", lambda: (None, "plain"))
+    strata = ground((1.0, 2000.0, 1e8), (0.7, 2500.0, 3e8))
+    joints = ColumnContact(0.0, 2e9, 1e-3), ColumnContact(1.0, 1e9, 3e-4)
+    column = ContactColumn(strata, "unilateral", joints, (0.0, 0.0), 9.81, settled=True)
+    upper = 2500 * 0.7 * 9.81
+    whole = upper + 2000 * 9.81
+    top = 4e-3 - 1e-3 - whole / 2e9 - (upper + 2000 * 9.81 / 2) / 1e8 - 3e-4 - upper / 1e9 - upper * 0.7 / 2 / 3e8
+    names = ("displacement", "force_1", "force_2")
+    drive = still(9, displacement=np.full(10, 4e-3))
+    found = solve_contacts(column, [2, 3], 2, scheme(AVERAGE, 1e-4), drive, names, (0.0, 1.0))
+    for name, value in zip(names, (top, whole, upper), strict=True):
+        assert found.columns[name] == pytest.approx(np.full(9, value), rel=1e-10), name

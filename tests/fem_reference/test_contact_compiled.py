@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles import random_contact
 from oracles.elements import make
 
 from fem_reference import Friction, Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import columns, compilation, law
+from fem_reference.contact.march import march
 
 ENERGIES = (*columns.ENERGY_COLUMNS, *columns.LOSS_COLUMNS)
 LENGTHS = ("displacement", "horizontal_displacement", "rotation", "largest_gap", "largest_penetration", "largest_slide")
@@ -35,46 +35,40 @@ def long(monkeypatch):
     return monkeypatch
 
 
-def in_modes(monkeypatch, drawn):
-    """The history in natural modes as plain Python, and the same compiled."""
-    problem, scheme, contact = drawn
-    with monkeypatch.context() as patch:
-        patch.setattr(compilation, "compiled", lambda: (None, "plain"))
-        plain = solve_unilateral(problem, scheme, 50, contact)
-    return plain, solve_unilateral(problem, scheme, 50, contact)
+LAWS = [
+    Unilateral(gap=1e-3, velocity=-0.2, shear="glued", friction=Friction(20.0, 1e4)),
+    Unilateral(gap=1e-3, velocity=-0.2, shear="glued", rule="implicit"),
+]
+
+
+def block(contact, young):
+    """A problem of a contact, and its scheme."""
+    problem = make(elements=3, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8, p=1e9)
+    scheme = Scheme(0.25, 0.5, 0.99, 1e-4, "consistent") if contact.rule == "implicit" else Scheme(0.5, 1.0, 0.99, 1e-4)
+    return replace(problem, young=young), scheme
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("draw", [random_contact.opening, random_contact.sliding])
-def test_what_is_compiled_gives_the_same_numbers(long, draw):
+@pytest.mark.parametrize("contact", LAWS)
+@pytest.mark.parametrize("limit", [1, 6])
+def test_what_is_compiled_gives_the_same_numbers(long, contact, limit):
     pytest.importorskip("numba")
-    switched = fallen_back = 0
-    for seed in range(5, 11):  # seed 4 of those that slide makes 1e-11 of one rounding
-        problem, scheme, contact = draw(seed)
-        contact = replace(contact, limit=1 + 5 * (seed % 2))
-        plain, compiled = in_modes(long, (problem, scheme, contact))
-        assert compiled.notes[-1].startswith("contact compiled by numba")
-        if not len(plain.time):
-            assert compiled.outcome == plain.outcome
-            continue
-        assert off(compiled, plain) <= 1e-14
-        fallen_back += np.count_nonzero(plain.columns["solves"] > contact.limit)
-        switched += np.count_nonzero(np.diff(plain.columns["open_share"]))
-    assert switched > 15 and fallen_back > 0  # steps with a switch; each may be of several points
+    problem, scheme = block(contact, 1e9)
+    contact = replace(contact, limit=limit)
+    with long.context() as patch:
+        patch.setattr(compilation, "compiled", lambda: (None, "plain"))
+        plain = solve_unilateral(problem, scheme, 100, contact)
+    found = solve_unilateral(problem, scheme, 100, contact)
+    assert found.notes[-1].startswith("contact compiled by numba")
+    assert off(found, plain) <= 1e-13
+    assert np.count_nonzero(np.diff(plain.columns["open_share"])) > 1
+    assert np.any(plain.columns["solves"] > limit) or limit > 1
 
 
-@pytest.mark.parametrize(
-    "contact",
-    [
-        Unilateral(gap=1e-3, velocity=-0.2, shear="glued", friction=Friction(20.0, 1e4)),
-        Unilateral(gap=1e-3, velocity=-0.2, shear="glued", rule="implicit"),
-    ],
-)
+@pytest.mark.parametrize("contact", LAWS)
 @pytest.mark.parametrize("young", thinned([1e9, 1e15], 2))
 def test_natural_modes_are_the_same_block(long, contact, young):
-    problem = make(elements=3, degree=1, eccentricity=0.3, poisson=0.2, shear=4e8, p=1e9)
-    problem = replace(problem, young=young)
-    scheme = Scheme(0.25, 0.5, 0.99, 1e-4, "consistent") if contact.rule == "implicit" else Scheme(0.5, 1.0, 0.99, 1e-4)
+    problem, scheme = block(contact, young)
     long.setattr(compilation, "compiled", lambda: (None, "plain"))
     modal = solve_unilateral(problem, scheme, 40, contact)
     whole = solve_unilateral(problem, scheme, 40, contact, full=True)
@@ -82,6 +76,17 @@ def test_natural_modes_are_the_same_block(long, contact, young):
     assert 0 < whole.columns["open_share"].mean() < 1
     # the highest mode is 1e3 to 1e4 times as stiff as the lowest one, and 60 % of all numbers are rounded by it
     assert off(modal, whole) <= 1e-9
+
+
+def test_a_march_without_a_fallback_is_helped_where_its_iteration_does_not_end(long):
+    """As the compiled one, whose place plain Python takes here."""
+    problem, scheme = block(LAWS[0], 1e9)
+    contact = replace(LAWS[0], limit=1)
+    runs = []
+    for run in (None, march):
+        long.setattr(compilation, "compiled", lambda run=run: (run, "plain"))
+        runs.append(solve_unilateral(problem, scheme, 60, contact))
+    assert off(*runs) == 0 and np.count_nonzero(runs[0].columns["solves"] > 1) > 1
 
 
 def test_a_short_history_runs_as_it_stands():

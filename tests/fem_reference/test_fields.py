@@ -100,12 +100,12 @@ LATERAL = [(0.0, {}), (0.3, {}), (0.3, {"traction": TAU, "gravity": G})]
 )
 def test_the_frames_are_the_history(tmp_path, poisson, load, degree):
     """The middle node of every frame gives the columns of its step; the last is the .vtu's."""
-    problem = make(elements=4, degree=degree, poisson=poisson, shear=1e9, **load)
+    problem = make(elements=2, degree=degree, poisson=poisson, shear=1e9, **load)
     scheme, paths = fem_reference.Scheme(0.5, 1.0, 1.0, 2e-3), [tmp_path / "block.xdmf", tmp_path / "block.vtu"]
     for path in paths:
-        columns = fem_reference.solve(problem, scheme, 12, COLUMNS, fields=path).columns
+        columns = fem_reference.solve(problem, scheme, 7, COLUMNS, fields=path).columns
     frames = read(paths[0])
-    assert [frame.time for frame in frames] == pytest.approx([2e-3 * (k + 1) for k in range(12)], rel=1e-12)
+    assert [frame.time for frame in frames] == pytest.approx([2e-3 * (k + 1) for k in range(7)], rel=1e-12)
     for k, frame in enumerate(frames):
         middle = int(np.argmin(np.hypot(*(frame.points - 1.0).T)))
         assert tuple(frame.points[middle]) == (1.0, 1.0)

@@ -23,7 +23,6 @@ def errors(result, reference):
         ({}, 5, "one column of elements"),
         ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 25, "half the block"),
         ({"foundation": "patch", "patch_width": 0.31}, 25, "half the block"),
-        ({"foundation": "corner", "poisson": 0.2}, 25, "half the block"),
     ],
 )
 def test_savings_change_nothing(change, unknowns, saving):
@@ -38,7 +37,7 @@ def test_savings_change_nothing(change, unknowns, saving):
 
 
 def test_sparse_and_dense_modes_agree(monkeypatch):
-    problem = make(poisson=0.45, p=2e10, elements=2)
+    problem = make(poisson=0.45, p=2e10, elements=2, degree=1)
     dense = modes(problem, CONSTANT)
     seams.FEM_DENSE.put(monkeypatch, 10)
     sparse = modes(problem, CONSTANT)

@@ -33,6 +33,6 @@ def test_rounding_does_not_turn_a_block_in_a_long_flight():
     """K of the displacement itself would leave eps E u in each element and turn the block by 10 rad: it is rigid."""
     scheme = replace(AVERAGE, step=0.25)
     block = replace(make(elements=2), poisson=0.2, young=4e10, pressure=0.0, gravity=0.0)
-    run = solve_unilateral(block, scheme, 100, Unilateral(velocity=1e3), columns=("displacement", "rotation"))
-    assert run.columns["displacement"][-1] == pytest.approx(2.5e4, rel=1e-13)
+    run = solve_unilateral(block, scheme, 40, Unilateral(velocity=1e3), columns=("displacement", "rotation"))
+    assert run.columns["displacement"][-1] == pytest.approx(1e4, rel=1e-13)
     assert np.abs(run.columns["rotation"]).max() < 1e-7

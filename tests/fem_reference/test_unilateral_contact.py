@@ -1,11 +1,10 @@
-"""The contact forces of one step: complementarity, glued springs, cuts of the step."""
+"""The contact forces of one step: many at once, failures, cuts of the step."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.contact_points import PointStep, frictionless
 from oracles.elements import make
 
 from fem_reference import Friction, Motion, Scheme, Unilateral, solve_unilateral
@@ -17,56 +16,6 @@ from fem_reference.contact.stepper import ContactStepper, Marched
 from fem_reference.history import unilateral
 
 SCHEME = Scheme(0.5, 1.0, 0.9, 1e-3)
-
-
-def random_base(rng, n):
-    """Flexibilities of forces in unlike units, compliances and gaps of n points."""
-    shape = rng.standard_normal((n, n)) * 10.0 ** rng.uniform(-6, -3, n)[:, None]
-    return shape @ shape.T, 10.0 ** rng.uniform(-12, -7, n), rng.standard_normal(n) * 1e-3
-
-
-@pytest.mark.parametrize("n", [1, 2, 3, 5, 12])
-def test_one_state_after_the_other_solves_the_complementarity_problem(n):
-    rng, used = np.random.default_rng(n), 0
-    for _ in range(30):
-        C, compliance, free = random_base(rng, n)
-        found = frictionless(C, compliance, free, (rng.random(n) < 0.5).astype(np.int8)).contact(1)
-        used += found.solves == 2
-        A, N = C + np.diag(compliance), found.trial.normal
-        gap = A @ N + free
-        size = np.abs(A) @ N + np.abs(free)
-        # the condition of a random A of twelve points
-        assert np.all(N >= 0) and np.all(gap >= -1e-6 * size)
-        assert np.all(N * np.abs(gap) <= 1e-6 * N * size)
-    assert used > 10
-
-
-def test_a_problem_on_which_the_iteration_cycles_is_solved():
-    # Found among random ones: from these states the guesses return to themselves for ever.
-    C = np.array([[0.255, 0.256, -0.162], [0.256, 0.302, -0.209], [-0.162, -0.209, 0.162]])
-    free, closed = np.array([-0.5, -1.02, 0.82]), np.array([1, 0, 0], dtype=np.int8)
-    compliance = np.full(len(free), 1e-3)
-    step = frictionless(C, compliance, free, closed)
-    assert step.contact(500, fallback=None).failure == "unsettled"
-    found = step.contact(6)
-    assert found.solves == 7 and found.trial is not None
-    N, gap = found.trial.normal, found.trial.gap
-    assert np.all(N >= 0) and np.all(gap[N == 0] >= 0)
-    assert gap[N > 0] == pytest.approx(-compliance[N > 0] * N[N > 0], rel=1e-10)
-
-
-def test_a_point_without_force_and_gap_keeps_its_state():
-    for state in (0, 1):
-        found = frictionless(np.eye(1), np.ones(1), np.zeros(1), np.array([state], dtype=np.int8)).contact()
-        assert (found.solves, found.states[0]) == (1, state)
-
-
-def test_a_singular_matrix_is_a_set_of_states_that_nothing_asks_for():
-    free, states = np.array([-1.0, 0.0]), np.array([2], dtype=np.int8)
-    # T = -N on a body that turns it into as much gap: N / k + C_nn N + C_nt T = 0 for every N
-    step = PointStep(np.array([[1.0, 2.0], [2.0, 8.0]]), np.ones(1), np.ones(1), free, np.full(1, -1.0), states, 1.0)
-    assert np.isnan(step.forces(states).normal).all()
-    assert step.contact().trial is None or np.isfinite(step.contact().trial.normal).all()
 
 
 @pytest.mark.parametrize(

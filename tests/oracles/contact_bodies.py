@@ -296,11 +296,11 @@ def on_shaken_base(model, seed):
     return replace(model, motion=shaken(np.random.default_rng(seed)))
 
 
-def block_case(model, scheme, steps=80, **options):
+def block_case(model, scheme, steps=60, **options):
     return Case(OneBlock, model, scheme, options, steps)
 
 
-def turning_case(seed, scheme=None, steps=70, model=None, **options):
+def turning_case(seed, scheme=None, steps=55, model=None, **options):
     """Return a thrown block: frictionless, bonded or rough by its seed."""
     made, dt = random_rolling(seed)
     made = with_law(made, gap=made.contact.gap / 100)  # it lands soon
@@ -333,7 +333,7 @@ CASES = {
     "dashpot in a ramp": lambda seed: block_case(replace(dashpots(seed), ramp=0.02), NEWMARK[seed % 4]),
     "dashpot by two stages": lambda seed: block_case(dashpots(seed), of_scheme("composite")),
     "dashpot by averages": lambda seed: block_case(dashpots(seed), of_scheme("chung-hulbert", rho_inf=0.5)),
-    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), rule="implicit"),
+    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), 80, rule="implicit"),
     "implicit, rough": lambda seed: block_case(rubbing_model(seed), AVERAGE, rule="implicit"),
     "implicit, shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), AVERAGE, rule="implicit"),
     "conserving": lambda seed: block_case(
@@ -360,8 +360,8 @@ CASES = {
     "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
     "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
     "shaken by two stages": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), of_scheme("composite")),
-    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 60),
-    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 40),
+    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 45),
+    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 30),
     "turning": turning_case,
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
