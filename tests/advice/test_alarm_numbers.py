@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 from oracles.made_cases import made_row
-from oracles.stepped_vibration import two_unknowns
+from oracles.staged import two_unknowns
 
 from validation.advice import budget
 from validation.advice.alarms import alarms, fixed_discount

@@ -4,15 +4,10 @@ The units of length, mass and time are free; what is asked for later does not ch
 goes with its load; to ask again, for less, or without savings gives the same numbers.
 """
 
-import itertools
-
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.matrices_of_scenes import matrices, rule_of
-from oracles.plain_newmark import stepped
 from oracles.stated_scenes import KINDS, RECORD, SCENES, UNITS, asked, made, scaled
-from oracles.stepped_vibration import amplitudes
 
 from validation import response
 from validation.metrics.contact import imbalance
@@ -249,66 +244,6 @@ def test_a_damped_run_comes_to_rest_where_static_says(solver, name, records):
     at_rest = static(solver, scene)
     for column, values in columns.items():
         assert values[-1] == pytest.approx(at_rest[column], abs=1e-9 * np.abs(values).max()), column
-
-
-LINEAR_STEPS = ("locked", "explicit", "lateral", "sub-blocks", "damped", "adaptive")
-
-
-@pytest.mark.parametrize(
-    ("name", "solver", "scheme"), thinned(itertools.product(LINEAR_STEPS, ("dda", "fem"), ({}, AVERAGE)), 11)
-)
-def test_a_history_is_that_of_the_printed_scheme(name, solver, scheme, records):
-    """Newmark's steps on full matrices, with C = a0 M + a1 K, with gg as it is stated or as kinetic damping sets it."""
-    scheme = scheme | ({} if name == "adaptive" else {"time.gg": 0.97})
-    if name == "explicit":
-        scheme = {}
-    scene = made(name, records).with_values(scheme | {"run.columns": USUAL, "time.steps": 60})
-    is_adaptive = scene.damping.kinetic == "adaptive"
-    plain = scene.with_values({"damping.kinetic": "constant", "damping.floor": 0.0}) if is_adaptive else scene
-    M, K, F, rows = matrices(get_solver(solver).prepare(plain))
-    rule = rule_of(scene)
-    expected = rows @ stepped(M, K, np.tile(F, (61, 1)), rule, rule.a0 * M + rule.a1 * K).T
-    if is_adaptive:
-        expected = adaptively(M, K, F, rows, rule, scene.damping.floor, 60)
-    history = solved(solver, scene)
-    for column, values in zip(USUAL, expected, strict=True):
-        assert np.abs(history[column] - values).max() <= 1e-8 * np.abs(values).max(), column
-
-
-def adaptively(M, K, F, rows, rule, floor, steps):
-    """Return the rows of every step; gg is the root of two kinetic energies that fall, or the floor."""
-    dt = rule.step
-    D, V = np.zeros((2, len(F)))
-    A = np.linalg.solve(M, F) if rule.start == "consistent" else np.zeros(len(F))
-    kinetic = [0.0, 0.0]
-    found = []
-    for _ in range(steps):
-        gg = max(floor, np.sqrt(kinetic[-1] / kinetic[-2])) if kinetic[-1] < kinetic[-2] else 1.0
-        V = gg * V
-        D = D + dt * V + dt**2 * (0.5 - rule.alpha) * A
-        V = V + dt * (1 - rule.delta) * A
-        A = np.linalg.solve(M + rule.alpha * dt**2 * K, F - K @ D)
-        D = D + rule.alpha * dt**2 * A
-        V = V + rule.delta * dt * A
-        kinetic.append(V @ M @ V / 2)
-        found.append(rows @ D)
-    assert kinetic[-1] < max(kinetic)
-    return np.array(found).T
-
-
-@some(itertools.product(("dda", "fem"), (name for name in LINEAR_STEPS if name != "adaptive")), 7)
-def test_a_response_is_where_stepped_vibrations_end(name, solver, records):
-    """Steps of full matrices in their modes, under the load as cos(wt)."""
-    scene = made(name, records).with_values({"time.gg": 0.97, "run.columns": USUAL})
-    M, K, F, rows = matrices(get_solver(solver).prepare(scene))
-    at_rest = static(solver, scene)
-    for omega in (0.3, 1.1):
-        w = omega / scene.time.step
-        amplitude = amplitudes(rule_of(scene), M, K, F, rows, w)
-        found = response(scene, w / 2 / np.pi, solver)
-        for column, expected in zip(USUAL, amplitude, strict=True):
-            closed = complex(found.columns[column][0])
-            assert abs(closed - expected) <= 1e-9 * abs(expected) + 1e-11 * abs(at_rest[column]), column
 
 
 def test_a_damped_bar_answers_as_its_fine_mesh(records):
