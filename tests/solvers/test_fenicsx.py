@@ -12,16 +12,13 @@ import pytest
 from conftest import SCENE, typed
 from faults import seams
 from faults.fault import Fault, times, undiscounted, with_scheme
-from faults.kill_matrix import Overlay, whole
+from faults.kill_matrix import check_study
 
 from validation import solve
 from validation.engine.case import Case
-from validation.engine.finished import Finished
-from validation.engine.judge import evaluate
 from validation.engine.measure import execute
 from validation.engine.run import finish
 from validation.errors import InputError
-from validation.gates.gate import Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -235,12 +232,6 @@ OTHER_FAULTS = [
     Fault("fem: load 2e-10 high", ("fem:full",), seams.FEM_LOAD, times(1 + 2e-10)),
     Fault("dda: load 2e-10 high", ("dda",), seams.DDA_LOAD, times(1 + 2e-10)),
 ]
-EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
-FEW = ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent", "quadrilateral", "pentagon")
-
-
-def failed(finished):
-    return {gate.id for gate in get_study("two-codes").gates() if evaluate(gate, finished).status is Status.FAIL}
 
 
 def module_of(line):
@@ -268,41 +259,18 @@ def faulty_worker(directory, number, line, slip):
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-def test_seeded_faults_of_either_code_are_seen_by_the_other_and_bite_every_gate(tmp_path, finished_cases):
-    sound = finish(get_study("two-codes").cases(), get_study("two-codes"), Results(finished_cases))
-    assert not failed(sound)
-    faults = {fault.name: fault for fault in OTHER_FAULTS}
-    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
+@pytest.mark.parametrize("solver", ["fenicsx", "fem:full", "dda"])
+def test_seeded_faults_of_each_code_bite_its_gates(solver, tmp_path, finished_cases):
+    faults = [fault for fault in OTHER_FAULTS if solver in fault.solvers]
+    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items() if solver == "fenicsx" else ()):
         path = faulty_worker(tmp_path, number, line, slip)
-        solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
-        faults[name] = Fault(name, solvers, seams.FENICSX_WORKER, lambda _, path=path: path)
-    kills = {name: killed(sound, fault, tmp_path, EDGE in name) for name, fault in faults.items()}
-    for name, found in kills.items():
-        print(f"{len(found):>3} gates see {name}")
-    assert not [name for name, found in kills.items() if not found], "faults that no gate sees"
-    for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
-        bitten = set().union(*(found for name, found in kills.items() if name.startswith(code)))
-        judged = {
-            gate.id for gate in get_study("two-codes").gates() if any(name.startswith(solver) for name in gate.pair)
-        }
-        assert bitten == judged, "gates that no fault of this code bites"
+        faults.append(Fault(name, ("fenicsx", "fenicsx:2"), seams.FENICSX_WORKER, lambda _, path=path: path))
 
+    def is_checked(gate):
+        return any(name.startswith(solver) for name in gate.pair)
 
-def killed(sound, fault, directory, everywhere):
-    """Return the gates that fail with a fault; only the solvers that it reaches run again."""
-    reached = [
-        case
-        for case in get_study("two-codes").cases()
-        if case.solver in fault.solvers and (everywhere or any(word in case.scene.name for word in FEW))
-    ]
-    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-        fault.seam.wrap(patch, fault.replacement)
-        faulty = finish(
-            reached, get_study("two-codes"), Overlay(directory / fault.name.replace("/", "-"), sound.results)
-        )
+    check_study("two-codes", faults, tmp_path, finished_cases, is_checked)
     worker.close_all()
-    whole(fault.name, faulty)
-    return failed(Finished(sound.rows | faulty.rows, faulty.results))
 
 
 @pytest.mark.parametrize("name", ["pentagon", pytest.param("quadrilateral", marks=pytest.mark.long)])
