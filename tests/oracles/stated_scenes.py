@@ -1,4 +1,4 @@
-"""The scenes of `tests/solvers/invariants.toml`, in any units and under any load; those of `answered.toml` as stated."""
+"""Scenes of `tests/solvers/invariants.toml`, in any units and under any load; those of `answered.toml` as stated."""
 
 import copy
 import tomllib

@@ -23,6 +23,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
+from validation.solvers.contract import NotReported
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, worker_directories
 from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
@@ -54,6 +55,10 @@ def test_what_was_not_installed_is_tried_again(scene, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "/no/such/python")
     row, _ = execute(Case(scene, "fenicsx"), "key", "study")
     assert row.outcome is Outcome.NOT_RUN
+    absent = get_solver("fenicsx").prepare(scene)
+    for ask in (absent.static, absent.modes, absent.diagnostics, lambda: absent.amplitudes(np.ones(1), False)):
+        with pytest.raises(NotReported, match="/no/such/python"):
+            ask()
     results = Results(tmp_path)
     for _ in range(2):
         finish([Case(scene, "fenicsx")], get_study("two-codes"), results)
