@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import refused, thinned, typed
+from conftest import refused, thinned
 from faults import seams
 from oracles.made_cases import study
 
@@ -133,7 +133,9 @@ COMMANDS = ["run", "report", "diff", "baseline"]
 MALFORMED = ["[", "[" * 100_000, "{}", "null", '[{"study": "s"}]', '[{"id": 1, "study": "s"}]', '["a"]', "[1e999]"]
 
 
-@pytest.mark.parametrize(("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 9), ids=itertools.count())
+@pytest.mark.parametrize(
+    ("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 23), ids=itertools.count()
+)
 def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, scene_file, tmp_path):
     results = tmp_path / "r"
     run_study(study(load_scene(scene_file)), Results(results))
@@ -147,15 +149,6 @@ def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, sce
     }
     assert "verdicts.json: " in refused(*words[command])
     assert (results / "rows.jsonl").read_bytes() == before and not (tmp_path / "new").exists()
-
-
-@pytest.mark.long
-def test_a_report_goes_on_without_a_manifest_that_swapped_places(scene_file, tmp_path):
-    run_study(study(load_scene(scene_file)), Results(tmp_path / "r"))
-    shutil.copy(tmp_path / "r/studies/test.json", tmp_path / "r/studies/other.json")
-    report = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
-    assert report.returncode == 0
-    assert "other" in report.stderr and "'test'" in report.stderr
 
 
 def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_path):

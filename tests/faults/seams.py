@@ -31,7 +31,6 @@ from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, bars_events, block_events, column_events
-from fem_reference.events import restitution as map_of_impacts
 from fem_reference.exact import opening_bar
 from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
@@ -41,7 +40,7 @@ from fem_reference.plane import elements as plane_elements
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
-from validation.diagnosis import other_solvers, reading, readings, search
+from validation.diagnosis import other_solvers, reading, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.solvers import dda as dda_adapter
@@ -165,7 +164,6 @@ BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
 EVENTS_BAR = Seam(bar_events, bar_events.solve)
-RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 
 # Columns
 COLUMN_INERTIA = Seam(column_march, column_march.inertia)
@@ -186,7 +184,6 @@ SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(search, search.accepted)
 DECISION_CANONICAL = Seam(search, search._canonical)
 DECISION_DETERMINED = Seam(search, search.is_determined)
-READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)

@@ -21,18 +21,9 @@ ABOVE = {"name": "box_1", "sides": 4, "radius": 1.0, "at": [0.0, 4.0]}
 NO_BOXES = [  # what is changed of a box on a ground, and what is said
     ({"plane.contact.cohesion": 10.0, "plane.contact.friction": 5.0}, "friction alone"),
     ({"plane.ramp": 0.1}, "weight alone, got ramp"),
-    (
-        {
-            "plane.block": [
-                GROUND,
-                {"rectangle": [1.0, 1.0], "at": [5.0, 0.5], "fixed": True},
-                {"sides": 3, "radius": 1.0, "at": [0.0, 4.0]},
-            ]
-        },
-        "got 2 such blocks",
-    ),
+    ({"plane.block": [GROUND, BESIDE, BESIDE | {"name": "b", "at": [9.0, 0.5], "fixed": True}]}, "got 2 such blocks"),
     ({"plane.block": [GROUND, ABOVE]}, "lower left corner, got box_1"),
-    ({"plane.block": [GROUND, BESIDE | {"at": [5.0, 0.3]}]}, "got box_1 below another"),
+    ({"plane.block": [GROUND, BESIDE, BESIDE | {"name": "low", "at": [9.0, 0.5]}]}, "got low below another"),
     ({"plane.block": [GROUND, BESIDE | {"young": 1e9}]}, "lower left corner, got box_1"),
 ]
 

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import meshio
 import numpy as np
 import pytest
-from conftest import SCENE, typed
+from conftest import typed
 from faults import seams
 from faults.fault import Fault, times, undiscounted, with_scheme
 from faults.kill_matrix import check_study
@@ -17,8 +17,10 @@ from faults.kill_matrix import check_study
 from validation import solve
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.engine.run import finish
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
 from validation.errors import InputError
+from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -45,10 +47,27 @@ def test_absence_is_not_run_by_name(scene_file, monkeypatch, tmp_path):
     assert (
         adapters_fenicsx.INSTALL_HINT in alone.stderr and "/no/such/python" in alone.stderr and VARIABLE in alone.stderr
     )
-    gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
-    scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
-    run = typed("run", scene_file, cwd=tmp_path)
-    assert run.returncode == 1 and "1 NOT RUN" in run.stdout
+    gate = Gate("small", ("fenicsx", "fem"), "pressure.l2", 0.0, 1e-9, "two codes")
+    study = Study("test", "t", "p", [load_scene(scene_file)], ("fem", "fenicsx"), gates=lambda: (gate,))
+    (verdict,) = run_study(study, Results(tmp_path))
+    assert verdict.status is Status.NOT_RUN
+
+
+def test_a_mesh_file_becomes_points_and_cells(tmp_path):
+    """Numbers without those that no cell has."""
+    points = np.array([[9.0, 9.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.5, 0.0]])
+    kept = {"triangle": np.array([[1, 2, 3], [3, 2, 4]]), "line": np.array([[1, 2]])}
+    scene = load_scene("pentagon")
+    for cells in (kept, {"line": kept["line"]}):
+        meshio.write(tmp_path / "m.vtk", meshio.Mesh(points, cells))
+        asked = scene.with_values({"fem.mesh": str(tmp_path / "m.vtk")})
+        if "triangle" in cells:
+            found = adapters_fenicsx.request(asked)
+            assert (found["points"], found["cells"]) == (points[1:, :2].tolist(), [[0, 1, 2], [2, 1, 3]])
+        else:
+            with pytest.raises(InputError) as error:
+                adapters_fenicsx.request(asked)
+            assert error.value.field == "fem.mesh"
 
 
 def test_what_was_not_installed_is_tried_again(scene, tmp_path, monkeypatch):
@@ -94,12 +113,6 @@ def test_a_wrong_number_of_ranks_is_refused(name):
 def test_ranks_go_with_solvers_that_can_use_them(scene_file):
     done = typed("solve", scene_file, "--solver", "dda", "--ranks", 2)
     assert done.returncode == 2 and done.stderr.startswith("error: --ranks: ")
-
-
-@pytest.mark.long
-def test_ranks_change_the_key_of_the_distributed_solver_only(scene):
-    assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
-    assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
 
 
 @pytest.mark.fenicsx
