@@ -3,9 +3,7 @@
 import itertools
 import json
 import shutil
-import threading
 import zipfile
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -116,15 +114,6 @@ def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome, scene, tmp
     results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
     rows = finish([case], study(scene), results).rows
     assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
-
-
-def test_a_worker_with_other_sources_makes_no_rows(scene, tmp_path, monkeypatch):
-    here, keys = threading.get_ident(), Case.key
-    monkeypatch.setattr(Case, "key", lambda case: keys(case) if threading.get_ident() == here else "another")
-    with ThreadPoolExecutor(2) as pool:
-        rows = finish([Case(scene, "dda"), Case(scene, "bar")], study(scene), Results(tmp_path), executor=pool).rows
-    assert {row.outcome for row in rows.values()} == {Outcome.RAISED}
-    assert all("sources" in note for row in rows.values() for note in row.notes)
 
 
 # ---- records --------------------------------------------------------------------------------------------------------

@@ -200,26 +200,6 @@ def test_turns_after_a_landing_on_a_corner_by_its_moment_of_inertia(program):
     assert spin == pytest.approx(lever * impulse / one.inertia, rel=0.02)
 
 
-@pytest.mark.parametrize("program", of("bullet", "mujoco"))
-@pytest.mark.parametrize(("width", "stiffness"), [(1.0, 1e6), (0.5, 4e6)])
-def test_a_spring_of_given_stiffness_gives_its_force_and_its_time(program, width, stiffness):
-    """Peak v sqrt(k m) and contact time pi sqrt(m / k) at 1 m/s without gravity.
-
-    An implicit spring loses pi / 2 of its 0.005 rad a step, of the speed.
-    """
-    box = {"width": width, "velocity": (0.0, -1.0), "lift": 0.01}
-    row = 1e-3
-    posed = scene(box, rows=round(0.2 / row), row=row, gravity=0.0, stiffness=stiffness)
-    answer = program.solve(posed)
-    mass = boxes_of(posed).boxes[0].mass
-    force = answer["box_1-ground.normal"]
-    rate = math.sqrt(stiffness / mass)
-    assert np.max(force) == pytest.approx(math.sqrt(stiffness * mass), rel=0.01)
-    assert np.count_nonzero(force > 0) * row == pytest.approx(math.pi / rate, abs=2 * row)
-    velocity = (answer["box_1.y"][-1] - answer["box_1.y"][-11]) / (10 * row)
-    assert velocity == pytest.approx(1.0, rel=0.01)
-
-
 REFUSED = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))["boxes"]
 
 
