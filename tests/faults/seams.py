@@ -21,7 +21,6 @@ from dda.bodies import locked_system as system_solution
 from dda.bodies import turning_block as rolling
 from dda.bodies import turning_body as rolling_body
 from dda.bodies import turning_step as rolling_step
-from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
 from dda.plane import bodies as moving_bodies
@@ -113,7 +112,6 @@ SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_step, system_step.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_step, system_step.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution, system_solution.observed_steps)
-SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
 GLUED_EDGES = Seam(glued, glued.shared_edges)

@@ -151,7 +151,7 @@ def test_flies_as_its_integrator_does_and_turns_over_without_a_fold(program):
     np.testing.assert_allclose(answer["box_1.angle"], expected, rtol=0, atol=10 * program.rounding)
 
 
-@pytest.mark.parametrize("program", [*without(DAMPED, "siconos"), pytest.param(PROGRAMS["siconos"], id="siconos")])
+@pytest.mark.parametrize("program", without(DAMPED))
 def test_slides_down_by_what_friction_leaves_of_gravity(program):
     """The friction angle is that of the pair: a = g (sin(slope) - cos(slope) tan(phi)), to the integrator's order."""
     posed = scene(slope=30.0, friction=20.0, rows=30)

@@ -120,19 +120,6 @@ def threads_of_worker():
     return threads()
 
 
-@pytest.mark.long
-def test_a_worker_process_logs_what_this_one_does(monkeypatch):
-    for log in solver_logs():
-        monkeypatch.setattr(log, "level", logging.ERROR)
-    before = multiprocessing.get_start_method()
-    multiprocessing.set_start_method("spawn", force=True)
-    try:
-        with _pool(1) as pool:
-            assert pool.submit(log_levels).result() == [logging.ERROR] * 2
-    finally:
-        multiprocessing.set_start_method(before, force=True)
-
-
 def test_errors_alone_are_logged_for_the_time_that_is_asked_for():
     before = log_levels()
     with pytest.raises(KeyboardInterrupt), errors_only():

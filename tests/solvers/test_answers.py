@@ -60,7 +60,7 @@ def numbers_of(name, value):
 def scene_of(solver, name, directory):
     """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
     scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
-    most = 3 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
+    most = 2 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
     scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
     if scene.fem.mesh is None:
         scene = scene.with_values({"fem.elements": 1 if "plate" in name else 2})

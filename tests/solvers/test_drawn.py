@@ -19,8 +19,8 @@ from validation.scenes.scene import load_scene
 KEPT = Path(__file__).with_name("drawn.toml")
 DRAWN = ("sliding", "turning", "opening sub-blocks", "shaken", "lateral", "column that slips", "bars that open")
 STATED_WHOLE = ("layers on springs", "struck layers", "row of cells", "subblocks-triangles")
-OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "columns-slips", "boxes-pile")
-MOVED = ("standing-truss-load", "pushing-held", "boxes-pile", "row of cells")
+OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "boxes-pile")
+MOVED = ("pushing-held", "row of cells")
 VALUES = [  # what remarks on a block are made of: on both sides of what decides them
     {"least root": -0.9, "e least": 0.2, "e most": 0.9, "e own": 0.5, "tan b": 0.5, "tan phi": 0.3, "w/h": 0.2},
     {"dt seen": 1e-9, "e least": 0.7, "e most": 0.7, "e own": 0.2, "tan b": 0.1, "tan phi": 0.3, "w/h": 0.2},

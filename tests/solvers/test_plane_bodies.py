@@ -19,7 +19,7 @@ def landing(size, columns):
     data = {
         "plane": made | {"block": blocks, "touch": touch},
         "fem": {"foundation": "corner", "elements": 1, "degree": 1},
-        "time": {"step": 1e-3, "steps": 30, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
+        "time": {"step": 1e-3, "steps": 12, "alpha": 0.5, "delta": 1.0, "start": "consistent"},
         "run": {"columns": list(columns), "solvers": ["dda", "fem"]},
     }
     return parse_scene(data, "landing")

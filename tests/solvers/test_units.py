@@ -60,7 +60,7 @@ def test_another_unit_at_a_height_is_named():
 
 @pytest.mark.parametrize(
     ("column", "unit", "size", "variant"),
-    thinned(((*name, size, variant) for name in NAMES for size in (0.85, 1.2) for variant in VARIANTS), 7),
+    thinned(((*name, size, variant) for name in NAMES for size in (0.85, 1.2) for variant in VARIANTS), 11),
 )
 def test_another_unit_is_named(scene, column, unit, size, variant):
     if column == "time":

@@ -1,6 +1,5 @@
 """Users' solvers that do whatever a program can do wrong; each is a row with a name and costs no other row."""
 
-import atexit
 import gc
 import os
 import sys
@@ -20,11 +19,6 @@ def leaves_a_thread(scene):
     return sound(scene)
 
 
-def leaves_an_exit_hook(scene):
-    atexit.register(time.sleep, 60)
-    return sound(scene)
-
-
 def prints(scene):
     print("{}" * 100)
     sys.__stdout__.write("{}\n")
@@ -36,11 +30,6 @@ def prints_without_end(scene):
     line = b"x" * 99_999 + b"\n"
     for _ in range(20):  # 2 MB
         os.write(2, line)
-    return sound(scene)
-
-
-def changes_directory(scene):
-    os.chdir("/")
     return sound(scene)
 
 
@@ -61,20 +50,12 @@ def raises_half_a_character(scene):
     raise ValueError("half \udc80 of \ud800 a character, \x1b[31mred\x1b[0m, \0 and\nlines")
 
 
-def recurses(scene):
-    return recurses(scene)
-
-
 def not_a_number(scene):
     return {"displacement": np.full(scene.time.steps, np.nan)}
 
 
 def texts(scene):
     return {"displacement": ["-1e-3"] * scene.time.steps}
-
-
-def scalar(scene):
-    return {"displacement": -1e-3}
 
 
 def ragged(scene):
@@ -84,10 +65,6 @@ def ragged(scene):
 def odd_names(scene):
     odd = {"\udc80": [1.0], "../../x": [1.0], 3: [1.0], (1, 2): [1.0], "file": [1.0], "": [1.0]}
     return sound(scene) | odd
-
-
-def names_of_half_characters(scene):
-    return {"\udc80": [1.0]}
 
 
 class Static:
