@@ -1,19 +1,26 @@
 """The engine: every case once, kept, resumed, judged; failures by name."""
 
 import json
+import math
 import multiprocessing
 import os
+import signal
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracles.made_cases import between, kept_study, made_row, study
+from oracles.made_cases import between, kept_study, made_history, made_row, study
 
-from validation.engine import cluster
+from validation.engine import case as case_module
+from validation.engine import cluster, measure
+from validation.engine import executor as executor_module
+from validation.engine import judge as judge_module
 from validation.engine.case import Case
+from validation.engine.executor import Pending
+from validation.engine.finished import Finished
 from validation.engine.judge import _ordered, evaluate
 from validation.engine.measure import completed, execute
 from validation.engine.measured import JudgedStudy, complaints, covers, missing_gates, unjudged
@@ -28,6 +35,7 @@ from validation.runs.numbers import measured_text
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome, Run
+from validation.solvers import memory
 from validation.solvers.contract import Solver
 from validation.solvers.registry import BUILT_IN
 
@@ -267,3 +275,147 @@ def test_sources_of_users_are_the_first_that_a_worker_finds(tmp_path, monkeypatc
     for _ in range(2):
         cluster.place_sources({"ours/deep/part.py": b"A = 1"}, worker)
     assert len(sys.path) == 3 and (Path(sys.path[0]) / "ours/deep/part.py").read_bytes() == b"A = 1"
+
+
+# ---- what fails beside the solvers ----------------------------------------------------------------------------------
+
+
+def test_what_fails_beside_a_solver_is_a_row(scene, monkeypatch):
+    case = Case(scene, "dda")
+    pending = Pending(case, case.key(), "study")
+    assert pending.memory() > 0
+    monkeypatch.setattr(measure, "_executed", lambda *given: 1 / 0)
+    row, history = pending.run()
+    assert (row.outcome, history) == (Outcome.RAISED, None)
+    assert (row.key, row.scene, row.solver, row.study) == (pending.key, "small", "dda", "study")
+    assert row.notes == ("ZeroDivisionError: division by zero",)
+    monkeypatch.setattr(memory, "needed", lambda *given: 1 / 0)
+    assert pending.memory() == 0.0
+    monkeypatch.setattr(Case, "key", lambda self: "another")
+    assert "other sources" in pending.run()[0].notes[0]
+    monkeypatch.setattr(Case, "key", lambda self: 1 / 0)
+    assert pending.run()[0].notes == row.notes
+
+
+class Closed(Broken):
+    """A solver whose file is out of reach."""
+
+    def solve(self, scene, full=False, fields=None):
+        raise PermissionError(13, "Permission denied")
+
+
+def test_a_file_that_cannot_be_written_is_refused_and_any_other_is_the_solver_s_own_failure(scene, tmp_path):
+    assert measure.attempt(Closed("x"), scene, False)[1].outcome is Outcome.RAISED
+    run = measure.attempt(Closed("x"), scene, False, fields=tmp_path / "f.vtu")[1]
+    assert run.outcome is Outcome.REFUSED and run.notes == ("--fields: cannot be written: Permission denied",)
+
+
+def test_files_and_sources_that_cannot_be_read_have_no_key(scene, monkeypatch):
+    with pytest.raises(InputError) as error:
+        Case(scene.with_values({"load.base_motion": "nowhere.csv"}), "dda").key()
+    assert str(error.value.source) == "nowhere.csv"
+    with pytest.raises(InputError) as error:
+        case_module.source_digest("no_such_module")
+    assert error.value.source == "no_such_module"
+    monkeypatch.setattr(case_module, "LIBRARIES", ("numpy", "no-such-library"))
+    assert case_module.library_versions.__wrapped__()["no-such-library"] == "not installed"
+
+
+def test_a_pair_without_histories_has_no_value_and_numbers_without_meaning_are_undefined(tmp_path, monkeypatch):
+    gate = Gate("s", ("dda", "bar"), "displacement.l2", 0, 1, "r")
+    rows = {("s", solver): made_row(solver, {}, "s") for solver in gate.pair}
+    assert evaluate(gate, Finished(rows, Results(tmp_path))).value is None
+    for solver, size in (("dda", 1.0), ("bar", 2.0)):
+        Results(tmp_path).append(rows["s", solver], made_history(0.1, [size, size]))
+    assert evaluate(gate, Finished(rows, Results(tmp_path))).value == pytest.approx(0.5)
+    monkeypatch.setattr(judge_module, "pair", lambda *given: 1 / 0)
+    assert evaluate(gate, Finished(rows, Results(tmp_path))).value == "undefined"
+
+
+def test_a_scheduler_is_asked_for_its_executor_and_a_worker_for_its_memory(monkeypatch):
+    told = []
+
+    class Client:
+        def __init__(self, address, timeout):
+            if address == "nowhere":
+                raise OSError("nobody")
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            told.append("closed")
+
+        def get_executor(self, pure):
+            return f"pure: {pure}"
+
+    def nobody():
+        raise ValueError
+
+    fake = SimpleNamespace(Client=Client, get_worker=nobody)
+    monkeypatch.setitem(sys.modules, "distributed", fake)
+    with cluster.executor("somewhere") as executor:
+        assert executor == "pure: False"
+    assert told == ["closed"]
+    with pytest.raises(InputError) as error, cluster.executor("nowhere"):
+        pass
+    assert error.value.field == "--scheduler"
+    assert cluster.worker_memory() == math.inf
+    for limit, bytes_of_case in ((12e9, 3e9), (0, math.inf)):
+        manager = SimpleNamespace(memory_limit=limit)
+        worker = SimpleNamespace(memory_manager=manager, state=SimpleNamespace(nthreads=4))
+        monkeypatch.setattr(fake, "get_worker", lambda worker=worker: worker)
+        assert cluster.worker_memory() == bytes_of_case
+
+
+def test_a_worker_is_made_for_its_parent_and_ends_with_it(monkeypatch):
+    """Nothing of this process is changed: what would be is noted."""
+    noted = []
+    monkeypatch.setattr(executor_module, "limit_process", lambda: noted.append("one thread"))
+    monkeypatch.setattr(executor_module.signal, "signal", lambda *given: noted.append(given))
+    monkeypatch.setattr(executor_module.ctypes, "CDLL", lambda name: SimpleNamespace())
+    monkeypatch.setattr(executor_module, "solver_logs", list)
+    thread = SimpleNamespace(start=lambda: noted.append("begun"))
+    monkeypatch.setattr(executor_module.threading, "Thread", lambda target, args, daemon: noted.append(args) or thread)
+    executor_module._initialize_worker(7, 40)
+    ends = [(signal.SIGINT, signal.SIG_IGN), (signal.SIGTERM, signal.SIG_DFL), (signal.SIGHUP, signal.SIG_DFL)]
+    assert noted == ["one thread", *ends, (7,), "begun"]
+    parents = iter([7, 7, 7, 1])
+    monkeypatch.setattr(executor_module.os, "getppid", lambda: next(parents))
+    monkeypatch.setattr(executor_module, "PARENT_CHECK_INTERVAL", 0.0)
+    monkeypatch.setattr(executor_module.os, "_exit", lambda status: (_ for _ in ()).throw(SystemExit(status)))
+    for parent, left in ((7, []), (8, [9])):
+        with pytest.raises(SystemExit) as end:
+            executor_module._end_with_parent(parent)
+        assert end.value.code == 1 and [*parents] == left
+        parents = iter([7, 9])
+
+
+def test_a_pool_that_is_interrupted_is_not_waited_for(monkeypatch):
+    done = []
+    process = SimpleNamespace(terminate=lambda: done.append("terminated"))
+    pool = SimpleNamespace(_processes={1: process}, shutdown=lambda **how: done.append(how))
+    monkeypatch.setattr(executor_module, "ProcessPoolExecutor", lambda *given, **more: pool)
+    with pytest.raises(KeyboardInterrupt), executor_module._pool(2):
+        raise KeyboardInterrupt
+    with executor_module._pool(2):
+        pass
+    both = [{"wait": wait, "cancel_futures": True} for wait in (False, True)]
+    assert done == ["terminated", *both]
+
+
+def test_a_cluster_that_loses_a_case_runs_it_here_and_one_that_breaks_it_tells_so(scene, monkeypatch):
+    monkeypatch.setattr(executor_module, "run_in_own_process", lambda task: ("alone", task.key))
+
+    class Broken(Executor):
+        def submit(self, function, /, *given):
+            future = Future()
+            lost = function.__self__.key == "lost"
+            future.set_exception(BrokenExecutor() if lost else ValueError("no pickle"))
+            return future
+
+    tasks = [Pending(Case(scene, "dda"), key, "study") for key in ("lost", "broken")]
+    found = [*executor_module.executed(tasks, executor=Broken())]
+    assert ("alone", "lost") in found
+    (row,) = (one[0] for one in found if one[0] != "alone")
+    assert (row.key, row.notes) == ("broken", ("ValueError: no pickle",))

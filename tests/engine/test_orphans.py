@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from conftest import SCENE
-from oracles.processes import AFTER, MARK, left, marked, new_mark
+from oracles.processes import MARK, left, marked, new_mark
 
 from validation.runs.results import Results
 
@@ -105,37 +105,9 @@ def test_nothing_outlives_the_parent(number, leaver, tmp_path, mark):
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
-def test_nothing_outlives_a_parent_that_runs_cases_itself(number, tmp_path, mark):
-    with begin(tmp_path, mark, '"dda", "bad_solvers:deaf"', "--jobs", "1") as process:
-        wait_for(mark, "user_worker", process)
-        process.send_signal(number)
-        _, said = process.communicate(timeout=30)
-    assert left(mark) == [] and "Traceback" not in said
-    assert len(Results(tmp_path / "r").rows()) == 1, "the finished row of dda is kept"
-
-
-@pytest.mark.long
 @pytest.mark.parametrize("solver", ["with_an_exit_hook", "with_a_thread", "with_a_child_left"])
 def test_what_a_solver_leaves_behind_ends_with_the_run(solver, tmp_path, mark):
     with begin(tmp_path, mark, f'"bad_solvers:{solver}"', "--jobs", "2", sweep="[1.0, 0.99]") as process:
         process.communicate(timeout=60)
     assert left(mark) == []
     assert {str(row.outcome) for row in Results(tmp_path / "r").rows().values()} == {"completed"}
-
-
-@pytest.mark.long
-def test_a_hangup_that_is_ignored_stays_ignored(tmp_path, mark):
-    """As under nohup."""
-    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-    try:
-        with begin(tmp_path, mark, '"bad_solvers:endless"', "--jobs", "1") as process:
-            wait_for(mark, "user_worker", process)
-            process.send_signal(signal.SIGHUP)
-            time.sleep(AFTER)
-            assert process.poll() is None
-            process.terminate()
-            process.communicate(timeout=30)
-    finally:
-        signal.signal(signal.SIGHUP, before)
-    assert left(mark) == []

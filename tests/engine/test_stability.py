@@ -1,5 +1,7 @@
 """Outcomes by name, spectral radii, limits by bisection, and growth beyond them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from conftest import thinned
@@ -12,7 +14,7 @@ from validation.metrics.growth import Stability, growth
 from validation.metrics.values import NOT_REPORTED
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.solvers.contract import Solver
+from validation.solvers.contract import Prepared, Solver
 from validation.solvers.registry import get_solver
 
 EXPLICIT, LINEAR = {"time.alpha": 0.0, "time.delta": 0.5}, {"time.alpha": 1 / 6, "time.delta": 0.5}
@@ -68,6 +70,13 @@ class Grower(Solver):
 
     def modes(self, scene):
         return ()
+
+
+def test_a_run_without_a_history_or_a_prediction_is_returned_as_it_is(scene):
+    prepared = SimpleNamespace(diagnostics=Prepared.diagnostics.__get__(object()))
+    grown = Run(Outcome.COMPLETED, History(np.ones(3), {"displacement": 1.5 ** np.arange(3)}))
+    for run in (Run(Outcome.TIMEOUT), Run(Outcome.COMPLETED), grown):
+        assert stability.with_growth_outcome(run, prepared, scene) is run
 
 
 @pytest.mark.parametrize(("sound", "steps"), [(1.0, 50), (0.0, 50), (0.0, 400), (1.0, 400)])

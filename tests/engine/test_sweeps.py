@@ -132,26 +132,6 @@ def test_a_user_s_sources_are_those_that_no_installation_holds(tmp_path, monkeyp
 
 @pytest.mark.long
 @pytest.mark.filterwarnings("ignore")  # another package's own
-def test_a_user_s_solver_runs_on_workers_that_stand_elsewhere(scene, tmp_path, monkeypatch):
-    """A worker's limit of memory holds for its cases."""
-    distributed = pytest.importorskip("distributed")
-    study = sweep(scene, "sweep", 2, ("only_here:solve", "dda"))
-    large = study_cases(sweep(scene.with_values({"time.steps": 4_000_000}), "large", 1))
-    options = {"n_workers": 1, "threads_per_worker": 1, "dashboard_address": None, "memory_limit": "300MB"}
-    with distributed.LocalCluster(**options) as workers:
-        (tmp_path / "only_here.py").write_text(
-            "def solve(scene):\n    return {'displacement': [-1e-3] * scene.time.steps}\n"
-        )
-        monkeypatch.syspath_prepend(str(tmp_path))
-        with cluster.executor(workers.scheduler_address, ["only_here:solve"]) as pool:
-            ended = list(run_cases([study_cases(study), large], Results(tmp_path / "r"), executor=pool))
-    rows = {group.study.name: list(group.rows.values()) for group in ended}
-    assert {row.outcome for row in rows["sweep"]} == {Outcome.COMPLETED}, [row.notes for row in rows["sweep"]]
-    assert rows["large"][0].outcome is Outcome.REFUSED and "0.3 GB" in rows["large"][0].notes[-1]
-
-
-@pytest.mark.long
-@pytest.mark.filterwarnings("ignore")  # another package's own
 def test_a_cluster_gives_the_rows_of_one_process_and_a_lost_worker_costs_none(scene, tmp_path):
     distributed = pytest.importorskip("distributed")
     study = sweep(scene, "sweep", 6, ("dda", "bar"))

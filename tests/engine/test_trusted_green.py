@@ -3,14 +3,12 @@
 import itertools
 import json
 import shutil
-import threading
 import zipfile
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import refused, thinned, typed
+from conftest import refused, thinned
 from faults import seams
 from oracles.made_cases import study
 
@@ -118,22 +116,15 @@ def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome, scene, tmp
     assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
 
 
-def test_a_worker_with_other_sources_makes_no_rows(scene, tmp_path, monkeypatch):
-    here, keys = threading.get_ident(), Case.key
-    monkeypatch.setattr(Case, "key", lambda case: keys(case) if threading.get_ident() == here else "another")
-    with ThreadPoolExecutor(2) as pool:
-        rows = finish([Case(scene, "dda"), Case(scene, "bar")], study(scene), Results(tmp_path), executor=pool).rows
-    assert {row.outcome for row in rows.values()} == {Outcome.RAISED}
-    assert all("sources" in note for row in rows.values() for note in row.notes)
-
-
 # ---- records --------------------------------------------------------------------------------------------------------
 
 COMMANDS = ["run", "report", "diff", "baseline"]
 MALFORMED = ["[", "[" * 100_000, "{}", "null", '[{"study": "s"}]', '[{"id": 1, "study": "s"}]', '["a"]', "[1e999]"]
 
 
-@pytest.mark.parametrize(("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 9), ids=itertools.count())
+@pytest.mark.parametrize(
+    ("command", "text"), thinned(itertools.product(COMMANDS, MALFORMED), 23), ids=itertools.count()
+)
 def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, scene_file, tmp_path):
     results = tmp_path / "r"
     run_study(study(load_scene(scene_file)), Results(results))
@@ -149,15 +140,6 @@ def test_malformed_verdicts_are_one_line_before_anything_runs(command, text, sce
     assert (results / "rows.jsonl").read_bytes() == before and not (tmp_path / "new").exists()
 
 
-@pytest.mark.long
-def test_a_report_goes_on_without_a_manifest_that_swapped_places(scene_file, tmp_path):
-    run_study(study(load_scene(scene_file)), Results(tmp_path / "r"))
-    shutil.copy(tmp_path / "r/studies/test.json", tmp_path / "r/studies/other.json")
-    report = typed("report", "--results", tmp_path / "r", "--out", tmp_path / "r.pdf")
-    assert report.returncode == 0
-    assert "other" in report.stderr and "'test'" in report.stderr
-
-
 def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_path):
     results = Results(tmp_path / "r")
     run_study(study(load_scene(scene_file)), results)
@@ -166,7 +148,7 @@ def test_manifests_that_swap_places_or_lose_a_row_are_one_line(scene_file, tmp_p
         assert "'test'" in refused(*words, "--results", tmp_path / "r", cwd=tmp_path)
     (tmp_path / "r/studies/other.json").unlink()
     (tmp_path / "r/rows.jsonl").write_text("\n")
-    for words in (["rows", "test"], ["report", "--out", tmp_path / "r.pdf"], ["report", "test", "--figures", "f"]):
+    for words in (["rows", "test"], ["report", "test", "--figures", "f"]):
         assert {"small", "dda"} <= {*refused(*words, "--results", tmp_path / "r", cwd=tmp_path).split()}
 
 

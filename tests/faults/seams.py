@@ -21,7 +21,6 @@ from dda.bodies import locked_system as system_solution
 from dda.bodies import turning_block as rolling
 from dda.bodies import turning_body as rolling_body
 from dda.bodies import turning_step as rolling_step
-from dda.linear import elimination
 from dda.march import step as march_step
 from dda.model.block import Block
 from dda.plane import bodies as moving_bodies
@@ -31,7 +30,6 @@ from fem_reference.column import mesh as line_mesh
 from fem_reference.column import stepping as line_stepping
 from fem_reference.contact import points as fem_points
 from fem_reference.events import bar_events, bars_events, block_events, column_events
-from fem_reference.events import restitution as map_of_impacts
 from fem_reference.exact import opening_bar
 from fem_reference.exact import vibration as bar_vibration
 from fem_reference.history import response as fem_vibration
@@ -41,7 +39,7 @@ from fem_reference.plane import elements as plane_elements
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
-from validation.diagnosis import other_solvers, reading, readings, search
+from validation.diagnosis import other_solvers, reading, search
 from validation.diagnosis.fits import bar
 from validation.engine import origin
 from validation.solvers import dda as dda_adapter
@@ -114,7 +112,6 @@ SYSTEM_LOAD = Seam(system.BlockSystem, system.BlockSystem._load)
 SYSTEM_FLEXIBILITY = Seam(system_step, system_step.joint_flexibility)
 SYSTEM_VELOCITY = Seam(system_step, system_step.velocity_corrector)
 SYSTEM_RUN = Seam(system_solution, system_solution.observed_steps)
-SYSTEM_DENSE = Seam(elimination, elimination.DENSE)
 
 # Glued blocks in the plane, and the body of their outline
 GLUED_EDGES = Seam(glued, glued.shared_edges)
@@ -165,7 +162,6 @@ BAR_OPENED = Seam(opening_bar, opening_bar.closed_forms)
 # The exact motions with contact that opens
 EVENTS_BLOCK = Seam(block_events, block_events.solve)
 EVENTS_BAR = Seam(bar_events, bar_events.solve)
-RESTITUTION_STATISTICS = Seam(map_of_impacts, map_of_impacts.statistics)
 
 # Columns
 COLUMN_INERTIA = Seam(column_march, column_march.inertia)
@@ -186,7 +182,6 @@ SEARCH_MOVES = Seam(search, search.moves)
 DECISION_ACCEPTED = Seam(search, search.accepted)
 DECISION_CANONICAL = Seam(search, search._canonical)
 DECISION_DETERMINED = Seam(search, search.is_determined)
-READINGS_FACTORS = Seam(readings, readings._factors)
 BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)

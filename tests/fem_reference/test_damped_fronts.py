@@ -1,40 +1,28 @@
-"""The damped bar right beside its fronts, and late: against its transform."""
+"""The damped bar in time: the sum of its modes, and what its kernel keeps."""
 
 from __future__ import annotations
 
-from itertools import product
-
 import numpy as np
 import pytest
-from conftest import thinned
-from oracles.bars import damped as damped_bar
 
-from fem_reference.exact import continuum, damped
+from fem_reference.exact import bar_modes, continuum, damped
 
-FIRST = {"contact_pressure": (1.0, 2.0), "displacement": (0.5, 1.0)}  # arrival of the wave, and of every further one
-STIFF = 1e9  # of the spring over the bar: here a front is sharpest
-ROUNDING = 5e-13  # of a sum over cells and trips, and of the transform
+COLUMNS = ("displacement", "contact_pressure")
+SUMMED = 20_000  # modes; what the others add falls as their number, of the mean of two partial sums as its square
+BARS = [(0.7, 0.0), (0.7, 0.3), (1e3, 3.0), (2e-3, 1.0), (40.0, 60.0)]  # stiffness of the spring over the bar's, a
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(("a", "column"), list(product([0.003, 1.0], FIRST)))
-def test_the_damped_bar_right_beside_its_fronts(column, a):
-    first, gap = FIRST[column]
-    times = first + 3 * gap + np.array([-2e-3, -1e-4, 0.0, 2e-4, 2e-3])
-    found = continuum.histories(times, STIFF, 2 * a, (column,))[0]
-    beside = times != first + 3 * gap  # the transform has no value at a jump
-    expected = [damped_bar(column, t, STIFF, a) for t in times[beside]]
-    np.testing.assert_allclose(found[beside], expected, rtol=0, atol=ROUNDING)
-
-
-@pytest.mark.parametrize(("behind", "a", "column"), thinned(product([6e-5, 0.25, 0.4], [3.0, 3.3], FIRST), 12))
-def test_fronts_count_until_they_are_below_rounding(column, a, behind):
-    """At a t = 21 to 25 a front of size exp(-a t), 1e-9 to 1e-11, is still alive, and so is what is between."""
-    first, gap = FIRST[column]
-    t = first + 3 * gap * (1 if column == "contact_pressure" else 2) + behind
-    assert 19 < a * t < 26
-    found = continuum.histories(np.array([t]), STIFF, 2 * a, (column,))[0, 0]
-    assert found == pytest.approx(damped_bar(column, t, STIFF, a), abs=ROUNDING)
+@pytest.mark.parametrize(("kappa", "a"), BARS)
+def test_the_damped_bar_is_the_sum_of_its_modes(kappa, a):
+    """A mode of frequency b swings as 1 - exp(-a t) (cos(w t) + a sin(w t) / w), w^2 = b^2 - a^2; off the fronts."""
+    times = np.array([0.31, 0.77, 1.23, 2.6, 3.37, 7.71])
+    b = bar_modes.wave_numbers(kappa, SUMMED)
+    w = np.sqrt(b**2 - a**2 + 0j)
+    swings = 1 - np.exp(-a * times) * (np.cos(w[:, None] * times) + a * np.sin(w[:, None] * times) / w[:, None])
+    found = continuum.histories(times, kappa, 2 * a, COLUMNS)
+    for name, values in zip(COLUMNS, found, strict=True):
+        sums = np.cumsum(bar_modes.shares(name, b, kappa)[:, None] * swings.real, axis=0)
+        np.testing.assert_allclose(values, (sums[-1] + sums[-2]) / 2, rtol=0, atol=2e-6)
 
 
 @pytest.mark.parametrize("a", [0.05, 1.0, 30.0])

@@ -28,20 +28,11 @@ def history(scene, names):
     (_, _), (width, _), (_, height), _ = scene.block.outline
     block, stiffness = scene.block, 2 * scene.contact.stiffness
     bar = Bar(height, width, block.density, block.young, stiffness, scene.load.pressure)
-    return _proven(bar, scene.time, scene.time.discount, names, range(1, scene.time.steps + 1))
-
-
-def at_steps(bar, scheme, names, steps):
-    """Return the columns of a bar at some steps, each proven to sixty digits of the largest of them."""
-    return _proven(bar, scheme, scheme.gg, names, steps)
-
-
-def _proven(bar, scheme, gg, names, steps):
     count = 2 * DIGITS
     while True:
-        with digits(count, terms=max(steps) + 1):
-            series = _series(bar, scheme, arb(gg))
-            columns = {name: [series[name][n] for n in steps] for name in names}
+        with digits(count, terms=scene.time.steps + 1):
+            series = _series(bar, scene.time, arb(scene.time.discount))
+            columns = {name: [series[name][n] for n in range(1, scene.time.steps + 1)] for name in names}
             if all(_is_proven(values) for values in columns.values()):
                 return columns
         count *= 2

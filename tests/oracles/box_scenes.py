@@ -80,13 +80,3 @@ def record(amplitude, frequency, duration):
     rows = np.column_stack([time, amplitude * (1 - np.cos(2 * np.pi * frequency * time))])
     np.savetxt(path, rows, "%.17g", ",", header="time,x", comments="")
     return str(path)
-
-
-def euler(scene, own_step, velocity, acceleration):
-    """Return the displacement v n h + a h^2 n (n + 1) / 2 at the rows of a scene.
-
-    That is v' = v + h a, x' = x + h v' from rest at x = 0, with n steps of length h up to the row.
-    """
-    per_row = round(scene.time.step / own_step)
-    n = per_row * np.arange(1.0, scene.time.steps + 1)
-    return velocity * n * own_step + acceleration * own_step**2 * n * (n + 1) / 2

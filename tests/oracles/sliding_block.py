@@ -62,7 +62,6 @@ class Plain:
     row_sign: float = 1.0  # of the load in the row of ey
     coupling: float = 1.0  # of v and ey by the springs
     keeps_stress: bool = True
-    keeps_springs: bool = True
     opens: bool = False
     band: float = 0.0  # m, of an open corner that closes
     opening_band: float = 0.0  # m, of a closed one that opens
@@ -184,7 +183,7 @@ def history(P):
                 else:
                     F += sign * tangent * known[c] * along[c]
             K += k
-            F -= P.keeps_springs * back
+            F -= back
         C = P.viscous * M + P.structural * K
         K *= 1 + P.hht
         # M a + C (later + dt delta a) + (1 + hht) K (star + alpha dt^2 a) = F

@@ -7,6 +7,7 @@ accelerations and contact forces are unknowns.
 from itertools import product
 
 import numpy as np
+from scipy.linalg import eigh
 
 LOWER, INSIDE, UPPER = range(3)
 
@@ -34,6 +35,20 @@ def of_second_order(am, af):
 def theta(share):
     """Return the stage of v1 = u + dt M^-1 [share r(x1) + (1 - share) r(x)], x1 = x + dt (share v1 + (1 - share) u)."""
     return 0.0, 0.0, share**2, share, share * (1 - share)
+
+
+def amplification(alpha, delta, gg, square):
+    """Return the step of D, dt V and dt^2 A of a mode under Newmark's scheme, of the square of w dt."""
+    end = [[1, 0, -alpha], [0, 1, -delta], [square, 0, 1]]
+    start = [[1, gg, 0.5 - alpha], [0, gg, 1 - delta], [0, 0, 0]]
+    return np.linalg.solve(end, start)
+
+
+def two_unknowns(block, stiffness):
+    """Return both axial frequencies [rad/s] of a rectangle at mu = 0, of (v, ey): springs stretch by v - h ey / 2."""
+    (w, h), m, p = block.rectangle, block.mass, stiffness
+    K = np.array([[2 * p, -p * h], [-p * h, block.young * w * h + p * h * h / 2]])
+    return np.sqrt(eigh(K, m * np.diag([1, h * h / 12]), eigvals_only=True))
 
 
 class System:

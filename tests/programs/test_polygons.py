@@ -43,9 +43,3 @@ def test_friction_is_that_of_the_pair():
 def test_what_is_no_rigid_polygon_is_refused(solver, name):
     with pytest.raises(NotImplementedError, match=r"touch|young|friction"):
         solver().solve(load_scene(f"rigid-{name}"))
-
-
-@pytest.mark.parametrize("solver", [box2d.Box2D, mujoco.AsItComes])
-def test_friction_by_pair_is_refused_where_it_follows_from_two_surfaces(solver):
-    with pytest.raises(NotImplementedError, match="pair"):
-        solver().solve(load_scene("rigid-pushing"))

@@ -14,7 +14,6 @@ SPOILED = [  # by ten per cent
     ("pymunk-chipmunk", "stopping", "box.x_m"),
     ("box2d-v3-pyb2d3", "corner", "box.angle_rad"),
     ("mujoco", "pushing", "lower.x_m"),
-    ("siconos", "locked", "displacement_m"),
 ]
 
 

@@ -4,6 +4,7 @@ import functools
 import itertools
 import re
 import shutil
+import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -64,3 +65,23 @@ def test_a_program_says_what_it_is_and_handles_features_of_scenes():
         assert set(about) == {"program", "version", "recipe", "model", "settings"}
         assert max(map(len, about.values())) <= 400
         assert set(program.handles) <= {feature.name for feature in features.FEATURES}
+
+
+def test_a_python_without_numpy_has_no_siconos():
+    """Debian's own Python where the package is absent: -S leaves out what is installed beside the standard library."""
+    done = subprocess.run([sys.executable, "-I", "-S", str(siconos.PROGRAM), "none", "none"], capture_output=True)
+    assert done.returncode == siconos.ABSENT, done.stderr
+
+
+class Told:
+    """A program that takes every command and does not converge."""
+
+    def __getattr__(self, name):
+        return lambda *given: {"analyze": -3, "getTime": 0.25}.get(name)
+
+
+@pytest.mark.parametrize("solver", [opensees.OpenSees, opensees.AsItComes])
+def test_newtons_iteration_that_ends_nowhere_has_a_name(monkeypatch, solver):
+    monkeypatch.setattr(opensees, "program", Told)
+    with pytest.raises(opensees.NotConverged, match=r"0\.25 s"):
+        solver().solve(field("creep"))

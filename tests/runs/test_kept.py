@@ -12,7 +12,7 @@ import pytest
 from oracles.made_cases import made_history, made_row
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, text, units
+from validation.runs import columns, extras, files, provenance, strict, tables, text, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
@@ -205,6 +205,43 @@ def test_files_appear_whole_or_not_at_all(tmp_path):
     assert kinds == ["a file", "a directory", "a pipe", "a device"]
 
 
+def test_directories_take_their_place_whole(tmp_path):
+    place = tmp_path / "deep" / "out"
+    for name in ("first", "second"):
+        with files.atomic_directory(place) as new:
+            (new / name).touch()
+        assert os.listdir(place) == [name] and os.listdir(place.parent) == ["out"]
+    with pytest.raises(InputError), files.atomic_directory(place) as new:
+        (new / "third").touch()
+        new.rename(tmp_path / "away")  # so that it cannot take its place
+    assert os.listdir(place) == ["second"] and os.listdir(place.parent) == ["out"]
+    with pytest.raises(InputError) as error, files.atomic_directory(place / "second"):
+        pass
+    assert (error.value.rule, error.value.value) == ("must be a directory", "a file")
+
+
+UNREADABLE = [  # bytes of a table, and where and what the first one is that is no text
+    (b"time,x\n0,1\n0,\xe9\n", "3:3", "0xe9", None),
+    (b"\xff\xfet\0i\0m\0e\0", "1:1", "0xff", "it is UTF-16; save it as UTF-8"),
+]
+
+
+def test_bytes_that_are_no_text_have_a_place(tmp_path):
+    path = tmp_path / "t.csv"
+    for content, place, value, advice in UNREADABLE:
+        path.write_bytes(content)
+        with pytest.raises(InputError) as error:
+            tables.read_text(path)
+        assert str(error.value.source) == f"{path}:{place}"
+        assert (error.value.advice, value in str(error.value.value)) == (advice, True)
+    path.write_text("place,x\n0,1\n")
+    assert "begin with time" in refusal(files.read_table, path)
+    assert refusal(files.read_table, tmp_path / "none") == "cannot be read: No such file or directory"
+    (tmp_path / ".lock").mkdir()
+    assert refusal(Results(tmp_path).write_verdicts, "a", [])
+    assert refusal(Results(path / "below").write_json, "a.json", {}).startswith("cannot be made: ")
+
+
 @needs_proc
 def test_where_results_come_from(monkeypatch):
     lines = Path("/proc/cpuinfo").read_text().splitlines()
@@ -218,6 +255,9 @@ def test_where_results_come_from(monkeypatch):
     monkeypatch.setattr(platform, "processor", lambda: "a processor")
     assert provenance._processor() == "a processor"
     assert provenance._version("no-such-package") == "not installed"
+    monkeypatch.setattr(provenance.subprocess, "run", absent)
+    assert provenance._git("status") is None and provenance._commit() == "unknown (not a git checkout)"
+    assert not provenance._is_source_root(Path("nowhere"))
 
 
 def test_a_run_without_a_history_has_no_columns():

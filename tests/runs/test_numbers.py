@@ -18,6 +18,8 @@ NUMBERS = [  # function, value, text
     (numbers.signed_percent, 0.05, "+5\u00a0%"), (numbers.signed_percent, -0.05, "−5\u00a0%"),
     (numbers.error_percent, None, "–"), (numbers.error_percent, 1e-13, "below 1e-9 %"),
     (numbers.error_percent, 0.0123, "1.2 %"), (numbers.milliseconds, 0.002, "2\u00a0ms"),
+    (numbers._brief, -9e-10, "0"), (numbers._brief, -9e-4, "<0.001"), (numbers._brief, 1e-3, "0.001"),
+    (numbers._brief, 99.96, "100"), (numbers._brief, 12.346, "12.3"), (numbers._brief, 1234.5, "1234"),
     (bound, -1e-12, "<10⁻¹²"), (bound, 0.0, "<10⁻¹²"), (bound, 0, "as it is"), (bound, 2e-12, "as it is"),
     (numbers.tick_text, 1000.0, "1000"), (numbers.tick_text, 1e5, "$10^{5}$"),
     (numbers.tick_text, 5e-5, r"$5{\times}10^{-5}$"), (numbers.measured_text, 2e-12, "2e-12"),

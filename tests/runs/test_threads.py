@@ -18,7 +18,7 @@ from validation.engine.executor import _pool
 from validation.engine.measure import execute
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
-from validation.runs.threads import VARIABLES
+from validation.runs.threads import ONE_THREAD, VARIABLES, limit_process
 from validation.scenes.scene import load_scene
 from validation.solvers.contract import Solver
 from validation.solvers.logs import errors_only, solver_logs
@@ -92,6 +92,18 @@ def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(many_threads, monke
     assert threads() == {MANY}
 
 
+def test_a_process_of_ours_is_limited_for_good_unless_the_user_decides(many_threads, monkeypatch):
+    monkeypatch.setenv("MKL_NUM_THREADS", "2")
+    limit_process()
+    assert threads() == {MANY} and "OMP_NUM_THREADS" not in os.environ
+    monkeypatch.delenv("MKL_NUM_THREADS")
+    with monkeypatch.context() as patch:
+        for name in ONE_THREAD:
+            patch.setenv(name, "")
+        limit_process()
+        assert threads() == {1} and {os.environ[name] for name in ONE_THREAD} == {"1"}
+
+
 @pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
 def test_a_worker_process_has_one_thread(many_threads, method):
     before = multiprocessing.get_start_method()
@@ -106,19 +118,6 @@ def test_a_worker_process_has_one_thread(many_threads, method):
 def threads_of_worker():
     """Return what a worker sees; imported by a worker that is no copy of this process."""
     return threads()
-
-
-@pytest.mark.long
-def test_a_worker_process_logs_what_this_one_does(monkeypatch):
-    for log in solver_logs():
-        monkeypatch.setattr(log, "level", logging.ERROR)
-    before = multiprocessing.get_start_method()
-    multiprocessing.set_start_method("spawn", force=True)
-    try:
-        with _pool(1) as pool:
-            assert pool.submit(log_levels).result() == [logging.ERROR] * 2
-    finally:
-        multiprocessing.set_start_method(before, force=True)
 
 
 def test_errors_alone_are_logged_for_the_time_that_is_asked_for():

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.stated_scenes import SCENES, asked, made
+from oracles.stated_scenes import STATED, asked, made
 
 from validation.advice.hooks import AdviceHooks
 from validation.errors import InputError
@@ -26,6 +26,7 @@ from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.solvers.contract import NotReported
+from validation.solvers.fenicsx import request
 from validation.solvers.registry import BUILT_IN, get_solver
 from validation.solvers.soundness import reach
 
@@ -58,9 +59,11 @@ def numbers_of(name, value):
 
 def scene_of(solver, name, directory):
     """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
-    scene = made(name, directory) if name in SCENES else load_scene(name).expand()[0]
-    most = 3 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
-    scene = scene.with_values({"time.steps": min(scene.time.steps, most), "fem.elements": 2})
+    scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
+    most = 2 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
+    scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
+    if scene.fem.mesh is None:
+        scene = scene.with_values({"fem.elements": 1 if "plate" in name else 2})
     return scene if "." in scene.run.columns[0] else asked(solver, scene)
 
 
@@ -76,6 +79,7 @@ def told(scene):
     showing = ShowingHooks.of(scene)
     drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
     advice = AdviceHooks.of(scene)
+    asked = {} if get_solver("fenicsx").refusal(scene) else request(scene)  # of another program
     facts = [*advice.motions(scene), *unless_refused(lambda: advice.layers(scene)), advice.contact_limits(scene)]
     return {
         "drawn": zlib.crc32("\n".join(drawn).encode()),
@@ -84,6 +88,7 @@ def told(scene):
         "advice": [repr(fact) for fact in facts],
         "implausible": [value.sentence for value in implausible_values(scene)],
         "problem": unless_refused(lambda: lines(scene)),
+        "asked": {name: repr(value) for name, value in asked.items()},
     }
 
 

@@ -1,13 +1,12 @@
 """Columns on every base: blocks, elements and the exact layers agree; a height is the top but for rounding."""
 
-import itertools
 from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import thinned
 
-from validation import load_scene, response, solve
+from validation import load_scene, response
 from validation.scenes.scene import parse_scene
 
 SITE = Path(__file__).with_name("site.toml").read_text(encoding="utf-8")
@@ -58,27 +57,3 @@ def test_fine_columns_vibrate_as_the_exact_layers(site, base, top):
 
 
 # ---- what is refused ------------------------------------------------------------------------------------------------
-
-
-TOPS = itertools.product((0.3, (0.1 + 0.2) * (1 + 5e-10)), ("dda", "fem", "layers", "column-events", "bars-events"))
-
-
-@pytest.mark.parametrize(("top", "solver"), thinned(TOPS, 3))
-def test_a_height_that_is_the_top_but_for_rounding_is_the_top(top, solver):
-    layers = [{"thickness": 0.1, "density": 2000.0, "young": 1e8}, {"thickness": 0.2, "density": 2000.0, "young": 1e8}]
-    column = {"motion": "pressure", "layer": layers, "heights": [top]}
-    if solver.endswith("events"):
-        column |= {"law": "unilateral", "stiffness": 1e9}
-    scene = parse_scene(
-        {
-            "column": column,
-            "input": {"shape": "half-sine", "velocity": 0.1, "duration": 1e-3},
-            "time": {"step": 1e-5, "steps": 20, "alpha": 0.25, "delta": 0.5},
-            "run": {"solvers": [solver], "columns": ["displacement", "displacement_1"]},
-        },
-        "top",
-    )
-    history = solve(scene, solver).history
-    assert history is not None
-    columns = history.columns
-    np.testing.assert_allclose(columns["displacement_1"], columns["displacement"], atol=1e-15)

@@ -4,7 +4,6 @@ import math
 import re
 from pathlib import Path
 
-import numpy as np
 import pytest
 from oracles.box_scenes import box_scene
 
@@ -28,11 +27,6 @@ def engine(tmp_path, monkeypatch):
 
 def scene(box, steps=50, boxes=1, **values):
     return box_scene(*[{"density": 2500.0} | box] * boxes, steps=steps, **values)
-
-
-def test_it_answers_without_weight_too(engine):
-    history = engine(scene({"lift": 0.1, "velocity": [0.0, -1.0]}, restitution=0.5, gravity=0.0))
-    assert np.diff(history["box_1.y"])[-1] / 0.01 == pytest.approx(0.5, abs=1e-9)
 
 
 def test_it_bounces_as_asked(engine, restitution=0.5):

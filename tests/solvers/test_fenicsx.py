@@ -9,23 +9,23 @@ from types import SimpleNamespace
 import meshio
 import numpy as np
 import pytest
-from conftest import SCENE, typed
+from conftest import typed
 from faults import seams
 from faults.fault import Fault, times, undiscounted, with_scheme
-from faults.kill_matrix import Overlay, whole
+from faults.kill_matrix import check_study
 
 from validation import solve
 from validation.engine.case import Case
-from validation.engine.finished import Finished
-from validation.engine.judge import evaluate
 from validation.engine.measure import execute
-from validation.engine.run import finish
+from validation.engine.run import finish, run_study
+from validation.engine.study import Study
 from validation.errors import InputError
-from validation.gates.gate import Status
+from validation.gates.gate import Gate, Status
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers import fenicsx as adapters_fenicsx
+from validation.solvers.contract import NotReported
 from validation.solvers.fenicsx import VARIABLE, interpreter, launcher, worker_directories
 from validation.solvers.processes import worker
 from validation.solvers.registry import get_solver
@@ -47,16 +47,37 @@ def test_absence_is_not_run_by_name(scene_file, monkeypatch, tmp_path):
     assert (
         adapters_fenicsx.INSTALL_HINT in alone.stderr and "/no/such/python" in alone.stderr and VARIABLE in alone.stderr
     )
-    gate = '[run]\nsolvers = ["fem", "fenicsx"]\n[[gate]]\npair = ["fenicsx", "fem"]\nmetric = "pressure.l2"\n'
-    scene_file.write_text(SCENE + gate + 'band = [0.0, 1e-9]\nreason = "two codes"\n')
-    run = typed("run", scene_file, cwd=tmp_path)
-    assert run.returncode == 1 and "1 NOT RUN" in run.stdout
+    gate = Gate("small", ("fenicsx", "fem"), "pressure.l2", 0.0, 1e-9, "two codes")
+    study = Study("test", "t", "p", [load_scene(scene_file)], ("fem", "fenicsx"), gates=lambda: (gate,))
+    (verdict,) = run_study(study, Results(tmp_path))
+    assert verdict.status is Status.NOT_RUN
+
+
+def test_a_mesh_file_becomes_points_and_cells(tmp_path):
+    """Numbers without those that no cell has."""
+    points = np.array([[9.0, 9.0, 0.0], [0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 1.5, 0.0]])
+    kept = {"triangle": np.array([[1, 2, 3], [3, 2, 4]]), "line": np.array([[1, 2]])}
+    scene = load_scene("pentagon")
+    for cells in (kept, {"line": kept["line"]}):
+        meshio.write(tmp_path / "m.vtk", meshio.Mesh(points, cells))
+        asked = scene.with_values({"fem.mesh": str(tmp_path / "m.vtk")})
+        if "triangle" in cells:
+            found = adapters_fenicsx.request(asked)
+            assert (found["points"], found["cells"]) == (points[1:, :2].tolist(), [[0, 1, 2], [2, 1, 3]])
+        else:
+            with pytest.raises(InputError) as error:
+                adapters_fenicsx.request(asked)
+            assert error.value.field == "fem.mesh"
 
 
 def test_what_was_not_installed_is_tried_again(scene, tmp_path, monkeypatch):
     monkeypatch.setenv(VARIABLE, "/no/such/python")
     row, _ = execute(Case(scene, "fenicsx"), "key", "study")
     assert row.outcome is Outcome.NOT_RUN
+    absent = get_solver("fenicsx").prepare(scene)
+    for ask in (absent.static, absent.modes, absent.diagnostics, lambda: absent.amplitudes(np.ones(1), False)):
+        with pytest.raises(NotReported, match="/no/such/python"):
+            ask()
     results = Results(tmp_path)
     for _ in range(2):
         finish([Case(scene, "fenicsx")], get_study("two-codes"), results)
@@ -94,12 +115,6 @@ def test_ranks_go_with_solvers_that_can_use_them(scene_file):
     assert done.returncode == 2 and done.stderr.startswith("error: --ranks: ")
 
 
-@pytest.mark.long
-def test_ranks_change_the_key_of_the_distributed_solver_only(scene):
-    assert Case(scene, "fenicsx", ranks=2).key() == Case(scene, "fenicsx:2").key() != Case(scene, "fenicsx").key()
-    assert Case(scene, "dda", ranks=2).key() == Case(scene, "dda").key()
-
-
 @pytest.mark.fenicsx
 def test_the_interpreter_is_found_and_the_launcher_beside_it():
     python = interpreter()
@@ -117,7 +132,7 @@ LOADS = {
         "load": {"pressure": 1e6, "eccentricity": 0.5, "traction": 1e5, "gravity": 9.81, "base_motion": "quake.csv"}
     },
 }
-TELLING = ("weight", "all")  # what they miss is in no other
+TELLING = ("all",)  # what they miss is in no other
 
 
 @pytest.mark.fenicsx
@@ -235,12 +250,6 @@ OTHER_FAULTS = [
     Fault("fem: load 2e-10 high", ("fem:full",), seams.FEM_LOAD, times(1 + 2e-10)),
     Fault("dda: load 2e-10 high", ("dda",), seams.DDA_LOAD, times(1 + 2e-10)),
 ]
-EDGE = "2e-10"  # a fault at twice the band's edge must be seen everywhere; the others by one gate at least
-FEW = ("block.poisson=0.25,block.hypothesis=plane strain,time.start=consistent", "quadrilateral", "pentagon")
-
-
-def failed(finished):
-    return {gate.id for gate in get_study("two-codes").gates() if evaluate(gate, finished).status is Status.FAIL}
 
 
 def module_of(line):
@@ -268,41 +277,18 @@ def faulty_worker(directory, number, line, slip):
 
 @pytest.mark.long
 @pytest.mark.fenicsx
-def test_seeded_faults_of_either_code_are_seen_by_the_other_and_bite_every_gate(tmp_path, finished_cases):
-    sound = finish(get_study("two-codes").cases(), get_study("two-codes"), Results(finished_cases))
-    assert not failed(sound)
-    faults = {fault.name: fault for fault in OTHER_FAULTS}
-    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items()):
+@pytest.mark.parametrize("solver", ["fenicsx", "fem:full", "dda"])
+def test_seeded_faults_of_each_code_bite_its_gates(solver, tmp_path, finished_cases):
+    faults = [fault for fault in OTHER_FAULTS if solver in fault.solvers]
+    for number, (name, (line, slip)) in enumerate(WORKER_FAULTS.items() if solver == "fenicsx" else ()):
         path = faulty_worker(tmp_path, number, line, slip)
-        solvers = ("fenicsx", "fenicsx:2") if EDGE in name else ("fenicsx",)
-        faults[name] = Fault(name, solvers, seams.FENICSX_WORKER, lambda _, path=path: path)
-    kills = {name: killed(sound, fault, tmp_path, EDGE in name) for name, fault in faults.items()}
-    for name, found in kills.items():
-        print(f"{len(found):>3} gates see {name}")
-    assert not [name for name, found in kills.items() if not found], "faults that no gate sees"
-    for code, solver in (("fenicsx", "fenicsx"), ("fem:", "fem:full"), ("dda:", "dda")):
-        bitten = set().union(*(found for name, found in kills.items() if name.startswith(code)))
-        judged = {
-            gate.id for gate in get_study("two-codes").gates() if any(name.startswith(solver) for name in gate.pair)
-        }
-        assert bitten == judged, "gates that no fault of this code bites"
+        faults.append(Fault(name, ("fenicsx", "fenicsx:2"), seams.FENICSX_WORKER, lambda _, path=path: path))
 
+    def is_checked(gate):
+        return any(name.startswith(solver) for name in gate.pair)
 
-def killed(sound, fault, directory, everywhere):
-    """Return the gates that fail with a fault; only the solvers that it reaches run again."""
-    reached = [
-        case
-        for case in get_study("two-codes").cases()
-        if case.solver in fault.solvers and (everywhere or any(word in case.scene.name for word in FEW))
-    ]
-    with pytest.MonkeyPatch.context() as patch, np.errstate(all="ignore"):
-        fault.seam.wrap(patch, fault.replacement)
-        faulty = finish(
-            reached, get_study("two-codes"), Overlay(directory / fault.name.replace("/", "-"), sound.results)
-        )
+    check_study("two-codes", faults, tmp_path, finished_cases, is_checked)
     worker.close_all()
-    whole(fault.name, faulty)
-    return failed(Finished(sound.rows | faulty.rows, faulty.results))
 
 
 @pytest.mark.parametrize("name", ["pentagon", pytest.param("quadrilateral", marks=pytest.mark.long)])

@@ -11,12 +11,15 @@ from oracles.pages import ROOT
 from validation.engine.measure import completed
 from validation.errors import InputError
 from validation.runs.defects import Defects, DefectsError
+from validation.runs.history import History
 from validation.runs.results import Results
-from validation.runs.run import Outcome
+from validation.runs.run import Outcome, Run
 from validation.scenes.plain import lines, words
 from validation.scenes.scene import load_scene
+from validation.solvers import user
 from validation.solvers.history_table import read_table
-from validation.solvers.processes.user_worker import columns_of
+from validation.solvers.processes.user_worker import columns_of, plain, text_of
+from validation.solvers.processes.worker import WorkerDied
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import VARIABLE
 from validation.suite.own_solver.gates import applying
@@ -119,9 +122,48 @@ def test_a_solver_answers_in_one_of_a_few_forms():
     assert {name: list(values) for name, values in found.items()} == dict(
         zip(("time", "displacement", "contact_pressure"), rows.T.tolist(), strict=True)
     )
+    history = History(np.array([0.5]), {"displacement": np.array([1.0])})
+    for value in (history, Run(Outcome.COMPLETED, history)):
+        assert columns_of(value) == {"time": history.time, "displacement": history.displacement}
     for other in ([1, 2, 3, 4], np.zeros((3, 4)), np.zeros(3), "ab", None):
         with pytest.raises(TypeError):
             columns_of(other)
+    assert plain("x", [[True, 2], [None, 3.5]])[1][1] == 3.5
+    for other in (["1"], [1j], [np.datetime64("2020-01-01")]):
+        with pytest.raises(TypeError, match="x must hold real numbers"):
+            plain("x", other)
+    silent = type("Silent", (Exception,), {"__str__": lambda self: 1 / 0})()
+    said = ["ValueError: no", "Silent, whose text raises ZeroDivisionError"]
+    assert [text_of(error) for error in (ValueError("no"), silent)] == said
+
+
+def test_a_solver_that_says_nothing_of_itself_has_nothing_to_say(monkeypatch):
+    solver = get_solver("mine:solve")
+    asked = []
+
+    def answer(command, environment, request, limit):
+        asked.append((request, limit))
+        if len(asked) > 2:
+            raise WorkerDied("the end")
+        return {"raised": "no\nmodule", "about": {"program": "a\n b", "version": 3}}
+
+    monkeypatch.setattr(user, "ask", answer)
+    monkeypatch.setenv(VARIABLE, "9")
+    assert solver.load_error() == "no module" and solver.about() == {"program": "a b", "version": "3"}
+    assert solver.load_error() == "the end" and solver.about() == {}
+    assert [*asked[0][0], *asked[1][0]] == ["parts", "about"] and {limit for _, limit in asked} == {9.0}
+
+
+def test_a_table_that_cannot_be_read_is_a_defect(tmp_path):
+    (tmp_path / "bytes").write_bytes(b"time,displacement\n0,\xff")
+    for name, said in (("none", "cannot be read"), ("bytes", "UTF-8")):
+        defects = Defects()
+        assert read_table(tmp_path / name, np.ones(1), COLUMNS, ["displacement"], defects) is None
+        with pytest.raises(DefectsError, match=said):
+            defects.check()
+    (tmp_path / "field-locked.csv").write_text("time,displacement\n0.001,\n")
+    assert get_solver(f"{tmp_path}/").solve(LOCKED.with_values({"time.steps": 1})).outcome is Outcome.NOT_RUN
+    assert get_solver(str(tmp_path / "none.csv")).read(LOCKED).outcome is Outcome.NOT_APPLICABLE
 
 
 def test_what_cannot_be_started_and_kinds_without_words(tmp_path):

@@ -1,18 +1,16 @@
 """Users' solvers that do whatever a program can do wrong: named outcomes, in time, and nothing left of them."""
 
 import os
-import subprocess
 import sys
 import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, thinned
+from conftest import thinned
 from oracles.processes import MARK, left, new_mark
 
 from validation.engine.case import Case
 from validation.engine.measure import execute
-from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
@@ -20,11 +18,6 @@ from validation.solvers.processes import worker
 from validation.solvers.user import VARIABLE, UserSolver
 
 HERE = Path(__file__).parent / "user_solvers"
-MANY = (
-    "deadly:forks leaves_a_thread leaves_an_exit_hook prints deadly:ignores_signals "
-    "deadly:kills_its_group deadly:closes_everything interrupts raises_half_a_character "
-    "odd_names SubnormalStatic sound"
-)
 needs_linux = pytest.mark.skipif(not Path("/proc/self/fd").exists(), reason="the solver finds its pipes in /proc")
 
 
@@ -99,35 +92,6 @@ def test_a_scene_that_nobody_reads_defeats_no_time_limit(scene):
         worker.ask(blind, os.environ, {"much": "x" * 1_000_000}, 0.2)
 
 
-@pytest.mark.long
-def test_an_answer_without_end_is_ended(monkeypatch):
-    monkeypatch.setattr(worker, "LONGEST_ANSWER", 100_000)
-    endless = [sys.executable, "-c", "import sys\nwhile True: sys.stdout.write('x' * 1000)"]
-    with pytest.raises(worker.WorkerDied, match="xxx"):
-        worker.ask(endless, os.environ, {}, 30.0)
-
-
 def test_a_command_that_is_not_there_is_named():
     with pytest.raises(worker.WorkerDied, match="/no/such"):
         worker.ask(["/no/such"], os.environ, {}, 10.0)
-
-
-@pytest.mark.long
-def test_a_study_of_hostile_solvers_ends_with_every_row(mark, tmp_path):
-    """Through the command line, on two workers: every case a row, no traceback."""
-    names = MANY.split()
-    path = tmp_path / "all.toml"
-    names = [name if ":" in name else f"hostile:{name}" for name in names]
-    solvers = ", ".join(f'"{name}"' for name in names)
-    path.write_text(SCENE + f"[run]\nsolvers = [{solvers}]\n")
-    done = subprocess.run(
-        [sys.executable, "-m", "validation", "run", str(path), "--results", str(tmp_path / "r"), "--jobs", "2"],
-        capture_output=True,
-        timeout=280,
-        cwd=HERE,
-        env=os.environ | {VARIABLE: "3", "PYTHONPATH": os.pathsep.join([str(HERE), *sys.path])},
-    )
-    assert b"Traceback" not in done.stderr + done.stdout, done.stderr.decode(errors="replace")
-    rows = Results(tmp_path / "r").rows().values()
-    assert sorted(row.solver for row in rows) == sorted(names)
-    assert left(mark) == []

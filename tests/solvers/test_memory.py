@@ -5,7 +5,7 @@ import os
 from pathlib import Path
 
 import pytest
-from conftest import SCENE, typed
+from conftest import SCENE
 
 from validation.engine.run import run_study
 from validation.runs.results import Results
@@ -79,11 +79,3 @@ def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     run_study(scene_study(str(path)), results)
     (row,) = results.rows().values()
     assert row.outcome is Outcome.COMPLETED and not any(memory.REFUSED in note for note in row.notes)
-
-
-def test_models_of_the_advice_must_fit_as_well(scene_file):
-    options = ["--set", "block.poisson=0.2", "--set", "fem.elements=100000"]
-    done = typed("advise", "damping", scene_file, *options)
-    assert "Traceback" not in done.stderr
-    assert done.stderr.startswith("error: ") and "fem.elements" in done.stderr
-    assert done.returncode == 2

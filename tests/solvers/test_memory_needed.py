@@ -11,18 +11,6 @@ def bytes_of(solver="fem", **changes):
     return memory.needed(scene_of(**changes), get_solver(solver))[0]
 
 
-@pytest.mark.parametrize("solver", ["fem", "fenicsx", "fenicsx:2"])
-def test_memory_of_a_mesh_grows_by_its_unknowns(solver):
-    """2 (n d + 1)^2 unknowns, a little more than in proportion: the factor fills."""
-    sizes = {
-        (n, d): bytes_of(solver, fem__elements=n, fem__degree=d, block__poisson=0.3)
-        for n, d in ((100, 1), (100, 2), (200, 1))
-    }
-    assert sizes[100, 2] == pytest.approx(sizes[200, 1], rel=0.02)
-    assert 3.9 < sizes[200, 1] / sizes[100, 1] < 4.6
-    assert sizes[200, 1] > 2 * 201**2 * 1000  # element matrices, indices and a factor are more than that
-
-
 def test_a_mesh_that_cannot_be_read_needs_no_memory():
     """That it cannot be read is said where it is read."""
     meshed = scene_of().with_values({"fem": {"mesh": "nowhere.msh"}})

@@ -3,7 +3,6 @@
 import itertools
 import math
 
-import numpy as np
 import pytest
 from conftest import thinned
 
@@ -16,7 +15,6 @@ from validation.theory.stepping import Stepping
 
 LOCKED = load_scene("figures-3-4").with_values({"time.step": 5e-4, "time.steps": 40, "fem.elements": 2})
 OPENING = load_scene("unlocked-average").expand()[0].with_values({"time.step": 2e-4, "time.steps": 200})
-COLUMN = load_scene("waves-base").expand()[0]
 SCHEMES = {
     "chung-hulbert": {"time.scheme": "chung-hulbert", "time.rho_inf": 0.6},
     "hht": {"time.scheme": "hht", "time.rho_inf": 0.7},
@@ -49,19 +47,6 @@ def test_modes_have_the_roots_of_the_scene_s_scheme(scheme, solver, gg):
         assert max(map(abs, mode.eigenvalues)) == pytest.approx(abs(Stepping.of(scene).roots(omega)[0]), rel=1e-10)
 
 
-@pytest.mark.parametrize(
-    ("solver", "scene"),
-    [("continuum", LOCKED), ("block-events", OPENING), pytest.param("layers", COLUMN, marks=pytest.mark.long)],
-)
-def test_what_is_exact_in_time_takes_no_notice_of_a_scheme(solver, scene):
-    scene = scene.with_values({"time.steps": 2})
-    expected = solve(scene, solver).history.columns
-    for values in (SCHEMES["hht"], SCHEMES["composite"]):
-        history = solve(scene.with_values({"time.start": "consistent"} | values), solver).history
-        for name, column in expected.items():
-            assert np.array_equal(history.columns[name], column), (values, name)
-
-
 def test_the_limit_of_the_leapfrog_is_that_of_its_highest_mode():
     frequency = max(mode.frequency for mode in get_solver("dda").modes(LOCKED))
     limit = math.sqrt(2 * 1.99) / frequency
@@ -75,16 +60,3 @@ def test_solves_of_a_composite_scheme_are_two_a_step():
     calm = OPENING.with_values({"contact.restitution": 0.3})
     mean = {name: float(record_of(calm.with_values(SCHEMES[name])).solves.mean()) for name in ("hht", "composite")}
     assert 1.0 <= mean["hht"] < 1.1 and 2.0 <= mean["composite"] < 2.1
-
-
-def test_an_augmented_lagrangian_leaves_the_penetration_that_is_asked_and_reports_its_passes():
-    values = {"contact.rule": "augmented", "time.alpha": 0.5, "time.delta": 1.0, "time.step": 1e-3, "time.steps": 40}
-    for penetration in (1e-5, 1e-8):
-        columns = ["displacement", "contact_pressure", "gap_m", "passes"]
-        scene = OPENING.with_values(values | {"contact.penetration": penetration, "run.columns": columns})
-        history = solve(scene, "dda").history
-        assert -penetration <= history.columns["gap_m"].min() < 0
-        pressed = history.columns["contact_pressure"] > 0
-        # a pass leaves 1 / (1 + r C) of the penetration, r C = 0.271164 at p = 1E and 1 ms
-        needed = math.log(1e-3 / penetration) / math.log(1.271164)
-        assert needed / 2 < np.max(history.columns["passes"][pressed]) < 2 * needed

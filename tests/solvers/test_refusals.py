@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
+from oracles.stated_scenes import made
 
 import dda
 import fem_reference
@@ -19,6 +21,7 @@ from validation.errors import InputError
 from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
 from validation.solvers.registry import solve
+from validation.solvers.rigid.sliding import rigid_slide
 
 HERE = Path(__file__).parent
 LOCKED = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 3, "fem.elements": 2})
@@ -47,6 +50,11 @@ SCENES = {
     "adaptive": ADAPTIVE,
     "site": SITE,
     "stack": STACK,
+    "springs": made("layers on springs", HERE),
+    "cells": made("row of cells", HERE),
+    "plate": made("pulled plate", HERE),
+    "strip": load_scene("patch-strip").expand()[0],
+    "boxes": box_scene({}),
 }
 TABLE = tomllib.loads((HERE / "refusals.toml").read_text(encoding="utf-8"))["refused"]
 OF_FENICSX = pytest.param(True, marks=pytest.mark.fenicsx)
@@ -81,6 +89,8 @@ ASKS = [
             lambda scene: compare(scene, None),
         )
     ),
+    (SCENES["stuck"], "contact.friction is required", rigid_slide),
+    (SCENES["rough"], "load must be weight and base motion", rigid_slide),
     (SITE, "site: damping takes scenes of a block only", damping),
     (SITE, "compare takes scenes of a block, or of a column", lambda scene: compare(scene, Foreign(np.ones(1), {}))),
     (SITE, "load: is needed for what is asked, got a scene of a column", lambda scene: scene.load),

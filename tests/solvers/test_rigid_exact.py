@@ -11,8 +11,10 @@ from conftest import thinned
 from oracles.box_scenes import box_scene
 
 from validation.gates.gate import Status
+from validation.models.plane import exact
 from validation.models.plane.problems import box_problems
 from validation.problems.numbered import measured
+from validation.runs.run import Outcome
 from validation.solvers.registry import get_solver
 
 BOX = {"width": 0.8, "height": 0.5, "density": 700.0}
@@ -84,6 +86,16 @@ REFUSED = tomllib.loads(Path(__file__).with_name("rigid_exact.toml").read_text(e
 def test_other_motions_are_refused_by_name():
     for boxes, rigid, why in REFUSED:
         assert why in refusal(box_scene(*[BOX | box for box in boxes], **rigid))
+
+
+def test_impacts_without_end_have_a_horizon(monkeypatch):
+    monkeypatch.setattr(exact, "MOST_IMPACTS", 3)
+    posed = box_scene(BOX | {"tilt": 3.0, "lift": 0.1}, restitution=1.0, step=0.05, steps=40)
+    run = get_solver("rigid-exact").solve(posed)
+    assert run.outcome is Outcome.HORIZON and run.history is None
+    last = int(run.notes[0].split()[-2])
+    shorter = posed.with_values({"time.steps": last})
+    assert 0 < last < 40 and get_solver("rigid-exact").solve(shorter).outcome is Outcome.COMPLETED
 
 
 def test_a_corner_that_slips_is_refused():

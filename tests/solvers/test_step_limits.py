@@ -76,13 +76,6 @@ def test_a_rigid_stop_has_no_stable_step_of_a_conditional_scheme():
     assert refusal("dda", rigid.with_values({"time.alpha": 0.25})) is None
 
 
-def test_the_edges_of_a_turning_block_need_not_be_as_long_as_its_top():
-    flat = {"width": 0.67, "height": 0.17, "density": 2700.0, "young": 1e9}
-    load = {"pressure": 1e6, "eccentricity": 0.2}
-    said = refusal("dda", scene(0.1, 2, block=flat, contact=OPEN, load=load, run={"geometry": "updated"}))
-    assert said is not None and "time.step" in said
-
-
 GROWING = (
     "leapfrog, opening",
     "opening",
@@ -142,8 +135,6 @@ def test_the_motion_of_a_base_enters_the_bound(tmp_path):
 
 
 RESTING = STACK | {"layer": [STACK["layer"][0] | {"velocity": 0.0}]}
-ABSURD_LAYER = {"thickness": 1e150, "density": 1e8, "young": 1e9, "blocks": 2}
-THIN = {"thickness": 1e-20, "density": 1.0, "young": 1e9, "blocks": 2}
 
 
 @pytest.mark.parametrize("solver", ["dda", "fem"])
@@ -160,13 +151,6 @@ def test_what_cannot_be_stepped_is_an_outcome(case, solver):
     assert case["says"] in run.notes[-1]
 
 
-@pytest.mark.parametrize("layers", [[ABSURD_LAYER, THIN], [THIN | {"blocks": 100_000}, ABSURD_LAYER]])
-def test_blocks_that_are_no_part_of_a_height_are_refused(layers):
-    with pytest.raises(InputError) as error:
-        scene(1e-4, 20, column=COLUMN | {"layer": layers}, input=PULSE)
-    assert "layer.thickness" in str(error.value)
-
-
 def test_a_column_that_nothing_moves_needs_an_input():
     column = {"law": "unilateral", "motion": "pressure"} | RESTING
     for still in (COLUMN, column | {"gravity": 0.0}):
@@ -179,7 +163,7 @@ def test_a_column_that_nothing_moves_needs_an_input():
 SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))
 
 
-@pytest.mark.parametrize(("name", "solver"), thinned(SOUND, 7))
+@pytest.mark.parametrize(("name", "solver"), thinned(SOUND, 13))
 def test_a_column_with_gaps_and_hardly_a_drive_is_sound(name, solver, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("late.csv").write_text("time,velocity\n5,0\n6,1\n7,0\n")

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.stepped_vibration import Rule, operators, two_unknowns
+from oracles.staged import System, amplification, march, two_unknowns
 from scipy.linalg import eigh
 
 from validation.theory import overshoot, stages, statics
@@ -40,8 +40,8 @@ def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(scene, alpha, de
 
 def test_what_damping_has_left_at_the_last_step(oblong):
     case = oblong.with_values({"time.steps": 7, "time.gg": 0.9})
-    T, _ = operators(Rule(0.5, 1.0, 0.9, case.time.step), two_unknowns(case.block, 4e8) ** 2)
-    assert expected.remaining_motion(case) == pytest.approx(np.max(np.abs(np.linalg.eigvals(T))) ** 7, rel=1e-10)
+    steps = [amplification(0.5, 1.0, 0.9, (w * case.time.step) ** 2) for w in two_unknowns(case.block, 4e8)]
+    assert expected.remaining_motion(case) == pytest.approx(np.max(np.abs(np.linalg.eigvals(steps))) ** 7, rel=1e-10)
 
 
 def test_modes_and_shares_of_the_bar(oblong):
@@ -60,14 +60,10 @@ def test_modes_and_shares_of_the_bar(oblong):
 def test_the_response_of_a_mode_is_the_scheme_s(scene, start):
     case = scene.with_values({"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.97, "time.start": start})
     omega, t = np.array([0.1, 1.0, 7.0]), case.time
-    found = expected.bar_response(case, omega)
-    T, push = operators(Rule(t.alpha, t.delta, t.discount, 1.0), omega**2)
-    state = np.zeros((3, 3))
-    if start == "consistent":
-        state[:, 2] = omega**2
-    for n in range(t.steps):
-        state = np.einsum("nij,nj->ni", T, state) + push * (omega**2)[:, None]
-        np.testing.assert_allclose(found[n], state[:, 0], rtol=0, atol=1e-12)
+    modes = System(np.eye(3), np.diag(omega**2), lambda t: omega**2)
+    rest, weights = np.zeros(3), (t.alpha, t.delta)
+    stepped, _, _ = march(modes, "", 1.0, t.steps, rest, rest, t.discount, zero=start == "zero", weights=weights)
+    np.testing.assert_allclose(expected.bar_response(case, omega), stepped[1:], rtol=0, atol=1e-12)
 
 
 ELEMENTS = {  # mass and stiffness of one of unit length

@@ -21,13 +21,6 @@ def forks(scene):
     return sound(scene)
 
 
-def forks_and_stays(scene):
-    if os.fork() == 0:
-        time.sleep(0.3)
-        return {"displacement": [7.0] * scene.time.steps}
-    return sound(scene)
-
-
 def _answers():
     """Return the descriptor of the pipe that answers go through: the one beside 0, 1 and 2 that can be written."""
     for name in os.listdir("/proc/self/fd"):

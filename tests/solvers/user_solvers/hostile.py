@@ -1,9 +1,7 @@
 """Users' solvers that do whatever a program can do wrong; each is a row with a name and costs no other row."""
 
-import atexit
 import gc
 import os
-import resource
 import sys
 import threading
 import time
@@ -21,18 +19,6 @@ def leaves_a_thread(scene):
     return sound(scene)
 
 
-def leaves_an_exit_hook(scene):
-    atexit.register(time.sleep, 60)
-    return sound(scene)
-
-
-def exits_in_a_thread(scene):
-    thread = threading.Thread(target=sys.exit, args=(3,))
-    thread.start()
-    thread.join()
-    return sound(scene)
-
-
 def prints(scene):
     print("{}" * 100)
     sys.__stdout__.write("{}\n")
@@ -47,17 +33,8 @@ def prints_without_end(scene):
     return sound(scene)
 
 
-def changes_directory(scene):
-    os.chdir("/")
-    return sound(scene)
-
-
 def interrupts(scene):
     raise KeyboardInterrupt
-
-
-def ends_a_generator(scene):
-    raise GeneratorExit("no more")
 
 
 class Nameless(BaseException):
@@ -73,49 +50,12 @@ def raises_half_a_character(scene):
     raise ValueError("half \udc80 of \ud800 a character, \x1b[31mred\x1b[0m, \0 and\nlines")
 
 
-def raises_a_book(scene):
-    raise ValueError("x" * 10_000_000)
-
-
-def recurses(scene):
-    return recurses(scene)
-
-
-def wants_memory(scene):
-    resource.setrlimit(resource.RLIMIT_AS, (2**32, 2**32))
-    return {"displacement": np.ones(2**40)}
-
-
 def not_a_number(scene):
     return {"displacement": np.full(scene.time.steps, np.nan)}
 
 
-def infinite(scene):
-    return {"displacement": np.full(scene.time.steps, -np.inf)}
-
-
 def texts(scene):
     return {"displacement": ["-1e-3"] * scene.time.steps}
-
-
-def complex_numbers(scene):
-    return {"displacement": np.full(scene.time.steps, -1e-3 + 1j)}
-
-
-def dates(scene):
-    return {"displacement": np.full(scene.time.steps, np.datetime64("2020-01-01"))}
-
-
-def nothing_in_it(scene):
-    return {"displacement": [None] * scene.time.steps}
-
-
-def scalar(scene):
-    return {"displacement": -1e-3}
-
-
-def square(scene):
-    return {"displacement": np.zeros((scene.time.steps, scene.time.steps))}
 
 
 def ragged(scene):
@@ -125,10 +65,6 @@ def ragged(scene):
 def odd_names(scene):
     odd = {"\udc80": [1.0], "../../x": [1.0], 3: [1.0], (1, 2): [1.0], "file": [1.0], "": [1.0]}
     return sound(scene) | odd
-
-
-def names_of_half_characters(scene):
-    return {"\udc80": [1.0]}
 
 
 class Static:
@@ -145,14 +81,6 @@ class Static:
 
 class SubnormalStatic(Static):
     values: ClassVar = {"displacement": -1e-320}
-
-
-class LeastStatic(Static):
-    values: ClassVar = {"displacement": -3e-308}
-
-
-class UndefinedStatic(Static):
-    values: ClassVar = {"displacement": float("nan")}
 
 
 class TextStatic(Static):

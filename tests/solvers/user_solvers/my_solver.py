@@ -1,9 +1,5 @@
 """A user's solver, sound and broken in every way that the suite must name."""
 
-import subprocess
-import sys
-import time
-
 import dda
 from validation import History
 
@@ -21,11 +17,6 @@ def solve(scene):
 
 def displacement_only(scene):
     return {"displacement": solve(scene).displacement}
-
-
-def hangs(scene):
-    subprocess.run([sys.executable, "-c", "import time; time.sleep(60)"], check=True)
-    time.sleep(60)
 
 
 class Reporting:
