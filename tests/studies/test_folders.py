@@ -134,9 +134,9 @@ def test_a_folder_that_is_taken_away_leaves_the_others_whole(folder, tmp_path, m
 @pytest.mark.parametrize("name", thinned(study_names(), 9))
 def test_what_gates_and_derived_rows_need_is_run(name):
     study = get_study(name)
-    owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes())
+    owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes)
     needed = {pair for gate in study.gates() for pair in study.needs(gate)}
-    needed |= {tuple(pair) for recipe in study.recipes().values() for pair in recipe.needs}
+    needed |= {tuple(pair) for recipe in study.recipes.values() for pair in recipe.needs}
     assert not needed - owned
 
 

@@ -61,9 +61,9 @@ def rows_of(study, factor=1.0):
     """Return the numbers of a study's rows, each of the first cases of some scenes, by their names."""
     cases = {f"{case.solver} {case.scene.name}": case for case in study.cases()}
     rows = {(case.scene.name, case.solver): stand_in(key, case) for key, case in cases.items()}
-    finished = Finished(rows, Histories(cases, factor), study.recipes())
+    finished = Finished(rows, Histories(cases, factor), study.recipes)
     first = {}
-    for scene, name in study.recipes():
+    for scene, name in study.recipes:
         first.setdefault(name, {}).setdefault(scene_of(scene), scene)
     values = {}
     with np.errstate(all="ignore"):
