@@ -51,7 +51,6 @@ GENERALISED_ALPHA: dict[str, Callable[[float], Stages]] = {
     "hht": stages.hht,
     "wbz": stages.wbz,
 }
-POLISHING = 3  # of Newton's steps on the zeros of a polynomial, which are good to eight digits before
 
 
 class Composite(NamedTuple):
@@ -364,7 +363,7 @@ def _with_zero(polynomial: list[float], first: float) -> list[float]:
 def _zeros(polynomial: list[float]) -> list[complex]:
     """Return where a polynomial of second or third degree is zero."""
     if len(polynomial) > 3:
-        return [_polished(polynomial, complex(zero)) for zero in np.roots(polynomial)]
+        return [complex(zero) for zero in np.roots(polynomial)]
     a, b, c = polynomial
     half = -b / a / 2
     product = c / a
@@ -373,15 +372,3 @@ def _zeros(polynomial: list[float]) -> list[complex]:
         return [half + root, half - root]
     larger = half + math.copysign(root.real, half)  # the other one without a difference
     return [complex(larger), complex(product / larger if larger else 0.0)]
-
-
-def _polished(polynomial: list[float], zero: complex) -> complex:
-    """Return a zero of a polynomial after some of Newton's steps."""
-    for _ in range(POLISHING):
-        value = slope = 0j
-        for coefficient in polynomial:
-            slope = slope * zero + value
-            value = value * zero + coefficient
-        if abs(slope) > EPS and abs(value / slope) < abs(zero):
-            zero -= value / slope
-    return zero
