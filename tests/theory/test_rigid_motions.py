@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from validation import exact
 from validation.theory.corner_impact import FallingRectangle, on_springs, rigid_impulse
 from validation.theory.edges import edge
 from validation.theory.first_touch import MovingPolygon, first_touches, normals
@@ -44,6 +45,11 @@ def test_a_box_that_is_let_go_comes_down_and_keeps_its_momentum_about_the_new_co
     fall = rocked(9.0, [0.23, 0.0], event=lambda _, state: state[0])
     assert BOX.quarter_period(0.23) == pytest.approx(fall.t[-1], rel=1e-10)
     assert BOX.landing_rate(0.23) == pytest.approx(-fall.y[1, -1], rel=1e-10)
+    of_box = {"width": 0.7, "height": 1.9, "tilt": 0.23, "gravity": 3.7}
+    assert exact.rocking_quarter_period(**of_box) == pytest.approx(fall.t[-1], rel=1e-10)
+    after = rocked(0.4, [0.0, -fall.y[1, -1] * BOX.housner]).y[0, -1]  # on the other corner
+    tilts = exact.rocking_tilt([0.9, fall.t[-1] + 0.4], **of_box)
+    assert tilts == pytest.approx([rocked(0.9, [0.23, 0.0]).y[0, -1], -after], rel=1e-8)
     radius2, own = (0.7**2 + 1.9**2) / 4, (0.7**2 + 1.9**2) / 12
     assert BOX.housner == pytest.approx((own + radius2 * math.cos(2 * BOX.alpha)) / (own + radius2), rel=1e-13)
 
