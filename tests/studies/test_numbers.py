@@ -23,7 +23,7 @@ from validation.suite.folders import get_study, study_names
 from validation.suite.own_solver import gates
 
 KEPT = Path(__file__).with_name("numbers.toml")
-MOST = 12  # scenes of a row
+MOST = 16  # scenes of a row
 
 
 class Histories:

@@ -1,16 +1,15 @@
 """Quadratures and closed forms of rigid and strained motions against their equations, from Newton's laws once more."""
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 from validation import exact
-from validation.theory.corner_impact import FallingRectangle, on_springs, rigid_impulse
+from validation.theory.corner_impact import FallingRectangle, on_springs
 from validation.theory.edges import edge
-from validation.theory.first_touch import MovingPolygon, first_touches, normals
+from validation.theory.first_touch import MovingPolygon
 from validation.theory.rocking import Rectangle
 
 TIGHT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
@@ -123,25 +122,6 @@ def test_a_corner_rebounds_from_springs_by_the_gradient_of_their_energy(mu, ps):
     assert corner_of(np.array(rebound.state), number)[1] == pytest.approx(0.0, abs=1e-10)
 
 
-def test_stiff_springs_tend_to_the_rigid_impulse():
-    """It slips on, and where its slip has come to rest, slips back."""
-    for speed, mu in ((0.2, 0.15), (-4.0, 0.6), (4.0, 0.15)):
-        body = replace(FALLING, velocity=(speed, -2.0))
-        soft = on_springs(body, 1e11, 1e14, mu, 2.0).impulse
-        assert rigid_impulse(body, mu, 2.0) == pytest.approx(soft, rel=0.03)
-    landed = FALLING.flown(FALLING.landing(2.0)[0])
-    x, y = np.array(corner_of([*landed.place, landed.angle], FALLING.landing(2.0)[1])) - landed.place
-    mobility = 1 / 900.0 + x * x / FALLING.inertia
-    speed = landed.velocity[1] + landed.spin * x
-    assert rigid_impulse(FALLING, 0.0, 2.0) == (0.0, pytest.approx(-2 * speed / mobility, rel=1e-12))
-    # it holds from the first instant on where it comes straight down: both parts of its velocity take one impulse
-    square = np.array([[1 / 900.0 + y * y / FALLING.inertia, -x * y / FALLING.inertia], [0.0, mobility]])
-    square[1, 0] = square[0, 1]
-    still = replace(FALLING, velocity=(landed.spin * y, -0.6))
-    along, across = rigid_impulse(still, 0.9, 2.0)
-    assert along / across == pytest.approx(-square[0, 1] / square[0, 0], rel=1e-9)
-
-
 def test_a_smooth_corner_gives_all_energy_back_and_its_speed_across_the_plane():
     time, number = FALLING.landing(2.0)
     landed = FALLING.flown(time)
@@ -158,24 +138,6 @@ def test_a_smooth_corner_gives_all_energy_back_and_its_speed_across_the_plane():
 
 
 # ---- a first touch, an edge of what holds ----------------------------------------------------------------------------
-
-
-def test_a_corner_touches_an_edge_where_a_line_says_and_a_corner_within_a_cone():
-    square = np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
-    turned = square @ np.array([[0.6, 0.8], [-0.8, 0.6]])
-    upper = MovingPolygon(turned, (0.3, 4.0), (0.1, -2.0), 0.0)
-    (touch,) = first_touches(upper, MovingPolygon(square, (0.0, 0.0), (0.0, 0.0), 0.0), 3.0, 0.0)
-    lowest = int(np.argmin(turned[:, 1]))
-    time = (4.0 + turned[lowest, 1] - 1.0) / 2.0
-    assert (touch.time, touch.block, touch.corner, touch.edge) == (pytest.approx(time, abs=1e-12), 0, lowest, 2)
-    assert touch.foot == pytest.approx((1.0 - 0.3 - 0.1 * time - turned[lowest, 0]) / 2.0, abs=1e-11)
-    other = MovingPolygon(square, (0.0, 0.0), (0.0, 0.0), 0.0)
-    assert normals(upper, other, touch) == (pytest.approx(math.pi / 2),) * 2
-    aimed = replace(upper, centroid=(0.5 + 1.0 - turned[lowest, 0], 4.0), velocity=(-0.5 / 0.8, -2.0))
-    aimed = replace(aimed, velocity=(-0.5 / time, -2.0))
-    low, high = normals(aimed, other, replace(touch, foot=0.0, edge=2))
-    own = math.atan2(0.8, 0.6), math.pi - math.atan2(0.6, 0.8)  # of the two edges that meet in the lowest corner
-    assert (low, high) == (pytest.approx(max(0.0, min(own))), pytest.approx(min(math.pi / 2, max(own))))
 
 
 def test_a_polygon_turns_about_its_centroid_as_it_moves():
