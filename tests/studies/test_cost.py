@@ -11,15 +11,13 @@ from conftest import beside
 from faults import seams
 from faults.fault import Fault, swapped, times
 from faults.kill_matrix import check_kill_matrix
-from oracles.made_cases import between, kept_study, made_history, made_row
+from oracles.made_cases import made_history, made_row
 from oracles.pages import table
 from typer.testing import CliRunner
 
 from validation.cli.app import app
 from validation.engine.run import run_study
-from validation.engine.table import tidy
 from validation.errors import InputError
-from validation.runs.results import Results
 from validation.scenes.scene import Scene, load_scene
 from validation.solvers.registry import solve
 from validation.studies.cost import formulas, measures
@@ -164,43 +162,6 @@ def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
 
 
 # ---- the table of a study -----------------------------------------------------------------------------------------
-
-
-LINES = """
-figures-3-4 | dda |  | outcome | completed |  | None
-figures-3-4 | dda |  | mode1.damping | 0.17 | 1 | None
-figures-3-4 | dda |  | work.unknowns | 6 |  | None
-figures-3-4 | dda |  | work.solves | 41 |  | None
-figures-3-4 | dda |  | work.steps | 40 |  | None
-figures-3-4 | dda |  | seconds.setup | 0.25 | s | None
-figures-3-4 | dda |  | seconds.stepping | 0.5 | s | None
-figures-3-4 | dda |  | estimate | 2e-15 |  | None
-figures-3-4 | bar |  | outcome | completed |  | None
-figures-3-4 | bar |  | mode1.damping | 0.15 | 1 | None
-figures-3-4 | bar |  | seconds.stepping | 0.1 | s | None
-figures-3-4 | dda | bar | displacement.l2 | 0.031 | 1 | 1.0
-figures-3-4 | dda | bar | pressure.l2 | 0.032 | 1 | 1.0
-owner | order |  | power | 2.0 |  | None
-"""
-
-
-def test_every_number_of_a_study_is_a_line_with_what_it_is_of(tmp_path):
-    scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 40})
-    work = {"unknowns": 6, "solves": 41, "steps": 40}
-    spent = {"setup": 0.25, "stepping": 0.5}
-    rows = [
-        made_row("dda", {"mode1.damping": 0.17}, "w1", work=work, seconds=spent, estimate=2e-15),
-        made_row("bar", {"mode1.damping": 0.15}, "w1", seconds={"stepping": 0.1}),
-    ]
-    pairs = [between(scene.name, "dda", "bar", displacement_l2=0.031, pressure_l2=0.032)]
-    results = Results(tmp_path)
-    manifest = kept_study(results, [(scene, row, None) for row in rows], pairs)
-    derived = {"derived": [{"scene": "owner", "name": "order", "metrics": {"power": 2.0}}]}
-    lines = [
-        f"{row.scene} | {row.solver} | {row.reference} | {row.metric} | {row.value} | {row.unit} | {row.window}"
-        for row in tidy(results, manifest | derived)
-    ]
-    assert "\n".join(lines) == LINES.strip()
 
 
 # ---- orders -------------------------------------------------------------------------------------------------------
