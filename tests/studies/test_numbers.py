@@ -70,13 +70,14 @@ def rows_of(study, factor=1.0):
         for name, scenes in first.items():
             for scene in list(scenes.values())[:MOST]:
                 metrics = finished.row(scene, name).metrics
-                values.setdefault(f"row {name}", []).extend([*metrics.values(), 7.0 * len(metrics)])
+                values.setdefault(name, []).extend([*metrics.values(), 7.0 * len(metrics)])
     return {name: summed(found) for name, found in values.items()}
 
 
 def numbers(study):
     edges = [edge for gate in study.gates() for edge in (gate.low, gate.high)]
-    return {"bands": summed(edges), "data": summed(values_in(dict(study.data()))), **rows_of(study)}
+    found = {"bands": summed(edges), "data": summed(values_in(dict(study.data()))), **rows_of(study)}
+    return {name: value for name, value in found.items() if value}
 
 
 @pytest.mark.parametrize("name", study_names())
