@@ -55,7 +55,7 @@ def judged(study, gate, cases, directory):
 def test_what_a_gate_reads_is_enough_to_judge_it(scene, tmp_path, number):
     study = study_of(scene)
     gate = study.gates()[number]
-    asked = list(reads(gate, study.recipes()))
+    asked = list(reads(gate, study.recipes))
     whole = [case for case in study.cases() if (case.scene.name, case.solver) in study.needs(gate)]
     some = [
         replace(case, only=frozenset(metric for of, metric in asked if of == (case.scene.name, case.solver)))

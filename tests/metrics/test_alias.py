@@ -3,6 +3,7 @@
 import cmath
 import math
 import re
+from dataclasses import replace
 
 import pytest
 from conftest import typed
@@ -33,6 +34,8 @@ def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_
     w, c = m.modes[0].frequency, -math.log(gg) / 0.01
     assert w * m.step > math.pi
     assert first_axial(m, "numerical_frequency") == measured(m, "frequency") == measured(m, "damping") == ALIAS
+    slow = Mode(9.0, 1.0, (0.6 + 0.3j, 0.6 - 0.3j))
+    assert measured(replace(m, modes=(*m.modes[:1], slow)), "damping") == ALIAS
     assert first_axial(m, "frequency") == w
     assert first_axial(m, "damping") == pytest.approx(c / (2 * w), rel=1e-12, abs=1e-15)
     folded = abs(complex(-c / 2, 2 * math.pi / m.step - math.sqrt(w**2 - c**2 / 4)))

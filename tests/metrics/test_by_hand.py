@@ -66,6 +66,9 @@ def test_growth_is_that_of_the_last_values():
     assert growth.growth(developed[:7]) is None and growth.growth(np.zeros(20)) is None
     run = Measurable(History(n, {"displacement": developed}), 1.0, outcome=Outcome.COMPLETED)
     assert growth.growth_of_run(run) == UNDEFINED
+    left = replace(run, outcome=Outcome.OVERFLOW)
+    assert growth.growth_of_run(left) == pytest.approx(1.5, rel=1e-9)
+    assert growth.growth_of_run(replace(left, history=History(n, {"displacement": np.ones(60)}))) == UNDEFINED
 
 
 def test_angles_and_landings():
@@ -106,6 +109,7 @@ def test_landings_by_hand():
     at_once = record(force=np.array([1.0, 0, 0, 0, 0, 0, 0]))
     assert contact.landing(at_once)[0] == -0.125
     assert contact.restitution(record(force=np.zeros(7))) == UNDEFINED
+    assert contact.landing(record(force=np.zeros(7)))[0] == 0.0
     rising = record(velocity=np.array([-1.0, 0.5, -0.5, 1.0, 0.75, -3.0, 1.5]))
     assert contact.restitution(rising) == UNDEFINED
     assert contact.restitution(record(velocity=None)) == NOT_REPORTED
@@ -170,9 +174,11 @@ def test_a_swing_is_about_a_constant_or_the_mean_of_the_end():
     noise = np.random.default_rng(7).normal(size=80)
     assert swing(noise, 0.5).static == pytest.approx(np.mean(noise[-8:]))
     assert swing(noise[:12], 0.5, order=2).static == pytest.approx(np.mean(noise[10:12]))
-    assert swing(signal[:15], 0.5).pole is None
+    assert swing(signal[:15], 0.5).pole is None and swing(signal[:16], 0.5).static == pytest.approx(3.0)
+    assert swing(np.zeros(40), 0.5).static is None
     assert poles(noise, 0.5, order=2) == [] and LARGEST_MISFIT < 1
     assert not poles(np.full(40, np.inf), 0.5) and not poles(np.zeros(40), 0.5)
+    assert not poles(0.5 ** np.arange(50), 0.5) and not poles(np.ones(3), 0.5)
     (only,) = poles(signal - 3.0, 0.5)
     assert only.damping == pytest.approx(-np.log(0.97) / abs(np.log(0.97) + 0.4j), rel=1e-8)
 

@@ -160,19 +160,6 @@ def test_the_restitution_where_contact_lasts_two_steps(scheme, e, gap):
     assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
 
 
-@pytest.mark.long
-def test_the_horizon_ends_where_switches_have_amplified_rounding():
-    """Average acceleration on a stiff contact is chaotic, constant acceleration is not."""
-    stiff = {"contact.stiffness": 1e13, "time.step": 1e-4, "time.steps": 400}
-    scene = load_scene("unlocked-constant").expand()[0].with_values(stiff)
-    rough = scene.with_values({"time.alpha": 0.25, "time.delta": 0.5})
-    calm, wild = (execute(Case(s, "dda"), "", "")[0].metrics for s in (scene, rough))
-    assert calm["horizon.time"] == pytest.approx(0.04)
-    assert 0.003 < wild["horizon.time"] < 0.035
-    short = scene.with_values({"time.steps": 30})
-    assert "horizon.time" not in execute(Case(short, "block-events"), "", "")[0].metrics
-
-
 def test_histories_are_gated_up_to_the_horizon(tmp_path):
     rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
             (("dda", 0.3), ("fem", 0.2), ("block-events", NOT_REPORTED))}  # fmt: skip

@@ -41,32 +41,6 @@ def test_first_peak_is_the_top_of_the_first_excursion_beyond_static():
     assert first_peak(0.5 * np.ones(4), 1.0) is None
 
 
-@pytest.mark.parametrize(("decay", "turn", "step"), [(0.02, 0.3, 1e-3), (0.1, 1.1, 0.5), (0.0, 0.7, 2.0)])
-def test_pencil_finds_the_poles_of_a_signal(decay, turn, step):
-    n = np.arange(1, 120)
-    strong = np.exp(-decay * n) * np.cos(turn * n)
-    weak = 0.2 * np.exp(-0.04 * n) * np.sin(2.2 * n + 0.3)
-    found = pencil.poles(strong + weak, step)
-    size = math.hypot(decay, turn)
-    assert found[0].damping == pytest.approx(decay / size, abs=1e-10)
-    assert found[0].frequency == pytest.approx(size / step, rel=1e-10)
-    assert found[1].amplitude == pytest.approx(0.2 * math.exp(-0.04), rel=1e-9)  # at the first sample, n = 1
-
-
-def test_pencil_of_nothing_is_nothing():
-    assert pencil.poles(np.zeros(50), 1.0) == []
-    assert pencil.poles(0.5 ** np.arange(50), 1.0) == []
-    assert pencil.poles(np.ones(3), 1.0) == []
-
-
-def test_a_swing_needs_twice_as_many_samples_as_powers():
-    n = np.arange(40)
-    signal = 2.0 + np.cos(0.3 * n)
-    found = pencil.swing(signal[:16], 0.5)
-    assert found.pole.frequency == pytest.approx(0.6) and found.static == pytest.approx(2.0)
-    assert pencil.swing(signal[:15], 0.5) == pencil.swing(np.zeros(40), 0.5) == pencil.Swing(None, None)
-
-
 def test_damping_of_an_operator_by_kind_of_roots():
     xi, w = 0.2, 0.5
     root = np.exp((-xi + 1j * math.sqrt(1 - xi * xi)) * w)
@@ -129,15 +103,6 @@ def test_a_long_history_is_measured_without_aliases(steps):
     found = pencil.poles(np.real(decay ** np.arange(steps)), dt)[0]
     assert found.frequency == pytest.approx(frequency, rel=1e-9)
     assert found.damping == pytest.approx(damping, rel=1e-6)
-
-
-@pytest.mark.long
-def test_a_slow_history_is_measured_over_more_than_its_first_samples():
-    """400 of 9000 samples hold a fifteenth of a period."""
-    frequency, damping, dt = 100.0, 0.01, 1e-5
-    decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
-    found = pencil.poles(np.real(decay ** np.arange(9000)) * (1 + 1e-9 * np.cos(np.arange(9000) ** 2)), dt, order=2)[0]
-    assert found.frequency == pytest.approx(frequency, rel=1e-6)
 
 
 def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read():

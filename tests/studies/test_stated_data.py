@@ -11,7 +11,7 @@ from validation.studies.impacts import formulas as impacts
 from validation.studies.response import formulas as response
 from validation.studies.rocking import formulas as rocking
 from validation.studies.slopes import formulas as sliding
-from validation.suite.bands import cases
+from validation.suite.bands import cases, half_unit
 
 
 def test_the_scenes_of_impacts_hold_the_published_data():
@@ -71,3 +71,11 @@ def test_a_window_holds_whole_periods(name, frequencies):
     step = load_scene(name).expand()[0].time.step
     periods = np.array(frequencies) * step * response.WINDOWS[name]
     assert periods == pytest.approx(np.round(periods), rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("printed", "half"),
+    [("-0.04033057058886", 5e-15), ("3514046.36162", 5e-6), ("-9.871e-3", 5e-7), ("41", 0.5), (1e7, 0.0)],
+)
+def test_the_uncertainty_of_a_printed_number_is_half_a_unit_of_its_last_digit(printed, half):
+    assert half_unit(printed) == pytest.approx(half, rel=1e-9)

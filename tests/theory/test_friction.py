@@ -96,6 +96,11 @@ def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha, delta, gg, stop
     dt, w2 = case.time.step, friction.across(case) / friction.settlement(case)
     radius = np.max(np.abs(np.linalg.eigvals(amplification(alpha, delta, gg, w2 * dt**2))))
     assert friction.ringing_decay(case) == pytest.approx(-math.log(radius) / dt, rel=0.02, abs=1e-9)
+    other = case.with_values({"time.scheme": "chung-hulbert", "time.rho_inf": 0.8})
+    ringing = math.sqrt(w2)
+    assert friction.ringing_decay(other) == pytest.approx(
+        ringing * 0.000685871 * (ringing * dt) ** 3 + (1 - gg) / dt / 2
+    )
     if stops:
         held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
         until = friction.damped_creep(case) / friction.creep_scale(case)

@@ -23,21 +23,6 @@ def test_both_frequencies_of_an_oblong_block(oblong):
     assert found == pytest.approx(two_unknowns(oblong.block, 4e8), rel=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("alpha", "delta", "gg", "limit"),
-    [
-        (0.0, 0.5, 1.0, 2.0),  # central differences
-        (1 / 6, 0.5, 1.0, 2 * math.sqrt(3)),  # linear acceleration
-        (0.0, 0.7, 1.0, 1 / math.sqrt(0.35)),
-        (0.0, 0.7, 0.9, math.sqrt(3.8 / (0.5 + 0.9 * 0.9))),
-        (0.25, 0.5, 1.0, math.inf),
-    ],
-)
-def test_the_limit_of_a_scheme_is_where_a_root_passes_minus_one(scene, alpha, delta, gg, limit):
-    case = scene.with_values({"time.alpha": alpha, "time.delta": delta, "time.gg": gg})
-    assert expected.critical_omega(case) == pytest.approx(limit, rel=1e-12)
-
-
 def test_what_damping_has_left_at_the_last_step(oblong):
     case = oblong.with_values({"time.steps": 7, "time.gg": 0.9})
     steps = [amplification(0.5, 1.0, 0.9, (w * case.time.step) ** 2) for w in two_unknowns(case.block, 4e8)]

@@ -73,7 +73,7 @@ class StudyCases:
         for case, key in self.keyed:
             row = replace(self.rows[key], scene=case.scene.name, study=self.study.name, solver=case.solver)
             rows[case.scene.name, case.solver] = row
-        return Finished(rows, results, self.study.recipes())
+        return Finished(rows, results, self.study.recipes)
 
 
 def study_cases(study: Study, full: bool = False, ranks: int = 1) -> StudyCases:

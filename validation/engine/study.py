@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
+from functools import cached_property
 from typing import Any
 
 from validation.engine.case import MEASURES, Case
@@ -84,14 +85,14 @@ class Study:
         repeats = REPEATS if self.timed else 0
         return [Case(scene, solver, full, ranks, self.measures, repeats) for scene, solver in pairs]
 
-    def recipes(self) -> dict[tuple[str, str], Derived]:
-        """Return the derived rows by the names that gates address them with."""
+    @cached_property
+    def recipes(self) -> Mapping[tuple[str, str], Derived]:
+        """The derived rows by the names that gates address them with."""
         return {(row.scene, row.name): row for row in self.derived()}
 
     def needs(self, gate: Gate) -> list[tuple[str, str]]:
         """Return the (case, solver) pairs that a gate needs, those behind derived rows included."""
-        recipes = self.recipes()
         needs: list[tuple[str, str]] = []
         for name in gate.cases:
-            needs += recipes[name].needs if name in recipes else (name,)
+            needs += self.recipes[name].needs if name in self.recipes else (name,)
         return needs

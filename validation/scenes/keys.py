@@ -88,14 +88,19 @@ def check_needs(tables: Mapping[str, Section]) -> None:
     """
     for place, table in tables.items():
         for inside, entry in [("", table), *_entries(table)]:
-            for name, field, key in keys_of(type(entry)):
-                value = stated_value(entry, name) if key.needs else field.default
+            for name, field, key in _keys_with_needs(type(entry)):
+                value = stated_value(entry, name)
                 if value == field.default:
                     continue
                 for requirement in key.needs:
                     if not is_fulfilled(requirement, place, tables):
                         rule = f"{place}: {inside}{name} goes with {requirement} only"
                         raise ValueError(f"{rule}, got {stated_text(value)} without it")
+
+
+@functools.cache
+def _keys_with_needs(table: type[Section]) -> list[tuple[str, FieldInfo, Key]]:
+    return [entry for entry in keys_of(table) if entry[2].needs]
 
 
 def _entries(table: Section) -> Iterator[tuple[str, Section]]:

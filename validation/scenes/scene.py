@@ -97,13 +97,21 @@ class Scene(SceneTables):
         InputError
             A swept field or value is not allowed, or a case repeats.
         """
+        return self._expanded if self._swept() else (self,)
+
+    @functools.cached_property
+    def _expanded(self) -> tuple[Scene, ...]:
         lists = self._swept()
-        if not lists:
-            return (self,)
         rows = (
             zip(*lists.values(), strict=True) if self.sweep.get("mode") == "zip" else itertools.product(*lists.values())
         )
         return tuple(self._cases(lists, rows))
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """Return a copy with other values, which has cases of its own."""
+        copy = super().model_copy(update=update, deep=deep)
+        vars(copy).pop("_expanded", None)
+        return copy
 
     def _cases(self, lists: dict[str, list[Any]], rows: Iterable[tuple[Any, ...]]) -> Iterator[Scene]:
         names = set()
@@ -329,9 +337,18 @@ def load_scene(source: str | Path) -> Scene:
         The file cannot be read, is not TOML, or states something that is not allowed.
     """
     path = Path(source)
-    if path.suffix != ".toml":
-        path = scene_files().get(str(source), path)
-    data = _read_toml(path)
+    built_in = None if path.suffix == ".toml" else scene_files().get(str(source))
+    return _parsed(path, _read(path)) if built_in is None else _built_in(built_in, _read(built_in))
+
+
+@functools.cache
+def _built_in(path: Path, text: bytes) -> Scene:
+    """Return a built-in scene, which many studies name: one that has been loaded is the same, with its cases."""
+    return _parsed(path, text)
+
+
+def _parsed(path: Path, text: bytes) -> Scene:
+    data = _plain_data(path, text)
     refuse_unknown_keys(data, _all_tables(), path.name)
     _beside(path.parent, data)
     return parse_scene({"name": path.stem} | data, path.name)
@@ -387,10 +404,10 @@ def _value(table: Any, key: str) -> Any:
     return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
 
 
-def _read_toml(path: Path) -> dict[str, Any]:
+def _read(path: Path) -> bytes:
     try:
         regular(path, LARGEST_FILE)
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+        return path.read_bytes()
     except InputError:
         raise
     except FileNotFoundError:
@@ -400,13 +417,18 @@ def _read_toml(path: Path) -> dict[str, Any]:
         raise InputError("no such scene file", source=path, advice=advice) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
+    except ValueError:  # a zero byte, which no file's name holds
+        raise InputError("cannot be read: its name holds a zero byte", source=path) from None
+
+
+def _plain_data(path: Path, text: bytes) -> dict[str, Any]:
+    try:
+        return tomllib.loads(text.decode("utf-8-sig"))
     except UnicodeDecodeError:
         raise InputError("must be UTF-8 text", source=path, value="bytes that are not") from None
     except (ValueError, RecursionError) as error:  # TOMLDecodeError is one, so is an integer too long
-        if "\0" in str(path):  # which no file's name holds
-            raise InputError("cannot be read: its name holds a zero byte", source=path) from None
         advice = None
-        if comma := DECIMAL_COMMA.search(path.read_text(encoding="utf-8-sig", errors="replace")):
+        if comma := DECIMAL_COMMA.search(text.decode("utf-8-sig")):
             advice = f"{comma[1]}: a number has a point, and no comma"
         raise InputError(f"must be TOML: {' '.join(str(error).split())}", source=path, advice=advice) from None
 

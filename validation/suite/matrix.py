@@ -10,13 +10,12 @@ from __future__ import annotations
 import difflib
 import functools
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
 from itertools import chain
 
 from validation.engine.case import Case
-from validation.engine.finished import Derived
 from validation.engine.judge import evaluate, existing
 from validation.engine.run import finish
 from validation.errors import InputError
@@ -74,7 +73,7 @@ class Phenomenon:
 
     def needs(self, gate: Gate) -> Iterator[tuple[str, str]]:
         """Yield the cases that a gate needs, by scene and solver, those behind derived rows included."""
-        recipes = _recipes(self.study)
+        recipes = get_study(self.study).recipes
         for name in gate.cases:
             yield from recipes[name].needs if name in recipes else (name,)
 
@@ -89,11 +88,6 @@ class Phenomenon:
             others = JUDGED not in self.solvers(gate)
             groups.setdefault((others, gate.reference_kind != "exact", gate.reason), []).append(gate)
         return [groups[key] for key in sorted(groups, key=lambda key: key[:2])]
-
-
-@functools.cache
-def _recipes(study: str) -> Mapping[tuple[str, str], Derived]:
-    return get_study(study).recipes()
 
 
 def phenomena(studies: Iterable[str] | None = None) -> list[Phenomenon]:

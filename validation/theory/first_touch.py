@@ -7,6 +7,7 @@ looked for between samples and found to rounding.
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 
@@ -38,6 +39,11 @@ class MovingPolygon:
         placed: Array = np.stack([cosine * x - sine * y, sine * x + cosine * y], axis=-1) + middle[:, None, :]
         return placed
 
+    def corner(self, number: int, time: float) -> complex:
+        """Return the place of a corner at a time, x + i y [m]."""
+        turned = complex(*self.corners[number].tolist()) * cmath.rect(1.0, self.spin * time)
+        return turned + complex(*self.centroid) + time * complex(*self.velocity)
+
 
 @dataclass(frozen=True)
 class FirstTouch:
@@ -54,34 +60,20 @@ class FirstTouch:
 def first_touches(first: MovingPolygon, second: MovingPolygon, until: float, together: float) -> list[FirstTouch]:
     """Return the first touch of two polygons, and others that follow it within a time [s]."""
     times = np.linspace(0.0, until, SAMPLES + 1)
-    placed = first.at(times), second.at(times)
+    rings = [polygon.at(times) @ (1, 1j) for polygon in (first, second)]
     touches = []
     for block, (mover, other) in enumerate(((first, second), (second, first))):
-        for corner in range(len(mover.corners)):
-            for edge in range(len(other.corners)):
-                gaps = edge_axes(placed[block], placed[1 - block], corner, edge)[0]
-                touch = _touch(mover, other, corner, edge, times, gaps)
+        for edge in range(len(other.corners)):
+            start = rings[1 - block][:, edge, None]
+            end = rings[1 - block][:, edge - len(other.corners) + 1, None]
+            gaps = -((rings[block] - start) * np.conj(end - start)).imag  # in areas; of all corners
+            for corner in range(len(mover.corners)):
+                touch = _touch(mover, other, corner, edge, times, gaps[:, corner])
                 if touch is not None:
                     time, foot, normal = touch
                     touches.append(FirstTouch(time, block, corner, edge, foot, normal + math.pi * block))
-    touches.sort(key=lambda touch: touch.time)
+    touches.sort(key=lambda touch: (touch.time, touch.block, touch.corner, touch.edge))
     return [touch for touch in touches if touch.time <= touches[0].time + together]
-
-
-def edge_axes(corners: Array, edge_corners: Array, corner: int, edge: int) -> tuple[Array, Array, Array]:
-    """Return how far a corner is before an edge [m], where along it as a share, and the normals [rad], a time each.
-
-    Parameters
-    ----------
-    corners, edge_corners
-        Of the polygons of the corner and of the edge at the times, shape (times, corners, 2) [m].
-    """
-    start = edge_corners[:, edge]
-    along = edge_corners[:, (edge + 1) % edge_corners.shape[1]] - start
-    length = np.hypot(*along.T)
-    to = corners[:, corner] - start
-    gap = (along[:, 1] * to[:, 0] - along[:, 0] * to[:, 1]) / length
-    return gap, np.sum(along * to, axis=1) / length**2, np.arctan2(-along[:, 0], along[:, 1])
 
 
 def _touch(
@@ -89,16 +81,18 @@ def _touch(
 ) -> tuple[float, float, float] | None:
     """Return when a corner crosses an edge from before [s], at which share, and the edge's normal [rad]."""
 
-    def at(time: float) -> tuple[float, float, float]:
-        t = np.array([time])
-        distance, foot, normal = edge_axes(mover.at(t), other.at(t), corner, edge)
-        return float(distance[0]), float(foot[0]), float(normal[0])
+    def in_axes(time: float) -> tuple[complex, complex]:
+        """Return the corner along the edge and behind it, and the edge [m]."""
+        start = other.corner(edge, time)
+        along = other.corner(edge - len(other.corners) + 1, time) - start
+        return (mover.corner(corner, time) - start) * along.conjugate() / abs(along), along
 
     for k in np.flatnonzero((gap[:-1] > 0) & (gap[1:] <= 0)):
-        time = brentq(lambda t: at(t)[0], times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
-        _, foot, normal = at(time)
+        time = brentq(lambda t: in_axes(t)[0].imag, times[k], times[k + 1], xtol=1e-15, rtol=1e-14)
+        place, along = in_axes(time)
+        foot = place.real / abs(along)
         if -1e-12 <= foot <= 1 + 1e-12:
-            return time, foot, normal
+            return time, foot, cmath.phase(-1j * along)
     return None
 
 

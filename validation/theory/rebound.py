@@ -64,7 +64,7 @@ def midpoints(count: int) -> Array:
     return (np.arange(count) + 0.5) / count
 
 
-def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
+def spring_steps(stages: Stages, omega: float | Array, zeta: float = 0.0) -> Advance:
     """Return the step on a spring, with a dashpot if zeta > 0, or on a rigid stop if omega is infinite.
 
     Parameters
@@ -72,7 +72,7 @@ def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
     stages
         The scheme, of `validation.theory.stages`.
     omega
-        W = sqrt(k/m) dt.
+        W = sqrt(k/m) dt, or an array of finite ones, one for each phase.
 
     Raises
     ------
@@ -80,7 +80,8 @@ def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
         If a number is out of its range, or an explicit stage meets the rigid stop.
     """
     check(omega, zeta)
-    if math.isinf(omega) and any(stage.beta == 0 for stage in stages):
+    is_rigid = bool(np.any(np.isinf(omega)))
+    if is_rigid and any(stage.beta == 0 for stage in stages):
         raise ValueError("omega: must be finite in an explicit scheme, got inf")
 
     def advance(start: Motion) -> Motion:
@@ -94,7 +95,7 @@ def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
             weight = stage.equilibrium_weight
             N = pressing_force(omega, zeta, x, v, stage.beta * weight, stage.gamma * weight)
             x = x + stage.beta * weight * N
-            if math.isinf(omega):
+            if is_rigid:
                 x = np.where(N > 0, 0.0, x)  # and not the rounding of a difference, which would close it again
             before = Motion(x, v + stage.gamma * weight * N, a + weight * N, N, np.maximum(before.pressed, N))
         return before
@@ -102,9 +103,9 @@ def spring_steps(stages: Stages, omega: float, zeta: float = 0.0) -> Advance:
     return advance
 
 
-def pressing_force(omega: float, zeta: float, x: Array, v: Array, C: float, D: float) -> Array:
+def pressing_force(omega: float | Array, zeta: float, x: Array, v: Array, C: float, D: float) -> Array:
     """Return N1 from the free gap and rate at the end of a stage, and what a unit of force adds to both."""
-    if math.isinf(omega):
+    if np.any(np.isinf(omega)):
         force = -x / C
     else:
         k = omega * omega
@@ -113,7 +114,7 @@ def pressing_force(omega: float, zeta: float, x: Array, v: Array, C: float, D: f
     return np.where(x < 0, np.maximum(force, 0.0), 0.0)
 
 
-def conserving_steps(omega: float) -> Advance:
+def conserving_steps(omega: float | Array) -> Advance:
     """Return the step of energy-conserving contact (Armero and Petocz 1998), N = -(U1 - U0)/(x1 - x0).
 
     Raises
@@ -122,7 +123,7 @@ def conserving_steps(omega: float) -> Advance:
         If a number is out of its range; a rigid stop stores no energy.
     """
     check(omega)
-    if math.isinf(omega):
+    if np.any(np.isinf(omega)):
         raise ValueError("omega: must be finite with energy-conserving contact, got inf")
     k = omega * omega
 
@@ -157,22 +158,18 @@ def rebounds(advance: Advance, theta: ArrayLike) -> Array:
     if not np.all((phases >= 0) & (phases <= 1)):
         raise ValueError(f"theta: must be from 0 to 1, got {theta!r}")
     e = np.zeros_like(phases)
-    index = np.arange(len(phases))
-    rest = np.zeros_like(phases)
-    motion = Motion(1 - phases, rest - 1, rest, rest, rest)
-    flight = np.full(len(phases), -1)  # steps without force since the last one with it; -1 before the first
+    zero = np.zeros_like(phases)
+    motion = Motion(1 - phases, zero - 1, zero, zero, zero)
+    is_over = phases < 0
+    flight = np.full(len(phases), -math.inf)  # steps without force since the last one with it
     for _ in range(LONGEST):
         motion = advance(motion)
-        flight = np.where(motion.pressed > 0, 0, np.where(flight >= 0, flight + 1, -1))
-        over = (flight >= FLIGHT) & (motion.v >= 0)
-        e[index[over]] = motion.v[over]
-        over |= np.max(np.abs(motion), axis=0) < REST
-        if over.any():
-            motion = Motion(*(part[~over] for part in motion))
-            flight = flight[~over]
-            index = index[~over]
-            if not len(index):
-                break
+        flight = np.where(motion.pressed > 0, 0, flight + 1)
+        leaves = ~is_over & (flight >= FLIGHT) & (motion.v >= 0)
+        e[leaves] = motion.v[leaves]
+        is_over |= leaves | (sum(map(np.abs, motion)) < REST)
+        if is_over.all():
+            break
     return e
 
 
@@ -182,9 +179,9 @@ def rebound_statistics(advance: Advance, count: int = 100) -> ReboundStatistics:
     return ReboundStatistics(float(e.mean()), float(e.min()), float(e.max()), float((e * e).mean()))
 
 
-def check(omega: float, zeta: float = 0.0) -> None:
+def check(omega: float | Array, zeta: float = 0.0) -> None:
     """Raise ValueError where a number is out of its range."""
-    if not omega > 0:
+    if not np.all(np.asarray(omega) > 0):
         raise ValueError(f"omega: must be positive, got {omega!r}")
     if not (math.isfinite(zeta) and zeta >= 0):
         raise ValueError(f"damping_ratio: must be finite and not negative, got {zeta!r}")

@@ -131,18 +131,20 @@ def bar_response(scene: Scene, omega: Array) -> Array:
     """Response of modes w dt to a step load over their static values, from rest, shape (steps, modes)."""
     t = scene.time
     stages = Stepping.of(scene).stages
-    square = omega[:, None] ** 2
-    displacement, velocity, acceleration, load = np.eye(4)
-    end = step_end(stages, displacement, t.discount * velocity, acceleration, square, square * load)
-    # a step of a mode's (x, v, a, 1), from the right; twice as many steps at once as are known
-    power = np.stack([*np.broadcast_arrays(*end), np.broadcast_to(load, (len(omega), 4))], axis=2)
-    states = np.zeros((len(omega), 1, 4))
-    states[..., 0, 2] = omega**2 * (t.start == "consistent")
-    states[..., 3] = 1.0
-    while states.shape[1] <= t.steps:
-        states = np.concatenate([states, states @ power], axis=1)
+    displacement, velocity, acceleration = np.eye(3)
+    end = step_end(stages, displacement, t.discount * velocity, acceleration, omega[:, None] ** 2)
+    # a step of a mode's (x - 1, v, a), from the right; as many steps at once as are known
+    power = np.stack(end, axis=2)
+    states = np.zeros((len(omega), t.steps + 1, 3))
+    states[:, 0, 0] = -1.0
+    states[:, 0, 2] = omega**2 * (t.start == "consistent")
+    known = 1
+    while known <= t.steps:
+        more = min(known, t.steps + 1 - known)
+        states[:, known : known + more] = states[:, :more] @ power
         power = power @ power
-    return np.asarray(states[:, 1 : t.steps + 1, 0].T)
+        known += more
+    return np.asarray(1 + states[:, 1:, 0].T)
 
 
 def mesh_error(scene: Scene) -> dict[str, float]:

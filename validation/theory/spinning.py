@@ -25,8 +25,10 @@ It tips when q = 0: friction moves the reaction forward by mu h / 2.
 
 from __future__ import annotations
 
+import functools
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
@@ -59,8 +61,9 @@ class Spinning:
         """Angular momentum [kg m2/s]."""
         return self.spin * float(np.sum(self.moments))
 
-    def at(self, times: Array) -> dict[str, Array]:
-        """Return angle [rad] and strains of the block's own axes at some times [s]."""
+    @functools.lru_cache(maxsize=16)  # noqa: B019  # a run of a refinement ends where the others do
+    def motion(self, end: float) -> Any:
+        """Return F, row by row, and its rates as a function of the time up to an end [s]."""
         area = self.width * self.height
         shear = self.young / (2 * (1 + self.poisson))
         lame = self.young * self.poisson / (1 - self.poisson**2)
@@ -82,9 +85,11 @@ class Spinning:
             ]
 
         start = np.array([1.0, 0.0, 0.0, 1.0, 0.0, -self.spin, self.spin, 0.0])
-        span = (0.0, float(times[-1]))
-        solution = solve_ivp(rate, span, start, "DOP853", times, rtol=TOLERANCE, atol=1e-15)
-        a, b, c, d = solution.y[:4]  # F = [[a, b], [c, d]] = Q U
+        return solve_ivp(rate, (0.0, end), start, "DOP853", dense_output=True, rtol=TOLERANCE, atol=1e-15).sol
+
+    def at(self, times: Array) -> dict[str, Array]:
+        """Return angle [rad] and strains of the block's own axes at some times [s]."""
+        a, b, c, d = self.motion(float(times[-1]))(times)[:4]  # F = [[a, b], [c, d]] = Q U
         angle = np.unwrap(np.arctan2(c - b, a + d))
         cosine = np.cos(angle)
         sine = np.sin(angle)

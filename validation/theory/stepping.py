@@ -51,7 +51,6 @@ GENERALISED_ALPHA: dict[str, Callable[[float], Stages]] = {
     "hht": stages.hht,
     "wbz": stages.wbz,
 }
-POLISHING = 3  # of Newton's steps on the roots of a polynomial, which are good to eight digits before
 
 
 class Composite(NamedTuple):
@@ -264,30 +263,20 @@ class Stepping:
         if self.scheme == "composite":
             R = complex(self.composite.growth(np.asarray(1j * omega_dt)))
             # t^2 + (2 - trace) t + 1 - trace + det in t = z - 1
-            polynomial = np.array([1.0, 2 - (1 + gg) * R.real, 1 - (1 + gg) * R.real + gg * abs(R) ** 2])
+            polynomial = [1.0, 2 - (1 + gg) * R.real, 1 - (1 + gg) * R.real + gg * abs(R) ** 2]
         elif self.scheme == "leapfrog":
             square = omega_dt**2
-            polynomial = np.array([1.0, 1 - gg + square, square])
+            polynomial = [1.0, 1 - gg + square, square]
         else:
             numbers = self._numbers("polynomial")
-            inertia = np.array([1.0, 1 - gg, 0.0])
-            stiffness = np.convolve([numbers.beta, 0.5], [1.0, 1 - gg])
-            stiffness[1:] += gg * numbers.gamma, gg
+            inertia = [1.0, 1 - gg, 0.0]
+            stiffness = [numbers.beta, 0.5 + numbers.beta * (1 - gg) + gg * numbers.gamma, 0.5 * (1 - gg) + gg]
             if numbers.am != 0 or numbers.af != 0:  # else the third root is 0, of the factor z of both parts: Newmark's
-                inertia = np.convolve(inertia, [1 - numbers.am, 1.0])
-                stiffness = np.convolve([1 - numbers.af, 1.0], stiffness)
-            polynomial = np.polyadd(inertia, omega_dt**2 * stiffness)
-        turns = np.roots(polynomial).astype(complex)
-        slope = np.polyder(polynomial)
-        for _ in range(POLISHING):
-            slopes = np.polyval(slope, turns)
-            moves = np.divide(
-                np.polyval(polynomial, turns), slopes, out=np.zeros_like(turns), where=np.abs(slopes) > EPS
-            )
-            turns = turns - np.where(np.abs(moves) < np.abs(turns), moves, 0)
-        oscillating = np.abs(turns.imag) > 0
-        order = np.lexsort((-turns.imag, -np.round(np.abs(1 + turns), 14), ~oscillating))
-        return np.asarray(1 + turns[order], complex)
+                inertia = _with_zero(inertia, 1 - numbers.am)
+                stiffness = _with_zero(stiffness, 1 - numbers.af)
+            polynomial = [part + omega_dt**2 * other for part, other in zip(inertia, stiffness, strict=True)]
+        turns = sorted(_zeros(polynomial), key=lambda turn: (turn.imag == 0, -round(abs(1 + turn), 14), -turn.imag))
+        return 1 + np.array(turns, complex)
 
     def oscillates(self, omega_dt: float) -> bool:
         """Whether the principal roots are a complex pair."""
@@ -364,3 +353,22 @@ class Stepping:
         """
         algorithmic = (self.delta - 0.5) * self.step if self.scheme == "newmark" else 0.0
         return 2 * (1 - self.gg) / ((1 + self.gg) * self.step), algorithmic
+
+
+def _with_zero(polynomial: list[float], first: float) -> list[float]:
+    """Return a polynomial times first t + 1."""
+    return [first * one + other for one, other in zip([*polynomial, 0.0], [0.0, *polynomial], strict=True)]
+
+
+def _zeros(polynomial: list[float]) -> list[complex]:
+    """Return where a polynomial of second or third degree is zero."""
+    if len(polynomial) > 3:
+        return [complex(zero) for zero in np.roots(polynomial)]
+    a, b, c = polynomial
+    half = -b / a / 2
+    product = c / a
+    root = cmath.sqrt(half * half - product)
+    if root.imag:
+        return [half + root, half - root]
+    larger = half + math.copysign(root.real, half)  # the other one without a difference
+    return [complex(larger), complex(product / larger if larger else 0.0)]

@@ -317,17 +317,17 @@ def slid_distance(case: Scene, history: History) -> Metrics:
 
 def compared_map(scheme: Method, finished: Finished) -> Metrics:
     """Return the largest difference of DDA's restitution from the map, and the greatest restitution."""
-    differences = []
     restitutions = []
+    omegas = []
+    phases = []
     for case in expanded(impacts(scheme)):
         history = finished.needed_history(case.name, "dda").displacement
-        restitution = float(history[-1] - history[-2]) / case.time.step / -case.block.velocity
-        omega = math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step
+        restitutions.append(float(history[-1] - history[-2]) / case.time.step / -case.block.velocity)
+        omegas.append(math.sqrt(2 * case.contact.stiffness / case.block.mass) * case.time.step)
         steps = case.contact.gap / (-case.block.velocity * case.time.step)
-        phase = math.ceil(steps) - steps
-        differences.append(abs(restitution - float(rebound.rebounds(scheme.step_of_impact(omega), [phase])[0])))
-        restitutions.append(restitution)
-    return {"largest difference": max(differences), "greatest": max(restitutions)}
+        phases.append(math.ceil(steps) - steps)
+    mapped = rebound.rebounds(scheme.step_of_impact(np.array(omegas)), phases)
+    return {"largest difference": np.max(np.abs(restitutions - mapped)), "greatest": max(restitutions)}
 
 
 @functools.cache
@@ -406,9 +406,12 @@ def data() -> Mapping[str, Any]:
         ratios = [scheme.stepping.damping_ratio(float(omega)) for omega in DAMPED_OMEGAS]
         damping.append(named | {"omega": [*map(_short, DAMPED_OMEGAS)], "damping": [*map(_short, ratios)]})
         if scheme.id in MAP_CURVES:
-            rows = [rebound.rebound_statistics(scheme.step_of_impact(float(w)), count=MAP_PHASES) for w in MAP_OMEGAS]
-            parts = {part: [_short(getattr(row, part)) for row in rows] for part in ("mean", "least", "most")}
-            landings.append(named | {"omega": [*map(_short, MAP_OMEGAS)]} | parts)
+            step = scheme.step_of_impact(np.repeat(MAP_OMEGAS, MAP_PHASES))
+            phases = np.tile(rebound.midpoints(MAP_PHASES), len(MAP_OMEGAS))
+            e = rebound.rebounds(step, phases).reshape(-1, MAP_PHASES)
+            parts = {"mean": np.mean(e, axis=1), "least": np.min(e, axis=1), "most": np.max(e, axis=1)}
+            curves = {part: [*map(_short, values)] for part, values in parts.items()}
+            landings.append(named | {"omega": [*map(_short, MAP_OMEGAS)]} | curves)
     return {"damping": damping, "impacts": landings, "labels": {scheme.id: scheme.label for scheme in METHODS}}
 
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from validation.runs.history import Array
 from validation.scenes.scene import Scene
 from validation.theory import rebound, stages
 from validation.theory.stepping import Stepping
@@ -36,7 +37,7 @@ class Method:
         """Order in the step where contact opens and closes."""
         return 1 if self.values.get("contact.rule") == "implicit" else self.stepping.order
 
-    def step_of_impact(self, omega: float) -> rebound.Advance:
+    def step_of_impact(self, omega: float | Array) -> rebound.Advance:
         """Return the step of a rigid mass on a spring, W = sqrt(k/m) dt."""
         rule = self.values.get("contact.rule")
         if rule == "energy-conserving":

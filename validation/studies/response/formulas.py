@@ -136,20 +136,6 @@ def mesh_gates() -> Iterator[Gate]:
                 yield gate(answer.name, row_name("fem", f), f"{part}.mesh", about(mesh, half), why)
 
 
-def amplitudes() -> Iterator[dict[str, Any]]:
-    """Yield the closed forms of block and bar, a row a frequency, as the reference pack has them."""
-    for answer in answers():
-        t = answer.scene.time
-        scheme = {"alpha": t.alpha, "delta": t.delta, "gg": t.discount, "step": 0.0 if answer.exact else t.step}
-        for solver, f in itertools.product(("dda", "bar"), FREQUENCIES):
-            row = scheme | {"model": solver, "frequency": f}
-            closed = answer.closed(solver, f)
-            for column in COLUMNS:
-                size, phase = polar(getattr(closed, column))
-                row |= {column: float(size[0]), f"{column}_phase": float(phase[0])}
-            yield row
-
-
 # ---- stepped on a base that vibrates --------------------------------------------------------------------------------
 
 

@@ -6,6 +6,7 @@ discount; beside it every other datum is driven to its extremes alone.
 
 from __future__ import annotations
 
+import functools
 import itertools
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
@@ -115,16 +116,18 @@ def grown(case: Scene) -> Iterator[Gate]:
     yield gate(case, "dda", "stability.growth", ((1 - 1e-6) * rate, (1 + 1e-6) * rate), why)
 
 
-def all_scenes() -> list[Scene]:
+@functools.cache
+def all_scenes() -> tuple[Scene, ...]:
     """Return the matrix, and the extremes of every other datum alone."""
-    return [*matrix(), *factors(list(FACTORS))]
+    return (*matrix(), *factors(list(FACTORS)))
 
 
-def corners() -> list[Scene]:
+@functools.cache
+def corners() -> tuple[Scene, ...]:
     """Return the corners of the matrix: each start with one scheme, and an explicit one; and no load."""
     sweep = {"contact.stiffness": [1.0, 1e21, 1e24], "time.step": [1e-9, 1e-3, 1e3]}
     schemes = ((0.5, 1.0, "zero"), (0.25, 0.5, "consistent"), (0.0, 0.5, "zero"))
-    return [*(scheme_scene(*corner, sweep) for corner in schemes), *factors(["pressure"])]
+    return (*(scheme_scene(*corner, sweep) for corner in schemes), *factors(["pressure"]))
 
 
 def gates() -> Iterator[Gate]:

@@ -12,7 +12,6 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import replace
 
 from validation.engine.case import Case
-from validation.engine.finished import Derived
 from validation.engine.judge import reads
 from validation.engine.study import Study
 from validation.gates.gate import Gate
@@ -147,15 +146,9 @@ def asked(studies: tuple[str, ...]) -> Mapping[tuple[str, str], frozenset[str]]:
     metrics_by_case: dict[tuple[str, str], set[str]] = {}
     for study in studies:
         for gate in get_study(study).gates():
-            for case, metric in reads(gate, recipes(study)):
+            for case, metric in reads(gate, study_of(study).recipes):
                 metrics_by_case.setdefault(case, set()).add(metric)
     return {case: frozenset(metrics) for case, metrics in metrics_by_case.items()}
-
-
-@functools.cache
-def recipes(study: str) -> Mapping[tuple[str, str], Derived]:
-    """Return the derived rows of a study."""
-    return study_of(study).recipes()
 
 
 def applies(study: str, gate: Gate) -> bool:

@@ -77,7 +77,7 @@ class GateRuns:
     def finished(self, study: str) -> Finished:
         """Return the cases that have been run, with what is derived from them in a study."""
         if study not in self._finished:
-            self._finished[study] = Finished(self.rows, self.results, gates.recipes(study))
+            self._finished[study] = Finished(self.rows, self.results, gates.study_of(study).recipes)
         return self._finished[study]
 
     def run(self, study: str, names: Iterable[tuple[str, str]]) -> None:

@@ -1,0 +1,68 @@
+"""Formulas of rows and bands whose terms no scene tells apart: at odd numbers, beside values by hand."""
+
+import math
+from types import SimpleNamespace
+
+import pytest
+from oracles.made_cases import made_row
+
+from validation.gates.gate import Gate, Status, Verdict
+from validation.metrics.values import NOT_REPORTED
+from validation.scenes.scene import load_scene
+from validation.studies.beams import formulas as beams
+from validation.studies.patch import formulas as patch
+from validation.studies.waves import formulas as waves
+from validation.suite.matrix import _reported
+from validation.suite.own_solver.block_data import MISREADINGS, is_misread
+
+
+def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
+    elements = made_row("fem", {"displacement.static": 2.0, "frequency.1": 40.0, "frequency.2": "undefined"})
+    levels = []
+    for static, frequency in ((9.0, 9.0), (2.16, 41.2), (2.02, 40.6)):
+        row = made_row("dda", {"displacement.static": static, "frequency.1": frequency, "frequency.2": 1.0, "x": 1.0})
+        levels.append((None, row, elements))
+    assert beams.ratios(*levels[1]) == pytest.approx({"displacement.static": 1.08, "frequency.1": 1.03})
+    assert beams.orders(levels) == pytest.approx({"displacement.static": 3.0, "frequency.1": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("hypothesis", "modulus", "ratio"), [("plane stress", 7.0, 0.2), ("plane strain", 7 / 0.96, 0.25)]
+)
+def test_a_patch_is_longer_by_both_stresses(hypothesis, modulus, ratio):
+    plane = SimpleNamespace(
+        polygons=[[(1, 0), (2, 5)], [(2, 1), (4, 0)]],
+        stress=(2.0, 5.0, 9.0),
+        young=7.0,
+        poisson=0.2,
+        hypothesis=hypothesis,
+    )
+    case = SimpleNamespace(table=lambda section: plane)
+    assert patch._elastic(case) == pytest.approx(3 * (2 - ratio * 5) / modulus)
+
+
+def test_waves_in_a_layer_are_told_by_its_blocks(monkeypatch):
+    layer = SimpleNamespace(thickness=6.0, blocks=4, density=3.0)
+    column = SimpleNamespace(layer=[layer], modulus=lambda layer: 12.0, glue=5.0)
+    monkeypatch.setattr(waves, "column_of", lambda case: column)
+    case = SimpleNamespace(time=SimpleNamespace(step=0.3, alpha=0.25, delta=0.5, discount=0.98))
+    assert waves.closed(case) == {"courant": 0.4, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
+    column.glue = None
+    assert "glue" not in waves.closed(case)
+
+
+def test_a_block_is_misread_where_it_would_rest_elsewhere():
+    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    of_square = [is_misread(square, one) for one in MISREADINGS]
+    assert of_square == [False] * len(MISREADINGS)
+    odd = square.with_values({"block.width": 1.5, "block.height": 2.5, "block.poisson": 0.2, "load.eccentricity": 0.1})
+    assert [is_misread(odd, one) for one in MISREADINGS] == [True, True, True, True, False, True, False, True, True]
+    unloaded = odd.with_values({"load.eccentricity": 0.0, "load.pressure": 0.0})
+    assert not any(is_misread(unloaded, one) for one in MISREADINGS)
+
+
+def test_what_a_solver_cannot_report_is_no_failure():
+    gate = Gate("s", ("mine",), "m", 0.0, 1.0, "r")
+    assert _reported(Verdict(gate, NOT_REPORTED, Status.FAIL)).status is Status.NOT_RUN
+    failed = Verdict(gate, math.pi, Status.FAIL)
+    assert _reported(failed) is failed
