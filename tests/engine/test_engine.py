@@ -284,7 +284,7 @@ def test_what_fails_beside_a_solver_is_a_row(scene, monkeypatch):
     case = Case(scene, "dda")
     pending = Pending(case, case.key(), "study")
     assert pending.memory() > 0
-    monkeypatch.setattr(measure, "_executed", lambda *given: 1 / 0)
+    monkeypatch.setattr(measure, "attempt", lambda *given, **more: 1 / 0)
     row, history = pending.run()
     assert (row.outcome, history) == (Outcome.RAISED, None)
     assert (row.key, row.scene, row.solver, row.study) == (pending.key, "small", "dda", "study")

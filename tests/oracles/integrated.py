@@ -8,9 +8,10 @@ motions but the problem, and knows nothing of series or balls.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
+from flint import arb
 from scipy.integrate import solve_ivp
 
 from fem_reference.events import column_drive as drives
@@ -220,6 +221,26 @@ def integrated_block(problem, states, end):
 # ---- columns ---------------------------------------------------------------------------------------------------------
 
 
+@dataclass(frozen=True)
+class IntegratedColumn:
+    """What DOP853 gives."""
+
+    switches: list[tuple[str, float]]  # joint with the letter of its kind, and instant [s]
+    displacement: np.ndarray  # mean of the faces of each block at the end [m]
+    slip: np.ndarray  # reference of each joint [m]
+
+
+def value_of(drive):
+    """A drive and its derivatives at an instant in floats."""
+    course = drive()
+
+    def value(t, order):
+        piece = course.piece_at(t)
+        return float(piece.series(arb(t), 1.0, 3)[order]) * math.factorial(order)
+
+    return value
+
+
 class Assembly:
     """Matrices of the faces of a column's blocks, those that move alike being one unknown."""
 
@@ -246,6 +267,49 @@ class Assembly:
         self.bottom = P[0]
         self.top = P[-1]
         self.velocity = np.array([blocks[face // 2].velocity for face in np.flatnonzero(moves)])
+
+
+def integrated_column(problem, end):
+    """Integrate a column whose lowest block stands on a spring, a half-space or nothing, from t = 0."""
+    form = Assembly(problem)
+    B, k, joints = form.B, form.stiffness, form.joints
+    base, pressure = value_of(problem.base_motion), value_of(problem.pressure)
+    unilateral = problem.law == "unilateral"
+    way = int(unilateral)  # of a joint's row: along or across
+    rows = np.zeros((len(B), 2, len(form.M)))
+    rows[:, way] = B
+    frequencies = np.linalg.eigvals(np.linalg.solve(form.M, form.K + B.T @ (k[:, None] * B)))
+
+    def place(t):
+        at = np.zeros((2, len(B), 2))
+        at[:, :, way] = np.outer([base(t, 0), base(t, 1)], form.on_base)
+        return at
+
+    def load(t, v):
+        wave = 2 * problem.impedance * base(t, 1) if problem.base == "transmitting" else 0.0
+        return form.weight - form.C @ v - form.top * pressure(t, 0) + form.bottom * wave
+
+    column = Integration(
+        *(form.M, form.K, load, rows, place, form.gap, k, 0 * k if unilateral else k),
+        opens=unilateral,
+        slips=not unilateral,
+        cohesion=form.strength,
+        max_step=0.15 / math.sqrt(np.abs(frequencies).max()),
+    )
+    u = np.zeros(len(form.M))
+    if problem.at_rest:
+        known = k * (form.on_base * base(0.0, 0) - form.gap)
+        u = np.linalg.solve(form.K + B.T @ (k[:, None] * B), form.weight + B.T @ known)
+    closed = B @ u - form.on_base * base(0.0, 0) + form.gap <= 0
+    states = [STICKS if shut or not unilateral else OPEN for shut in closed]
+    breaks = {b for drive in (problem.base_motion, problem.pressure) for b in drive().breaks}
+    found, y = column.run(states, np.concatenate([u, form.velocity]), end, breaks)
+    letters = {OPEN: "O", STICKS: "C" if unilateral else "K", RIGHT: "+", LEFT: "-"}
+    slip = np.zeros(len(problem.blocks))
+    slip[joints] = [column.reference(c, end, y) for c in range(len(joints))]
+    faces = form.P @ y[: len(form.M)]
+    switches = [(f"{joints[c]}{letters[state]}", t) for t, c, state in found]
+    return IntegratedColumn(switches, (faces[::2] + faces[1::2]) / 2, slip)
 
 
 def random_column(seed):
