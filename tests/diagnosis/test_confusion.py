@@ -54,7 +54,7 @@ def test_the_counts_of_the_documentation_are_these(fifty):
     ("kind", "seeds", "least"),
     [
         # an opened contact beside a load of 0.99999998; two numbers of a product for two others
-        ("slips", [*range(4), 42, 117], 3),
+        ("slips", [*range(4), 5, 42, 117], 3),
         # the horizon of `bar` beside the last one is its first row
         ("schemes", [80, 88, 96, 104, 108], 2),
     ],

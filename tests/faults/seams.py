@@ -39,9 +39,10 @@ from fem_reference.plane import elements as plane_elements
 from fem_reference.scheme import eigen as fem_eigen
 from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
-from validation.diagnosis import other_solvers, reading, search
-from validation.diagnosis.fits import bar
+from validation.diagnosis import other_solvers, reading
 from validation.engine import origin
+from validation.entry import plugin
+from validation.problems import models
 from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
 from validation.solvers.columns import blocks as dda_columns
@@ -178,12 +179,9 @@ LINE_HISTORIES = Seam(line_stepping, line_stepping.histories)
 LAYERS_THROUGH = Seam(layers, layers.through)
 
 # The suite itself
-SEARCH_MOVES = Seam(search, search.moves)
-DECISION_ACCEPTED = Seam(search, search.accepted)
-DECISION_CANONICAL = Seam(search, search._canonical)
-DECISION_DETERMINED = Seam(search, search.is_determined)
-BAR_HOLDS = Seam(bar.Bar, bar.Bar.holds)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)
+PROBLEM_RUNS = Seam(models, models._run_by)
+LOADED_SOLVER = Seam(plugin, plugin._check_loads)
 ORIGIN = Seam(origin, origin._here)
 IMPORTED_SOLVER = Seam(registry, registry._imported)

@@ -5,6 +5,7 @@ import signal
 from types import SimpleNamespace
 
 import pytest
+from faults import seams
 
 from validation import cli
 from validation.entry import command, plugin
@@ -51,7 +52,7 @@ def test_a_solver_that_does_not_load_is_refused_before_any_gate(monkeypatch):
 def test_pytest_is_given_a_solver_and_a_time_limit(monkeypatch):
     lines = []
     loaded = []
-    monkeypatch.setattr(plugin, "_check_loads", loaded.append)
+    seams.LOADED_SOLVER.put(monkeypatch, loaded.append)
     monkeypatch.setattr(plugin, "shadowed", lambda: None)
 
     def config(user, **fields):

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from faults import seams
 from oracles import swings
 
 from validation.diagnosis.answer import Answer
@@ -39,7 +40,7 @@ STANDARD = standard_of(EXACT, {name: motion(values, exact=True) for name, values
 
 @pytest.fixture(autouse=True)
 def by_formula(monkeypatch):
-    monkeypatch.setattr(models, "_run_by", lambda scene, values, name: motion(values, name != "dda", scene))
+    seams.PROBLEM_RUNS.put(monkeypatch, lambda scene, values, name: motion(values, name != "dda", scene))
     monkeypatch.setattr(models, "runs_of", Runs)
     monkeypatch.setattr(module, "runs_of", Runs)
     monkeypatch.setattr(module, "compared", lambda scene, history: None)
@@ -202,7 +203,7 @@ def test_a_run_stands_for_the_exact_motion_where_it_is_near_enough(monkeypatch):
     )
     off = History(EXACT.time, {name: 1.01 * x for name, x in EXACT.columns.items()})
     assert Runs(SCENE, replace(STANDARD, exact=off)).exact() is None
-    monkeypatch.setattr(models, "_run_by", lambda *given: None)
+    seams.PROBLEM_RUNS.put(monkeypatch, lambda *given: None)
     assert Runs(SCENE, STANDARD).exact() is None and Runs(SCENE, STANDARD).sampled(base) is None
 
 
@@ -246,8 +247,6 @@ def test_programs_step_by_these_schemes():
 
 
 def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
-    run_by = models.Runs.dense.__globals__["_run_by"]
-    assert run_by is models._run_by
     monkeypatch.undo()
     ends = {
         "refusal": lambda scene: None,
