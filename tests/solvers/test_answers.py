@@ -80,12 +80,13 @@ def told(scene):
     drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
     advice = AdviceHooks.of(scene)
     asked = {} if get_solver("fenicsx").refusal(scene) else request(scene)  # of another program
-    facts = [*advice.motions(scene), *unless_refused(lambda: advice.layers(scene)), advice.contact_limits(scene)]
+    facts = [*advice.motions(scene), advice.contact_limits(scene)]
     return {
         "drawn": zlib.crc32("\n".join(drawn).encode()),
         "shown": [number.value for number in showing.numbers(scene)],
         "springs": showing.springs([scene], lambda solver, metric: [0.7, -0.3]),
         "advice": [repr(fact) for fact in facts],
+        "layers": unless_refused(lambda: advice.layers(scene)),
         "implausible": [value.sentence for value in implausible_values(scene)],
         "problem": unless_refused(lambda: lines(scene)),
         "asked": {name: repr(value) for name, value in asked.items()},

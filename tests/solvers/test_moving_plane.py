@@ -10,6 +10,7 @@ import pytest
 import dda
 from validation.errors import InputError
 from validation.models.plane.blocks import PlaneBlockSection, second_moments
+from validation.models.plane.generators import WallSection
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.models.plane.moving import model_of
 from validation.runs.run import Outcome
@@ -134,3 +135,15 @@ def test_a_regular_polygon_has_the_corners_and_the_moments_of_its_radius():
     expected = [(2.0, 0.0), (-1.0, math.sqrt(3)), (-1.0, -math.sqrt(3))]
     assert np.array(triangle) == pytest.approx(np.array(expected))
     assert second_moments(triangle) == pytest.approx(1.5 * math.sqrt(3) * np.eye(2), abs=1e-12)  # sqrt(3) a^4 / 96
+
+
+def test_a_wall_is_in_running_bond():
+    wall = WallSection(name="wall", rows=2, bricks=2, rectangle=(1.0, 0.5))
+    ends = {name: (corners[0], corners[2]) for name, corners, _ in wall.outlines()}
+    assert ends == {
+        "1_1": ((0.0, 0.0), (1.0, 0.5)),
+        "1_2": ((1.0, 0.0), (2.0, 0.5)),
+        "2_1": ((0.0, 0.5), (0.5, 1.0)),
+        "2_2": ((0.5, 0.5), (1.5, 1.0)),
+        "2_3": ((1.5, 0.5), (2.0, 1.0)),
+    }
