@@ -44,12 +44,16 @@ def whole(fault, faulty):
 def cases_of(study, gates):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
-    return as_gates_run([case for case in study.cases() if (case.scene.name, case.solver) in needed])
+    return as_gates_run(study, [case for case in study.cases() if (case.scene.name, case.solver) in needed])
 
 
-def as_gates_run(cases):
-    """Return cases with the metrics alone that gates ask for, whose rows `validation/test_gates.py` has finished."""
-    metrics = asked(tuple(judged_studies()))
+def as_gates_run(study, cases):
+    """Return cases of a study with the metrics alone that gates ask for.
+
+    Their rows are those that `validation/test_gates.py` has finished, but for a study whose gates it leaves out.
+    """
+    judged = tuple(judged_studies())
+    metrics = asked(judged if study.name in judged else (study.name,))
     return [replace(case, only=metrics.get((case.scene.name, case.solver), frozenset())) for case in cases]
 
 
