@@ -29,7 +29,7 @@ def over_maximum(found, expected):
 CONTINUA = product(COLUMNS, SOFTNESS, [0.25, 0.2371], [1e-6, 0.0, 1.0, 300.0])
 
 
-@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 47))
+@pytest.mark.parametrize(("column", "kappa", "step", "rate"), thinned(CONTINUA, 48))
 def test_the_continuum(column, kappa, rate, step):
     """On the fronts, where a quarter of a travel time falls, and away from them; without damping and diffusive."""
     times, looked = step * np.arange(1, 61), [19]
