@@ -62,7 +62,7 @@ SCHEMES = {
 }
 
 
-@pytest.mark.parametrize(("name", "omega", "zeta"), thinned([(n, *x) for n in SCHEMES for x in RATES], 4))
+@pytest.mark.parametrize(("name", "omega", "zeta"), thinned([(n, *x) for n in SCHEMES for x in RATES], 5))
 def test_a_rigid_block_rebounds_from_dashpots_by_the_map_of_its_scheme(name, omega, zeta):
     scheme, table = SCHEMES[name]
     check_rebounds(scheme, spring_steps(table, omega, zeta=zeta), omega, zeta=zeta)

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 
 import dda.bodies.glued_step as step
 from dda import (
@@ -35,7 +36,7 @@ def run(model, counts=(3, 2), scheme=CONSTANT, steps=150, glue=GLUE, pattern="sq
     return solve_unilateral(opening_subdivided(model, *counts, glue, pattern), scheme, steps, options=options)
 
 
-@pytest.mark.parametrize(("eccentricity", "pattern"), [(0.0, "squares"), (0.2, "triangles")])
+@pytest.mark.parametrize(("eccentricity", "pattern"), thinned([(0.2, "triangles"), (0.0, "squares")], 2))
 def test_a_base_that_never_opens_is_the_locked_one(eccentricity, pattern):
     scheme, columns = Scheme(0.5, 1.0, 0.98, 1e-2), ("displacement", "contact_pressure", "rotation")
     locked = TwoBlockModel(PAPER.block, Contact(1e9, 0.4e9), 3.1e6, eccentricity=eccentricity)

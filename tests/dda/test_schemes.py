@@ -138,7 +138,7 @@ def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along
     frequency = 25.0
     step = 4e-4
     scheme = scheme_of(name, values, step, 0.75)
-    steps = 200
+    steps = 180
     t = scheme.instants(steps)
     cosine = np.cos(2 * np.pi * frequency * t)
     motion = None if along is None else BaseMotion(t, 1e-3 * np.outer(cosine - 1, along))

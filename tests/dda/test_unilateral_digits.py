@@ -49,7 +49,9 @@ def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
 CORNERS = [(1e3, 1e3), (1e9, 1e-9), (1e9, 1e-3), (1e13, 1e-4), (1e24, 1e-4), (1e24, 1e3)]
 
 
-@pytest.mark.parametrize(("p", "dt", "glued"), thinned([(*pair, glued) for pair in CORNERS for glued in (0.0, 0.4)], 7))
+@pytest.mark.parametrize(
+    ("p", "dt", "glued"), thinned([(*pair, glued) for pair in CORNERS for glued in (0.0, 0.4)][::-1], 12)
+)
 def test_two_corners_keep_their_digits_up_to_what_impacts_multiply(p, dt, glued):
     steps, grown = 16, 1e-12
     problem = replace(

@@ -80,9 +80,14 @@ def test_stress_is_the_deformation_times_the_moduli(tmp_path, shape, load, suffi
     """In every cell of every frame of linear elements, read from the file alone."""
     problem = make(**({"elements": 4, "degree": 1, "shear": 7e8} | SHAPES[shape] | LOADS[load]))
     path = tmp_path / f"block{suffix}"
-    fem_reference.solve(problem, fem_reference.Scheme(0.25, 0.5, 1.0, 1e-3), 8, COLUMNS, fields=path)
+    scheme = fem_reference.Scheme(0.25, 0.5, 1.0, 1e-3)
+    fem_reference.solve(problem, scheme, 8, COLUMNS, fields=path)
     frames = read(path)
     assert len(frames) == (1 if suffix == ".vtu" else 8)
+    fem_reference.solve(problem, scheme, 8, COLUMNS, full=True, fields=tmp_path / "full.vtu")
+    (full,) = read(tmp_path / "full.vtu")
+    size = np.abs(full.displacement).max()
+    np.testing.assert_allclose(frames[-1].displacement, full.displacement, rtol=0, atol=1e-11 * size)
     for frame in frames:
         expected = hooke(problem, *strains(frame))
         # E times rounding of differences of displacements that are 1e2 times the strain's share of a cell

@@ -60,7 +60,9 @@ def limit(problem, normal):
     return math.tan(math.radians(problem.friction or 0)) * normal + problem.cohesion * problem.width / 2
 
 
-@pytest.mark.parametrize(("seed", "moved"), thinned([(i, moved) for i in range(20, 24) for moved in (False, True)], 8))
+@pytest.mark.parametrize(
+    ("seed", "moved"), thinned([(i, moved) for i in (21, 20, 22, 23) for moved in (False, True)], 8)
+)
 def test_energy_law_and_the_digits_of_random_motions(seed, moved):
     problem = slipping_problem(seed, moved)
     end = 4 * problem.height * math.sqrt(problem.density / problem.young)
@@ -78,6 +80,7 @@ def test_energy_law_and_the_digits_of_random_motions(seed, moved):
     bound, size = limit(problem, history.normal_force), 1e-12 * np.abs(history.normal_force).max()
     assert np.all(np.abs(history.shear_force) <= history.closed * bound + size)
     slips = np.abs(history.states) == RIGHT
+    assert (history.friction[-1] > 0) == slips.any()
     assert slips.any() == ("slips" in {s.kind for s in motion.switches} or 2 in np.abs(motion.nodes[0].states))
     assert np.abs(history.shear_force + np.sign(history.states) * bound)[slips].max(initial=0.0) <= size
     for c in (0, 1):  # the reference goes where the corner slips to, and only then

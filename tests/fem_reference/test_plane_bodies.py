@@ -127,7 +127,7 @@ def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
     assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
 
 
-@pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("degree", thinned([2, 1], 2))
 def test_a_plate_on_rollers_is_stretched_evenly(degree):
     """On a mesh of its own, under tractions that are functions of the place: s x / E and -nu s y / E exactly."""
     points = np.array([[0, 1.3, 3, 0, 1.1, 3, 0, 1.6, 3], [0, 0, 0, 0.8, 1.0, 0.9, 2, 2, 2]])

@@ -108,7 +108,7 @@ def test_every_path_gives_the_stepped_history(name, options):
     assert whole.factorisations == len(set(scheme.stage_matrices)) + (not explicit)
 
 
-@pytest.mark.parametrize(("case", "ramp"), thinned(product(IMPLICIT, [0.0, 0.0123]), 5))
+@pytest.mark.parametrize(("case", "ramp"), thinned(product(IMPLICIT, [0.0, 0.0123]), 7))
 def test_the_bar_is_the_limit_of_the_mesh(case, ramp):
     name, options = case
     scheme = named_scheme(name, step=1e-3, gg=0.97, **options)

@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import Friction, Motion, Scheme, Unilateral, solve_unilateral
+from fem_reference import Friction, Motion, Scheme, Unilateral, named_scheme, solve_unilateral
 from fem_reference.contact import points, stepper
 from fem_reference.contact.driver import Cut, cut_step
 from fem_reference.contact.iteration import NONE, OVERFLOW
@@ -82,6 +82,8 @@ def test_states_are_changed_singly_a_hundred_times_a_point_or_four_with_friction
         (stage,) = ContactStepper(system, SCHEME)._stages(0.7)
         assert stage.law.single_limit == singly * np.count_nonzero(~system.rows.slips) > 0
         assert (stage.h, stage.gg) == pytest.approx((0.7e-3, 0.9**0.7), rel=1e-14)
+    stages = ContactStepper(system, named_scheme("composite", step=1e-3, split=0.4))._stages(1.0)
+    assert [one.duration for one in stages] == pytest.approx([0.4, 0.6], rel=1e-14)
 
 
 def test_a_step_from_a_velocity_without_bound_solves_no_contact():
