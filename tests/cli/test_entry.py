@@ -81,6 +81,11 @@ def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch):
     assert (done.returncode, done.stderr) == (0, "")
 
 
+def test_a_module_that_is_nowhere_is_refused_before_anything_runs():
+    line = refused("solve", "field-locked", "--solver", "nowhere:solve")
+    assert line.startswith("error: solver: ") and "nowhere:solve" in line
+
+
 def test_the_version_is_that_of_the_distribution():
     done = typed("--version")
     assert (done.returncode, done.stdout) == (0, f"dda-validate {importlib.metadata.version('dda-validation')}\n")

@@ -239,6 +239,7 @@ def test_an_answer_to_an_earlier_pack_is_stale_in_table_page_and_data(tmp_path, 
     assert done.returncode == 1 and re.search(r"locked +stale .* 1\.9", done.stdout)
     assert re.search(r"rocking +PASS", done.stdout)
     assert re.search(rf"^{len(names()) - 2} problems", done.stdout, re.M)
+    assert done.stdout.startswith("Bob's <code> & co 1.0 default: 1 of 2 PASS, 1 stale")
     for file in ("index.html", "answers_bob-s-code-co_1.0_default.html", "verdicts.json"):
         assert "pack 1.9" in (tmp_path / "site" / file).read_text(encoding="utf-8"), file
 

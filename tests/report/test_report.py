@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 from matplotlib.figure import Figure
-from oracles.made_cases import kept_study, made_row
+from oracles.made_cases import between, kept_study, made_case, made_group, made_row
 from oracles.made_results import made_rows
 
 from validation.errors import InputError
@@ -144,3 +144,13 @@ def test_a_discount_is_told_as_it_is_stated(kept):
     scenes = [MANY.with_values({"time.step": 0.002, **values}) for values in stated]
     asked = [*([scene] for scene in scenes), scenes[:2]]
     kept("discounts", [Paragraph(summary._discount(one)) for one in asked])
+
+
+def test_what_a_reference_is_worth_is_told(kept):
+    told = []
+    scene = MANY.with_values({"fem.elements": 2, "fem.degree": 1})
+    for *solvers, reference in (["dda"], *(["dda", name] for name in ("continuum", "block-events", "bar", "fem"))):
+        case = made_case(scene, {name: {} for name in (*solvers, reference)})
+        pairs = [between(scene.name, solver, reference, displacement_l2=0.1) for solver in solvers]
+        told.append(Paragraph(summary.reference_note(made_group(case, comparisons=pairs), case)))
+    kept("references", told)

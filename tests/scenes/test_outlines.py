@@ -57,3 +57,15 @@ def test_a_course_in_time_is_the_derivative_of_its_integral_and_begins_it_at_zer
     assert (ahead[0] - behind[0]) / (2 * step) == pytest.approx(course, rel=1e-6, abs=1e-6)
     assert (ahead[1] - behind[1]) / (2 * step) == pytest.approx(rise, rel=1e-6, abs=1e-6)
     assert shape(3.0, parameter, np.zeros(1))[0] == 0
+
+
+def test_a_record_is_straight_between_its_rows_and_ends_with_the_last_one():
+    """Of accelerations the speed that it ends with stays."""
+    record = (np.array([1.0, 2.0, 4.0]), np.array([2.0, 6.0, 4.0]))
+    times = np.array([0.0, 1.5, 3.0, 5.0])
+    course = [0.0, 4.0, 5.0, 0.0]
+    integral = [0.0, 1.5, 9.5, 14.0]
+    rise = [0.0, 4.0, -1.0, 0.0]
+    twice = [0.0, 1 / 3, 8.5, 103 / 3]
+    for order, parts in ((1, (integral, course, rise)), (2, (twice, integral, course))):
+        assert np.array(drive.recorded(*record, order, times)) == pytest.approx(np.array(parts), abs=1e-12), order
