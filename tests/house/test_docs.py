@@ -23,10 +23,11 @@ import validation.studies
 from validation import solve
 from validation.gates.gate import NOISE
 from validation.problems import pack
-from validation.report.verification import LINES, decisive
+from validation.report.verification import LINES, decisive, standing
+from validation.results import Results
 from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
-from validation.suite.matrix import phenomena
+from validation.suite.matrix import phenomena, phenomenon, verify
 
 DOCS = ROOT / "docs"
 PAGES = (
@@ -243,6 +244,20 @@ def test_the_page_of_what_is_verified_is_that_of_the_gates(monkeypatch):
             assert margin is None or 0 <= margin <= 1, gate.id
             rounded = 6e-4 * abs(value) + NOISE
             assert gate.low - rounded <= value <= gate.high + rounded, gate.id
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["spins", "wedge"])
+def test_what_is_verified_today_is_what_the_page_keeps(name, monkeypatch, finished_cases):
+    shown = phenomenon(name)
+    verdicts, _ = verify(shown, Results(finished_cases))
+    fresh = standing(shown, [verdict.record(shown.study) for verdict in verdicts])
+    kept = script("verification", monkeypatch).read()[shown.name]
+    assert {solver: list(tally) for solver, tally in fresh.passed.items()} == kept.passed
+    for gate, (value, margin) in kept.values.items():
+        now, left = fresh.values[gate]
+        assert now == pytest.approx(value, rel=1e-3, abs=NOISE), gate
+        assert left == (None if margin is None else pytest.approx(margin, abs=0.02)), gate
 
 
 # ---- docstrings -----------------------------------------------------------------------------------------------------
