@@ -40,6 +40,9 @@ def test_where_the_bar_is_exact():
     assert "Poisson" in applicable(Problem(square, 0, 2, 2700.0, 1e9, 0.1, *data[3:]))
     assert "foundation" in applicable(Problem(square, 0, 2, *data, foundation="corner"))
     assert "rectangle" in applicable(Problem(square, 0, 1, *data))
+    modes = PAPER.modes(Scheme(0.5, 1.0, 1.0, 1e-3), 300)
+    assert sum(mode.share for mode in modes) == pytest.approx(1.0, abs=1e-3)
+    assert [mode.frequency for mode in modes] == pytest.approx(PAPER.frequencies(300), rel=1e-15)
     with pytest.raises(ValueError, match=r"^young: "):
         Bar(2.0, 2.0, 2700.0, -1e9, 2e9, 5e6)
 
