@@ -139,7 +139,7 @@ class SceneSearch:
     NAMES: ClassVar[tuple[str, ...]]  # of the columns, the displacement first
     WOULD_TELL: ClassVar[str]  # a further scene that tells causes apart
     is_slow = False  # whether a run takes so long that few candidates are fitted
-    is_meshed = False  # whether it also takes too long for candidates that come to nothing in the first rows
+    patience = PATIENCE
     model = ""  # name of the solver whose runs they are, where it is another one than `dda`
     model_words = ""
 
@@ -298,7 +298,7 @@ class SceneSearch:
             # what remains of these rows if every one leaves as much as an explanation never may
             near = APART * math.sqrt(rows * len(self.allowed))
             candidates = self._fitted(candidates, rows, number, near)
-            if number + 1 >= (1 if self.is_meshed else PATIENCE):
+            if number + 1 >= self.patience:
                 bar = max(NEAR * norm(self.over(self.scene_run, rows)), near)
                 candidates = [candidate for candidate in candidates if candidate.remainder <= bar]
         # what is smaller or larger by more is forgotten, or rigid, which candidates of their own say

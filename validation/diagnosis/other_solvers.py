@@ -17,7 +17,7 @@ from validation.diagnosis.answer import Answer
 from validation.diagnosis.beside import Candidate, RunExplanation, RunVerdict, SceneSearch, answer_of, verdict_of
 from validation.diagnosis.causes import BENIGN_COMPLIANCE, words_of
 from validation.diagnosis.evidence import Departure
-from validation.diagnosis.fits.bar import Bar, norm
+from validation.diagnosis.fits.bar import Bar
 from validation.diagnosis.numbers import Values
 from validation.diagnosis.one_change import Fitted, of_discount, of_numbers, of_schemes
 from validation.diagnosis.reading import Foreign, steppings
@@ -51,7 +51,9 @@ class SolverSearch(SceneSearch):
 
     def __init__(self, scene: Scene, reading: Reading, name: str) -> None:
         self.solver = get_solver(name)
-        self.is_slow = self.is_meshed = self.solver.meshed
+        self.is_slow = self.solver.meshed
+        if self.is_slow:
+            self.patience = 1  # a run of a mesh is too dear for what comes no nearer in the first rows
         if name != DDA:
             self.model = name
             self.model_words = name + EXACT.get(name, "")
@@ -70,11 +72,12 @@ class SolverSearch(SceneSearch):
     def explanations(self, begun: Sequence[Fitted[Values]] = ()) -> list[RunExplanation]:
         """Return the candidates as `SceneSearch` does; of a fine mesh those that a coarse one takes for possible."""
         mesh = self.scene.fem
-        if begun or not self.is_meshed or mesh.mesh is not None or mesh.per_side <= COARSE:
+        if begun or not self.solver.meshed or mesh.mesh is not None or mesh.per_side <= COARSE:
             return super().explanations(begun)
         coarse = SolverSearch(self.scene.with_values({"fem.elements": COARSE}), self.reading, self.solver.name)
         coarse.changes = self.changes  # of numbers that have nothing to do with a mesh
-        error = norm(coarse.scene_run - self.scene_run) / norm(self.scene_run)
+        sizes = np.maximum(np.linalg.norm(self.scene_run, axis=1), np.finfo(float).tiny)
+        error = float(np.max(np.linalg.norm(coarse.scene_run - self.scene_run, axis=1) / sizes))
         near = [each for each in coarse.explanations() if each.explains or each.left <= BEYOND_MESH * error]
         return super().explanations([each.candidate for each in near]) if near else []
 

@@ -71,11 +71,9 @@ class Phenomenon:
         """Whether a problem of the pack, or a case of it, asks for it."""
         return any(problem == name or problem.startswith(f"{name}-") for name in self.problems)
 
-    def needs(self, gate: Gate) -> Iterator[tuple[str, str]]:
-        """Yield the cases that a gate needs, by scene and solver, those behind derived rows included."""
-        recipes = get_study(self.study).recipes
-        for name in gate.cases:
-            yield from recipes[name].needs if name in recipes else (name,)
+    def needs(self, gate: Gate) -> list[tuple[str, str]]:
+        """Return the cases that a gate needs, by scene and solver, those behind derived rows included."""
+        return get_study(self.study).needs(gate)
 
     def solvers(self, gate: Gate) -> set[str]:
         """Return the solvers that a gate needs."""

@@ -274,7 +274,7 @@ class Stepping:
             if numbers.am != 0 or numbers.af != 0:  # else the third root is 0, of the factor z of both parts: Newmark's
                 inertia = _with_zero(inertia, 1 - numbers.am)
                 stiffness = _with_zero(stiffness, 1 - numbers.af)
-            polynomial = [part + omega_dt**2 * other for part, other in zip(inertia, stiffness, strict=True)]
+            polynomial = [m + omega_dt**2 * k for m, k in zip(inertia, stiffness, strict=True)]
         turns = sorted(_zeros(polynomial), key=lambda turn: (turn.imag == 0, -round(abs(1 + turn), 14), -turn.imag))
         return 1 + np.array(turns, complex)
 
@@ -357,7 +357,7 @@ class Stepping:
 
 def _with_zero(polynomial: list[float], first: float) -> list[float]:
     """Return a polynomial times first t + 1."""
-    return [first * one + other for one, other in zip([*polynomial, 0.0], [0.0, *polynomial], strict=True)]
+    return [first * number + before for number, before in zip([*polynomial, 0.0], [0.0, *polynomial], strict=True)]
 
 
 def _zeros(polynomial: list[float]) -> list[complex]:

@@ -61,10 +61,6 @@ def shaken_way(step: float, gg: float, slope: float = 20.0, angle: float = 30.0,
     time = np.arange(1, round(duration / step) + 1) * step
     drive = GRAVITY * (math.sin(b) + 0.28 * np.sin(2 * math.pi * 2.66 * time))
     gained = step * (drive - math.tan(math.radians(angle)) * GRAVITY * math.cos(b))
-    if gg == 1:  # a sum less the least that it has been
-        total = np.cumsum(gained)
-        speeds = total - np.minimum.accumulate(np.minimum(total, 0.0))
-        return step * float(np.sum(speeds) - speeds[-1] / 2)
     v = 0.0
     way = 0.0
     for change in gained.tolist():
