@@ -3,8 +3,6 @@
 import ast
 import pickle
 import re
-import subprocess
-import sys
 from importlib.metadata import version
 from pathlib import Path
 
@@ -77,24 +75,6 @@ def test_what_cannot_be_plotted_is_refused(solution, options, field):
     assert refused.value.field == field
 
 
-def test_a_sweep_is_refused_with_the_remedy_of_python():
-    swept = load_scene("figures-3-4")
-    with pytest.raises(InputError) as refused:
-        solve(swept, "dda")
-    assert refused.value.field == "sweep" and "--set" not in str(refused.value)
-    remedy = str(refused.value.advice).partition("take scene")[2].partition(", or")[0]
-    picked = eval("scene" + remedy, {"scene": swept})
-    assert not picked.sweep and solve(picked, "dda").outcome is Outcome.COMPLETED
-
-
 def test_what_is_no_name_of_the_package_is_an_attribute_error():
     with pytest.raises(AttributeError, match="'nothing'"):
         _ = validation.nothing
-
-
-def test_a_folder_of_the_users_named_dda_is_named_by_python_too(tmp_path):
-    (tmp_path / "dda").mkdir()
-    (tmp_path / "dda/__init__.py").touch()
-    code = "import validation\ntry:\n    validation.solve\nexcept ImportError as error:\n    print(error)"
-    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True)
-    assert done.stdout.startswith(f"{tmp_path / 'dda'} ")

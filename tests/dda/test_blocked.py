@@ -1,7 +1,5 @@
 """Blocked histories: equal to stepped ones, as many digits, logarithmic work."""
 
-from dataclasses import replace
-from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -12,7 +10,6 @@ from faults import seams
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, modal_form, solve
 from dda.bodies.locked_block import modal_histories
 from dda.scheme import blocked as blocks
-from dda.scheme.newmark import staged_step, step_matrices
 
 COLUMNS = ("displacement", "contact_pressure")
 
@@ -62,15 +59,3 @@ def test_work_grows_with_the_logarithm(monkeypatch):
 def test_what_cannot_be_blocked_is_stepped_and_says_so(scheme, reason):
     assert f"stepped: {reason}" in solve(model(), scheme, 40).notes
     assert "blocked" in solve(model(), Scheme(0.25, 0.5, 1.0, 1e3), 40).notes
-
-
-@pytest.mark.parametrize("omega", [3e-15, 0.7, 1e14])
-def test_the_map_of_one_step_has_the_digits_of_rational_numbers(omega):
-    scheme = Scheme(0.3, 0.6, 0.99, 0.1)
-    fields = {name: Fraction(getattr(scheme, name)) for name in ("alpha", "delta", "gg", "step")}
-    rational = replace(scheme, **fields)
-    k = (Fraction(omega / 0.1) * rational.step) ** 2
-    at_rest, one = Fraction(0), Fraction(1)
-    state = staged_step(rational, step_matrices(rational, one, k), k, [k], [at_rest], (at_rest, at_rest, k, k))[:2]
-    (_, _, _, _, e, g), _ = blocks._one_step(blocks.with_all_digits(scheme), omega / 0.1)
-    assert [abs(e - state[0] * 2**192), abs(g - state[1] * 2**192)] <= [2, 2]

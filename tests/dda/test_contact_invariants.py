@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from oracles.contact_bodies import (
     CASES,
-    NEWMARK,
     OneBlock,
     SubBlocks,
     TurningBlock,
@@ -18,7 +17,7 @@ from oracles.contact_bodies import (
     with_law,
 )
 
-from dda import BaseMotion, Block, Load, Material, Unilateral, UnilateralModel
+from dda import Load
 from dda.contact.rows import FOUND, INSIDE, NONE, OUTCOMES
 from dda.march.energy import STORED
 from dda.march.step import push_modes
@@ -303,25 +302,6 @@ def test_a_step_that_fails_is_made_in_parts_from_where_it_began(name, seed, monk
     keeps_energy(case, result)
     if case.model.contact.damping and result.normal.any():
         keeps_laws(case, result)
-
-
-@pytest.mark.parametrize("scheme", NEWMARK[:2])
-def test_one_contact_for_both_corners_is_the_full_model(scheme):
-    square = Block.rectangle(1.7, 1.3, Material(2350.0, 4.3e9, 0.31))
-    model = UnilateralModel(square, Unilateral(7e9, 3e9), 3.7e6, gravity=4.0)
-    one, full = (OneBlock.solve(model, scheme, 100, {"full": kept}) for kept in (False, True))
-    assert one.unknowns == 3 and full.unknowns == 6 and np.count_nonzero(np.diff(one.closed[0])) > 0
-    for name in ("normal", "shear", "gap", "velocity"):
-        assert apart(getattr(full, name), getattr(one, name)) <= 1e-9, name
-    sideways = replace(model, motion=BaseMotion([0.0, 1.0], [[0.0, 0.0], [1e-3, 0.0]]))
-    assert OneBlock.solve(sideways, scheme, 2, {}).unknowns == 6
-    without_strain = replace(model, block=replace(square, material=Material(2350.0, 4.3e9, 0.0)))
-    assert OneBlock.solve(with_law(without_strain, shear=0.0), scheme, 2, {}).unknowns == 2
-
-
-def test_glued_states_that_disagree_are_cut_and_the_run_goes_on():
-    """Long steps and stiff glued corners: some have no single state."""
-    assert sum(np.sum(CASES["long steps"](seed).run(20).step_cuts) for seed in range(12)) > 0
 
 
 @pytest.mark.parametrize("name", ["rough", "turning"])

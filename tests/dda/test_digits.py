@@ -1,13 +1,23 @@
-"""Digits of the robust form against 80-digit arithmetic, over stiff and extreme data."""
+"""Digits of the robust form and of opening contact against 80-digit arithmetic, over stiff and extreme data."""
 
 from itertools import product
 
-import numpy as np
 import pytest
 from conftest import thinned
 from oracles import block_in_digits
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, modes, solve
+from dda import (
+    Block,
+    Contact,
+    Material,
+    Scheme,
+    TwoBlockModel,
+    Unilateral,
+    UnilateralModel,
+    modes,
+    solve,
+    solve_unilateral,
+)
 from dda.scheme import spectral
 
 STEPS = 50
@@ -61,12 +71,16 @@ def test_digits_at_extremes(scheme, start, name):
     assert_digits(model, Scheme(*scheme, 1.0, step, start))
 
 
-@pytest.mark.parametrize(
-    ("p", "step", "start"), thinned([(*x, y) for x in ((2e9, 1e-3), (4e18, 1e-2)) for y in STARTS], 3)
-)
-def test_digits_of_a_general_polygon_far_away(start, p, step):
-    pentagon = np.array([[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]])
-    corners = pentagon + np.array([4096.0, -512.0])
-    block = Block(corners, Material(2100.0, 3e9, 0.28, "plane strain"))
-    model = TwoBlockModel(block, Contact(p, 0.6 * p), 5.5e6, base=0, top=3)
-    assert_digits(model, Scheme(0.3025, 0.6, 0.98, step, start))
+# Stiffness against step: soft to rigid, a contact resolved in time and one that is not.
+PAIRS = [(1.0, 1e3), (1e9, 1e-6), (1e13, 1e-3), (1e17, 1e-9), (1e17, 1e3), (1e21, 1e-3), (1e24, 1e-9), (1e24, 1e-3)]
+
+
+@pytest.mark.parametrize(("p", "dt", "gg"), thinned([(*pair, gg) for pair in PAIRS for gg in (0.99, 1.0)], 9))
+def test_one_contact_keeps_its_digits_from_soft_to_rigid(p, dt, gg):
+    block = Block.rectangle(1.7, 1.3, Material(2350.0, 4.3e9, 0.0))
+    model, scheme = UnilateralModel(block, Unilateral(p), velocity=-1.0), Scheme(0.5, 1.0, gg, dt)
+    result, exact = solve_unilateral(model, scheme, 30), block_in_digits.history(model, scheme, 30)
+    assert result.outcome == "completed"
+    assert block_in_digits.lost(result.columns["displacement"], [row[0] for row in exact]) < 1e-14
+    for i, force in enumerate(result.normal):
+        assert block_in_digits.lost(force, [row[1][i] for row in exact]) < 1e-14

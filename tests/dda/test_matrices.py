@@ -7,7 +7,16 @@ from oracles import block_in_digits
 from dda import Block, Contact, Material, Scheme, TwoBlockModel
 
 PENTAGON = [[1, 1], [3.1, 1.7], [2.9, 3.3], [1.5, 4], [0.7, 2]]
-MATERIALS = [Material(2100.0, 3e9, mu, h) for mu in (-0.6, 0.0, 0.37) for h in ("plane stress", "plane strain")]
+MATERIALS = [Material(2100.0, 3e9, -0.6), Material(2100.0, 3e9, 0.37, "plane strain")]
+ELL = np.array([[0, 0], [4, 0], [4, 1], [1.5, 1], [1.5, 3], [0, 3]])
+
+
+def test_section_of_an_ell_is_that_of_two_rectangles_near_and_far():
+    for shift in ((0.0, 0.0), (2.0**30, -(2.0**28))):  # by which the shifted corners are exact
+        section = Block(ELL + shift, MATERIALS[0]).section
+        moments = [section.area, section.s1, section.s2, section.s3]
+        assert moments == pytest.approx([7.0, 2881 / 336, 109 / 21, -45 / 14], rel=1e-14)  # a few dozen roundings
+        assert section.centroid == pytest.approx((41 / 28 + shift[0], 8 / 7 + shift[1]), rel=1e-15)
 
 
 def rotated(width, height, angle, origin):
@@ -31,9 +40,7 @@ def test_matrices_agree_with_high_precision(material):
         # loaded in w and e2 alone: a bulge on one side couples the rest through the inertia
         (Material(1.0, 1.0, 0.0), [[0, 0], [2, 0], [2.5, 1], [2, 2], [0, 2]], ("U", "w", "s", "ex", "e2", "gxy")),
         (Material(1.0, 1.0, 0.0), rotated(2.0, 0.7, 0.0, [0.1, 0.3]), ("w", "e2")),
-        (Material(1.0, 1.0, 0.2), rotated(2.0, 0.7, 0.0, [0.1, 1e3 + 0.3]), ("w", "ex", "e2")),
         (Material(1.0, 1.0, 0.2), [[0, 0], [3, 0], [2.1, 1.7], [0.9, 1.7]], ("w", "ex", "e2")),
-        (Material(1.0, 1.0, 0.0), PENTAGON, ("U", "w", "s", "ex", "e2", "gxy")),
         (Material(1.0, 1.0, 0.0), rotated(2.0, 0.7, 0.4, [0, 0]), ("U", "w", "s", "e2", "gxy")),
     ],
 )

@@ -157,23 +157,6 @@ def test_a_block_slides_over_a_flush_seam(ahead, sunk):
     assert {pair[:2] for pair in found} >= {(2, 0), (2, 1)}
 
 
-def test_a_wall_without_gaps_touches_once_at_every_corner():
-    bricks = [SQUARE * (10, 1) - (1, 1)]
-    for row in range(4):
-        offset = 0.5 * (row % 2)
-        bricks += [at(SQUARE, column + offset, row) for column in range(4)]
-    scene = Scene(bricks)
-    found = scene.step((0.0, -1e-5))
-    joined = [(min(pair[0], pair[2]), max(pair[0], pair[2]), *places(bricks, [pair])) for pair in found]
-    assert len(set(joined)) == len(joined)
-    joints = 4 * 3 + 3 * 7  # upright ones of each row, and of halves of bricks that lie on each other
-    assert len(found) == 2 * (4 + joints)
-    scene.press(*[1.0] * len(found))
-    assert scene.step((0.0, -1e-5)) == found
-    assert np.all(scene.detection.contacts.same[: scene.count] == 1)
-    assert scene.detection.contacts.origin[: scene.count].tolist() == list(range(scene.count))
-
-
 def test_a_force_has_one_heir():
     scene = Scene([LEDGE, at(SQUARE / 4, 1.03, 1.0)])
     assert scene.step((0, -1e-3)) == [(1, 0, 0, 2), (1, 1, 0, 2)]

@@ -6,7 +6,6 @@ from unittest.mock import patch
 
 import numpy as np
 import pytest
-from conftest import thinned
 
 import dda.bodies.turning_step as step
 from dda import (
@@ -15,15 +14,12 @@ from dda import (
     Material,
     Scheme,
     Unilateral,
-    UnilateralModel,
     UnilateralOptions,
-    named_scheme,
     solve_unilateral,
 )
 from dda.bodies.turning_block import RollingModel
 from dda.bodies.turning_body import FIRST_ORDER
 
-COLUMNS = ("displacement", "contact_pressure", "horizontal_displacement", "rotation", "strain_x", "strain_y")
 MATERIAL = Material(2700.0, 1e9, 0.2)
 QUADRILATERAL = Block([[0, 0], [2, 0], [2.5, 1], [0.3, 1.7]], MATERIAL)
 FAR = Unilateral(1e9, gap=100.0)
@@ -65,29 +61,6 @@ def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     outline = result.outline[-1] - result.motion.c[-1]
     angle = math.atan2(*(outline[1] - outline[0])[::-1]) % (2 * math.pi)
     assert angle == pytest.approx(steps * math.atan(r), rel=1e-11)
-
-
-SMALL_STEPS = [
-    Scheme(*CONSTANT, 0.99, 1e-4),
-    named_scheme("chung-hulbert", step=1e-4, gg=0.99, rho_inf=0.3),
-    named_scheme("leapfrog", step=1e-4, gg=0.99),
-    named_scheme("composite", step=1e-4, gg=0.99),
-]
-
-
-@pytest.mark.parametrize("scheme", thinned(SMALL_STEPS, 3), ids=lambda scheme: scheme.name)
-def test_small_motion_is_the_limit_of_small_loads(scheme):
-    """On a base that leans; they differ by some forty times the rotation."""
-    block = Block([[0, 0], [2, 1], [1.5, 2.2], [-0.5, 1.0]], MATERIAL)
-    given = block, Unilateral(2e8, 1e8), Load(4e2, 0.3, 1.2e2, 9.81e-3)
-    small = solve_unilateral(UnilateralModel(*given), scheme, 40, COLUMNS, UnilateralOptions(energies=True))
-    turning = solve_unilateral(RollingModel(*given), scheme, 40, COLUMNS)
-    share = 40 * np.max(np.abs(small.columns["rotation"]))
-    assert 0 < share < 1e-3
-    for name in COLUMNS:
-        assert np.max(np.abs(turning.columns[name] - small.columns[name])) < share * np.ptp(small.columns[name]), name
-    for name, values in small.energies.items():
-        assert np.max(np.abs(turning.energies[name] - values)) < share * np.max(small.energies["kinetic"]), name
 
 
 def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():

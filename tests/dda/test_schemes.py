@@ -21,7 +21,6 @@ from dda import (
     named_scheme,
     response,
     solve,
-    static,
 )
 from dda.bodies.diagnostics import step_of_mode
 from dda.scheme import roots
@@ -103,19 +102,6 @@ def test_histories_are_those_written_as_in_the_papers(name, values):
         result = solve(model, scheme, steps, ("displacement", "horizontal_displacement"), full)
         for column, row in (("displacement", 1), ("horizontal_displacement", 0)):
             assert np.max(np.abs(result.columns[column] - D[1:, row])) < 1e-11 * np.max(np.abs(D[:, row])), column
-
-
-@few_schemes
-def test_long_histories_are_blocked_where_a_step_has_two_numbers_a_mode(name, values):
-    scheme = scheme_of(name, values, 2e-4, 0.999)
-    result = solve(square(), scheme, 600)
-    stepped = solve(square(), scheme, 600, full=True)
-    note = " ".join(result.notes)
-    assert ("carries the acceleration" in note) == scheme.averages and ("blocked" in note) != scheme.averages
-    assert result.solves == (600 if scheme.averages else 0) and stepped.solves == 600 * len(scheme.stages)
-    for column, values_of in stepped.columns.items():
-        assert np.max(np.abs(values_of - result.columns[column])) < 1e-11 * np.max(np.abs(values_of))
-    assert np.mean(result.columns["displacement"]) == pytest.approx(static(square())["displacement"], rel=0.1)
 
 
 def test_what_grows_is_stepped_and_overflows_by_name():

@@ -24,6 +24,17 @@ def largest_error(a, b, columns=COLUMNS):
     return max(np.abs(a.columns[c] - b.columns[c]).max() / np.abs(b.columns[c]).max() for c in columns)
 
 
+def test_a_base_that_never_opens_is_the_locked_one():
+    scheme, columns = replace(SCHEME, gg=0.98, step=1e-2), COLUMNS[:2] + COLUMNS[3:]
+    locked = two_block(mu=0.2, q=3.1e6, eccentricity=0.2)
+    law = dda.Unilateral(1e9, 0.8e9)
+    opens = dda.UnilateralModel(locked.block, law, 3.1e6, eccentricity=0.2)
+    one = dda.solve_system(dda.subdivided(locked, 3, 2, 1e12, "triangles"), scheme, 20, columns)
+    other = dda.solve_unilateral(dda.opening_subdivided(opens, 3, 2, 1e12, "triangles"), scheme, 20, columns)
+    assert np.all(other.closed) and np.all(other.step_solves == 1)
+    assert largest_error(other, one, columns) <= 1e-10
+
+
 DAMPED = replace(SCHEME, mass_damping=30.0, stiffness_damping=2e-4, alpha=0.3025, delta=0.6)
 
 
@@ -76,21 +87,3 @@ def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, sch
     expected = fem_reference.solve(problem, elements, 50, COLUMNS, full=corrections is not None)
     assert corrections is None or result.solves == 50 * (1 + corrections)
     assert largest_error(result, expected) < 1e-9  # 1e-8 is asked
-
-
-def test_unknowns_out_of_reach_are_dropped_and_nothing_changes():
-    column = dda.subdivided(two_block(), 1, 6, 1e13)
-    saved, full = (dda.solve_system(column, SCHEME, 60, full=full) for full in (False, True))
-    assert (saved.unknowns, full.unknowns) == (12, 36)
-    assert saved.notes == ("12 of 36 unknowns kept",)
-    assert largest_error(saved, full, COLUMNS[:2]) < 1e-12
-
-
-def test_what_leaves_the_range_of_doubles_is_infinite_from_there_on():
-    system = dda.subdivided(two_block(mu=0.2), 2, 1, 1e11)
-    result = dda.solve_system(system, dda.Scheme(0.0, 0.5, 1.0, 1.0), 200)
-    (note,) = [note for note in result.notes if "overflow" in note]
-    first = int(note.rpartition(" ")[2]) - 1
-    for values in result.columns.values():
-        assert np.all(np.isfinite(values[:first]))
-        assert np.all(values[first + 1 :] == np.inf)

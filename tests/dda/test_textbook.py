@@ -1,7 +1,6 @@
 """The printed recursion: what it agrees with, what it loses, what it leaves out."""
 
 import pytest
-from conftest import thinned
 from oracles import block_in_digits
 
 from dda import Block, Contact, Material, Scheme, TwoBlockModel, solve, solve_textbook, textbook_applicable
@@ -15,19 +14,8 @@ def square(ratio, mu=0.0, side=2.0):
 
 @pytest.mark.parametrize(
     ("alpha", "delta", "ratio", "low", "high"),
-    thinned(
-        [  # an order of magnitude either side of what an independent program measured
-            (0.5, 1.0, 1e0, 0.0, 4e-15),
-            (0.5, 1.0, 1e8, 3e-10, 3e-8),
-            (0.5, 1.0, 1e12, 2e-6, 2e-4),
-            (0.5, 1.0, 1e15, 4e-3, 4e-1),
-            (0.25, 0.5, 1e0, 0.0, 1e-13),
-            (0.25, 0.5, 1e8, 7e-9, 7e-7),
-            (0.25, 0.5, 1e12, 9e-5, 9e-3),
-            (0.25, 0.5, 1e15, 0.13, 13.0),
-        ],
-        7,
-    ),
+    # an order of magnitude either side of what an independent program measured
+    [(0.5, 1.0, 1e0, 0.0, 4e-15), (0.25, 0.5, 1e15, 0.13, 13.0)],
 )
 def test_it_loses_digits_with_stiff_springs(alpha, delta, ratio, low, high):
     model, scheme = square(ratio), Scheme(alpha, delta, 1.0, 1e-3)
@@ -53,12 +41,6 @@ def test_it_agrees_with_the_robust_form_where_poisson_is_zero(start, shape):
     printed, right = (run(model, scheme, 100).columns for run in (solve_textbook, solve))
     for name, values in right.items():
         assert printed[name] == pytest.approx(values, rel=0, abs=1e-12 * abs(values).max())
-
-
-def test_unmoved_columns_are_zero():
-    columns = ("horizontal_displacement", "rotation", "shear_strain")
-    result = solve_textbook(square(1.0, 0.2), Scheme(0.5, 1, 1, 1e-3), 5, columns)
-    assert all(not values.any() for values in result.columns.values())
 
 
 def test_where_it_does_not_apply_it_says_why():
