@@ -45,7 +45,7 @@ def of_every_body(names, every=1, always=()):
 
 
 @of_every_body(CASES)
-def test_a_body_obeys_its_laws(name, seed):
+def test_a_body_obeys_its_laws(name, seed, held, request):
     case = CASES[name](seed)
     result = case.run()
     assert result.outcome == "completed" and len(result.time) == case.steps
@@ -55,6 +55,8 @@ def test_a_body_obeys_its_laws(name, seed):
     keeps_energy(case, result)
     loses_energy(case, result)
     keeps_mirror(case, result)
+    if not request.node.get_closest_marker("long"):
+        held(name, result)
 
 
 # ---- laws ------------------------------------------------------------------------------------------------------------

@@ -45,20 +45,23 @@ def test_a_base_at_its_last_position_carries_the_static_solution(body):
 
 
 @pytest.mark.parametrize("body", PLANE)
-def test_the_modes_share_the_static_solution_and_end_below_the_highest_frequency(body):
+def test_the_modes_share_the_static_solution_and_end_below_the_highest_frequency(body, held):
     found = dda.modes(body(), SCHEME, count=40)
     assert sum(mode.share for mode in found) == pytest.approx(1.0, rel=1e-9)
-    pressure = dda.static(body())["contact_pressure"]
+    rest = dda.static(body())
+    held(f"at rest {body.__name__}", {**rest, "modes": np.array([(mode.frequency, mode.share) for mode in found])})
+    pressure = rest["contact_pressure"]
     size = body().load_size
     assert sum(mode.contact_share for mode in found) * size == pytest.approx(pressure, rel=1e-9)
     assert max(mode.frequency for mode in found) == pytest.approx(dda.highest_frequency(body()), rel=1e-9)
 
 
 @pytest.mark.parametrize("body", [sub_blocks, column])
-def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_elimination(body, monkeypatch):
+def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_elimination(body, monkeypatch, held):
     scheme = replace(SCHEME, gg=0.97, step=2e-3)
     for along in (None, (0.3, 1.0)):
         narrow = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
+        held(f"response {body.__name__} {along}", narrow)
         with monkeypatch.context() as patch:
             patch.setattr(elimination, "BAND", -1)
             patch.setattr(krylov, "AT_A_TIME", 2)
@@ -75,7 +78,7 @@ def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_eliminati
     ("impedance", "glue", "joints"),
     [(3e5, 4e8, [Spring(1.0, 2e8)]), (None, None, []), (None, None, [Spring(0.0, 4e8)])],
 )
-def test_a_column_is_stepped_to_its_response(impedance, glue, joints):
+def test_a_column_is_stepped_to_its_response(impedance, glue, joints, held):
     """Under a pressure that vibrates, and on a base that does."""
     w = 2 * np.pi * 20.0
     scheme = Scheme(0.6, 1.0, 0.93, 4e-4)
@@ -85,6 +88,7 @@ def test_a_column_is_stepped_to_its_response(impedance, glue, joints):
     sine = np.array([np.sin(w * t), w * np.cos(w * t), -w * w * np.sin(w * t)])
     for along, drive in ((None, Drive(*(0 * sine), np.sin(w * t))), ((1.0, 0.0), Drive(*sine, 0 * t))):
         stepped = solve_column(body, scheme, drive)
+        held(f"column {impedance} {len(joints)} {along}", stepped)
         for name, (amplitude,) in dda.response(equations(body), scheme, [20.0], along=along).items():
             expected = (amplitude * np.exp(1j * w * stepped.time)).imag
             rest = (stepped.columns[name] - expected)[-125:]

@@ -24,7 +24,7 @@ from dda.plane.solution import PlaneContact
 
 
 @pytest.mark.parametrize(("friction", "speed"), thinned([((0.3, 0.6), 0.28998), ((0.7, 0.6), 0.0)], 2))
-def test_two_blocks_on_a_slope_slide_together(friction, speed):
+def test_two_blocks_on_a_slope_slide_together(friction, speed, held):
     result = solve_plane(slope(*friction), scheme(CONSTANT, 2e-3), 100, every=25, compiled=False)
     assert result.outcome == "completed"
     # a = g (sin b - cos b mean tan(phi)) of equal masses; the first steps stress the springs
@@ -33,9 +33,10 @@ def test_two_blocks_on_a_slope_slide_together(friction, speed):
     assert 2 * gained / np.diff(result.time[since]) == pytest.approx(speed, abs=1e-5)
     assert np.abs(result.energy["balance"]).max() <= 1e-10 * max(result.energy["kinetic"].max(), 1.0)
     assert np.abs(result.angle).max() < 1e-3
+    held(f"slope {friction}", result)
 
 
-def test_glue_closes_a_ring_of_blocks_and_carries_what_a_part_of_it_weighs():
+def test_glue_closes_a_ring_of_blocks_and_carries_what_a_part_of_it_weighs(held):
     """Two halves of a bar, glued at one end to a wall: the joint carries the weight of what hangs on it."""
     wall = PlaneBlock(rectangle(-1, 0, 1, 1), 2000.0, fixed=True)
     halves = [PlaneBlock(rectangle(x, 0, 1, 1), 2000.0) for x in (0, 1)]
@@ -46,21 +47,23 @@ def test_glue_closes_a_ring_of_blocks_and_carries_what_a_part_of_it_weighs():
     forces = result.bond[-1].sum(axis=1)
     assert forces[:, 0] == pytest.approx(0.0, abs=1e-4 * weight)  # the bar sags
     assert np.abs(forces[:, 1]) == pytest.approx([2 * weight, weight], rel=1e-5)
+    held("glued ring", result)
     moments = result.bond[-1, :, 1, 0] - result.bond[-1, :, 0, 0]  # of a couple of unit arm, by half of it
     assert np.abs(moments / 2) == pytest.approx([2 * weight, weight / 2], rel=1e-4)
 
 
-def test_a_contact_with_a_strength_holds_up_to_it():
+def test_a_contact_with_a_strength_holds_up_to_it(held):
     hung = PlaneBlock(rectangle(0, -1, 1, 1), 1000.0)
     ceiling = PlaneBlock(rectangle(-1, 0, 3, 1), 1000.0, fixed=True)
     for strength, falls in ((0.4, True), (1.2, False)):
         springs = ContactSprings(1e8, 1e8, 0.0, cohesion=1e5, tension=strength * 1000.0 * GRAVITY)
         contacts = [CornerOnEdge(0, corner, 1, 0, springs) for corner in (2, 3)]
         result = solve_plane(PlaneModel([hung, ceiling], contacts, gravity=(0.0, -GRAVITY)), scheme(CONSTANT, 1e-3), 80)
+        held(f"strength {strength}", result)
         assert bool(result.displacement[-1, 0, 1] < -1e-2) is falls and bool(np.all(result.state[-1] == 0)) is falls
 
 
-def test_a_driven_floor_gives_its_work_to_what_stands_on_it():
+def test_a_driven_floor_gives_its_work_to_what_stands_on_it(held):
     time = np.linspace(0, 0.5, 51)
     motion = BaseMotion(time, np.column_stack([0.02 * np.sin(12 * time), 0.005 * (1 - np.cos(20 * time))]))
     base = PlaneBlock(rectangle(-5, -1, 10, 1), 2000.0, motion=motion)
@@ -71,15 +74,17 @@ def test_a_driven_floor_gives_its_work_to_what_stands_on_it():
     assert result.outcome == "completed" and set(result.state.ravel()) >= {1, 2}
     assert np.abs(result.energy["balance"]).max() <= 1e-10 * result.energy["kinetic"].max()
     assert result.energy["friction"][-1] > 0
+    held("driven floor", result)
 
 
 @pytest.mark.parametrize("young", thinned([math.inf, 1e8], 2))
-def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
+def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young, held):
     """The edge belongs to a block that turns: its turn is part of every row."""
     struck = PlaneBlock(rectangle(-1, -0.5, 2, 1), 2000.0, young, 0.2, spin=0.5)
     corner = PlaneBlock([(0.7, 0.502), (1.3, 1.2), (0.2, 1.3)], 2000.0, young, 0.2, velocity=(0.2, -2.0))
     contacts = [CornerOnEdge(1, 0, 0, 2, ContactSprings(1e7, 4e6, 0.3))]
     result = solve_plane(PlaneModel([struck, corner], contacts), scheme(CONSTANT, 3e-4), 130, compiled=False)
+    held(f"two free blocks of {young}", result)
     assert result.normal.max() > 0 and not result.normal[-1].any()
     drift = np.ptp(result.momentum, axis=0)
     assert drift[:2].max() <= 1e-11 * np.abs(result.momentum[:, :2]).max()
@@ -88,7 +93,7 @@ def test_two_free_blocks_that_meet_off_centre_keep_their_momentum(young):
 
 
 @pytest.mark.parametrize("name", ["average", "composite"])
-def test_a_step_that_fails_is_made_in_parts_and_keeps_its_accounts(name, monkeypatch):
+def test_a_step_that_fails_is_made_in_parts_and_keeps_its_accounts(name, monkeypatch, held):
     """Parts of 0.3 and 0.7 of every third step move what touches as whole steps do, but for their error."""
 
     def stubborn(march, stage, start, before, after, course, part):
@@ -99,6 +104,7 @@ def test_a_step_that_fails_is_made_in_parts_and_keeps_its_accounts(name, monkeyp
     whole = solve_plane(model, SCHEMES[name], 6)
     monkeypatch.setattr(solution, "make_steps", steps_by(stubborn, step.account, step.keep, step.keep_rows))
     parts = solve_plane(model, SCHEMES[name], 6)
+    held(f"parts of steps by {name}", parts)
     assert parts.outcome == OUTCOMES[FOUND] and parts.cuts.tolist() == [0, *(0, 1, 0) * 2]
     assert np.abs(parts.energy["balance"]).max() <= 1e-10 * parts.energy["kinetic"].max()
     assert parts.displacement == pytest.approx(whole.displacement, abs=0.02 * np.abs(whole.displacement).max())

@@ -222,7 +222,7 @@ def random_scene(seed):
     return Scene(polygons, most=1000)
 
 
-def test_the_sweep_misses_no_pair():
+def test_the_sweep_misses_no_pair(held):
     scene = random_scene(0)
     found = set(scene.step((0.003, -0.004)))
     by_pairs = set()
@@ -238,6 +238,13 @@ def test_the_sweep_misses_no_pair():
             by_pairs |= {((i, j)[a], b, (i, j)[c], d) for a, b, c, d in part.named(two.contacts, count)}
     assert found == by_pairs
     assert len(found) > 5
+    random = np.random.default_rng(1)
+    for number in range(3):  # pressed or not, they move on
+        contacts = scene.detection.contacts._asdict()
+        held(f"heap {number}", {name: values[: scene.count] for name, values in contacts.items()})
+        scene.press(*random.uniform(-1.0, 2.0, scene.count))
+        scene.polygons[1:] = [at(one, *random.uniform(-4e-3, 4e-3, 2)) for one in scene.polygons[1:]]
+        scene.step(random.uniform(-5e-3, 5e-3, 2))
 
 
 # least number of convex parts with cuts between corners only

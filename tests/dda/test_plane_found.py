@@ -2,9 +2,21 @@
 
 import numpy as np
 import pytest
-from oracles.plane_scenes import moved
+from oracles.plane_scenes import GRAVITY, moved, rectangle
 
-from dda import ContactSprings, PlaneBlock, PlaneModel, Scheme, solve_plane
+from dda import (
+    BaseMotion,
+    ContactSprings,
+    CornerOnEdge,
+    EdgeBond,
+    PlaneBlock,
+    PlaneLoad,
+    PlaneModel,
+    Scheme,
+    named_scheme,
+    solve_plane,
+)
+from dda.plane import solution
 
 DENSITY = 2500.0
 SQUARE = np.array([(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)])
@@ -51,10 +63,11 @@ THROWN = {
 
 
 @pytest.mark.parametrize("name", THROWN)
-def test_nothing_is_gained_beside_a_corner(name):
+def test_nothing_is_gained_beside_a_corner(name, held):
     others, outline, velocity, steps = THROWN[name]
     model = model_of([*map(fixed, others), moving(outline, velocity)], ContactSprings(1e8), weight=False)
     result = history(model, steps)
+    held(name, result)
     energy = own_energy(result)
     assert np.max(result.normal) > 0
     assert np.max(energy) <= energy[0] * (1 + 1e-12)
@@ -112,3 +125,45 @@ def test_polygons_dropped_in_a_box_keep_their_accounts(count, steps, least, at_r
     assert np.all((x > 0) & (x < wide) & (y > 0))  # nothing is lost
     if at_rest:
         assert result.energy["kinetic"][-1] < 1e-5 * np.max(result.energy["kinetic"])
+
+
+def crowd():
+    """Return blocks under all that a scene may have: laws by pairs, stated contact, glue, loads, a driven wall."""
+    motion = BaseMotion([0.0, 0.008, 0.02, 0.1], [[0.0, 0.0], [-0.01, 0.002], [-0.03, 0.0], [-0.02, -0.004]])
+    blocks = [
+        fixed(rectangle(-5, -1, 12, 1)),
+        PlaneBlock(rectangle(3.004, 0, 1, 2), 2700.0, motion=motion),
+        PlaneBlock(rectangle(0, 0.0005, 2, 1), 2500.0, 1e8, 0.2, velocity=(0.5, -0.3), spin=-0.03),
+        PlaneBlock(rectangle(2.001, 0, 1, 0.8), 2600.0, velocity=(-0.3, -0.4)),
+        PlaneBlock([(0.5, 1.001), (1.6, 1.002), (1.0, 1.8)], 2400.0, 2e8, 0.3, velocity=(-1.0, -0.5)),
+        PlaneBlock(rectangle(2.001, 0.8, 1, 0.5), 2300.0, 1e8, 0.1, spin=0.1),
+    ]
+    rough = ContactSprings(2e8, 1e8, 0.4)
+    strong = ContactSprings(3e8, 2e8, 0.2, cohesion=3e3, tension=2e3)
+    laws = {(1, 0): ContactSprings(1e8), (3, 0): strong, (5, 0): ContactSprings(1e8, 5e7), (5, 1): strong}
+    loads = [
+        PlaneLoad(2, (3e4, -1e4), edge=((1.5, 1.0005), (0.2, 1.0005)), ramp=0.02),
+        PlaneLoad(4, (2e3, 500.0)),
+        PlaneLoad(5, (-1e4, 2e4), place=(2.7, 1.2), ramp=0.01),
+    ]
+    stated = [CornerOnEdge(4, 0, 2, 2, ContactSprings(2e8, 1e8, 0.3, cohesion=2e3, tension=6e3))]
+    bonds = [EdgeBond(3, 5, (2.001, 0.8), (3.001, 0.8), 1e9, 5e8)]
+    return PlaneModel(
+        blocks, stated, bonds, loads, (0.5, -GRAVITY), found=lambda i, j: laws.get((max(i, j), min(i, j)), rough)
+    )
+
+
+@pytest.mark.parametrize(
+    ("scheme", "dense"),
+    [
+        (Scheme(0.25, 0.5, 0.98, 1e-3, "consistent"), solution.DENSE),
+        (named_scheme("composite", step=1e-3, gg=0.99), 0),
+    ],
+    ids=["few", "many"],
+)
+def test_a_crowd_of_blocks_keeps_its_accounts_and_moves_as_it_did(scheme, dense, monkeypatch, held):
+    monkeypatch.setattr(solution, "DENSE", dense)
+    result = solve_plane(crowd(), scheme, 24, every=3, compiled=False)
+    assert result.outcome == "completed" and set(result.state.ravel()) == {-2, 0, 1, 2}
+    assert np.abs(result.energy["balance"]).max() < 1e-12 * result.energy["kinetic"].max()
+    held(f"crowd by {scheme.name}", result)

@@ -50,11 +50,12 @@ def test_free_flight_keeps_momentum_angular_momentum_and_shape(alpha, delta):
 
 
 @pytest.mark.parametrize("steps", [45])
-def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
+def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps, held):
     r = math.pi / steps
     model = RollingModel(Block.rectangle(2.0, 2.0, MATERIAL), FAR, spin=r / 0.01)
     growing = UnilateralOptions(rotation=FIRST_ORDER)
     result = solve_unilateral(model, Scheme(*CONSTANT, 1.0, 0.01), steps, options=growing)
+    held("growing outline", result)
     assert result.area[-1] == pytest.approx((1 + r * r) ** steps, rel=1e-11)
     first, last = result.energies["kinetic"][[0, -1]]
     assert last / first == pytest.approx((1 + r * r) ** (2 * (steps - 1)), rel=1e-11)  # moments go with its square
@@ -63,9 +64,10 @@ def test_first_order_rotation_grows_the_outline_as_its_closed_form_says(steps):
     assert angle == pytest.approx(steps * math.atan(r), rel=1e-11)
 
 
-def test_corners_that_were_not_thought_to_touch_are_found_by_the_step():
+def test_corners_that_were_not_thought_to_touch_are_found_by_the_step(held):
     scheme, rocking = Scheme(*CONSTANT, 1.0, 5e-3), replace(HEAVY, tilt=0.1)
     sound = solve_unilateral(rocking, scheme, 80)
     with patch.object(step, "REACH", -100.0):
         blind = solve_unilateral(rocking, scheme, 80)
+    held("rocking", sound)
     assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.states)) > 1

@@ -24,7 +24,7 @@ def largest_error(a, b, columns=COLUMNS):
     return max(np.abs(a.columns[c] - b.columns[c]).max() / np.abs(b.columns[c]).max() for c in columns)
 
 
-def test_a_base_that_never_opens_is_the_locked_one():
+def test_a_base_that_never_opens_is_the_locked_one(held):
     scheme, columns = replace(SCHEME, gg=0.98, step=1e-2), COLUMNS[:2] + COLUMNS[3:]
     locked = two_block(mu=0.2, q=3.1e6, eccentricity=0.2)
     law = dda.Unilateral(1e9, 0.8e9)
@@ -33,6 +33,7 @@ def test_a_base_that_never_opens_is_the_locked_one():
     other = dda.solve_unilateral(dda.opening_subdivided(opens, 3, 2, 1e12, "triangles"), scheme, 20, columns)
     assert np.all(other.closed) and np.all(other.step_solves == 1)
     assert largest_error(other, one, columns) <= 1e-10
+    held("sub-blocks on a base that never opens", other)
 
 
 DAMPED = replace(SCHEME, mass_damping=30.0, stiffness_damping=2e-4, alpha=0.3025, delta=0.6)

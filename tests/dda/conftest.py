@@ -1,0 +1,84 @@
+"""What results hold, in numbers kept in `numbers.toml`, for lines that no truth judges; `KEEP_PAGES=1` writes it anew.
+
+A number is the sum of all values of a part of a result, each by a weight of its own; one that rounding decides is
+written as nan, and stays so.
+"""
+
+import math
+import os
+import tomllib
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+KEPT = Path(__file__).with_name("numbers.toml")
+DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states")  # of a history on contact
+DIGITS = 6e-6
+
+
+def flat(values):
+    """Return numbers in a row."""
+    return np.nan_to_num(np.ravel(values).astype(complex), posinf=1e9, neginf=-1e9)
+
+
+def parts_of(result):
+    """Yield the numbers that a result or a table holds, array by array; those of a table within it are one array."""
+    if is_dataclass(result):
+        names = [field.name for field in fields(result) if not field.name.endswith("_seconds")]
+        names += [name for name in DERIVED if hasattr(type(result), name)]
+        result = {name: getattr(result, name) for name in names}
+    elif hasattr(result, "_asdict"):
+        result = result._asdict()
+    yield flat([value for value in result.values() if isinstance(value, int | float)])
+    for part in result.values():
+        if isinstance(part, np.ndarray):
+            yield flat(part)
+        elif isinstance(part, dict):
+            yield flat(np.concatenate([np.ravel(part[name]) for name in sorted(part) if name != "balance"]))
+        elif hasattr(part, "_asdict") and not isinstance(part, str):
+            yield from parts_of(part)
+
+
+def numbers_of(result):
+    """Return the numbers of a result, and the greatest value that each is a sum of."""
+    numbers = []
+    sizes = []
+    for values in parts_of(result):
+        if len(values):
+            order = np.arange(1.0, len(values) + 1)
+            numbers.append(float(np.cos(order) @ values.real + np.sin(order) @ values.imag))
+            sizes.append(float(np.abs(values).max()))
+    return numbers, sizes
+
+
+def write(name, numbers):
+    """Write the numbers of a result; what was left out as rounding stays so."""
+    table = tomllib.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    old = table.get(name, [])
+    is_left = [len(old) == len(numbers) and math.isnan(value) for value in old] or [False] * len(numbers)
+    table[name] = [math.nan if left else value for left, value in zip(is_left, numbers, strict=False)]
+    lines = [f'"{key}" = [{", ".join(f"{value:.6g}" for value in table[key])}]\n' for key in sorted(table)]
+    KEPT.write_text("".join(lines), encoding="utf-8")
+
+
+@pytest.fixture(scope="session")
+def kept_numbers():
+    return tomllib.loads(KEPT.read_text(encoding="utf-8"))
+
+
+@pytest.fixture
+def held(kept_numbers):
+    """Hold a result to its numbers."""
+
+    def check(name, result):
+        numbers, sizes = numbers_of(result)
+        if os.environ.get("KEEP_PAGES"):
+            write(name, numbers)
+            return
+        assert len(numbers) == len(kept_numbers[name]), name
+        for number, (value, size, expected) in enumerate(zip(numbers, sizes, kept_numbers[name], strict=True)):
+            assert math.isnan(expected) or abs(value - expected) <= DIGITS * max(size, abs(expected)), (name, number)
+
+    return check
