@@ -31,7 +31,7 @@ def both(m, scheme, steps):
 VISCOUS = [{}, {"mass_damping": 30.0}, {"stiffness_damping": 1e-3}]
 
 
-@pytest.mark.parametrize(("steps", "viscous"), thinned(product([1, 2, 3, 127, 128, 129, 700], VISCOUS), 4))
+@pytest.mark.parametrize(("steps", "viscous"), thinned(product([1, 2, 3, 127, 128, 129, 700], VISCOUS), 8))
 def test_every_number_of_steps(steps, viscous):
     blocked, stepped = both(model(), Scheme(0.3025, 0.6, 0.98, 1e-3, **viscous), steps)
     assert blocked.shape == stepped.shape == (2, steps)

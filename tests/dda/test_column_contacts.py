@@ -171,7 +171,7 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
 )
 def test_a_long_column_whose_rows_never_open_steps_in_arrays_as_others_do(impedance, foot, weights, held):
     """What keeps its energies is searched on lists; glue is a joint at every face."""
-    t = 2e-5 * np.arange(61)
+    t = 2e-5 * np.arange(31)
     drive = Drive(1e-3 * np.sin(200 * t), 0.2 * np.cos(200 * t), -40 * np.sin(200 * t), 1e5 * np.cos(90 * t))
     names = ["displacement", "contact_pressure", "displacement_1", "velocity_1", "stress_1"]
     joints = [Spring(float(k), foot or 1e9 * k) for k in range(0 if foot else 2, 14, 1 if foot else 2)]
@@ -187,7 +187,7 @@ def test_a_long_column_whose_rows_never_open_steps_in_arrays_as_others_do(impeda
 
 
 def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
-    t = 1e-4 * np.arange(301)
+    t = 1e-4 * np.arange(121)
     w = 200.0
     drive = Drive(1e-3 * np.sin(w * t), 1e-3 * w * np.cos(w * t), -1e-3 * w * w * np.sin(w * t), 0 * t)
     blocks = layers([1.0, 1.0], [2500.0] * 2, [RIGID] * 2, [0.0] * 2)  # the welds give them the base's velocity
@@ -199,7 +199,7 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
             np.testing.assert_allclose(result.columns["displacement_1"], drive.displacement[1:], rtol=0, atol=1e-15)
             np.testing.assert_allclose(result.columns["velocity_1"], drive.velocity[1:], rtol=0, atol=1e-13)
         force = result.columns["contact_pressure"]
-        np.testing.assert_allclose(force, 5000 * drive.acceleration[1:], rtol=0, atol=0.03 * force.max())
+        np.testing.assert_allclose(force, 5000 * drive.acceleration[1:], rtol=0, atol=0.03 * np.abs(force).max())
 
 
 # ---- at rest ---------------------------------------------------------------------------------------------------------
@@ -217,7 +217,7 @@ def check_that_it_stays(column):
     middles = (column.faces[:-1] + column.heights / 2).tolist()
     names = [f"displacement_{k + 1}" for k in range(6)]
     scheme = Scheme(0.25, 0.5, 1.0, 1e-5, "consistent")
-    result = solve_column(column, scheme, still(200), names, middles, ColumnOptions(settled=True, energies=True))
+    result = solve_column(column, scheme, still(60), names, middles, ColumnOptions(settled=True, energies=True))
     for name in names:
         np.testing.assert_allclose(result.columns[name], result.columns[name][0], rtol=1e-11)
     assert result.step_switches.sum() == 0

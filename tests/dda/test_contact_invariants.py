@@ -294,7 +294,7 @@ def test_a_step_that_fails_is_made_in_parts_from_where_it_began(name, seed, monk
         return once
 
     put_stage(monkeypatch, change)
-    result = case.run(12)
+    result = case.run(7)
     if case.scheme.lag:  # velocities of half a step before go on in equal steps only
         assert result.outcome == OUTCOMES[NONE] and len(result.time) == 3
         return

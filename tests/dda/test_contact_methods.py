@@ -23,7 +23,7 @@ from validation.theory.rebound import midpoints, rebounds, spring_steps
 
 MASS = 1.3 * 0.9 * 2350.0
 V = 0.7
-PHASES = midpoints(3)
+PHASES = midpoints(2)
 RATES = [(0.3, 0.3), (1.3, 0.7), (4.0, 0.1)]  # w dt, zeta
 PAPER = UnilateralModel(Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)), Unilateral(1e9), 5e6)
 

@@ -39,6 +39,6 @@ def test_sweeps_end_in_the_states_and_forces_of_the_solution(monkeypatch):
     monkeypatch.setattr(solution, "make_steps", steps_by(step.make_stage, step.account, step.keep, step.keep_rows))
     for side in (1.0, -1.0):
         model = moved(slope(0.3, 0.6), np.diag([side, 1.0]), np.zeros(2))
-        result = solve_plane(model, scheme(CONSTANT, 1e-3), 12, compiled=False)
+        result = solve_plane(model, scheme(CONSTANT, 1e-3), 8, compiled=False)
         assert result.outcome == "completed"
     assert seen == ({INSIDE, LOWER}, {INSIDE, LOWER, UPPER})

@@ -32,7 +32,7 @@ def block(mu=0.0, height=2.0):
 
 @few_schemes
 def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values):
-    step, steps, gg, p = 2e-4, 80, 0.97, 2e9
+    step, steps, gg, p = 2e-4, 50, 0.97, 2e9
     model = UnilateralModel(block(0.25, 1.5), Unilateral(p, gap=2e-4), Load(3e6, 0.1), velocity=-0.3)
     form = model.reduced
     assert form.contacts == 2
@@ -60,8 +60,8 @@ def test_one_sub_block_on_a_base_that_shakes_is_the_block(name, values):
     law = Unilateral(2e8, 1e8, friction=0.3)
     load = Load(1e5, 0.0, 5e4, 9.81, shaken(np.random.default_rng(0), 1e-4))
     model = UnilateralModel(block(0.25, 1.5), law, load, velocity=-0.01)
-    one = solve_unilateral(model, scheme, 60, COLUMNS, ENERGIES)
-    sub = solve_unilateral(opening_subdivided(model, 1, 1, 1e12), scheme, 60, COLUMNS, ENERGIES)
+    one = solve_unilateral(model, scheme, 45, COLUMNS, ENERGIES)
+    sub = solve_unilateral(opening_subdivided(model, 1, 1, 1e12), scheme, 45, COLUMNS, ENERGIES)
     for column in COLUMNS:
         assert np.max(np.abs(one.columns[column] - sub.columns[column])) < 1e-11 * np.max(np.abs(one.columns[column]))
     assert np.array_equal(sub.states, one.states) and np.any(np.abs(one.states) == 2)

@@ -52,8 +52,8 @@ DAMPED = replace(SCHEME, mass_damping=30.0, stiffness_damping=2e-4, alpha=0.3025
 def test_one_sub_block_is_the_two_block_model_to_the_last_bits(scheme, p, moved, bits):
     start = dda.BaseMotion([0.0, 0.02, 0.05], [[0.0, 0.0], [3e-3, 2e-3], [0.0, 5e-4]])
     model = two_block(TRAPEZIUM, 0.3, p, **(LOADS | {"motion": start if moved else None}))
-    one = dda.solve_system(dda.subdivided(model, 1, 1, 1e9), scheme, 150, COLUMNS)
-    assert largest_error(one, dda.solve(model, scheme, 150, COLUMNS)) < 150 * 2.0**-bits
+    one = dda.solve_system(dda.subdivided(model, 1, 1, 1e9), scheme, 60, COLUMNS)
+    assert largest_error(one, dda.solve(model, scheme, 60, COLUMNS)) < 60 * 2.0**-bits
     static, expected = dda.static(dda.subdivided(model, 1, 1, 1e9)), dda.static(model)
     for name in COLUMNS:
         assert static[name] == pytest.approx(expected[name], rel=1e-12)
@@ -78,13 +78,13 @@ STILL = {"traction": 2e5, "gravity": 9.81}
 )
 def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, scheme, corrections):
     result = dda.solve_system(
-        dda.subdivided(two_block(TRAPEZIUM, mu, p, **loads), n, n, 1e21, "triangles"), scheme, 50, COLUMNS
+        dda.subdivided(two_block(TRAPEZIUM, mu, p, **loads), n, n, 1e21, "triangles"), scheme, 25, COLUMNS
     )
     moved = fem_reference.Motion(*map(tuple, (RECORD.time, *np.transpose(RECORD.displacement))))
     others = loads | ({"motion": moved} if "motion" in loads else {})
     data = (2700.0, 1e9, mu, "plane stress", p, 0.8 * p, 5e6, n, 1)
     problem = fem_reference.Problem(TRAPEZIUM, 0, 2, *data, foundation="nodes", cells="triangles", **others)
     elements = fem_reference.Scheme(scheme.alpha, scheme.delta, 1.0, scheme.step)
-    expected = fem_reference.solve(problem, elements, 50, COLUMNS, full=corrections is not None)
-    assert corrections is None or result.solves == 50 * (1 + corrections)
+    expected = fem_reference.solve(problem, elements, 25, COLUMNS, full=corrections is not None)
+    assert corrections is None or result.solves == 25 * (1 + corrections)
     assert largest_error(result, expected) < 1e-9  # 1e-8 is asked

@@ -296,11 +296,11 @@ def on_shaken_base(model, seed):
     return replace(model, motion=shaken(np.random.default_rng(seed)))
 
 
-def block_case(model, scheme, steps=60, **options):
+def block_case(model, scheme, steps=40, **options):
     return Case(OneBlock, model, scheme, options, steps)
 
 
-def turning_case(seed, scheme=None, steps=55, model=None, **options):
+def turning_case(seed, scheme=None, steps=40, model=None, **options):
     """Return a thrown block: frictionless, bonded or rough by its seed."""
     made, dt = random_rolling(seed)
     made = with_law(made, gap=made.contact.gap / 100)  # it lands soon
@@ -318,8 +318,8 @@ CASES = {
     "frictionless": lambda seed: block_case(random_model(seed, glued=False), NEWMARK[seed % 4]),
     "bonded": lambda seed: block_case(random_model(seed, glued=True), NEWMARK[seed % 4]),
     "stiff": lambda seed: block_case(with_law(random_model(seed, glued=True), stiffness=STIFF[seed % 4]), CONSTANT),
-    "long steps": lambda seed: block_case(random_model(seed, glued=True), Scheme(0.5, 1.0, 1.0, 8e-3), 60),
-    "explicit": lambda seed: block_case(landed(random_model(seed)), Scheme(0.0, 0.5 + seed % 2 / 2, 0.97, 2e-6), 300),
+    "long steps": lambda seed: block_case(random_model(seed, glued=True), Scheme(0.5, 1.0, 1.0, 8e-3)),
+    "explicit": lambda seed: block_case(landed(random_model(seed)), Scheme(0.0, 0.5 + seed % 2 / 2, 0.97, 2e-6), 120),
     "rough": lambda seed: block_case(rubbing_model(seed), NEWMARK[seed % 4]),
     "rough at delta one": lambda seed: block_case(
         rubbing_model(seed), replace(CONSTANT, step=1e-4 * 4.0 ** (seed % 4))
@@ -333,7 +333,7 @@ CASES = {
     "dashpot in a ramp": lambda seed: block_case(replace(dashpots(seed), ramp=0.02), NEWMARK[seed % 4]),
     "dashpot by two stages": lambda seed: block_case(dashpots(seed), of_scheme("composite")),
     "dashpot by averages": lambda seed: block_case(dashpots(seed), of_scheme("chung-hulbert", rho_inf=0.5)),
-    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), 80, rule="implicit"),
+    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), 60, rule="implicit"),
     "implicit, rough": lambda seed: block_case(rubbing_model(seed), AVERAGE, rule="implicit"),
     "implicit, shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), AVERAGE, rule="implicit"),
     "conserving": lambda seed: block_case(
@@ -360,8 +360,8 @@ CASES = {
     "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
     "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
     "shaken by two stages": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), of_scheme("composite")),
-    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 45),
-    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 30),
+    "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 25),
+    "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 25),
     "turning": turning_case,
     "turning by averages": lambda seed: turning_case(seed, AVERAGE),
     "turning on a rigid stop": lambda seed: turning_case(seed, model=lambda one: with_law(one, stiffness=math.inf)),
