@@ -1,11 +1,13 @@
 """The loop over steps, compiled: the numbers of plain Python, and plain Python wherever it cannot be."""
 
+import gc
 import logging
 import os
 import subprocess
 import sys
 import threading
 from collections import Counter
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -130,7 +132,7 @@ RAN = (compiled.COMPILED, [2.5, 3.5, 4.5])
 
 
 def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(fresh, monkeypatch):
-    assert ran() == RAN
+    assert ran() == RAN and gc.isenabled()
     kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}
     assert len(kept) == 2
     monkeypatch.setattr(compiled, "loops", {})
@@ -147,7 +149,9 @@ def test_code_is_the_same_for_arrays_of_all_lengths_in_named_tuples(fresh):
         at = np.arange(2.0 * n).reshape(n, 2)
         values = np.full(n, 3.0)
         kept = np.zeros(n)
-        how = compiled.run_loop(loop_of_series, (), (Series(2.0, Weights(1, at), values),), (kept,), 1)[2]
+        series = Series(2.0, Weights(1, at), values)
+        assert compiled.as_structure(series).value is series  # so long the words of its arrays hold
+        how = compiled.run_loop(loop_of_series, (), (series,), (kept,), 1)[2]
         assert how == compiled.COMPILED
         assert kept.tolist() == [0.0, *(6.0 * at[1:, 1])] and values.tolist() == [3.0] + (n - 1) * [0.0]
     assert len(compiled.loops) == 1
@@ -221,6 +225,11 @@ def test_a_directory_that_cannot_be_written_is_none(monkeypatch, tmp_path, name)
     assert compiled.cache_directory.__wrapped__() is None
     monkeypatch.setenv(name, str(tmp_path / "new"))
     assert compiled.cache_directory.__wrapped__() == tmp_path / "new" / "dda-validation"
+    monkeypatch.delenv(name)
+    monkeypatch.setattr(Path, "home", lambda: tmp_path)
+    for platform, cache in (("linux", ".cache"), ("darwin", "Library/Caches"), ("win32", "AppData/Local")):
+        monkeypatch.setattr(sys, "platform", platform)
+        assert compiled.user_cache() == tmp_path / cache
     assert os.listdir(tmp_path) and not (tmp_path / "numba").exists()
 
 

@@ -27,19 +27,12 @@ FRAMES = ["dashpot by averages", "turning", "bonded", "rough", "dashpot", "dashp
 PENETRATION = 1e-9  # m, that the passes of an augmented Lagrangian leave
 
 
-SECOND = {  # whose laws and rules others have too
-    *("stiff", "long steps", "ramp", "dashpot in a ramp", "impact in a ramp", "rough by averages", "implicit, shaken"),
-    *("shaken by two stages", "turning by averages"),
-}
-
-
 def of_every_body(names, every=1, always=()):
     """Take a seed a body, in turn; two more, and all but every n-th body, are long."""
     cases = []
     for number, name in enumerate(names):
         for seed in range(number % 4, number % 4 + 3):
-            is_first = seed == number % 4 and name not in SECOND
-            is_short = is_first and (number % every == 0 or name in always)
+            is_short = seed == number % 4 and (number % every == 0 or name in always)
             cases.append(pytest.param(name, seed, marks=() if is_short else pytest.mark.long))
     return pytest.mark.parametrize(("name", "seed"), cases)
 

@@ -53,14 +53,10 @@ def test_digits_over_stiffness_step_and_scheme(data, scheme, start):
 EXTREMES = {
     "stiff contact, slow mode resolved": ([2, 31], Material(2700.0, 1e9, 0.49), 1.8e19, 7.16e-5),
     "nearly incompressible": ([2, 2.5], Material(2700.0, 1e9, 0.4999999, "plane strain"), 3e9, 1e-3),
-    "nearly incompressible, long step": ([2, 2.5], Material(2700.0, 1e9, 0.4999999, "plane strain"), 3e9, 3.0),
     "auxetic": ([2, 1], Material(2700.0, 1e9, -0.9), 2e8, 1e-3),
     "tall": ([1, 1000], Material(2700.0, 1e9, 0.25), 1e10, 1e-2),
-    "flat": ([1000, 1], Material(2700.0, 1e9, 0.5), 1e10, 1e-4),
-    "tiny": ([1e-6, 1.2e-6], Material(2700.0, 1e9, 0.2), 1e10, 1e-9),
     "huge": ([1e6, 1.2e6], Material(2700.0, 1e9, 0.2), 1e10, 1e2),
     "light and hard": ([2, 1], Material(1e-6, 1e15, 0.2), 1e13, 1e-9),
-    "heavy and soft": ([2, 1], Material(1e8, 1.0, 0.2), 10.0, 1e3),
 }
 
 

@@ -86,6 +86,7 @@ def test_modes_and_steps_are_those_of_the_plain_assembly(blocks, loads, held):
     modes = body_of.modes(SCHEME, len(squares))
     assert [mode.frequency for mode in modes] == pytest.approx(np.sqrt(squares), rel=1e-9)
     assert sum(mode.share for mode in modes) == pytest.approx(1.0, rel=1e-9)
+    assert not any(mode.contact_share for mode in modes)
     F = np.zeros((len(blocks), 6))
     F[1] = SIZE * PAIR[1].T(2.0, 0.5)[0]
     F[0] = 0.0 if held else -SIZE * PAIR[0].T(0.0, 0.5)[0]

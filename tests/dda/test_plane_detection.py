@@ -142,6 +142,16 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
     assert scene.step((0, -1e-3), deep) == [(0, 2, 1, 3)]  # the least way out, through which it did not come
 
 
+def test_of_two_edges_that_are_pressed_that_with_the_greater_force_stays():
+    floor = SQUARE - (0.5, 1)
+    pairs = [(1, 0, 0, TOP), (0, 2, 1, BOTTOM)]
+    for forces, found in (((3.0, 1.0), pairs), ((1.0, 3.0), pairs[::-1])):
+        scene = Scene([floor, SQUARE])
+        assert scene.step((0, -0.01)) == pairs
+        scene.press(*forces)
+        assert scene.step((0, -1e-3), [floor, SQUARE - (0, 1e-5)]) == found
+
+
 @pytest.mark.parametrize(("ahead", "sunk"), [(-1e-3, 1e-12), (-1e-12, 5e-3), (0.0, 1e-6), (1e-12, 3e-4), (1e-3, 1e-6)])
 def test_a_block_slides_over_a_flush_seam(ahead, sunk):
     floors = [SQUARE * 2 - (2, 2), SQUARE * 2 - (0, 2)]
@@ -239,12 +249,11 @@ def test_the_sweep_misses_no_pair(held):
     assert found == by_pairs
     assert len(found) > 5
     random = np.random.default_rng(1)
-    for number in range(3):  # pressed or not, they move on
-        contacts = scene.detection.contacts._asdict()
-        held(f"heap {number}", {name: values[: scene.count] for name, values in contacts.items()})
+    for _ in range(2):  # pressed or not, they move on
         scene.press(*random.uniform(-1.0, 2.0, scene.count))
         scene.polygons[1:] = [at(one, *random.uniform(-4e-3, 4e-3, 2)) for one in scene.polygons[1:]]
         scene.step(random.uniform(-5e-3, 5e-3, 2))
+    held("heap", {name: values[: scene.count] for name, values in scene.detection.contacts._asdict().items()})
 
 
 # least number of convex parts with cuts between corners only

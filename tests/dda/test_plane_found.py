@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.plane_scenes import GRAVITY, moved, rectangle
 
 from dda import (
@@ -62,12 +63,11 @@ THROWN = {
 }
 
 
-@pytest.mark.parametrize("name", THROWN)
-def test_nothing_is_gained_beside_a_corner(name, held):
+@pytest.mark.parametrize("name", thinned(THROWN, 2))
+def test_nothing_is_gained_beside_a_corner(name):
     others, outline, velocity, steps = THROWN[name]
     model = model_of([*map(fixed, others), moving(outline, velocity)], ContactSprings(1e8), weight=False)
     result = history(model, steps)
-    held(name, result)
     energy = own_energy(result)
     assert np.max(result.normal) > 0
     assert np.max(energy) <= energy[0] * (1 + 1e-12)
@@ -99,7 +99,7 @@ def pile(count, seed):
 @pytest.mark.parametrize(
     ("count", "steps", "least", "at_rest"),
     [
-        (5, 120, 2, False),
+        pytest.param(5, 120, 2, False, marks=pytest.mark.long),
         pytest.param(100, 3000, 101, True, marks=pytest.mark.long),
     ],
     ids=["few", "many"],

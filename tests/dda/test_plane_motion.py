@@ -38,9 +38,9 @@ def test_dead_loads_do_their_work_however_far_the_block_turns(young, held):
         result = solve_plane(model, scheme(AVERAGE, 1.0 / steps), steps)
         total = result.energy["kinetic"] + result.energy["strain"]
         size = total.max()
-        held(f"dead loads {young} {steps}", result)
         assert np.abs(result.energy["balance"]).max() <= 1e-12 * size
         errors.append(abs(result.energy["algorithmic"][-1]) / size)
+    held(f"dead loads {young}", result)
     assert errors[1] < 2e-3 and (math.isfinite(young) or errors[1] < 0.3 * errors[0])
 
 

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from oracles.contact_bodies import apart, shaken
-from oracles.scheme_cases import few_schemes, scheme_of, truth_of
-from oracles.staged import System, march
+from oracles.scheme_cases import few_schemes, scheme_of
 
 from dda import (
     COLUMNS,
@@ -17,8 +16,6 @@ from dda import (
     opening_subdivided,
     solve_unilateral,
 )
-from dda.bodies.opening_block import unknowns_of
-from dda.linear.natural_modes import free_modes
 
 ENERGIES = UnilateralOptions(energies=True)
 
@@ -28,24 +25,6 @@ def block(mu=0.0, height=2.0):
 
 
 # ---- one block -------------------------------------------------------------------------------------------------------
-
-
-@few_schemes
-def test_a_block_that_lands_and_bounces_is_the_one_of_the_papers(name, values):
-    step, steps, gg, p = 2e-4, 50, 0.97, 2e9
-    model = UnilateralModel(block(0.25, 1.5), Unilateral(p, gap=2e-4), Load(3e6, 0.1), velocity=-0.3)
-    form = model.reduced
-    assert form.contacts == 2
-    system = System(form.M, np.diag(form.K), lambda t: form.F, B=form.B[:2], p=p)
-    start = -0.3 * (form.translation @ form.axes[:, 1])
-    x, v, N = march(system, name, step, steps, form.start, start, gg, **truth_of(values))
-    result = solve_unilateral(model, scheme_of(name, values, step, gg), steps)
-    D = unknowns_of(form, result.history, None, step).T
-    V = result.history.motion[:, 6:] @ free_modes(form.M, form.K)[1].T / step
-    for found, expected in ((D, x), (V, v), (result.history.force, N)):
-        assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
-    switches = np.count_nonzero(np.diff(result.closed, axis=1))
-    assert switches >= 2 and result.solves >= steps * len(scheme_of(name, values, step).stages)
 
 
 # ---- columns ---------------------------------------------------------------------------------------------------------
