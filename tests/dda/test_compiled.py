@@ -21,7 +21,7 @@ from dda.march import compiled, one_library, step
 
 SHORT = compiled.SHORT  # before a short test keeps itself from compiling
 EVERY_CODE = (
-    *("rough by two stages", "dead band", "dashpot", "conserving", "augmented", "impact"),
+    *("rough and shaken by two stages", "dead band", "dashpot", "conserving", "augmented", "impact"),
     *("turning by two stages", "rough sub-blocks"),
 )
 

@@ -100,7 +100,9 @@ def solved(factors, b):
 
 
 class OpeningBlock:
-    """The model and the scheme in numbers of many digits."""
+    """The model and the scheme in numbers of many digits; corners without springs along the base open."""
+
+    states = tuple(product((False, True), repeat=2))
 
     def __init__(self, model, scheme):
         M, K0 = matrices(model.block)
@@ -115,11 +117,9 @@ class OpeningBlock:
         self.D, self.V = zeros(6), zeros(6)
         self.V[1] = exact(getattr(model, "velocity", 0.0))
         self.A = self.inverse @ self.F if scheme.start == "consistent" else zeros(6)
-        self.closed = (self.g0 == 0,) * 2
-        self.r = [ZERO, ZERO]
         self.h = self.alpha * self.dt**2
         self.free = self.M + self.h * self.K0
-        self.factors = {}  # of the matrix of the step, by closed corners and their shares
+        self.factors = {}  # of the matrix of the step, by closed corners
 
     @staticmethod
     def springs(contact):
@@ -153,105 +153,51 @@ class OpeningBlock:
 
     def step(self):
         """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
-        self._begin()
-        found = [trial for trial in map(self._trial, product((False, True), repeat=2)) if trial]
-        assert len(found) == 1, "one contact state agrees"
-        D1, N, T, self.r, self.closed = found[0]
-        self._moved(D1, N, T)
-        return D1[1], N, T
-
-    def _begin(self):
-        """Keep what all trials of a step have in common."""
-        self.star = self.D + self.gg * self.dt * self.V + self.dt**2 * (HALF - self.alpha) * self.A
-        self.loads = self.M @ self.star + self.h * self.F
-        self.before = [self.g0 + row @ self.D for row in self.normal]
-
-    def _moved(self, D1, N, T):
-        """Take over the end of a step: acceleration from the forces, velocity from the accelerations."""
+        star = self.D + self.gg * self.dt * self.V + self.dt**2 * (HALF - self.alpha) * self.A
+        found = [(self._moved(star, closed), closed) for closed in self.states]
+        ((D1, closed),) = [(D1, closed) for D1, closed in found if self._agrees(D1, closed)]
+        N = [-self.p * gap if shut else ZERO for gap, shut in zip(self._gaps(D1), closed, strict=True)]
+        T = [-self.ps * (row @ D1) if shut else ZERO for row, shut in zip(self.shear, closed, strict=True)]
         push = zeros(6)
         for c in (0, 1):
             push += N[c] * self.normal[c] + T[c] * self.shear[c]
         A1 = self.inverse @ (self.F - self.K0 @ D1 + push)
         self.V = self.gg * self.V + self.dt * ((1 - self.delta) * self.A + self.delta * A1)
         self.D, self.A = D1, A1
+        return D1[1], N, T
 
-    def _trial(self, closed):
-        """Return the step with these corners closed if its gaps agree with that."""
-        found = self._repeated(closed)
-        if found is None or any((w < 0) != shut for w, shut in zip(found[1], closed, strict=True)):
-            return None
-        return self._accepted(*found)
+    def _gaps(self, D):
+        return [self.g0 + row @ D for row in self.normal]
 
-    def _repeated(self, states):
-        """Return displacements, gaps, states and shares when these agree with each other, None where they never do."""
-        shares = [ONE if was else HALF for was in self.closed]
-        for _ in range(400):
-            D1 = self._solve(states, shares)
-            gaps = [self.g0 + row @ D1 for row in self.normal]
-            new = self._shares(gaps)
-            if max(abs(x - y) for x, y in zip(new, shares, strict=True)) < Decimal(10) ** (10 - DIGITS):
-                return D1, gaps, states, shares
-            shares = new
-        return None
+    def _agrees(self, D, closed):
+        return all((w < 0) == shut for w, shut in zip(self._gaps(D), closed, strict=True))
 
-    def _shares(self, gaps):
-        """Return the share 1 - theta of the step's slide behind the crossing; 1 of a corner that was closed."""
-        pairs = zip(self.closed, self.before, gaps, strict=True)
-        return [ONE if was or w0 <= 0 else max(ZERO, -w1) / (w0 + max(ZERO, -w1)) for was, w0, w1 in pairs]
-
-    def _reference(self, corner):
-        """Return r, from which the share of the slide is measured."""
-        return self.r[corner] if self.closed[corner] else self.shear[corner] @ self.D
-
-    def _solve(self, closed, shares):
+    def _moved(self, star, closed):
+        """Return where a step leads with these corners closed."""
         if self.alpha == 0:
-            return self.star
-        b = self.loads.copy()
-        for c in (0, 1):
-            if closed[c]:
-                sticking = self.ps * shares[c] * self._reference(c)
-                b += self.h * (sticking * self.shear[c] - self.p * self.g0 * self.normal[c])
-        return self._solved(tuple(self.ps * x if shut else None for x, shut in zip(shares, closed, strict=True)), b)
-
-    def _solved(self, key, b):
-        """Solve with the step's matrix, whose factors are kept: most steps have the states and shares of others."""
-        if key not in self.factors:
-            self.factors[key] = factorised(self._matrix(key))
-        return solved(self.factors[key], b)
-
-    def _matrix(self, held):
-        """Return the matrix of the step from the shear stiffness of every corner, None where it is open."""
-        S = self.free.copy()
-        for n, s, ps in zip(self.normal, self.shear, held, strict=True):
-            if ps is not None:
-                S += self.h * (self.p * np.outer(n, n) + ps * np.outer(s, s))
-        return S
-
-    def _accepted(self, D1, gaps, closed, shares):
-        N, T, r = [ZERO] * 2, [ZERO] * 2, [ZERO] * 2
-        for c in (0, 1):
-            if closed[c]:
-                s = self.shear[c] @ D1
-                stretch = shares[c] * (s - self._reference(c))
-                N[c], T[c], r[c] = -self.p * gaps[c], -self.ps * stretch, s - stretch
-        return D1, N, T, r, closed
+            return star
+        b = self.M @ star + self.h * self.F
+        for row, shut in zip(self.normal, closed, strict=True):
+            b -= self.h * self.p * self.g0 * row * shut
+        if closed not in self.factors:
+            S = self.free.copy()
+            for n, s, shut in zip(self.normal, self.shear, closed, strict=True):
+                S += shut * self.h * (self.p * np.outer(n, n) + self.ps * np.outer(s, s))
+            self.factors[closed] = factorised(S)
+        return solved(self.factors[closed], b)
 
 
 class LockedBlock(OpeningBlock):
     """The same whose corners stay closed, and pull."""
 
+    states = ((True, True),)
+
     @staticmethod
     def springs(contact):
         return contact.normal, contact.shear, 0.0
 
-    def step(self):
-        """Advance by one step; return v of the centroid, N of both corners, T of both corners."""
-        self._begin()
-        both, shares = (True, True), (ONE, ONE)
-        D1 = self._solve(both, shares)
-        D1, N, T, self.r, self.closed = self._accepted(D1, [row @ D1 for row in self.normal], both, shares)
-        self._moved(D1, N, T)
-        return D1[1], N, T
+    def _agrees(self, D, closed):
+        return True
 
 
 def locked_matrices(model, scheme):

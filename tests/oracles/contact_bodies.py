@@ -320,7 +320,7 @@ CASES = {
     "explicit": lambda seed: block_case(landed(random_model(seed)), Scheme(0.0, 0.5 + seed % 2 / 2, 0.97, 2e-6), 120),
     "rough": lambda seed: block_case(rubbing_model(seed), NEWMARK[seed % 4]),
     "rough at delta one": lambda seed: block_case(
-        rubbing_model(seed), replace(CONSTANT, step=1e-4 * 4.0 ** (seed % 4))
+        replace(rubbing_model(seed), ramp=0.01), replace(CONSTANT, step=1e-4 * 4.0 ** (seed % 4))
     ),
     "rough and shaken": lambda seed: block_case(on_shaken_base(rubbing_model(seed), seed), NEWMARK[(seed + 2) % 4]),
     "rough on a rigid stop": lambda seed: block_case(with_law(rubbing_model(seed), stiffness=math.inf), CONSTANT),
@@ -345,7 +345,9 @@ CASES = {
         rule="impact",
         restitution=0.3,
     ),
-    "rough by two stages": lambda seed: block_case(rubbing_model(seed), of_scheme("composite", rho_inf=0.3, split=0.4)),
+    "rough and shaken by two stages": lambda seed: block_case(
+        on_shaken_base(rubbing_model(seed), seed), of_scheme("composite", rho_inf=0.3, split=0.4)
+    ),
     "rough by half steps": lambda seed: block_case(landed(rubbing_model(seed)), of_scheme("leapfrog")),
     "sub-blocks": lambda seed: Case(SubBlocks, random_model(seed), NEWMARK[seed % 4], {}, 25),
     "rough sub-blocks": lambda seed: Case(SubBlocks, rubbing_model(seed), NEWMARK[(seed + 1) % 4], {}, 25),
