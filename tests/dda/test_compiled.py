@@ -131,6 +131,7 @@ def ran(steps=1, loop=loop, numbers=None):
 RAN = (compiled.COMPILED, [2.5, 3.5, 4.5])
 
 
+@pytest.mark.long
 def test_compiled_code_is_kept_and_read_again_and_made_anew_where_it_is_broken(fresh, monkeypatch):
     assert ran() == RAN and gc.isenabled()
     kept = {path: path.stat().st_mtime_ns for path in fresh.rglob("*.nb?")}

@@ -234,7 +234,7 @@ def never_gains(case):
 
 def keeps_mirror(case, result):
     """Fewer steps are the first ones, of the mirror image of what is mirrored."""
-    steps = min(20, case.steps)
+    steps = min(12, case.steps)
     model, order = case.kind.mirrored(case.model)
     other = case.run(steps, model)
     for field, sign in (("normal", 1), ("gap", 1), ("shear", -1)):

@@ -76,7 +76,7 @@ def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_eliminati
 
 @pytest.mark.parametrize(
     ("impedance", "glue", "joints"),
-    [(3e5, 4e8, [Spring(1.0, 2e8)]), (None, None, []), (None, None, [Spring(0.0, 4e8)])],
+    [(3e5, 4e8, [Spring(1.0, 2e8)]), (None, None, [])],
 )
 def test_a_column_is_stepped_to_its_response(impedance, glue, joints, held):
     """Under a pressure that vibrates, and on a base that does."""

@@ -163,7 +163,7 @@ def crowd():
 )
 def test_a_crowd_of_blocks_keeps_its_accounts_and_moves_as_it_did(scheme, dense, monkeypatch, held):
     monkeypatch.setattr(solution, "DENSE", dense)
-    result = solve_plane(crowd(), scheme, 12, every=3, compiled=False)
+    result = solve_plane(crowd(), scheme, 8, every=2, compiled=False)
     assert result.outcome == "completed" and set(result.state.ravel()) == {-2, 0, 1, 2}
     assert np.abs(result.energy["balance"]).max() < 1e-12 * result.energy["kinetic"].max()
     held(f"crowd by {scheme.name}", result)

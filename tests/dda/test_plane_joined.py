@@ -20,9 +20,9 @@ def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name,
     monkeypatch.setattr(solution, "DENSE", dense)
     block = PlaneBlock(rectangle(0, 0.002, 2, 1), 2700.0, 1e9, 0.2, velocity=(0.2, -1.0), spin=-0.01)
     corners = [CornerOnEdge(1, corner, 0, 2, SPRINGS) for corner in (0, 1)]
-    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 25)
+    stated = solve_plane(PlaneModel([floor(), block], corners, gravity=(0, -GRAVITY)), SCHEMES[name], 16)
     free = PlaneModel([floor(), block], gravity=(0, -GRAVITY), found=SPRINGS)
-    found = solve_plane(free, SCHEMES[name], 25, compiled=False)
+    found = solve_plane(free, SCHEMES[name], 16, compiled=False)
     assert np.abs(found.displacement - stated.displacement).max() <= 1e-9 * np.abs(stated.displacement).max()
     if not request.node.get_closest_marker("long"):
         held(f"found by {name}", found)

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from conftest import thinned
 from oracles.scheme_cases import CASES, every_scheme, few_schemes, scheme_of, truth_of
 from oracles.staged import System, march
 
@@ -120,8 +121,10 @@ def test_diagnostics_and_modes(name, values, held, request):
         assert abs(mode.eigenvalues[0]) == pytest.approx(abs(roots.roots(scheme, mode.frequency * 3e-4)[0]), rel=1e-9)
 
 
-@pytest.mark.parametrize("along", [None, (0.3, 1.0)])
-@few_schemes
+@pytest.mark.parametrize(
+    ("name", "values", "along"),
+    thinned([(*case, along) for case in CASES for along in (None, (0.3, 1.0))], 5),
+)
 def test_the_response_is_what_steady_vibration_is_stepped_to(name, values, along):
     frequency = 25.0
     step = 4e-4

@@ -15,7 +15,7 @@ def square(ratio, mu=0.0, side=2.0):
 @pytest.mark.parametrize(
     ("alpha", "delta", "ratio", "low", "high"),
     # an order of magnitude either side of what an independent program measured
-    [(0.5, 1.0, 1e0, 0.0, 4e-15), (0.25, 0.5, 1e15, 0.13, 13.0)],
+    [(0.25, 0.5, 1e15, 0.13, 13.0), pytest.param(0.5, 1.0, 1e0, 0.0, 4e-15, marks=pytest.mark.long)],
 )
 def test_it_loses_digits_with_stiff_springs(alpha, delta, ratio, low, high):
     model, scheme = square(ratio), Scheme(alpha, delta, 1.0, 1e-3)
@@ -33,12 +33,11 @@ def test_it_settles_elsewhere_where_poisson_is_not_zero():
     assert [right[name][-1] for name in columns] == pytest.approx([-0.00985, 1.0e-3], rel=1e-9)
 
 
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-@pytest.mark.parametrize("shape", [(1.3, 0.6), (0.7, 2.9)])
+@pytest.mark.parametrize(("start", "shape"), [("zero", (1.3, 0.6)), ("consistent", (0.7, 2.9))])
 def test_it_agrees_with_the_robust_form_where_poisson_is_zero(start, shape):
     model = TwoBlockModel(Block.rectangle(*shape, Material(1900.0, 6e9, 0.0)), Contact(2e9, 7e8), 2e6)
     scheme = Scheme(0.3025, 0.6, 0.9, 6e-4, start)
-    printed, right = (run(model, scheme, 100).columns for run in (solve_textbook, solve))
+    printed, right = (run(model, scheme, 60).columns for run in (solve_textbook, solve))
     for name, values in right.items():
         assert printed[name] == pytest.approx(values, rel=0, abs=1e-12 * abs(values).max())
 

@@ -13,7 +13,7 @@ import numpy as np
 from mpmath import mp, mpf
 
 DIGITS = 80
-ZERO, ONE, HALF = Decimal(0), Decimal(1), Decimal("0.5")
+ZERO, HALF = Decimal(0), Decimal("0.5")
 
 
 def integrals(points):
