@@ -47,15 +47,6 @@ def test_where_the_bar_is_exact():
         Bar(2.0, 2.0, 2700.0, -1e9, 2e9, 5e6)
 
 
-def test_a_mode_that_stops_at_once_has_no_power():
-    """At gg = 0 and Omega to infinity both roots of constant acceleration are zero: static from the third step on."""
-    bar = Bar(height=1.3, width=0.7, density=2100.0, young=4e7, base_stiffness=3e8, pressure=2e5)
-    result = bar.solve(Scheme(0.5, 1.0, 0.0, 1e9), 7)
-    for name, values in result.columns.items():
-        assert np.all(np.isfinite(values)) and values[2:] == pytest.approx(bar.static()[name], rel=1e-13)
-    assert np.isfinite(result.estimate)
-
-
 def test_waves_beyond_the_range_of_the_exponential():
     # exp(-x / 2) is zero in doubles for the first of these waves, and the series still oscillates about one.
     mp = pytest.importorskip("mpmath").mp

@@ -1,4 +1,4 @@
-"""Ball arithmetic of the exact motions: first falls that must not be missed, flows, and enclosures that hold."""
+"""Ball arithmetic of the exact motions: first falls that must not be missed, and enclosures that hold."""
 
 import math
 from dataclasses import replace
@@ -8,19 +8,18 @@ import pytest
 from conftest import thinned
 from flint import arb, arb_mat
 from oracles.integrated import slipping_problem
-from scipy.linalg import expm
 
-from fem_reference.events import block_march, column_events, report, series, watching
+from fem_reference.events import block_march, report, series, watching
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
 from fem_reference.events.column_drive import sine
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.contacts import LEFT, OPEN, RELEASED, RIGHT, STICKS
-from fem_reference.events.ellipsoid import FLOAT_ERROR, Ellipsoid
+from fem_reference.events.ellipsoid import Ellipsoid
 from fem_reference.events.enclosure import ball, bits_of, first_fall, precision
 from fem_reference.events.enclosure import polynomial as smooth
 from fem_reference.events.series import Start, column, expand
-from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError, Work
+from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
 from fem_reference.events.watching import Watched
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
@@ -168,47 +167,6 @@ def members(ellipsoid, count):
     return y @ (ellipsoid.inverse @ ellipsoid.shape).T * float(ellipsoid.size)
 
 
-@pytest.mark.parametrize(("problem", "states"), thinned(SYSTEMS, 7))
-def test_floats_of_an_exponential_are_as_good_as_is_counted_on(problem, states):
-    """So is the rate, which bounds the flow in the units of the set."""
-    with precision(bits_of(50)):
-        model = model_of(problem)
-        ellipsoid = Ellipsoid(model)
-        G = ellipsoid.generator(states)
-        rate = model.rate(states)
-        for angle in (0.01, 1.0, ANGLE):
-            moved = Ellipsoid(model)
-            moved.size, moved.shape = arb(1), np.eye(len(G)) / 1e3
-            moved.advance(states, arb(angle / rate))
-            exact = np.array(
-                [[float(x) for x in row] for row in (arb_mat(G.tolist()) * arb(angle / rate)).exp().tolist()]
-            )
-            assert np.abs(expm(G * (angle / rate)) - exact).max() < FLOAT_ERROR / 4 * np.linalg.norm(exact)
-            # what the set was moves into it, and hardly less
-            inside = np.linalg.norm(np.linalg.solve(moved.shape, exact / 1e3), 2) / float(moved.size)
-            assert 1 - 1e-5 < inside <= 1
-        n = model.size
-        scale = np.repeat([model.bounds_of(states).frequency / ellipsoid.frequency, 1.0], n)
-        assert np.linalg.norm(G[: 2 * n, : 2 * n] * scale[:, None] / scale, 2) <= rate * (1 + 1e-12)
-
-
-def test_a_box_that_is_added_lies_in_the_set():
-    with precision(bits_of(50)):
-        model = BlockModel(ROUGH)
-        ellipsoid = Ellipsoid(model)
-        ellipsoid.take([arb(x) for x in range(14)])
-        rng = np.random.default_rng(2)
-        for size in (1e-12, 1.0, 1e6):
-            before = members(ellipsoid, 50)
-            radii = rng.uniform(0, size, 14)
-            ellipsoid.take([arb(x) for x in radii])
-            unscaled = ellipsoid.inverse @ ellipsoid.shape * float(ellipsoid.size)
-            sums = before + radii * rng.choice([-1, 1], (50, 14))
-            reached = np.linalg.norm(np.linalg.solve(unscaled, sums.T), axis=0)
-            assert reached.max() <= 1
-            assert reached.max() > 0.1
-
-
 OFFSETS = [(*one, offset) for one in SYSTEMS for offset in (0.0, 1e-9)]
 
 
@@ -240,52 +198,6 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, 
                 assert all(one <= reach for one, reach in zip(off, reaches, strict=False))
                 largest[watch] = max(largest.get(watch, 0.0), float(off[0] / reaches[0]))
         assert all(share > 0.03 for share in largest.values()) or offset
-
-
-def followed(march, faster, unknown, kind):
-    """Go on to the first switch of a kind, with a set of rates of an unknown that are as much faster."""
-    march.take_drives(0.0)
-    march.start, march.states = march.initial()
-    march.place(*march.start[:3])
-    march.settle({}, recording=False)
-    if faster:
-        march.transport.size = arb(faster)
-        march.transport.shape[:, 0] = march.transport.unit[:, march.model.size + unknown]
-    while kind not in {switch.kind for switch in march.switches}:
-        march.step(arb(0.01))
-
-
-@pytest.mark.parametrize("shaken", [False, True])
-def test_the_set_follows_what_is_off_over_a_switch_at_which_a_force_jumps(shaken):
-    """The deviation of a motion that begins a little faster lies in the set, which is as thin as one axis."""
-    dropped = replace(PAPER, damping=3e6, eccentricity=0.3, velocity=-1.0, gap=1e-3)
-    faster = 1e-24 if shaken else 1e-9
-    with precision(bits_of(50)):
-        marches = []
-        for change in (0.0, faster):
-            if shaken:
-                pair = (PAIR[0], replace(PAIR[1], velocity=change))
-                column_problem = replace(SLIDING, blocks=pair, base_motion=sine(3e-3, 150.0))
-                marches.append(column_events.ColumnMarch(column_problem, 0.01, 100, Work()))
-            else:
-                marches.append(block_march.BlockMarch(replace(dropped, velocity=-1.0 - change), 0.01, 100))
-            followed(marches[-1], faster - change, 1 + shaken, "sticks" if shaken else "closes")
-        centre, other = marches
-        assert centre.states == other.states
-        later = centre.start.time - other.start.time
-        segment = expand(other.model, other.states, other.start, other.pieces, abs(float(later)) * 1.01)
-        u, v = segment.state(later / arb(segment.length))
-        moved = [*u.entries(), *v.entries(), *other.start.references]
-        there = [*centre.start.u.entries(), *centre.start.v.entries(), *centre.start.references]
-        off = [float(x - y) for x, y in zip(moved, there, strict=True)]
-        off = centre.transport.unit @ off
-        off[2 * centre.model.size :] *= [state == STICKS and shaken for state in centre.states]
-        assert np.abs(off[2 * centre.model.size :]).max() > 1e-3 * np.abs(off).max() or not shaken
-        axes, lengths, _ = np.linalg.svd(centre.transport.shape)
-        lengths *= float(centre.transport.size)
-        assert lengths[1] < 0.03 * np.linalg.norm(off)
-        assert np.linalg.norm(axes.T @ off / lengths) <= 1.001
-        assert lengths[0] < 10 * np.linalg.norm(off)
 
 
 def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off():
@@ -324,12 +236,6 @@ def test_the_balls_of_the_switches_hold_those_of_more_digits(seed, moved):
     assert np.all(np.abs(one.displacement - more.displacement) <= one.displacement_radius + more.displacement_radius)
     assert one.displacement_radius.max() < 1e-12 * np.abs(one.displacement).max()
     assert np.all(one.displacement_radius >= np.finfo(float).eps / 2 * np.abs(one.displacement))  # floats round it
-
-
-def test_corners_that_switch_in_one_ball_are_named():
-    centred = solve(PAPER, 0.05)
-    assert len(centred.simultaneous) == len(centred.switches) / 2 > 3
-    assert not solve(replace(ROUGH, eccentricity=0.3), 0.01).simultaneous
 
 
 def test_too_much_work_stops_at_a_horizon(monkeypatch):
