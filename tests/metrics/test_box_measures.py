@@ -79,21 +79,6 @@ def test_the_restitution_is_measured_from_positions(bounce, word):
     assert got == word
 
 
-@pytest.mark.parametrize(("parts", "step_share"), [(1, 1.0), (4, 0.25)])
-def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts, step_share):
-    """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
-    scene = scene_of("bouncing", **{"time.steps": 25})
-    history = flat_engine(scene, parts)
-    ground = boxes_of(scene)
-    flying = measures.in_flight(history, ground)
-    assert flying[2:-2].all() and not flying[:2].any()
-    energy = measures.energies(history, ground)[flying]
-    assert np.ptp(energy) < 1e-9 * energy[0]
-    dt = scene.time.step * step_share
-    excess = (energy[0] - measures.first_energy(ground)) / ground.gravity
-    assert excess == pytest.approx(ground.gravity * dt**2 / 8, rel=1e-6)
-
-
 def test_no_row_beside_an_impact_is_one_of_a_flight():
     """The impact of the exact motion may come anywhere between two rows; the energy of a flight never knows of it."""
     from validation.solvers.registry import solve

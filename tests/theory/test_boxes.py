@@ -9,17 +9,8 @@ from scipy.integrate import solve_ivp
 from validation.theory.boxes import (
     ShakenBox,
     SpringImpact,
-    sliding_acceleration,
 )
 from validation.theory.rocking import Rectangle
-
-
-@pytest.mark.parametrize(("slope", "friction", "gravity"), [(31.0, 17.0, 9.81), (12.0, 4.0, 1.62)])
-def test_a_box_slides_by_the_difference_of_weight_and_friction(slope, friction, gravity):
-    angle = math.radians(slope)
-    expected = gravity * (math.sin(angle) - math.tan(math.radians(friction)) * math.cos(angle))
-    assert sliding_acceleration(slope, friction, gravity) == pytest.approx(expected, rel=1e-12)
-    assert sliding_acceleration(friction, slope, gravity) == 0
 
 
 @pytest.mark.parametrize(("box", "share"), [(Rectangle(0.7, 2.9, 9.81), 0.83), (Rectangle(1.3, 1.9, 3.7), 0.97)])

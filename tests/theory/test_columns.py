@@ -8,7 +8,6 @@ from scipy.linalg import eigh
 
 from validation.scenes.scene import Scene
 from validation.theory import columns
-from validation.theory.stepping import Stepping
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 7])
@@ -30,23 +29,6 @@ def test_the_far_face_of_a_block_turns_at_its_step(alpha):
         assert np.sign(answer[1]) == sign
     assert columns.far_face_step(math.inf, height, alpha) == 0
     assert columns.far_face_step(1.0, height, 0.0) == math.inf
-
-
-@pytest.mark.parametrize(
-    ("weights", "gg", "step", "blocks", "seconds"),
-    [
-        ((0.5, 1.0), 1.0, 1e-3, 10, 3.097),
-        ((0.5, 1.0), 1.0, 5e-3, 10, 0.650),
-        ((0.5, 1.0), 1.0, 20e-3, 10, 0.260),  # w1 dt = 1.9, where the formula of small steps has 0.155
-        ((0.25, 0.5), 0.98, 1e-3, 10, 0.674),
-    ],
-)
-def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step, blocks, seconds):
-    omega = columns.lowest_frequency(1e9, 2500, blocks)
-    # band: a quarter of a period, within which the last crossing lies, and a step
-    assert columns.ring_down(omega, Stepping(step, *weights, gg)) == pytest.approx(
-        seconds, abs=math.pi / omega / 2 + step
-    )
 
 
 def test_every_contact_at_rest_carries_what_is_above():

@@ -61,24 +61,6 @@ def test_at_the_threshold_the_forces_balance(changes):
     assert 0 < friction.run_out(steeper, 3.0) == pytest.approx(4.5 * friction.sliding_acceleration(steeper))
 
 
-@pytest.mark.parametrize("changes", [OTHER, {"contact.stiffness": 1e10, "load.slope": 11.0}])
-def test_the_settled_block_is_in_equilibrium(changes):
-    """-N = -2 p w at the springs, and E a h ey = -N h / 2 in the block, by the suite's own static solution."""
-    from validation.solvers.registry import get_solver
-
-    case = scene().with_values(changes)
-    upright = case.with_values({"load.slope": 0.0, "load.gravity": friction.across(case)})
-    plain = {key: value for key, value in upright.definition().items() if key != "contact"}
-    locked = load_scene("figures-3-4").with_values(
-        {f"load.{key}": value for key, value in plain["load"].items()}
-        | {k: v for k, v in changes.items() if not k.startswith("load")}
-    )
-    still = get_solver("dda").prepare(locked.with_values({"time.step": 0.01})).static()
-    assert friction.settlement(case) == pytest.approx(-still["displacement"], rel=1e-12)
-    weight, springs = case.block.mass * friction.across(case), 2 * case.contact.stiffness
-    assert friction.penalty_offset(case) > friction.coefficient(case) * weight / springs
-
-
 def test_a_rate_is_what_a_discount_takes_in_a_second():
     for gg, step in ((0.98, 1e-3), (0.9, 4e-2)):
         case = scene(time__gg=gg, time__step=step)

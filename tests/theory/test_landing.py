@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.staged import System, march
 from scipy.integrate import solve_ivp
 
 from validation import load_scene
@@ -174,14 +173,6 @@ def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch):
     assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
 
 
-def test_the_greatest_force_lies_between_that_of_the_two_masses():
-    """Over V sqrt(p m / 2): 2 in the soft limit, 1.47 in the stiff one, whose second impact is the deepest."""
-    depths = [landing.own_landing(2 * ratio).depth for ratio in np.geomspace(1e-3, 1e4, 9)]
-    assert depths[0] == pytest.approx(2.0, abs=1e-2) and depths[-1] == pytest.approx(1.4755, abs=1e-2)
-    assert min(depths) > 1.46 and max(depths) < 2.0
-    assert landing.rigid_stop() == pytest.approx((1.0, 1.475549201, 1.307094874, 0.89132203751993), abs=1e-9)
-
-
 @pytest.mark.parametrize(
     ("scheme", "ratio"), thinned([(one, r) for r in (0.3, 30.0) for one in (SCHEMES[3], *SCHEMES[:3], SCHEMES[4])], 4)
 )
@@ -191,19 +182,6 @@ def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
         step = omega / landing.contact_frequency(on_springs(ratio))
         expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
         assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
-
-
-@pytest.mark.parametrize(("gg", "tau"), [(1.0, 0.09), (0.9, 7e-3)])
-def test_a_landing_on_a_rigid_stop_is_that_of_all_states_tried(gg, tau):
-    """In steps so short that their discount would damp a contact of a transit beyond its rebound."""
-    system = System(
-        np.diag([1, 1 / 12]), np.diag([0.0, 1.0]), lambda t: np.zeros(2), B=np.array([[1, -0.5]]), p=math.inf
-    )
-    above = np.array([gg * tau * 0.7, 0.0])
-    _, v, N = march(system, "newmark", tau, 130, above, np.array([-1.0, 0.0]), gg, zero=True, weights=(0.5625, 1.0))
-    lifted = np.flatnonzero((N[:-1, 0] > 0) & (N[1:, 0] == 0)) + 1
-    found = landing.restitutions(Stepping(1.0, 0.5625, 1.0, gg), math.inf, tau, 1.0, np.array([0.3]))
-    assert found[0] == pytest.approx(max(v[lifted, 0]), rel=1e-9) and found[0] > 1e-3
 
 
 def test_a_landing_of_very_many_steps_is_not_stepped():

@@ -122,21 +122,6 @@ def test_a_corner_rebounds_from_springs_by_the_gradient_of_their_energy(mu, ps):
     assert corner_of(np.array(rebound.state), number)[1] == pytest.approx(0.0, abs=1e-10)
 
 
-def test_a_smooth_corner_gives_all_energy_back_and_its_speed_across_the_plane():
-    time, number = FALLING.landing(2.0)
-    landed = FALLING.flown(time)
-    rises = landed.rebounded(number)
-
-    def energy(body):
-        return 900.0 * np.dot(body.velocity, body.velocity) + body.inertia * body.spin**2
-
-    arm = corner_of([*landed.place, landed.angle], number)[0] - landed.place[0]
-    speeds = [body.velocity[1] + body.spin * arm for body in (landed, rises)]
-    assert speeds[1] == pytest.approx(-speeds[0], rel=1e-12) and speeds[1] > 0
-    assert energy(rises) == pytest.approx(energy(landed), rel=1e-12)
-    assert rises.velocity[0] == landed.velocity[0]
-
-
 # ---- a first touch, an edge of what holds ----------------------------------------------------------------------------
 
 

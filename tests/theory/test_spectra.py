@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.staged import System, amplification, march, two_unknowns
+from oracles.staged import amplification, two_unknowns
 from scipy.linalg import eigh
 
 from validation.theory import overshoot, stages, statics
@@ -39,16 +39,6 @@ def test_modes_and_shares_of_the_bar(oblong):
     assert expected.bar_shares(oblong, "displacement", b).sum() == pytest.approx(1.0, abs=1e-4)
     pressure = np.cumsum(expected.bar_shares(oblong, "contact_pressure", b))
     assert (pressure[-1] + pressure[-2]) / 2 == pytest.approx(1.0, abs=1e-4)
-
-
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-def test_the_response_of_a_mode_is_the_scheme_s(scene, start):
-    case = scene.with_values({"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.97, "time.start": start})
-    omega, t = np.array([0.1, 1.0, 7.0]), case.time
-    modes = System(np.eye(3), np.diag(omega**2), lambda t: omega**2)
-    rest, weights = np.zeros(3), (t.alpha, t.delta)
-    stepped, _, _ = march(modes, "", 1.0, t.steps, rest, rest, t.discount, zero=start == "zero", weights=weights)
-    np.testing.assert_allclose(expected.bar_response(case, omega), stepped[1:], rtol=0, atol=1e-12)
 
 
 ELEMENTS = {  # mass and stiffness of one of unit length

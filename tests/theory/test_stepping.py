@@ -31,8 +31,6 @@ SCHEMES = {
     "implicit Euler": Stepping(1.0, 1.0, 1.5),
     "leapfrog": NAMED("leapfrog"),
 }
-# w dt of the two-block model at p = 1E and 1 ms, at 10E and 2 ms, of the contact at 100E and 10 ms
-W1, W2, W3 = 0.344561200, 0.99762391, 86.550857
 LEADING = {  # of xi / W^n and of the period error / W^2
     "(1/2, 1)": (1 / 4, 1 / 12),
     "(1/4, 1/2)": (0.0, 1 / 12),
@@ -129,26 +127,6 @@ def test_the_response_of_a_mode_is_what_a_driven_history_settles_to():
 def test_the_velocity_of_the_leapfrog_is_the_mean_of_the_half_steps():
     stepping = Stepping.named("leapfrog", 0.03)
     assert stepping.velocity_factor([4.0, 31.0]) == pytest.approx(1j * np.sin([0.12, 0.93]) / 0.03, rel=1e-13)
-
-
-def test_schemes_of_one_table_are_one_scheme():
-    pairs = [
-        (NAMED("chung-hulbert", rho_inf=0.0), NAMED("wbz", rho_inf=0.0)),
-        (NAMED("chung-hulbert", rho_inf=0.5), NAMED("hht", rho_inf=0.5)),
-        (NAMED("hht", rho_inf=1.0), AVERAGE),
-        (NAMED("wbz", rho_inf=1.0), AVERAGE),
-        (NAMED("chung-hulbert", rho_inf=1.0), AVERAGE),
-        (NAMED("composite", split=2 - math.sqrt(2)), NAMED("composite")),
-        (NAMED("leapfrog"), Stepping(1.0, 0.0, 0.5)),
-    ]
-    for first, second in pairs:
-        for omega in (0.1, 0.9, 1.8):
-            pair = [stepping.roots(omega)[0] for stepping in (first, second)]
-            assert pair[0] == pytest.approx(pair[1], rel=1e-12), (first.name, second.name)
-    # Houbolt's (2 + W^2) z^3 - 5 z^2 + 4 z - 1 has the roots of CH 0
-    for omega in (0.1, 30.0):
-        for root in NAMED("chung-hulbert", rho_inf=0.0).roots(omega):
-            assert abs(np.polyval([2 + omega**2, -5, 4, -1], root)) < 1e-12 * (2 + omega**2)
 
 
 def test_every_scheme_of_scenes_has_a_card_whose_order_and_solves_are_the_stepping_s():
