@@ -144,6 +144,10 @@ def test_the_bars_move_as_another_program_computed(name):
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
+    if name == "B5":
+        given = 2.0 * state.mean_velocity[1, 0]
+        assert motion.impulse(1, [end, 0.0]) == pytest.approx([given, 0.0], rel=1e-13, abs=1e-15)
+        assert motion.impulse(0, [end]) == [0.0]
 
 
 def test_cut_bars_that_stay_bonded_move_as_one():

@@ -80,6 +80,7 @@ def test_a_welded_foot_passes_a_jump_of_the_base_on():
         base_motion=record,
     )
     state = solve(problem, 0.003).at([0.0005, 0.001 + 1e-12])
+    assert not state.states.any()
     np.testing.assert_allclose(state.foot_velocity[0], [0.0, 1.0], atol=1e-12)
     np.testing.assert_allclose(state.top_velocity[0], [0.0, -0.5], atol=1e-5)
 

@@ -167,6 +167,20 @@ def members(ellipsoid, count):
     return y @ (ellipsoid.inverse @ ellipsoid.shape).T * float(ellipsoid.size)
 
 
+def test_what_a_set_was_moves_into_it_and_hardly_less():
+    with precision(bits_of(50)):
+        model = ColumnModel(SLIDING)
+        states = STICKS, RIGHT
+        for angle in (0.01, ANGLE):
+            seconds = arb(angle / model.rate(states))
+            moved = Ellipsoid(model)
+            G = moved.generator(states)
+            moved.size, moved.shape = arb(1), np.eye(len(G)) / 1e3
+            moved.advance(states, seconds)
+            exact = np.array([[float(x) for x in row] for row in (arb_mat(G.tolist()) * seconds).exp().tolist()])
+            assert 1 - 1e-5 < np.linalg.norm(np.linalg.solve(moved.shape, exact / 1e3), 2) / float(moved.size) <= 1
+
+
 OFFSETS = [(*one, offset) for one in SYSTEMS for offset in (0.0, 1e-9)]
 
 

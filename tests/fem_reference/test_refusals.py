@@ -144,6 +144,7 @@ ASKS = {
     ],
     "fields": [lambda: solve(make(elements=2), CONSTANT, 1, fields="block.txt")],
     "problem": [
+        lambda: Bar.of(make(poisson=0.1)),
         lambda: OpeningBar.of(make(motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))),
     ],
     "gap": [lambda: OpeningBar.of(make(), gap=-1.0)],

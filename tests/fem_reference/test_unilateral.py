@@ -17,6 +17,8 @@ def test_a_mesh_too_coarse_for_a_stiff_base_is_named():
     for p, words in ((1e10, "too coarse for the base spring: h kappa is 2.5, at most 1 shows its ramp"), (3.9e9, None)):
         notes = solve_unilateral(make(elements=8, p=p), replace(CONSTANT, step=0.1), 1).notes
         assert notes[:-1] == (("one column of elements",) if words is None else ("one column of elements", words))
+    # c dt over h = 0.25
+    assert "wave: 0.243 elements" in solve_unilateral(make(elements=8), CONSTANT, 1).notes[1]
 
 
 def test_rounding_does_not_turn_a_block_in_a_long_flight():

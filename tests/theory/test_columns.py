@@ -8,6 +8,7 @@ from scipy.linalg import eigh
 
 from validation.scenes.scene import Scene
 from validation.theory import columns
+from validation.theory.stepping import Stepping
 
 
 @pytest.mark.parametrize("blocks", [1, 2, 7])
@@ -29,6 +30,15 @@ def test_the_far_face_of_a_block_turns_at_its_step(alpha):
         assert np.sign(answer[1]) == sign
     assert columns.far_face_step(math.inf, height, alpha) == 0
     assert columns.far_face_step(1.0, height, 0.0) == math.inf
+
+
+def test_a_stack_rings_down_by_what_the_scheme_and_the_discount_take():
+    omega, step = 40.0, 1e-4
+    rate = omega**2 * (0.8 - 0.5) * step / 2 + (1 - 0.999) / (2 * step)
+    damped = Stepping(step, 0.45, 0.8, 0.999)
+    assert columns.ring_down(omega, damped, 0.02) == pytest.approx(math.log(50) / rate, rel=2e-3)
+    assert columns.ring_down(0.0, damped) == columns.ring_down(omega, Stepping(step, 0.25, 0.5)) == math.inf
+    assert columns.ring_down(1e9, Stepping(1.0, 0.5, 1.0, 0.0)) == pytest.approx(0.0, abs=1.0)
 
 
 def test_every_contact_at_rest_carries_what_is_above():

@@ -57,6 +57,7 @@ def test_at_the_threshold_the_forces_balance(changes):
     assert forces[0] == pytest.approx(forces[1] + forces[2], rel=1e-12)
     assert at.block.mass * forces[2] == pytest.approx(at.contact.cohesion * at.block.base_length, rel=1e-12)
     assert friction.run_out(case.with_values({"load.slope": limit - 1e-3}), 1.0) == 0
+    assert friction.threshold_angle(case.with_values({"contact.cohesion": 1e9})) == 90.0  # it stands on a wall
     steeper = case.with_values({"load.slope": limit + 1.0})
     assert 0 < friction.run_out(steeper, 3.0) == pytest.approx(4.5 * friction.sliding_acceleration(steeper))
 
