@@ -1,4 +1,4 @@
-"""Quadratures and closed forms of rigid and strained motions against their equations, from Newton's laws once more."""
+"""Quadratures and closed forms of rigid motions against their equations, from Newton's laws once more."""
 
 import math
 
@@ -7,17 +7,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from validation import exact
-from validation.theory.corner_impact import FallingRectangle, on_springs
 from validation.theory.edges import edge
 from validation.theory.first_touch import MovingPolygon
 from validation.theory.rocking import Rectangle
 
 TIGHT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
-
-
-def steepest(energy, q):
-    """Return minus the gradient of an energy, by complex steps: no difference, and no formula of a force."""
-    return np.array([-energy(q + 1e-30j * unit).imag / 1e-30 for unit in np.eye(len(q))])
 
 
 # ---- about a corner --------------------------------------------------------------------------------------------------
@@ -81,45 +75,6 @@ def test_a_pulse_of_the_base_tilts_a_box_or_overturns_it():
     tilt, rate = rocked(duration, [0.0, 0.0], threshold).y[:, -1]  # it just carries the centre above the corner
     lift = math.hypot(0.35, 0.95) * (1 - math.cos(BOX.alpha - tilt))
     assert ARM2 * rate**2 / 2 == pytest.approx(3.7 * lift, rel=1e-7)
-
-
-# ---- a corner that hits a plane --------------------------------------------------------------------------------------
-
-FALLING = FallingRectangle(1.1, 0.7, 900.0, (0.3, 1.4), 0.4, (3.3, -0.6), -0.8, 6.1)
-
-
-def corner_of(q, number=0):
-    x, y = [(-0.55, -0.35), (0.55, -0.35), (0.55, 0.35), (-0.55, 0.35)][number]
-    return q[0] + x * np.cos(q[2]) - y * np.sin(q[2]), q[1] + x * np.sin(q[2]) + y * np.cos(q[2])
-
-
-@pytest.mark.parametrize(("mu", "ps"), [(None, 0.0), (1e9, 3e6), (0.04, 3e8)], ids=["smooth", "sticks", "slips"])
-def test_a_corner_rebounds_from_springs_by_the_gradient_of_their_energy(mu, ps):
-    time, number = FALLING.landing(2.0)
-    t = time
-    q = np.array([0.3 + 3.3 * t, 1.4 - 0.6 * t - 3.05 * t * t, 0.4 - 0.8 * t, 3.3, -0.6 - 6.1 * t, -0.8])
-    held, depth = corner_of(q, number)
-    assert depth == pytest.approx(0.0, abs=1e-12)
-    assert min(corner_of(q, other)[1] for other in range(4)) >= -1e-12
-    inertia = np.array([900.0, 900.0, 900.0 * (1.1**2 + 0.7**2) / 12])
-
-    def rates(_, state):
-        def energy(q):
-            x, y = corner_of(q, number)
-            return 2e6 * y * y / 2 + (mu == 1e9) * ps * (x - held) ** 2 / 2 + 900.0 * 6.1 * q[1]
-
-        force = steepest(energy, state[:3])
-        normal = -2e6 * corner_of(state, number)[1]
-        if mu == 0.04:  # it slips on towards +x
-            force = force + 0.04 * normal * steepest(lambda q: corner_of(q, number)[0], state[:3])
-        return [*state[3:6], *(force / inertia), normal]
-
-    rebound = on_springs(FALLING, 2e6, ps, mu, 2.0)
-    done = solve_ivp(rates, (time, rebound.time), [*q, 0.0], **TIGHT)
-    assert rebound.state == pytest.approx(done.y[:6, -1], rel=1e-7, abs=1e-8)
-    assert rebound.impulse[1] == pytest.approx(done.y[6, -1], rel=1e-8)
-    assert rebound.impulse[0] == pytest.approx(900.0 * (rebound.state[3] - 3.3), rel=1e-8, abs=1e-6)
-    assert corner_of(np.array(rebound.state), number)[1] == pytest.approx(0.0, abs=1e-10)
 
 
 # ---- a first touch, an edge of what holds ----------------------------------------------------------------------------
