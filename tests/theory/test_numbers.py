@@ -2,11 +2,11 @@
 
 import dataclasses
 import math
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.kept_numbers import hold
 
 from validation import load_scene
 from validation.theory import (
@@ -185,31 +185,7 @@ PARTS = {
 }
 
 
-def flat(value):
-    """Yield the numbers in a value, without parts that only rounding leaves."""
-    if isinstance(value, dict):
-        yield from flat(list(value.values()))
-    elif isinstance(value, (list, tuple, np.ndarray)):
-        for one in value:
-            yield from flat(one)
-    elif isinstance(value, (complex, np.complexfloating)):
-        yield from (part * (abs(part) > 1e-11 * abs(value)) for part in (value.real, value.imag))
-    else:
-        yield float(value) * (abs(value) > 1e-15)
-
-
 @pytest.mark.parametrize("part", PARTS)
 @np.errstate(all="ignore")
 def test_closed_forms_give_what_they_gave(part):
-    found = [[name, *flat(values)] for name, *values in PARTS[part]()]
-    kept = KEPT.read_text().split("\n\n") if KEPT.exists() else [""] * len(PARTS)
-    number = list(PARTS).index(part)
-    if os.environ.get("KEEP_PAGES"):
-        kept[number] = "\n".join(" ".join([f"{name}:", *(f"{x:.8g}" for x in values)]) for name, *values in found)
-        KEPT.write_text("\n\n".join(kept))
-    lines = kept[number].strip().splitlines()
-    assert len(lines) == len(found)
-    for line, (name, *values) in zip(lines, found, strict=True):
-        label, _, numbers = line.rpartition(": ")
-        assert label == name
-        assert values == pytest.approx([float(x) for x in numbers.split()], rel=2e-7, abs=1e-16, nan_ok=True), line
+    hold(KEPT, PARTS, part)
