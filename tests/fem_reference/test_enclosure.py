@@ -20,7 +20,6 @@ from fem_reference.events.enclosure import ball, bits_of, first_fall, precision
 from fem_reference.events.enclosure import polynomial as smooth
 from fem_reference.events.series import Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
-from fem_reference.events.watching import Watched
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -212,25 +211,6 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, 
                 assert all(one <= reach for one, reach in zip(off, reaches, strict=False))
                 largest[watch] = max(largest.get(watch, 0.0), float(off[0] / reaches[0]))
         assert all(share > 0.03 for share in largest.values()) or offset
-
-
-def test_floats_count_on_their_rounding_and_on_what_the_state_may_be_off():
-    """A block in flight, a micrometre above the springs and on its way up: clear, but not if it may be lower."""
-    with precision(bits_of(50)):
-        model = BlockModel(replace(ROUGH, pressure=0.0))
-        states = (OPEN, OPEN)
-        for height, off, clear in ((1e-6, 0.0, True), (1e-6, 1e-8, True), (1e-6, 1.1e-6, False), (1e-22, 0.0, False)):
-            start = Start(arb(0), column([0, height, *[0] * 4]), column([0, 1, *[0] * 4]), [arb(0)] * 2)
-            transport = Ellipsoid(model)
-            transport.restart([arb(off if i == 1 else 0) for i in range(14)])
-            segment = expand(model, states, start, (), 1e-3)
-
-            def reach(watch, _at_switch, transport=transport, segment=segment):
-                return transport.reach(watch, states, segment, 0.0)
-
-            functions = watched(model, states, start)
-            share, _, doubtful = Watched(0.0, segment, functions, reach).clear()
-            assert (share, doubtful) == ((1.0, []) if clear else (0.0, functions))
 
 
 @pytest.mark.parametrize(("seed", "moved"), thinned([(i, i % 2 == 1) for i in range(60, 68)], 8))

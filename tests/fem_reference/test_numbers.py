@@ -52,12 +52,8 @@ STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
 
 
 def ends(columns):
-    """Return the first and the last row of columns, but what is rounding of the others."""
-    rows = []
-    for values in columns.values():
-        values = np.where(np.abs(values) <= 1e-9 * np.max(np.abs(values)), 0.0, values)
-        rows += [float(values[0]), float(values[-1])]
-    return rows
+    """Return the last row of columns, but what is rounding of the others."""
+    return [float(values[-1]) * (abs(values[-1]) > 1e-9 * np.max(np.abs(values))) for values in columns.values()]
 
 
 def fields(history):
@@ -91,12 +87,13 @@ def contact_numbers():
     drive = Excitation(
         2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
     )
-    names = ("displacement", "contact_pressure", "velocity_1", "stress_1", "force_2")
+    names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
     for law, joints in (("unilateral", (2e9, 1e-4)), ("frictional", (0.0, 7e3))):
         ground = Ground(STRATA, "shear" if law == "frictional" else "pressure", impedance=None)
         faces = tuple(ColumnContact(height, 3e9, *joints[law == "unilateral" :]) for height in (0.0, 1.3))
         column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * (law == "unilateral"))
-        yield law, ends(solve_contacts(column, [2, 1], 2, ALPHA, drive, names[:4], [1.3]).columns)
+        found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
+        yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     for impedance in (None, 5e5):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
         yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
@@ -111,40 +108,44 @@ def exact_numbers():
     yield "continuum", ends(Bar.of(make(p=3e8)).continuum(DAMPED, 20).columns)
     yield "opens", ends(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60).columns)
     rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
-    yield "rocks", rocks.impacts[:4], rocks.at([0.3, 1.7, 2.9])
+    yield "rocks", rocks.impacts[:4], rocks.at([1.7])
     shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
     slides = sliding_block.solve(sliding_block.SlidingBlock(11.0, 17.0, 9.81, 0.2), shaken, 2.0)
-    yield "slides", slides.slip, slides.at([0.3, 0.7, 2.0]), [time for time, _ in slides.switches]
+    yield "slides", slides.slip, slides.at([0.7, 2.0]), [time for time, _ in slides.switches]
     for omega in (0.7, 2.3, math.inf):
         scheme = ContactScheme(0.3, 0.65, 0.97)
         yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
 
 
 def event_numbers():
-    times = np.array([0.0031, 0.0083])
+    times = np.array([0.0083])
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
     yield "bar", fields(bar_events.solve(dropped, 0.01).at(times))
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
     for changes in (
         {"damping": 2e6, "velocity": -0.4, "gap": 1e-3},
         {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0},
+        {"shear_stiffness": 4e8, "friction": 30.0, "pressure": 0.0, "slope": 20.0, "gravity": 19.0},
         {"stiffness": math.inf, "restitution": 0.4, "eccentricity": 0.0},
     ):
-        yield "block", fields(block_events.solve(replace(block, **changes), 0.009).at(times))
+        yield "block", fields(block_events.solve(replace(block, **changes), 0.02).at([0.0083, 0.019]))
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
-    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0)):
+    welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
+    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
         yield "column", fields(column_events.solve(problem, 0.009).at(times))
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
         gravity=0.05,
+        base_impedance=0.7,
         top=column_drive.half_sine(0.3, 0.7),
     )
     waves = bars_events.solve(bars, 2.0)
-    yield "waves", fields(waves.at([0.7, 1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
+    yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
 
 
 def plane_numbers():

@@ -139,6 +139,7 @@ ASKS = {
         lambda: solve(make(elements=2), CONSTANT, 0),
         lambda: solve_unilateral(make(elements=2), CONSTANT, 0),
     ],
+    "joints": [lambda: Ground(STRATA, "pressure", ((1.0, 1e9), (1.0, 2e9)))],
     "columns": [
         lambda: solve(make(elements=2), CONSTANT, 1, columns=("strain_x",)),
     ],

@@ -12,7 +12,7 @@ from validation.models.plane.problems import box_problems
 from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
 
-GAIN, LEFT = "largest gain of energy", "energy in the end over that at the start"
+GAIN = "largest gain of energy"
 CONTACT_TIME, PEAK = "time of contact", "peak force as reported"
 
 
@@ -97,18 +97,6 @@ def test_a_gain_of_energy_is_seen(bounce, gain, word):
     history = flat_engine(scene_of("bouncing", **values), parts=64, bounce=bounce)
     found = numbers("bouncing", history, **values)[GAIN]
     assert found == (pytest.approx(gain, abs=3e-3), word)
-
-
-def test_a_loss_of_energy_is_seen_and_is_no_gain():
-    values = {"time.steps": 600}
-    history = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.97)
-    found = numbers("bouncing", history, **values)
-    assert found[GAIN][1] == "PASS"
-    value, word = found[LEFT]
-    assert word == "FAIL" and value is not None and 0.2 < value < 0.9
-    at_rest = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.3)
-    value, word = numbers("bouncing", at_rest, **values)[LEFT]
-    assert word == "FAIL" and value == pytest.approx(0.0, abs=1e-3)
 
 
 def test_what_cannot_be_measured_fails_unless_it_is_optional():

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 import pytest
-from oracles.staged import amplification
 
 from validation import load_scene, solve
 from validation.theory import friction
@@ -60,34 +59,6 @@ def test_at_the_threshold_the_forces_balance(changes):
     assert friction.threshold_angle(case.with_values({"contact.cohesion": 1e9})) == 90.0  # it stands on a wall
     steeper = case.with_values({"load.slope": limit + 1.0})
     assert 0 < friction.run_out(steeper, 3.0) == pytest.approx(4.5 * friction.sliding_acceleration(steeper))
-
-
-def test_a_rate_is_what_a_discount_takes_in_a_second():
-    for gg, step in ((0.98, 1e-3), (0.9, 4e-2)):
-        case = scene(time__gg=gg, time__step=step)
-        assert math.exp(-friction.drag_rate(case) * step) == pytest.approx(gg, rel=1e-12)
-        assert friction.time_constant(case) == pytest.approx(step / (1 - gg), rel=1e-12)
-    assert (friction.drag_rate(scene()), friction.time_constant(scene())) == (0, math.inf)
-
-
-@pytest.mark.parametrize(
-    ("alpha", "delta", "gg", "stops"), [(0.5, 1.0, 1.0, True), (0.25, 0.5, 0.996, True), (0.25, 0.5, 1.0, False)]
-)
-def test_ringing_decays_as_the_scheme_damps_an_oscillator(alpha, delta, gg, stops):
-    """The decay is that of the amplification matrix of (D, V, A), and the creep ends after it."""
-    case = scene(time__alpha=alpha, time__delta=delta, time__gg=gg, time__step=1e-4, contact__friction=40.0)
-    dt, w2 = case.time.step, friction.across(case) / friction.settlement(case)
-    radius = np.max(np.abs(np.linalg.eigvals(amplification(alpha, delta, gg, w2 * dt**2))))
-    assert friction.ringing_decay(case) == pytest.approx(-math.log(radius) / dt, rel=0.02, abs=1e-9)
-    other = case.with_values({"time.scheme": "chung-hulbert", "time.rho_inf": 0.8})
-    ringing = math.sqrt(w2)
-    assert friction.ringing_decay(other) == pytest.approx(
-        ringing * 0.000685871 * (ringing * dt) ** 3 + (1 - gg) / dt / 2
-    )
-    if stops:
-        held, pushed = math.tan(math.radians(40.0)), math.tan(math.radians(28.9))
-        until = friction.damped_creep(case) / friction.creep_scale(case)
-        assert 1 - math.exp(-friction.ringing_decay(case) * until) == pytest.approx(pushed / held)
 
 
 def test_the_ringing_of_a_block_and_what_a_discount_takes_of_its_way():

@@ -1,16 +1,13 @@
-"""The landing of the block of one strain: against the exact motion, against `dda` step by step, and in its limits."""
+"""The landing of the block of one strain: against the exact motion, and in its limits."""
 
 import math
 
 import numpy as np
 import pytest
-from conftest import thinned
 from scipy.integrate import solve_ivp
 
 from validation import load_scene
-from validation.engine.case import Case
-from validation.engine.measure import execute
-from validation.theory import landing, spectra
+from validation.theory import landing
 from validation.theory.stepping import Stepping
 
 UNLOADED = (
@@ -18,35 +15,6 @@ UNLOADED = (
     .expand()[0]
     .with_values({"contact.gap": 0.0, "block.velocity": -1.0, "contact.shear_stiffness": 0.0})
 )
-TRANSIT = spectra.transit(UNLOADED)
-SCHEMES = (
-    {"time.alpha": 0.5, "time.delta": 1.0},
-    {"time.alpha": 0.25, "time.delta": 0.5},
-    {"time.alpha": 0.275, "time.delta": 0.55},
-    {"time.alpha": 0.5, "time.delta": 1.0, "time.gg": 0.99},
-    {"time.alpha": 0.25, "time.delta": 0.5, "contact.rule": "implicit"},
-)
-
-
-def on_springs(ratio, **values):
-    """Return the unloaded landing on springs of p/E."""
-    return UNLOADED.with_values({"contact.stiffness": ratio * UNLOADED.block.young, **values})
-
-
-def measured(scene, solver, *metrics):
-    """Return metrics of a run, no others of which are measured."""
-    row, _ = execute(Case(scene, solver, only=frozenset(metrics)), "", "")
-    return [float(row.metrics[metric]) for metric in metrics]
-
-
-def stepped_by_dda(ratio, scheme, step, phase):
-    """Return the restitution of a landing that `dda` steps: it starts above the springs by the rest of the step."""
-    contact = landing.own_landing(2 * ratio).duration
-    steps = math.ceil((2 * contact + landing.FLIGHT) * TRANSIT / step)
-    scene = on_springs(ratio, **scheme, **{"time.step": step, "time.steps": landing.FEWEST + steps})
-    gap = scene.time.discount * step * (1 - phase)
-    (restitution,) = measured(scene.with_values({"contact.gap": gap}), "dda", "contact.restitution")
-    return restitution
 
 
 def integrated(k):
@@ -159,28 +127,6 @@ def test_a_block_next_to_rigid_lands_in_closed_form(monkeypatch):
     assert landing.contact_frequency(rigid_block) == pytest.approx(expected, rel=1e-6)
 
 
-@pytest.mark.parametrize(
-    ("scheme", "ratio"), thinned([(one, r) for r in (0.3, 30.0) for one in (SCHEMES[3], *SCHEMES[:3], SCHEMES[4])], 4)
-)
-def test_a_stepped_landing_is_that_of_dda(ratio, scheme):
-    stepping = Stepping.of(on_springs(ratio, **scheme))
-    for omega, phase in ((0.1, 0.5), (0.7, 0.8), (3.0, 0.15), (3.0, 0.8)):
-        step = omega / landing.contact_frequency(on_springs(ratio))
-        expected = landing.restitutions(stepping, 2 * ratio, step, TRANSIT, np.array([phase]))[0]
-        assert stepped_by_dda(ratio, scheme, step, phase) == pytest.approx(expected, abs=1e-8)
-
-
 def test_a_landing_of_very_many_steps_is_not_stepped():
     few, many = (landing.stepped_landing(Stepping(1.0, 0.5, 1.0), 2.0, step, 1.0) for step in (4e-3, 1e-5))
     assert few is not None and many is None
-
-
-def test_the_springs_of_a_landing_go_as_deep_as_was_asked():
-    p = landing.springs_for(UNLOADED, 1.3, 3e-3)
-    depth = integrated(2 * p / UNLOADED.block.young)[2]
-    assert depth * 1.3 * math.sqrt(UNLOADED.block.mass / (8 * p)) == pytest.approx(3e-3, rel=1e-6)
-    force = landing.impact_force(UNLOADED.with_values({"contact.stiffness": p}), -1.3)
-    assert force == pytest.approx(2 * p * 3e-3, rel=1e-6)
-    soft = landing.springs_for(UNLOADED, 1.0, 1.0) / (UNLOADED.block.mass / 2)
-    stiff = landing.springs_for(UNLOADED, 1.0, 1e-5) / (UNLOADED.block.mass / 8e-10)
-    assert soft == pytest.approx(1.0, rel=1e-2) and stiff == pytest.approx(1.4755**2, rel=1e-2)

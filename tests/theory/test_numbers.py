@@ -70,6 +70,7 @@ def block_numbers():
     names = "settlement penalty_offset threshold_angle normal_frequency creep_scale lag ringing_decay drag_rate"
     for name in (*names.split(), "time_constant", "sliding_acceleration"):
         yield name, getattr(friction, name)(sloped)
+    yield "creep", friction.damped_creep(sloped.with_values({"contact.friction": 40.0}))
     yield "free motion", [part[-1] for part in friction.free_motion(sloped, 1.7)], friction.distance_share(0.9, 0.1, 3)
     yield "rocking", vars(rocking.rectangle(sloped)), rocking.settlement(sloped)
 
@@ -80,7 +81,8 @@ def landing_numbers():
     for ratio in (0.3, 3.0, 30.0):
         one = drop.with_values({"contact.stiffness": ratio * drop.block.young})
         yield "own", vars(landing.own_landing(2 * ratio)), landing.contact_frequency(one)
-        yield "force", landing.impact_force(one, -1.7), landing.quarter_mass_force(one, -1.7)
+        force = landing.impact_force(one, -1.7)
+        yield "force", force, landing.quarter_mass_force(one, -1.7), landing.springs_for(one, 1.3, 3e-3)
     for scheme in (Stepping(1.0, 0.5, 1.0, 0.99), Stepping(1.0, 0.275, 0.55), Stepping(1.0, rate=0.3, implicit=True)):
         for ratio, step in ((3.0, 0.07), (3.0, 0.8), (math.inf, 0.1)):
             if math.isfinite(ratio) or not scheme.implicit:

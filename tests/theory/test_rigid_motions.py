@@ -43,18 +43,14 @@ def test_a_box_that_is_let_go_comes_down_and_keeps_its_momentum_about_the_new_co
     after = rocked(0.4, [0.0, -fall.y[1, -1] * BOX.housner]).y[0, -1]  # on the other corner
     tilts = exact.rocking_tilt([0.9, fall.t[-1] + 0.4], **of_box)
     assert tilts == pytest.approx([rocked(0.9, [0.23, 0.0]).y[0, -1], -after], rel=1e-8)
+    for spin in (BOX.critical_spin, 0.4):
+        rotation = BOX.alpha if spin > 0.5 else BOX.greatest_rotation(spin)
+        lift = math.hypot(0.35, 0.95) * math.cos(BOX.alpha - rotation) - 0.95
+        assert ARM2 * spin**2 / 2 == pytest.approx(3.7 * lift, rel=1e-12)
+    with pytest.raises(ValueError, match="overturns"):
+        BOX.greatest_rotation(1.001 * BOX.critical_spin)
     radius2, own = (0.7**2 + 1.9**2) / 4, (0.7**2 + 1.9**2) / 12
     assert BOX.housner == pytest.approx((own + radius2 * math.cos(2 * BOX.alpha)) / (own + radius2), rel=1e-13)
-
-
-def test_a_box_that_falls_over_from_beyond_its_corner():
-    start, turned = 0.17, 1.1
-    still = [BOX.alpha + start, 0.0]
-    fall = rocked(9.0, still, event=lambda _, state: state[0] - BOX.alpha - start - turned)
-    assert BOX.fall_time(start, turned) == pytest.approx(fall.t[-1], rel=1e-9)
-    nodes, weights = np.polynomial.legendre.leggauss(20)
-    rates = [rocked(0.4 * (1 + node), still).y[1, -1] for node in nodes]
-    assert BOX.squared_rate(start, 0.8) == pytest.approx(0.4 * weights @ np.square(rates), rel=1e-6)
 
 
 def test_a_pulse_of_the_base_tilts_a_box_or_overturns_it():

@@ -87,17 +87,3 @@ def test_what_a_scheme_remembers_lifts_a_mode_in_its_first_step(W):
     assert rise == pytest.approx(0.8 * formula, rel=1e-6)
     assert overshoot.greatest_rise(stages.newmark(0.25, 0.5), [W], [1.0]) == pytest.approx(0.0, abs=1e-12)
     assert overshoot.greatest_rise(stages.newmark(0.5, 1.0), [W], [1.0]) == 0.0  # its energy falls from the start
-
-
-def test_the_error_of_a_mesh_is_that_of_a_bar_whose_modes_are_as_much_too_fast(oblong):
-    """Of histories by the frequencies of quadratic elements, of which the low modes make nearly all."""
-    case = oblong.with_values({"fem.elements": 9, "fem.degree": 2, "time.step": 1e-3, "time.steps": 60})
-    n = case.fem.per_side
-    b = expected.bar_modes(case, 2 * n)
-    speed = math.sqrt(6e8 / case.block.density) * case.time.step / 3.1
-    elements = modes_of_elements(2, n)[: 2 * n]
-    exact, shifted = (expected.bar_response(case, speed * modes) for modes in (b, elements))
-    for name, error in expected.mesh_error(case).items():
-        shares = expected.bar_shares(case, name, b)
-        off = np.linalg.norm((shifted - exact) @ shares) / np.linalg.norm(exact @ shares + 1 - shares.sum())
-        assert error == pytest.approx(off, rel=0.4), name
