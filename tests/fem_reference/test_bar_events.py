@@ -28,12 +28,6 @@ HISTORIES = [
         [9816843.61111, 0.0, 12103775.169],
     ),
     (
-        replace(PAPER, base_stiffness=2e10),
-        [0.016553410872793, 0.017011534630142, 0.029644218348531, 0.029907348316653],
-        [-0.0069999546000701, -0.010989504433439, -0.0010677245716886],
-        [1e7, 9999983.32155, 3.5e-6],
-    ),
-    (
         replace(PAPER, base_stiffness=2e11),
         [0.016443850139919, 0.016489662515654],
         [-0.0052, -0.0101, -0.0046],
@@ -54,7 +48,7 @@ HISTORIES = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 4))
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 3))
 def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * problem.travel)
     assert motion.closed_at_start

@@ -1,6 +1,5 @@
 """Ball arithmetic of the exact motions: first falls that must not be missed, and enclosures that hold."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,7 +8,7 @@ from conftest import thinned
 from flint import arb, arb_mat
 from oracles.integrated import slipping_problem
 
-from fem_reference.events import block_march, report, series, watching
+from fem_reference.events import block_march, report, watching
 from fem_reference.events.block_events import solve
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
 from fem_reference.events.column_drive import sine
@@ -41,40 +40,8 @@ def state(seed, size=1.0, unknowns=6):
     return Start(arb(0), column(x[:unknowns].tolist()), column(x[unknowns:].tolist()), references)
 
 
-def vector(start):
-    """The state as (x, x', r, 1)."""
-    return column([*start.u.entries(), *start.v.entries(), *start.references, arb(1)])
-
-
-def matrix(model, states):
-    """The G of z' = G z."""
-    motion = model.motion(states)
-    G = arb_mat(15, 15)
-    for i in range(6):
-        G[i, 6 + i] = 1
-        parts = [motion.A, motion.D, motion.R, motion.f]
-        line = [x for part in parts for x in ([arb(0)] * 6 if part is None else part.tolist()[i])]
-        for j, x in enumerate(line):
-            G[6 + i, j] = x
-    return G
-
-
 def watched(model, states, start):
     return list(model.watches(states, start.references))
-
-
-def exactly(watch, model, start):
-    """A watched function at a state."""
-    rows = [model.values(start), (model.rows * start.v).entries()]
-    value = arb(0) if watch.rates else watch.offset
-    for row, factor, dashpot in watch.parts:
-        value += factor * rows[watch.rates][row]
-        value += 0 if dashpot is None else dashpot * rows[1][row]
-    return value
-
-
-def at(segment, share):
-    return Start(arb(0), *segment.state(arb(share)), [])
 
 
 @pytest.mark.parametrize("depth", ["1e-3", "1e-8", "1e-14", "1e-20"])
@@ -117,31 +84,6 @@ def test_a_touch_is_told_by_the_motion(monkeypatch):
         with pytest.raises(NoContactStateError):  # open corners that have gone through the base
             march.run()
     assert march.touches[0] == pytest.approx(0.0032525750597312, rel=1e-3)
-
-
-@pytest.mark.parametrize(("states",), thinned([(states,) for states in STATES], 3))
-@pytest.mark.parametrize("short", [False, True])
-def test_a_step_is_the_exponential_of_its_matrix(states, short, monkeypatch):
-    """Also where so few terms are taken that what the series leaves out is no rounding, and must lie in the balls."""
-    if short:
-        monkeypatch.setattr(series, "term_count", lambda angle: math.ceil(2 * angle))
-        monkeypatch.setattr(series, "LEAST_TERMS", 4)
-    with precision(bits_of(50)):
-        model = BlockModel(ROUGH)
-        start = state(3)
-        for angle in (0.3, 5.0, ANGLE):
-            length = angle / model.rate(states)
-            segment = expand(model, states, start, (), length)
-            exact = ((matrix(model, states) * arb(length)).exp() * vector(start)).entries()
-            later = Start(arb(0), column(exact[:6]), column(exact[6:12]), exact[12:14])
-            moved = [x for part in segment.state(arb(1)) for x in part.entries()]
-            assert all(one.overlaps(other) for one, other in zip(moved, exact, strict=False))
-            radius = max(float(x.rad()) / float(abs(x) + 1) for x in moved)
-            assert radius > 1e-30 if short else radius < 1e-40
-            for watch in watched(model, states, start):
-                value = sum(segment.function(watch), arb(0)) + ball(segment.function_tail(watch))
-                scale = arb(length) if watch.rates else arb(1)
-                assert value.overlaps(exactly(watch, model, later) * scale)
 
 
 PAIR = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0))

@@ -82,6 +82,7 @@ def test_affine_fields_give_the_block_matrices(tmp_path, mesh, hypothesis, poiss
     for dofs in (assembled.basis.nodal_dofs, assembled.basis.facet_dofs, assembled.basis.interior_dofs):
         component[dofs[1::2]] = 1
     T = np.where(component[:, None] == 0, fields[0].T, fields[1].T)
+    assert assembled.M.nnz == np.count_nonzero(assembled.M.toarray())
     block = block_of(problem)
     for matrix, expected in ((assembled.M, block.mass), (assembled.K + assembled.springs, block.stiffness)):
         # The sums run over some hundred entries that cancel: rounding times their number.

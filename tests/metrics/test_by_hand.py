@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.metrics import columns, contact, growth, modes, rotation
+from validation.metrics import contact, growth, modes, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
 from validation.metrics.poles import LARGEST_MISFIT, poles, swing
@@ -26,21 +26,6 @@ PRESSED = np.array([3.0, -2.0, -5.0, 1.0, -4e-14, 2.0, 4.0])
 def made():
     history = History(TIME, {"displacement": VALUES, "contact_pressure": PRESSED})
     return Measurable(history, 0.25, {"displacement": 2.0})
-
-
-def test_columns(made):
-    assert columns.final(made, "displacement") == 1.75
-    assert columns.minimum(made, "displacement") == 0.5
-    assert columns.peak(made, "displacement", of="value") == 3.5
-    assert columns.peak(made, "displacement", of="time") == 0.75
-    assert columns.settling(made, "displacement", 0.15) == 6.0
-    assert columns.settling(made, "contact_pressure", 0.15) == NOT_REPORTED
-    assert columns.minimum_time(made) == 0.75
-    assert columns.tension_time(made) == 0.5  # what is smaller than rounding is none
-    bare = replace(made, history=History(TIME, {"displacement": VALUES}))
-    assert columns.minimum_time(bare) == columns.tension_time(bare) == NOT_REPORTED
-    empty = replace(made, history=History(TIME[:0], {"displacement": VALUES[:0]}))
-    assert columns.final(empty, "displacement") == NOT_REPORTED
 
 
 def test_ratios():

@@ -5,18 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.engine.finished import Finished
-from validation.engine.judge import compared_until
-from validation.gates.gate import Gate
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.contact import ContactRecord, rebounds_of_steps
 from validation.runs.history import History
 from validation.runs.modes import Switch
-from validation.runs.results import Results
-from validation.runs.row import Row
-from validation.runs.run import Outcome
 
 STEP = 0.5
 ONES = np.ones(4)
@@ -125,14 +119,3 @@ def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it():
     assert (other.closing, other.opening, other.restitution) == (1.0, None, None)
     assert (first, rebound.closing, rebound.opening) == (2, 4.0, pytest.approx(1.0))
     assert rebound.restitution == pytest.approx(0.25)
-
-
-def test_histories_are_gated_up_to_the_horizon(tmp_path):
-    rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
-            (("dda", 0.3), ("fem", 0.2), ("block-events", NOT_REPORTED))}  # fmt: skip
-    finished = Finished(rows, Results(tmp_path))
-    gate = Gate("s", ("dda", "fem"), "displacement.l2", 0.0, 1.0, "why")
-    assert compared_until(gate, [("s", "dda"), ("s", "fem")], finished) == 0.2
-    assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
-    assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
-    assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None
