@@ -20,7 +20,7 @@ def limit(problem, normal):
 )
 def test_energy_law_and_the_digits_of_random_motions(seed, moved):
     problem = slipping_problem(seed, moved)
-    end = 4 * problem.height * math.sqrt(problem.density / problem.young)
+    end = 3 * problem.height * math.sqrt(problem.density / problem.young)
     motion, finer = solve(problem, end), solve(problem, end, digits=70)
     assert motion.switches == finer.switches
     t = np.sort(np.concatenate([np.linspace(0, end, 60), [s.time for s in motion.switches]]))

@@ -1,4 +1,4 @@
-"""Where a Krylov space does not pay the history is that of the steps."""
+"""A Krylov space holds the history of the steps; where it does not pay the block is stepped."""
 
 import pytest
 from oracles.elements import error, make, stepped
@@ -24,3 +24,12 @@ def test_where_no_space_pays_the_block_is_stepped_and_says_why(problem, scheme, 
     assert result.estimate is None
     assert steps <= result.solves <= steps + steps // reduced.PAID + 1 or scheme.alpha == 0
     assert error(result.columns.values(), stepped(problem, scheme, steps)) == 0
+
+
+def test_a_small_space_holds_the_history_of_the_steps():
+    problem = make(poisson=0.25, degree=1, elements=6)
+    scheme = Scheme(0.5, 1.0, 0.97, 2e-3, "consistent")
+    result = solve(problem, scheme, 400)
+    assert result.notes[-1] == "blocked in 32 Krylov vectors"
+    assert (result.factorisations, result.solves) == (1, 35)
+    assert error(result.columns.values(), stepped(problem, scheme, 400)) <= min(1e-10, result.estimate)
