@@ -13,15 +13,12 @@ intervals end where a patch ends, so that it is integrated exactly on any mesh.
 
 from __future__ import annotations
 
-import functools
-import operator
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
-from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
-from skfem.helpers import ddot, div, dot, sym_grad
+from skfem import Basis, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
 
 from fem_reference.problem.material import Elastic
 from fem_reference.problem.problem import Array, Indices, Problem
@@ -36,24 +33,8 @@ LUMPED = {
 WHOLE = (-np.inf, np.inf)
 SLIVER = 1e-12
 """Piece of a facet over its length that only rounding leaves between an interval's end and the facet's."""
-
-
-@BilinearForm
-def mass_form(u, v, w):  # type: ignore[no-untyped-def]
-    """(u, v)."""
-    return dot(u, v)
-
-
-@BilinearForm
-def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
-    """(div u, div v)."""
-    return div(u) * div(v)
-
-
-@BilinearForm
-def strain_form(u, v, w):  # type: ignore[no-untyped-def]
-    """2 (eps(u), eps(v))."""
-    return 2 * ddot(sym_grad(u), sym_grad(v))
+CONVERGED = 1e-14
+"""Step of Newton's method in a cell's own coordinates, from 0 to 1, that only rounding leaves."""
 
 
 class Rule(NamedTuple):
@@ -71,42 +52,57 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
     return Basis(mesh, element, intorder=2 * degree + 1)
 
 
-def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
-    """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
+def assembled(basis: Basis, terms: Sequence[tuple[float, Array]]) -> csr_array:
+    """Matrix of a sum of coefficients times (a, b), with the a of each basis function and the b of each other one.
 
-    Where all cells are translates of the first one its element matrix is that of all.
+    Parameters
+    ----------
+    basis
+        The displacement basis.
+    terms
+        Coefficient and parts of a in each cell, shape (basis functions, parts, cells, points); of the first cell
+        alone where all are its translates.
     """
-    terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
-    if not congruent:
-        parts = [coefficient * csr_array(form.assemble(basis)) for coefficient, form in terms]
-        return functools.reduce(operator.add, parts)
-    first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
-    local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
+    local = np.zeros((1, basis.Nbfun, basis.Nbfun))
+    for coefficient, parts in terms:
+        weights = basis.dx[: parts.shape[2]]
+        local = local + coefficient * np.einsum("kpcq,lpcq,cq->ckl", parts, parts, weights)
     dofs = basis.element_dofs.T.astype(np.int32)
     rows = np.repeat(dofs, dofs.shape[1], axis=1)
     columns = np.tile(dofs, dofs.shape[1])
-    data = np.tile(local.ravel(), len(dofs))
-    return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
+    data = np.broadcast_to(local, (len(dofs), *local.shape[1:]))
+    matrix = csr_array(coo_array((data.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
+    matrix.eliminate_zeros()
+    return matrix
 
 
 def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
     """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
-    return assembled([(density, mass_form)], basis, congruent)
+    cells = slice(1 if congruent else None)
+    values = np.array([np.asarray(field)[:, cells] for (field,) in basis.basis])
+    return assembled(basis, [(density, values)])
 
 
 def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
     """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
-    return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
+    cells = slice(1 if congruent else None)
+    gradient = np.array([field.grad[:, :, cells] for (field,) in basis.basis])
+    e_xx = gradient[:, 0, 0]
+    e_yy = gradient[:, 1, 1]
+    g_xy = gradient[:, 0, 1] + gradient[:, 1, 0]
+    # eps : eps has e_xy twice, which is half of g_xy
+    strain = np.stack([e_xx, e_yy, g_xy * np.sqrt(0.5)], axis=1)
+    dilatation = (e_xx + e_yy)[:, None]
+    return assembled(basis, [(2 * body.shear_modulus, strain), (body.lame, dilatation)])
 
 
 def values(basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
     """Matrices that give u and v at the points of a rule, each of shape (count, unknowns)."""
-    x = rule.points[:, :, None]
-    phi = np.array([basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0][..., 0] for k in range(basis.Nbfun)])
-    rows = np.tile(np.arange(len(rule.cells)), basis.Nbfun)
-    columns = basis.element_dofs[:, rule.cells].ravel()
+    dofs = basis.element_dofs[:, rule.cells]  # of u and v in turn
+    phi = np.array([basis.elem.elem.lbasis(rule.points, k)[0] for k in range(basis.Nbfun // 2)])
+    rows = np.tile(np.arange(len(rule.cells)), len(phi))
     shape = (len(rule.cells), basis.N)
-    u, v = (csr_array(coo_array((phi[:, i].ravel(), (rows, columns)), shape=shape)) for i in (0, 1))
+    u, v = (csr_array(coo_array((phi.ravel(), (rows, dofs[i::2].ravel())), shape=shape)) for i in (0, 1))
     return u, v
 
 
@@ -238,8 +234,9 @@ def point_values(basis: Basis, point: Array) -> tuple[Array, Array, Array]:
     ValueError
         If the point lies outside the mesh.
     """
-    u, v = values(basis, point_rule(basis, point))
-    return u.toarray()[0], v.toarray()[0], _rotation(basis, _cells_at(basis, point))
+    rule = _cells_at(basis, point)
+    u, v = values(basis, _first(rule))
+    return u.toarray()[0], v.toarray()[0], _rotation(basis, rule)
 
 
 def point_rule(basis: Basis, point: Array) -> Rule:
@@ -250,7 +247,11 @@ def point_rule(basis: Basis, point: Array) -> Rule:
     ValueError
         If the point lies outside the mesh.
     """
-    rule = _cells_at(basis, point)
+    return _first(_cells_at(basis, point))
+
+
+def _first(rule: Rule) -> Rule:
+    """The first point of a rule, with unit weight."""
     return Rule(rule.points[:, :1], rule.cells[:1], np.ones(1))
 
 
@@ -267,7 +268,10 @@ def _cells_at(basis: Basis, point: Array) -> Rule:
     with np.errstate(all="ignore"):
         for _ in range(12):
             inverse = basis.mapping.invDF(places, cells)
-            places = places + np.einsum("ijkl,jkl->ikl", inverse, target - basis.mapping.F(places, cells))
+            step = np.einsum("ijkl,jkl->ikl", inverse, target - basis.mapping.F(places, cells))
+            places = places + step
+            if not np.any(np.abs(step) > CONVERGED):
+                break
     local = places[:, :, 0]
     outside = np.maximum(-local, local - 1).max(axis=0, initial=-np.inf)
     if basis.mesh.t.shape[0] == 3:
@@ -284,8 +288,11 @@ def _rotation(basis: Basis, rule: Rule) -> Array:
     It is discontinuous between them.
     """
     row = np.zeros(basis.N)
-    x = rule.points[:, :, None]
-    for k in range(basis.Nbfun):
-        gradient = basis.elem.gbasis(basis.mapping, x, k, tind=rule.cells)[0].grad[..., 0]
-        np.add.at(row, basis.element_dofs[k, rule.cells], rule.weights * (gradient[1, 0] - gradient[0, 1]) / 2)
+    inverse = basis.mapping.invDF(rule.points[:, :, None], rule.cells)[..., 0]
+    for k in range(basis.Nbfun // 2):
+        slope = basis.elem.elem.lbasis(rule.points, k)[1]
+        u, v = basis.element_dofs[2 * k : 2 * k + 2, rule.cells]
+        d_dx, d_dy = np.einsum("ijk,ik->jk", inverse, slope)
+        np.add.at(row, u, -rule.weights * d_dy / 2)
+        np.add.at(row, v, rule.weights * d_dx / 2)
     return row

@@ -1,11 +1,10 @@
-"""The exact motion of the bar on a no-tension spring: known histories, momentum, states at rest."""
+"""The exact motion of the bar on a no-tension spring: known histories, states at rest."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from conftest import thinned
-from oracles.random_bars import random_problem
 
 from fem_reference.events.bar_events import solve
 from fem_reference.events.switches import TooManySwitchesError
@@ -29,12 +28,6 @@ HISTORIES = [
         [9816843.61111, 0.0, 12103775.169],
     ),
     (
-        replace(PAPER, base_stiffness=2e10),
-        [0.016553410872793, 0.017011534630142, 0.029644218348531, 0.029907348316653],
-        [-0.0069999546000701, -0.010989504433439, -0.0010677245716886],
-        [1e7, 9999983.32155, 3.5e-6],
-    ),
-    (
         replace(PAPER, base_stiffness=2e11),
         [0.016443850139919, 0.016489662515654],
         [-0.0052, -0.0101, -0.0046],
@@ -55,7 +48,7 @@ HISTORIES = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 4))
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 3))
 def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * problem.travel)
     assert motion.closed_at_start
@@ -66,21 +59,6 @@ def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switch
     history = motion.at(np.array([3, 6, 9]) * problem.travel * (1 - 1e-15))
     assert history.displacement == pytest.approx(displacement, rel=1e-12)
     assert history.contact_pressure == pytest.approx(pressure, rel=1e-11, abs=5e-8)
-
-
-@pytest.mark.parametrize("seed", thinned(range(10, 22), 6))
-def test_momentum_and_the_law_of_the_base_of_random_motions(seed):
-    problem = random_problem(seed)
-    history = solve(problem, 15 * problem.travel).at(np.linspace(0, 15 * problem.travel, 80))
-    change = history.mean_velocity - problem.velocity + problem.gravity * history.time
-    momentum = problem.density * problem.height * change + problem.pressure * history.time
-    scale = abs(problem.pressure) * history.time[-1] + np.abs(history.impulse).max()
-    assert np.abs(momentum - history.impulse).max() <= 1e-14 * scale
-    assert history.gap[0] == problem.gap
-    assert np.all(history.contact_pressure >= 0)
-    assert history.contact_pressure == pytest.approx(
-        np.maximum(0, -problem.base_stiffness * history.gap / problem.width), rel=1e-14
-    )
 
 
 def test_resting_states():

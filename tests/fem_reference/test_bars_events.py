@@ -15,7 +15,7 @@ from fem_reference.events.bars_model import (
     BarJoint,
     BarsProblem,
 )
-from fem_reference.events.column_drive import half_sine, triangle
+from fem_reference.events.column_drive import half_sine
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K", "slips forwards": "+", "slips backwards": "-"}
@@ -44,13 +44,10 @@ def times(motion):
 UNIT, HALF_SINE = bar(), half_sine(1.0, 1.0)
 B1 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(), opens(gap=0.3), opens(gap=0.3)))
 B2 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(5), opens(5), opens(5)))
-B3 = BarsProblem((bar(1.0), bar(length=2.0)), (None, opens()))
 B4 = BarsProblem((bar(1.0), bar(density=2.0, modulus=8.0)), (None, opens()))
 B5 = replace(B4, joints=(None, opens(10)))
 B6 = BarsProblem((bar(-1.0), bar(-1.0)), (opens(10), opens(10, 0.05)), gravity=0.05)
 B8 = BarsProblem((UNIT,) * 4, (None, opens(50), opens(50), opens(50)), top=HALF_SINE)
-B8_RIGID = replace(B8, joints=(None, opens(), opens(), opens()))
-B9 = BarsProblem((bar(length=0.25), bar(length=2.75)), (None, opens()), top=triangle(1.0, 1.0))
 B10 = BarsProblem((bar(length=2.75), bar(length=0.25)), (opens(), opens()), top=HALF_SINE)
 B11 = BarsProblem((Bar(1.0, 2500.0, 1e9),) * 6, (opens(1e10),) * 6, top=half_sine(2e6, 0.004))
 LAYER = bar(length=0.25)
@@ -60,13 +57,6 @@ D2 = BarsProblem(
 D3 = BarsProblem(
     (LAYER, LAYER, bar(length=6.0)), (slips(10, 0.3), slips(10, 0.4), slips(10, 0.5)), base_impedance=1, top=HALF_SINE
 )
-D4 = BarsProblem(
-    (bar(length=0.5, density=2.0, modulus=8.0), bar(length=6.0)),
-    (slips(math.inf, 0.6), slips(20, 0.7)),
-    base_impedance=1,
-    top=HALF_SINE,
-)
-
 # problem and end; switches; the first of their times; mean velocities at the end: waves and impulses in 30 digits,
 # compared by another program with a grid of characteristics
 NUMBERS = {
@@ -78,8 +68,6 @@ NUMBERS = {
         [1, 2, 2.2732050806379, 3.431192768404, 4.375314148121],
         [-0.0088908684872307, -0.006232130608299, 0.022724961596268, 0.99239803749926],
     ),
-    "B3": (B3, 3.0, "", [], [0, 0.5]),
-    "B4": (B4, 5.0, "1O", [2], [-7 / 25, 16 / 25]),
     "B5": (B5, 5.0, "1O", [2.0896018911888], [-0.29289614683987, 0.64644807341994]),
     "B6": (
         B6,
@@ -98,8 +86,6 @@ NUMBERS = {
         [1, 2, 3, 3.088262111453, 4.1068282488408, 5.0439908230171],
         [-0.63687650365105, -0.00035357954434613, 0.00030410471899135, 0.00030620610882573],
     ),
-    "B8 rigid": (B8_RIGID, 8.0, "3C 2C 1C 1O", [1, 2, 3, 5], [-2 / math.pi, 0, 0, 0]),
-    "B9": (B9, 5.0, "1C 1O", [2.75, 3.25], [-1.5, -1 / 22]),
     "B10": (
         B10,
         10.0,
@@ -123,7 +109,6 @@ NUMBERS = {
         [6.2177849959401, 6.4817944599343, 6.7401543797826, 6.7951672353009, 7.1218831478621, 7.4938504547135],
         [-0.21325709881936, -0.13408109261095, -0.37257488314931],
     ),
-    "D4": (D4, 9.0, "1- 1K", [6.1847100499456, 6.8174778478526], [-0.46904229283911]),
 }
 
 
@@ -144,6 +129,10 @@ def test_the_bars_move_as_another_program_computed(name):
     else:
         assert state.mean_velocity[:, 0] == pytest.approx(values, rel=5e-12, abs=1e-15)
     assert motion.digits == 2 * bars_events.DIGITS  # the first two computations agree
+    if name == "B5":
+        given = 2.0 * state.mean_velocity[1, 0]
+        assert motion.impulse(1, [end, 0.0]) == pytest.approx([given, 0.0], rel=1e-13, abs=1e-15)
+        assert motion.impulse(0, [end]) == [0.0]
 
 
 def test_cut_bars_that_stay_bonded_move_as_one():

@@ -12,9 +12,8 @@ from oracles.integrated import integrated_column, random_column
 from fem_reference.events import column_drive as drives
 from fem_reference.events import contacts, report
 from fem_reference.events.column_events import solve
-from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
+from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
 from fem_reference.events.enclosure import precision
-from fem_reference.events.series import Start, column, expand, step_length
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
 RIGID = math.inf
@@ -72,19 +71,6 @@ def test_blocks_in_common_flight_touch_without_force():
     assert motion.at([0.01, 0.012]).force[0].min() > 0
 
 
-def test_a_joint_without_strength_lets_its_block_coast():
-    problem = ColumnProblem(
-        blocks(1, 2500, RIGID, 0.5),
-        (ColumnJoint(1e8, strength=0.0),),
-        law="frictional",
-        base_motion=drives.integrated(drives.sine(1.0, 10.0)),
-    )
-    motion = solve(problem, 0.2)
-    assert labels(motion)[:2] == ["0-", "0+"]
-    assert {switch.kind for switch in motion.switches} == {"slips"}
-    assert motion.at([0.2]).velocity[0, 0] == pytest.approx(0.5, rel=1e-14)
-
-
 def test_a_welded_foot_passes_a_jump_of_the_base_on():
     # a record that begins at once: the far face gets half of the jump, the wrong way, by the consistent mass
     record = drives.integrated(drives.recorded([0.001, 0.004], [1.0, 1.0]))
@@ -94,6 +80,7 @@ def test_a_welded_foot_passes_a_jump_of_the_base_on():
         base_motion=record,
     )
     state = solve(problem, 0.003).at([0.0005, 0.001 + 1e-12])
+    assert not state.states.any()
     np.testing.assert_allclose(state.foot_velocity[0], [0.0, 1.0], atol=1e-12)
     np.testing.assert_allclose(state.top_velocity[0], [0.0, -0.5], atol=1e-5)
 
@@ -190,41 +177,6 @@ def test_the_parts_of_a_course_begin_at_once():
     assert course.parts() == [(0.0, pieces[1]), (0.3, pieces[2])]
 
 
-@pytest.mark.parametrize(("modulus", "stiffness"), [(math.inf, 1e5), (1e9, 1e10)])
-@pytest.mark.parametrize(
-    ("drive", "size"),  # the greatest value
-    [
-        (drives.integrated(drives.ricker(0.3, 60.0)), 0.3 / (math.pi * 60)),
-        (drives.ricker(2e5, 60.0), 2e5),
-        (drives.sine(0.1, 60.0), 0.1),
-        (drives.still, 0.0),
-    ],
-)
-def test_tails_bound_what_is_left_out_of_the_step_that_is_taken(drive, size, stiffness, modulus):
-    pair = tuple(ColumnBlock(1.0, 2500.0, modulus, 0.1) for _ in range(2))
-    problem = ColumnProblem(pair, (ColumnJoint(stiffness),) * 2, law="frictional", base_motion=drive)
-    further = 40
-    for bits in (100, 223):
-        with precision(bits):
-            model = ColumnModel(problem)
-            states = (contacts.STICKS,) * 2
-            base = drive().piece_at(0.0)
-            pressure = drives.still().piece_at(0.0)
-            pieces = base, pressure
-            length = step_length(model, states, pieces)
-            for moment in (0.0, 0.0331):
-                still = [arb(0)] * model.size
-                start = Start(arb(moment), column(still), column([arb(0.1)] * model.size), [arb(0)] * 2)
-                segment = expand(model, states, start, pieces, length)
-                count = segment.count
-                series = base.series(start.time, length, count + further)
-                left_out = sum(abs(c) * k**3 for k, c in enumerate(series) if k >= count - 2)
-                assert left_out <= segment.drive_tails[0] <= size * count**4 * arb(2) ** (8 - bits)
-                terms = expand(model, states, start, pieces, length, count + further).terms
-                left_out = sum(model.norm(terms[k].entries()) * k**3 for k in range(count, count + further))
-                assert left_out <= segment.tail
-
-
 @pytest.mark.parametrize("base", thinned(["transmitting", "rigid", "free"], 3))
 def test_the_forces_at_both_ends_make_the_momentum(base):
     """Between two instants the momentum changes by the integral of the force on the foot less that on the top."""
@@ -243,26 +195,3 @@ def test_the_forces_at_both_ends_make_the_momentum(base):
     pushed = state.face_force[0] - state.face_force[-1]
     impulse = np.append(0.0, np.cumsum((pushed[1:] + pushed[:-1]) / 2)) * time[1]
     assert momentum - momentum[0] == pytest.approx(impulse, abs=8e-3 * np.abs(momentum).max())
-
-
-@pytest.mark.parametrize("seed", range(1))
-def test_the_norm_of_the_mass_bounds_unknowns_rows_and_rates(seed):
-    """Both sides of each bound, for a column above a half-space; the greatest ones are nearly reached."""
-    blocks_of_two = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, 3e8))
-    problem = ColumnProblem(blocks_of_two, (None, ColumnJoint(1e9)), base="transmitting", impedance=1e6)
-    rng = np.random.default_rng(seed)
-    with precision(100):
-        model = ColumnModel(problem)
-        rates = model.bounds_of((contacts.STICKS,))
-        motion = model.motion((contacts.STICKS,))
-        x = column(rng.normal(size=model.size).tolist())
-        size = model.norm(x.entries())
-        assert all(abs(x[i, 0]) <= size * float(model.sizes[i]) for i in range(model.size))
-        assert abs((model.rows * x)[0, 0]) <= size * float(model.row_sizes[0])
-        for _ in range(60):
-            x = motion.A * x * (1 / size)
-            size = model.norm(x.entries())
-            assert size <= rates.frequency**2
-        assert size >= rates.frequency**2 * (1 - 1e-6)
-        damped = model.norm((motion.D * x).entries()) / size
-        assert damped <= rates.motion - rates.frequency**2 / rates.motion

@@ -1,4 +1,4 @@
-"""The damped bar in time: the sum of its modes, and what its kernel keeps."""
+"""The damped bar in time is the sum of its modes."""
 
 from __future__ import annotations
 
@@ -23,15 +23,6 @@ def test_the_damped_bar_is_the_sum_of_its_modes(kappa, a):
     for name, values in zip(COLUMNS, found, strict=True):
         sums = np.cumsum(bar_modes.shares(name, b, kappa)[:, None] * swings.real, axis=0)
         np.testing.assert_allclose(values, (sums[-1] + sums[-2]) / 2, rtol=0, atol=2e-6)
-
-
-@pytest.mark.parametrize("a", [0.05, 1.0, 30.0])
-def test_the_kernel_keeps_what_does_not_move(a):
-    """A mode without a frequency keeps x = 1: exp(-a t) and the integral of the kernel are one together."""
-    t = 3.7
-    x, w = np.polynomial.legendre.leggauss(400)
-    s = t * (1 + x) / 2
-    assert np.exp(-a * t) + damped.kernel(t, s, a) @ w * t / 2 == pytest.approx(1.0, abs=1e-13)
 
 
 def test_waves_that_are_too_many_are_refused():

@@ -1,5 +1,7 @@
 """Savings in space change no history; sparse and dense modes agree."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from faults import seams
@@ -44,3 +46,14 @@ def test_sparse_and_dense_modes_agree(monkeypatch):
     assert sparse[0].frequency == pytest.approx(dense[0].frequency, rel=1e-10)
     assert sparse[0].share == pytest.approx(dense[0].share, rel=1e-8)
     assert highest_frequency(problem) == pytest.approx(highest_frequency(problem, full=True), rel=5e-2)
+
+
+def test_what_a_discount_that_adapts_has_taken_at_rest_is_half_of_the_load_s_work():
+    """Average acceleration takes none of its own: F u of the load at the top, less F u / 2 that is stored."""
+    columns = ("displacement", "discount", "kinetic_damping_loss")
+    found = solve(make(elements=2), replace(AVERAGE, gg=1.0, step=1e-3), 1500, columns, floor=0.0).columns
+    force = 5e6 * 2
+    top = force / 2e9 + force * 2 / (1e9 * 2)
+    assert found["displacement"][-1] == pytest.approx(-(top + force / 2e9) / 2, rel=1e-9)
+    assert found["kinetic_damping_loss"][-1] == pytest.approx(force * top / 2, rel=1e-9)
+    assert found["discount"][:7] == pytest.approx([1, 1, 1, 1, 1, 1, 0.87806263], rel=1e-8)

@@ -1,4 +1,4 @@
-"""The exact layers against echoes written down by hand, and their transfer functions against closed forms."""
+"""Transfer functions of the exact layers against the equations of a column."""
 
 from dataclasses import replace
 
@@ -6,36 +6,8 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-import fem_reference
-from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.column.problem import Ground, Stratum
 from fem_reference.exact import layers
-
-SOIL = Stratum(12.0, 1900.0, 3.0e8, 0.25)
-SPEED = (SOIL.modulus("shear") / SOIL.density) ** 0.5
-STEPS = fem_reference.Scheme(0.25, 0.5, 1.0, 2e-3, "zero")
-
-
-def ricker(time, frequency=6.0):
-    """Return the displacement of a Ricker velocity."""
-    late = time - 2 / frequency
-    return late * np.exp(-((np.pi * frequency * late) ** 2))
-
-
-def drive(time):
-    b = np.pi * 6.0 * (time - 2 / 6.0)
-    return Excitation(ricker(time), (1 - 2 * b * b) * np.exp(-b * b), 0 * time, 0 * time)
-
-
-@pytest.mark.parametrize("ratio", [0.3, 1.0, 4.0])
-def test_echoes_in_one_layer_on_a_half_space(ratio):
-    impedance = ratio * SOIL.density * SPEED
-    found = layers.solve_layers(Ground((SOIL,), "shear", (), impedance), STEPS, 1000, drive, ("displacement",))
-    transmitted, echo = 2 * ratio / (1 + ratio), (1 - ratio) / (1 + ratio)
-    travel = SOIL.thickness / SPEED
-    exact = sum(2 * transmitted * echo**n * ricker(found.time - (2 * n + 1) * travel) for n in range(80))
-    assert np.abs(found.columns["displacement"] - exact).max() < 1e-8 * np.abs(exact).max()
-    assert found.estimate is not None
-    assert found.estimate < 1e-6
 
 
 def propagated(ground, w, heights, base):

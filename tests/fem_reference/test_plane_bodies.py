@@ -109,24 +109,6 @@ def test_two_bodies_on_each_other_are_the_column(degree, modal, monkeypatch):
     assert np.abs(np.array([found.columns["1"], found.columns["2"]])).max() < 1e-12 * np.abs(found.columns["0"]).max()
 
 
-def test_bodies_that_collide_keep_momentum_and_energy(monkeypatch):
-    """Free bodies, an oblique impact with friction: no rigid motion has forces of its own."""
-    lower = rectangle(0.0, 0.0, 2.0, 1.0, velocity=(0.3, 0.5), spin=0.02, elements=2)
-    polygon = ((0.5, 1.01), (2.5, 1.01), (2.2, 1.9), (0.7, 2.2))
-    upper = PlaneBody((polygon,), DENSITY, 2 * YOUNG, 0.3, velocity=(-1.0, -1.0), elements=2)
-    law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3, "gap": 0.01}
-    model = PlaneModel([lower, upper], patches(1, 0, 0.5, 2.0, 1.01, 0.4, **law))
-    in_modes(monkeypatch)
-    found = model.history(Scheme(0.25, 0.5, 1.0, 1e-3), 300, model.means(0))
-    assert found.outcome == "completed" and found.normal.max() > 1e5 and np.abs(found.slip[-1]).min() > 1e-3
-    assert np.all(found.closed[-1] == 0)
-    masses = np.array([2.0, 1.8125]) * DENSITY
-    linear = masses[0] * np.array(lower.velocity) + masses[1] * np.array(upper.velocity)
-    assert np.abs(found.momentum[:, :2] - linear).max() < 1e-13 * np.abs(found.momentum).max()
-    total = sum(found.energy.values())
-    assert np.ptp(total) < 1e-12 * found.energy["kinetic_energy"][0]
-
-
 @pytest.mark.parametrize("degree", thinned([2, 1], 2))
 def test_a_plate_on_rollers_is_stretched_evenly(degree):
     """On a mesh of its own, under tractions that are functions of the place: s x / E and -nu s y / E exactly."""

@@ -139,11 +139,13 @@ ASKS = {
         lambda: solve(make(elements=2), CONSTANT, 0),
         lambda: solve_unilateral(make(elements=2), CONSTANT, 0),
     ],
+    "joints": [lambda: Ground(STRATA, "pressure", ((1.0, 1e9), (1.0, 2e9)))],
     "columns": [
         lambda: solve(make(elements=2), CONSTANT, 1, columns=("strain_x",)),
     ],
     "fields": [lambda: solve(make(elements=2), CONSTANT, 1, fields="block.txt")],
     "problem": [
+        lambda: Bar.of(make(poisson=0.1)),
         lambda: OpeningBar.of(make(motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))),
     ],
     "gap": [lambda: OpeningBar.of(make(), gap=-1.0)],

@@ -1,41 +1,15 @@
-"""The rocking of a rigid block: closed forms of slender blocks, energy, an independent integral."""
+"""The rocking of a rigid block: closed forms of slender blocks, energy."""
 
 import math
 from dataclasses import replace
 from itertools import pairwise
 
-import mpmath
 import numpy as np
 import pytest
-from conftest import thinned
 
 from fem_reference.exact.rocking import RockingBlock, solve
-from validation.solvers.rigid import rocking as adapter
 
 BLOCK = RockingBlock(0.8, 2.0)
-
-
-def quarter(block, tilt):
-    """The time of the descent by quadrature in 30 digits of the energy integral, rotation = tilt (1 - x^2)."""
-    with mpmath.workdps(30):
-        alpha, p = mpmath.atan(mpmath.mpf(block.width) / block.height), mpmath.mpf(block.p)
-
-        def slow(x):
-            fallen = 2 * mpmath.sin(alpha - tilt + tilt * x * x / 2) * mpmath.sin(tilt * x * x / 2)
-            return 2 * tilt * x / mpmath.sqrt(2 * fallen) if x else 0
-
-        return float(mpmath.quad(slow, [0, 0.01, 0.1, 0.5, 1]) / p)
-
-
-@pytest.mark.parametrize(
-    ("share", "size"),
-    thinned([(x, size) for x in (1e-6, 0.01, 0.5, 0.99) for size in ((1.0, 1.0), (0.8, 2.0), (0.05, 3.0))], 5),
-)
-def test_the_quarter_period_is_the_energy_integral(share, size):
-    block = RockingBlock(*size)
-    tilt = share * block.alpha
-    assert block.quarter_period(tilt) == pytest.approx(quarter(block, tilt), rel=1e-11)
-    assert adapter.quarter_period(*size, tilt) == block.quarter_period(tilt)
 
 
 def small_quarter(block, tilt):
@@ -77,11 +51,3 @@ def test_free_rocking_comes_down_after_quarter_periods_and_keeps_its_energy_betw
     signs = np.sign(motion.at((np.array(motion.impacts[:3]) + np.array(motion.impacts[1:4])) / 2)[0])
     assert signs.tolist() == [-1.0, 1.0, -1.0]
     assert not motion.overturned
-
-
-def test_rocking_in_plain_numbers():
-    t = np.linspace(0.1, 2.0, 20)
-    found = adapter.rocking(0.8, 2.0, 0.1, t)
-    motion = solve(BLOCK, 2.0, 0.1)
-    assert np.array_equal(found.rotation, motion.at(t)[0])
-    assert found.impacts == motion.impacts

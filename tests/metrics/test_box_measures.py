@@ -12,7 +12,7 @@ from validation.models.plane.problems import box_problems
 from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
 from validation.runs.history import History
 
-GAIN, LEFT = "largest gain of energy", "energy in the end over that at the start"
+GAIN = "largest gain of energy"
 CONTACT_TIME, PEAK = "time of contact", "peak force as reported"
 
 
@@ -62,36 +62,12 @@ def test_a_box_on_a_slope_stands_or_slides(friction):
     assert {word for _, word in numbers("standing", history, **values).values()} == {"PASS"}
 
 
-def test_a_creep_of_more_than_a_hundredth_of_the_width_in_a_minute_fails():
-    history = flat_engine(scene_of("standing"))
-    for speed, word in ((0.16, "PASS"), (0.17, "FAIL")):
-        creeping = History(history.time, history.columns | {"box.x": 1e-3 * speed * history.time})
-        assert numbers("standing", creeping)["creep"] == (pytest.approx(speed, rel=1e-6), word)
-        sinking = History(history.time, history.columns | {"box.y": 0.5 - 1e-3 * speed * history.time})
-        assert numbers("standing", sinking)["creep"][1] == word
-
-
 @pytest.mark.parametrize(("bounce", "word"), [(0.5, "PASS"), (0.492, "PASS"), (0.488, "FAIL"), (0.512, "FAIL")])
 def test_the_restitution_is_measured_from_positions(bounce, word):
     history = flat_engine(scene_of("restitution"), bounce=bounce)
     value, got = numbers("restitution", history)["restitution"]
     assert value == pytest.approx(bounce, rel=1e-9)
     assert got == word
-
-
-@pytest.mark.parametrize(("parts", "step_share"), [(1, 1.0), (4, 0.25)])
-def test_the_energy_of_a_flight_does_not_depend_on_the_row(parts, step_share):
-    """Symplectic Euler stands on a parabola whose energy is above the exact one by g dt^2 / 8 of height."""
-    scene = scene_of("bouncing", **{"time.steps": 25})
-    history = flat_engine(scene, parts)
-    ground = boxes_of(scene)
-    flying = measures.in_flight(history, ground)
-    assert flying[2:-2].all() and not flying[:2].any()
-    energy = measures.energies(history, ground)[flying]
-    assert np.ptp(energy) < 1e-9 * energy[0]
-    dt = scene.time.step * step_share
-    excess = (energy[0] - measures.first_energy(ground)) / ground.gravity
-    assert excess == pytest.approx(ground.gravity * dt**2 / 8, rel=1e-6)
 
 
 def test_no_row_beside_an_impact_is_one_of_a_flight():
@@ -112,18 +88,6 @@ def test_a_gain_of_energy_is_seen(bounce, gain, word):
     history = flat_engine(scene_of("bouncing", **values), parts=64, bounce=bounce)
     found = numbers("bouncing", history, **values)[GAIN]
     assert found == (pytest.approx(gain, abs=3e-3), word)
-
-
-def test_a_loss_of_energy_is_seen_and_is_no_gain():
-    values = {"time.steps": 600}
-    history = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.97)
-    found = numbers("bouncing", history, **values)
-    assert found[GAIN][1] == "PASS"
-    value, word = found[LEFT]
-    assert word == "FAIL" and value is not None and 0.2 < value < 0.9
-    at_rest = flat_engine(scene_of("bouncing", **values), parts=16, bounce=0.3)
-    value, word = numbers("bouncing", at_rest, **values)[LEFT]
-    assert word == "FAIL" and value == pytest.approx(0.0, abs=1e-3)
 
 
 def test_what_cannot_be_measured_fails_unless_it_is_optional():

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation.metrics import columns, contact, growth, modes, rotation
+from validation.metrics import contact, growth, modes, rotation
 from validation.metrics.catalogue import ALL, pair
 from validation.metrics.measurable import Measurable
 from validation.metrics.poles import LARGEST_MISFIT, poles, swing
 from validation.metrics.transform import spectrum
 from validation.metrics.values import NOT_REPORTED, UNDEFINED, ratio
-from validation.runs.contact import ContactRecord, Rebound
+from validation.runs.contact import ContactRecord
 from validation.runs.history import History
 from validation.runs.modes import Mode
 from validation.runs.run import Outcome
@@ -26,21 +26,6 @@ PRESSED = np.array([3.0, -2.0, -5.0, 1.0, -4e-14, 2.0, 4.0])
 def made():
     history = History(TIME, {"displacement": VALUES, "contact_pressure": PRESSED})
     return Measurable(history, 0.25, {"displacement": 2.0})
-
-
-def test_columns(made):
-    assert columns.final(made, "displacement") == 1.75
-    assert columns.minimum(made, "displacement") == 0.5
-    assert columns.peak(made, "displacement", of="value") == 3.5
-    assert columns.peak(made, "displacement", of="time") == 0.75
-    assert columns.settling(made, "displacement", 0.15) == 6.0
-    assert columns.settling(made, "contact_pressure", 0.15) == NOT_REPORTED
-    assert columns.minimum_time(made) == 0.75
-    assert columns.tension_time(made) == 0.5  # what is smaller than rounding is none
-    bare = replace(made, history=History(TIME, {"displacement": VALUES}))
-    assert columns.minimum_time(bare) == columns.tension_time(bare) == NOT_REPORTED
-    empty = replace(made, history=History(TIME[:0], {"displacement": VALUES[:0]}))
-    assert columns.final(empty, "displacement") == NOT_REPORTED
 
 
 def test_ratios():
@@ -115,20 +100,6 @@ def test_landings_by_hand():
     assert contact.restitution(record(velocity=None)) == NOT_REPORTED
 
 
-def test_rebounds_by_hand():
-    rebounds = (Rebound(1.0, 0.5), Rebound(3.0, None), Rebound(2.0, 1.5))
-    of = record(rebounds=rebounds)
-    assert [contact.of_rebounds(of, part) for part in ("first", "mean", "most")] == [0.5, 0.625, 0.75]
-    assert contact.landing_speed(of) == 3.0
-    assert contact.of_rebounds(record(rebounds=rebounds[1:2]), "first") == UNDEFINED
-    assert contact.of_rebounds(record(), "first") == NOT_REPORTED
-    slipped = np.array([0.0, 0.0, 0.0, 1.0, 1.5, 2.0, 4.0])
-    assert contact.slip_rate(record(slip=slipped)) == 3.0 / 0.75
-    assert (
-        contact.rare_solves(record(solves=np.array([1, 2, 9]))) == 9.0 and contact.rare_solves(record()) == NOT_REPORTED
-    )
-
-
 def test_energies_by_hand():
     kinetic = np.array([8.0, 7.0, 6.0, 9.0, 8.0, 7.0, 6.0])
     lost = np.array([0.0, 1.0, 2.0, 2.0, 2.0, 3.0, 3.0])
@@ -188,17 +159,6 @@ def test_limits_and_horizons_are_those_of_what_is_asked(made):
     shadow = History(TIME, {"displacement": VALUES, "rotation": np.zeros(7)})
     run = History(TIME, {"displacement": VALUES, "rotation": np.ones(7)})
     assert contact.horizon(replace(made, history=run, shadow=lambda: shadow)) == TIME[-1]
-
-
-def test_the_pole_of_a_history_is_its_strongest(made):
-    n = np.arange(80)
-    x = 2.0 + 0.97**n * np.cos(0.4 * n) + 0.2 * 0.95**n * np.cos(1.1 * n)
-    of = replace(made, history=History(0.25 * n, {"displacement": x}))
-    assert of.pole.frequency == pytest.approx(abs(np.log(0.97) + 0.4j) / 0.25, rel=1e-8)
-    assert of.pole.amplitude == pytest.approx(0.5, rel=1e-6)
-    assert replace(of, static={"displacement": 0.0}).pole == UNDEFINED
-    assert replace(of, static={}).pole == NOT_REPORTED
-    assert replace(of, history=History(0.25 * n, {"displacement": np.append(x[1:], np.inf)})).pole == UNDEFINED
 
 
 def test_numbers_of_modes_by_hand(made):

@@ -5,22 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from validation import load_scene
-from validation.engine.case import Case
-from validation.engine.finished import Finished
-from validation.engine.judge import compared_until
-from validation.engine.measure import execute
-from validation.gates.gate import Gate
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.contact import ContactRecord, rebounds_of_steps
 from validation.runs.history import History
 from validation.runs.modes import Switch
-from validation.runs.results import Results
-from validation.runs.row import Row
-from validation.runs.run import Outcome
-from validation.solvers import opened
 
 STEP = 0.5
 ONES = np.ones(4)
@@ -100,16 +90,6 @@ def test_slip_and_changes_of_state_are_counted():
     assert measured(MADE)["contact.state_changes"] == NOT_REPORTED
 
 
-def test_what_a_slope_and_its_discount_give_by_hand():
-    """10800 kg on 28.9 degrees: F = m g cos b, H = m g sin b; F^2 / 4p + H^2 / 4ps + F^2 h / 2Ea, with h = a."""
-    scene = load_scene("slope-sliding").expand()[0].with_values({"contact.shear_stiffness": 4e8, "time.gg": 0.9})
-    down, along = 10800 * 9.81 * np.cos(np.radians(28.9)), 10800 * 9.81 * np.sin(np.radians(28.9))
-    assert opened.resultant_load(scene) == pytest.approx(down)
-    assert opened.energy_input(scene) == pytest.approx(down**2 / 4e9 + along**2 / 1.6e9 + down**2 / 2e9)
-    gained = 10800 * np.cumsum([-1.0, -2.0 + 0.9]) + down * scene.time.step * np.array([1, 2])
-    assert opened.impulse_of_momentum(scene, np.array([-1.0, -2.0])) == pytest.approx(gained)
-
-
 def test_corners_that_switch_together_open_once():
     switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
     found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
@@ -139,33 +119,3 @@ def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it():
     assert (other.closing, other.opening, other.restitution) == (1.0, None, None)
     assert (first, rebound.closing, rebound.opening) == (2, 4.0, pytest.approx(1.0))
     assert rebound.restitution == pytest.approx(0.25)
-
-
-RIGID = {"block.young": 1e16, "block.velocity": -1.0, "load.pressure": 0.0, "contact.stiffness": 2e9}
-
-
-def impact(**values):
-    """Return a rigid block of 10800 kg that comes down on 4e9 N/m with Omega = 2."""
-    scene = load_scene("unlocked-constant").expand()[0].with_values(RIGID | {"time.steps": 40, **values})
-    return scene.with_values({"time.step": 2 * (scene.block.mass / 4e9) ** 0.5})
-
-
-@pytest.mark.parametrize(("scheme", "e"), [((0.5, 1.0), 1 / 3), ((0.25, 0.5), 1.0)])
-@pytest.mark.parametrize("gap", [0.0105, 0.013])
-def test_the_restitution_where_contact_lasts_two_steps(scheme, e, gap):
-    scene = impact(**{"time.alpha": scheme[0], "time.delta": scheme[1], "contact.gap": gap})
-    row, _ = execute(Case(scene, "dda"), "", "")
-    assert row.metrics["contact.restitution"] == pytest.approx(e, rel=1e-6)  # p over E is 2e-7
-    assert row.metrics["contact.restitution_first"] == pytest.approx(e, rel=1e-6)
-    assert row.metrics["energy.rise"] == pytest.approx(0.0, abs=1e-6)
-
-
-def test_histories_are_gated_up_to_the_horizon(tmp_path):
-    rows = {("s", name): Row("", "", "s", name, Outcome.COMPLETED, {"horizon.time": t}) for name, t in
-            (("dda", 0.3), ("fem", 0.2), ("block-events", NOT_REPORTED))}  # fmt: skip
-    finished = Finished(rows, Results(tmp_path))
-    gate = Gate("s", ("dda", "fem"), "displacement.l2", 0.0, 1.0, "why")
-    assert compared_until(gate, [("s", "dda"), ("s", "fem")], finished) == 0.2
-    assert compared_until(replace(gate, until=0.1), [("s", "dda"), ("s", "fem")], finished) == 0.1
-    assert compared_until(gate, [("s", "dda"), ("s", "block-events")], finished) == 0.3
-    assert compared_until(gate, [("s", "block-events"), ("s", "block-events")], finished) is None

@@ -95,16 +95,6 @@ def test_the_worst_of_two_needs_no_further_column():
     assert pair("worst.max", History(time, {"displacement": time}), exact) == NOT_REPORTED
 
 
-@pytest.mark.parametrize("steps", [300, 1500, 4000, 10_000])
-def test_a_long_history_is_measured_without_aliases(steps):
-    """A mode that turns by 0.66 rad a step: every tenth sample alone would show it as a slow one, badly damped."""
-    frequency, damping, dt = 331.8, 7.5e-4, 0.002
-    decay = np.exp((-damping + 1j * np.sqrt(1 - damping**2)) * frequency * dt)
-    found = pencil.poles(np.real(decay ** np.arange(steps)), dt)[0]
-    assert found.frequency == pytest.approx(frequency, rel=1e-9)
-    assert found.damping == pytest.approx(damping, rel=1e-6)
-
-
 def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read():
     """It turns by 2.9 rad a step, and ten of them look like a mode of 0.26 rad in ten steps."""
     n, frequency, dt = np.arange(6000), 200.0, 1e-4

@@ -32,21 +32,13 @@ def test_the_far_face_of_a_block_turns_at_its_step(alpha):
     assert columns.far_face_step(1.0, height, 0.0) == math.inf
 
 
-@pytest.mark.parametrize(
-    ("weights", "gg", "step", "blocks", "seconds"),
-    [
-        ((0.5, 1.0), 1.0, 1e-3, 10, 3.097),
-        ((0.5, 1.0), 1.0, 5e-3, 10, 0.650),
-        ((0.5, 1.0), 1.0, 20e-3, 10, 0.260),  # w1 dt = 1.9, where the formula of small steps has 0.155
-        ((0.25, 0.5), 0.98, 1e-3, 10, 0.674),
-    ],
-)
-def test_a_stack_rings_down_as_an_independent_program_measured(weights, gg, step, blocks, seconds):
-    omega = columns.lowest_frequency(1e9, 2500, blocks)
-    # band: a quarter of a period, within which the last crossing lies, and a step
-    assert columns.ring_down(omega, Stepping(step, *weights, gg)) == pytest.approx(
-        seconds, abs=math.pi / omega / 2 + step
-    )
+def test_a_stack_rings_down_by_what_the_scheme_and_the_discount_take():
+    omega, step = 40.0, 1e-4
+    rate = omega**2 * (0.8 - 0.5) * step / 2 + (1 - 0.999) / (2 * step)
+    damped = Stepping(step, 0.45, 0.8, 0.999)
+    assert columns.ring_down(omega, damped, 0.02) == pytest.approx(math.log(50) / rate, rel=2e-3)
+    assert columns.ring_down(0.0, damped) == columns.ring_down(omega, Stepping(step, 0.25, 0.5)) == math.inf
+    assert columns.ring_down(1e9, Stepping(1.0, 0.5, 1.0, 0.0)) == pytest.approx(0.0, abs=1.0)
 
 
 def test_every_contact_at_rest_carries_what_is_above():

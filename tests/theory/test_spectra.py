@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from oracles.staged import System, amplification, march, two_unknowns
+from oracles.staged import amplification, two_unknowns
 from scipy.linalg import eigh
 
 from validation.theory import overshoot, stages, statics
@@ -39,16 +39,6 @@ def test_modes_and_shares_of_the_bar(oblong):
     assert expected.bar_shares(oblong, "displacement", b).sum() == pytest.approx(1.0, abs=1e-4)
     pressure = np.cumsum(expected.bar_shares(oblong, "contact_pressure", b))
     assert (pressure[-1] + pressure[-2]) / 2 == pytest.approx(1.0, abs=1e-4)
-
-
-@pytest.mark.parametrize("start", ["zero", "consistent"])
-def test_the_response_of_a_mode_is_the_scheme_s(scene, start):
-    case = scene.with_values({"time.alpha": 0.3, "time.delta": 0.6, "time.gg": 0.97, "time.start": start})
-    omega, t = np.array([0.1, 1.0, 7.0]), case.time
-    modes = System(np.eye(3), np.diag(omega**2), lambda t: omega**2)
-    rest, weights = np.zeros(3), (t.alpha, t.delta)
-    stepped, _, _ = march(modes, "", 1.0, t.steps, rest, rest, t.discount, zero=start == "zero", weights=weights)
-    np.testing.assert_allclose(expected.bar_response(case, omega), stepped[1:], rtol=0, atol=1e-12)
 
 
 ELEMENTS = {  # mass and stiffness of one of unit length
@@ -97,17 +87,3 @@ def test_what_a_scheme_remembers_lifts_a_mode_in_its_first_step(W):
     assert rise == pytest.approx(0.8 * formula, rel=1e-6)
     assert overshoot.greatest_rise(stages.newmark(0.25, 0.5), [W], [1.0]) == pytest.approx(0.0, abs=1e-12)
     assert overshoot.greatest_rise(stages.newmark(0.5, 1.0), [W], [1.0]) == 0.0  # its energy falls from the start
-
-
-def test_the_error_of_a_mesh_is_that_of_a_bar_whose_modes_are_as_much_too_fast(oblong):
-    """Of histories by the frequencies of quadratic elements, of which the low modes make nearly all."""
-    case = oblong.with_values({"fem.elements": 9, "fem.degree": 2, "time.step": 1e-3, "time.steps": 60})
-    n = case.fem.per_side
-    b = expected.bar_modes(case, 2 * n)
-    speed = math.sqrt(6e8 / case.block.density) * case.time.step / 3.1
-    elements = modes_of_elements(2, n)[: 2 * n]
-    exact, shifted = (expected.bar_response(case, speed * modes) for modes in (b, elements))
-    for name, error in expected.mesh_error(case).items():
-        shares = expected.bar_shares(case, name, b)
-        off = np.linalg.norm((shifted - exact) @ shares) / np.linalg.norm(exact @ shares + 1 - shares.sum())
-        assert error == pytest.approx(off, rel=0.4), name

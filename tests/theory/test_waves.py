@@ -60,22 +60,3 @@ def test_joint_in_a_column(blocks, courant, scheme, transmitted):
 def test_joint_in_a_continuum():
     found = waves.joint_transmission([0.25, 0.5, 1.0, 2.0])
     assert np.allclose(found, [0.4472136, 0.7071068, 0.8944272, 0.9701425], atol=5e-8)
-
-
-@pytest.mark.parametrize(("scheme", "gg"), [(AVERAGE, 1.0), (CONSTANT, 0.99)])
-@pytest.mark.parametrize("share", [0.0, 0.3, 1.0, 4.0])
-def test_a_dashpot_at_the_foot_reflects_what_its_impedance_leaves(share, scheme, gg):
-    """R tends to (rho c - z)/(rho c + z); two waves of that ratio move the lowest face as its equation says."""
-    rho_c = 2000.0 * SPEED
-    fine, slow = wave(4000, 0.5, AVERAGE)
-    limit = (1 - share) / (1 + share)
-    assert waves.base_reflection(COLUMN, fine, slow, share * rho_c) == pytest.approx(limit, abs=1e-3)
-    stepping, omega = wave(8, 0.5, scheme, gg)
-    R = waves.base_reflection(COLUMN, stepping, omega, share * rho_c)
-    w2 = stepping.squared_frequency(omega)
-    lag = np.exp(-1j * COLUMN.wavenumber(w2) * COLUMN.height)
-    lowest, second = R + 1, R * lag + 1 / lag
-    half_mass, stiffness = 2000.0 * 0.5 / 2, 1.8e9 / 0.5
-    inertia = half_mass * (2 * lowest + second) / 3  # consistent
-    forces = stiffness * (lowest - second) + stepping.velocity_factor(omega) * share * rho_c * lowest - w2 * inertia
-    assert abs(forces) < 1e-9 * stiffness * abs(lowest)

@@ -1,0 +1,181 @@
+"""Motions at odd numbers are what they were: `numbers.txt`, at eight digits. `KEEP_PAGES=1` writes it anew."""
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from oracles.elements import INCLINED, make
+from oracles.kept_numbers import hold
+
+from fem_reference import (
+    COLUMNS,
+    Friction,
+    Motion,
+    PatchContact,
+    PlaneBody,
+    PlaneModel,
+    Scheme,
+    Unilateral,
+    modes,
+    named_scheme,
+    solve,
+    solve_unilateral,
+)
+from fem_reference.column.contact_model import ColumnContact, ContactColumn
+from fem_reference.column.contacts import solve_contacts
+from fem_reference.column.problem import Excitation, Ground, Stratum
+from fem_reference.column.stepping import solve_line
+from fem_reference.column.vibration import line_response
+from fem_reference.events import bar_events, bars_events, block_events, column_drive, column_events
+from fem_reference.events.bars_model import Bar as WaveBar
+from fem_reference.events.bars_model import BarJoint, BarsProblem
+from fem_reference.events.block_model import BlockProblem
+from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
+from fem_reference.events.restitution import ContactScheme, branches, statistics
+from fem_reference.exact import layers, rocking, sliding_block
+from fem_reference.exact.bar import Bar
+from fem_reference.exact.opening_bar import OpeningBar
+from fem_reference.exact.vibration import response as bar_response
+from fem_reference.history.response import response
+from fem_reference.mesh.model import build
+from fem_reference.problem.bar import BarProblem
+from fem_reference.scheme.diagnostics import diagnostics
+
+KEPT = Path(__file__).with_name("numbers.txt")
+SHAKE = Motion((0.0, 0.004, 0.011, 0.03), (0.0, 1e-3, -2e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0))
+SLANTED = make(INCLINED, 1, 3, 0.3, "plane strain", 7e8, 4e8, elements=2, degree=1, traction=2e5, gravity=9.81)
+DAMPED = Scheme(0.45, 0.65, 0.97, 1.3e-3)
+COMPOSITE = named_scheme("composite", step=1.3e-3, gg=0.97, rho_inf=0.4, split=0.3)
+ALPHA = named_scheme("chung-hulbert", step=1.3e-3, gg=0.97, rho_inf=0.6)
+STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
+
+
+def ends(columns):
+    """Return the last row of columns, but what is rounding of the others."""
+    return [float(values[-1]) * (abs(values[-1]) > 1e-9 * np.max(np.abs(values))) for values in columns.values()]
+
+
+def fields(history):
+    return [values for name, values in vars(history).items() if "radius" not in name and name != "time"]
+
+
+def element_numbers():
+    for problem in (SLANTED, make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)):
+        model = build(problem)
+        for scheme in (DAMPED, COMPOSITE, ALPHA):
+            found = diagnostics(problem, scheme, model=model)
+            yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
+            yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
+            if scheme is not COMPOSITE:
+                yield "mode", *(mode.frequency for mode in modes(problem, scheme, model=model)[:2])
+                yield "response", response(problem, scheme, np.array([0.0, 37.0]), COLUMNS, model=model)
+    moved = replace(SLANTED, motion=SHAKE)
+    yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
+    yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
+
+
+def contact_numbers():
+    rough = Friction(17.0, 1e4)
+    shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
+    for scheme in (DAMPED, COMPOSITE, ALPHA):
+        for contact in (Unilateral(1e-3, -0.3, "glued", friction=rough), Unilateral(0.0, 0.2)):
+            yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
+    implicit = Unilateral(1e-3, -0.3, rule="implicit")
+    yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
+    t = ALPHA.stage_times(60)
+    drive = Excitation(
+        2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
+    )
+    names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
+    for law, joints in (("unilateral", (2e9, 1e-4)), ("frictional", (0.0, 7e3))):
+        ground = Ground(STRATA, "shear" if law == "frictional" else "pressure", impedance=None)
+        faces = tuple(ColumnContact(height, 3e9, *joints[law == "unilateral" :]) for height in (0.0, 1.3))
+        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * (law == "unilateral"))
+        found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
+        yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
+    for impedance in (None, 5e5):
+        ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
+        yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
+        for at_top in (False, True):
+            yield "vibrates", line_response(ground, [2, 1], 2, ALPHA, np.array([13.0, 60.0]), at_top, names[:2])
+            yield "layers", layers.amplitudes(ground, [80.0, 400.0], names[:2], [])[at_top]
+
+
+def exact_numbers():
+    problem = make(p=3e8, ramp=0.004)
+    yield "bar", ends(Bar.of(problem).solve(ALPHA, 30).columns), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
+    yield "continuum", ends(Bar.of(make(p=3e8)).continuum(DAMPED, 20).columns)
+    yield "opens", ends(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60).columns)
+    rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
+    yield "rocks", rocks.impacts[:4], rocks.at([1.7])
+    shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
+    slides = sliding_block.solve(sliding_block.SlidingBlock(11.0, 17.0, 9.81, 0.2), shaken, 2.0)
+    yield "slides", slides.slip, slides.at([0.7, 2.0]), [time for time, _ in slides.switches]
+    for omega in (0.7, 2.3, math.inf):
+        scheme = ContactScheme(0.3, 0.65, 0.97)
+        yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
+
+
+def event_numbers():
+    dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
+    yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
+    block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
+    for end, changes in (
+        (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
+        (0.0119, {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0}),
+        (0.0029, {"stiffness": math.inf, "restitution": 0.4, "eccentricity": 0.0}),
+    ):
+        yield "block", fields(block_events.solve(replace(block, **changes), end).at([end]))
+    drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
+    blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
+    opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
+    rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
+    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
+        yield "column", fields(column_events.solve(problem, 0.006).at([0.0055]))
+    bars = BarsProblem(
+        (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
+        (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
+        gravity=0.05,
+        base_impedance=0.7,
+        top=column_drive.half_sine(0.3, 0.7),
+    )
+    waves = bars_events.solve(bars, 2.0)
+    yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
+
+
+def plane_numbers():
+    lower = (((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (0.0, 1.0)),)
+    upper = (((0.3, 1.01), (1.7, 1.01), (1.5, 1.8), (0.4, 2.0)),)
+    bodies = [
+        PlaneBody(lower, 2500.0, 1e9, 0.25, rectangle=True, gravity=(0.3, -9.81), spin=0.02, elements=1),
+        PlaneBody(upper, 2300.0, 7e8, 0.3, velocity=(0.4, -6.0), hypothesis="plane strain", elements=1),
+    ]
+    law = {"stiffness": 1e9, "shear_stiffness": 5e8, "friction": 0.3}
+    contacts = [PatchContact(0, None, (x, 0.0), (x + 0.5, 0.0), (0.0, 1.0), **law) for x in (0.0, 1.5)]
+    contacts += [
+        PatchContact(1, 0, (x, 1.01), (x + 0.4, 1.01), (0.0, 1.0), gap=0.01, cohesion=1e3, **law) for x in (0.3, 1.3)
+    ]
+    for scheme in (DAMPED, COMPOSITE):
+        model = PlaneModel(bodies, contacts, SHAKE)
+        found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
+        yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()
+        yield "forces", *(part[-1] for part in (found.normal, found.shear, found.gap, found.slip, found.momentum))
+    clamped = replace(bodies[0], clamps=(((0.0, 1.0), (0.0, 0.0)),), forces=(((2.0, 1.0), (3e5, -1e5)),), spin=0.0)
+    held = PlaneModel([replace(clamped, stress=(3e6, -1e6, 2e6))])
+    yield "held", held.rest @ held.M @ held.rest, *(mode.share for mode in held.modes(DAMPED, 3))
+
+
+PARTS = {
+    part.__name__: part for part in (element_numbers, contact_numbers, exact_numbers, event_numbers, plane_numbers)
+}
+
+
+@pytest.mark.parametrize("part", PARTS)
+@np.errstate(all="ignore")
+def test_motions_are_what_they_were(part):
+    hold(KEPT, PARTS, part)
