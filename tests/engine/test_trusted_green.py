@@ -107,15 +107,6 @@ def test_a_history_without_time_is_one_line(scene, tmp_path):
         results.history(path.stem)
 
 
-@pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])
-def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome, scene, tmp_path):
-    results, case = Results(tmp_path), Case(scene, "dda")
-    made = origin.of_row(case.make_solver())
-    results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
-    rows = finish([case], study(scene), results).rows
-    assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
-
-
 # ---- records --------------------------------------------------------------------------------------------------------
 
 COMMANDS = ["run", "report", "diff", "baseline"]

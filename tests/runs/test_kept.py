@@ -12,7 +12,7 @@ import pytest
 from oracles.made_cases import made_history, made_row
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, tables, text, units
+from validation.runs import columns, extras, files, provenance, strict, tables, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
@@ -126,14 +126,6 @@ def test_names_of_cases_are_taken_apart_as_they_are_put_together():
         assert str(CaseName.parse(name)) == name
     assert CaseName.parse("a[time.step=0.1,load.p=5,000]").values == {"time.step": "0.1", "load.p": "5,000"}
     assert scene_of("b[x=1]") == "b"
-
-
-def test_what_reaches_a_terminal_is_printable():
-    assert text.printable("a\n b\x1b\ud800\u00a0") == "a b\\x1b\\ud800"
-    assert text.visible("a\n\tb\x1b\u00a0") == "a\n\tb\\x1b\u00a0"
-    assert (
-        text.error_text(ValueError("no\n more")) == "ValueError: no more" and text.error_text(KeyError()) == "KeyError"
-    )
 
 
 def test_json_is_strict(tmp_path):

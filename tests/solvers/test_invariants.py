@@ -231,21 +231,6 @@ def test_steps_tend_to_the_exact_motion_by_their_order(truth, name, scheme, rati
             assert (coarse @ fine) / (fine @ fine) == pytest.approx(ratio, rel=0.11), column
 
 
-RESTING = [param for param in LINEAR if param.values[0] in ("dda", "fem", "fenicsx", "bar")]
-RESTING = [param for param in RESTING if param.values[1] not in ("column", "explicit")]
-
-
-@some(RESTING, 7)
-def test_a_damped_run_comes_to_rest_where_static_says(solver, name, records):
-    """55 steps after the load's course has ended, of which each leaves 0.41 of the slowest motion."""
-    damped = {"time.alpha": 0.5625, "time.gg": 0.3, "time.step": 1e-2, "time.steps": 60}
-    scene = asked(solver, made(name, records).with_values(damped))
-    columns = solved(solver, scene)
-    at_rest = static(solver, scene)
-    for column, values in columns.items():
-        assert values[-1] == pytest.approx(at_rest[column], abs=1e-9 * np.abs(values).max()), column
-
-
 def test_a_damped_bar_answers_as_its_fine_mesh(records):
     scene = made("damped", records).with_values({"time.gg": 0.97, "fem.elements": 48})
     for frequency in (13.0, 60.0):

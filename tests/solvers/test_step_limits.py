@@ -10,7 +10,6 @@ import pytest
 from conftest import thinned
 
 from validation.engine.measure import attempt
-from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import parse_scene
@@ -30,7 +29,6 @@ STACK = {
     "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
     "stiffness": 1e9,
 }
-PULSE = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
 
 
 def scene(step, steps=300, **tables):
@@ -149,15 +147,6 @@ def test_what_cannot_be_stepped_is_an_outcome(case, solver):
     run = attempt(get_solver(solver), limited, full=False)[1]
     assert run.outcome == case["outcome"]
     assert case["says"] in run.notes[-1]
-
-
-def test_a_column_that_nothing_moves_needs_an_input():
-    column = {"law": "unilateral", "motion": "pressure"} | RESTING
-    for still in (COLUMN, column | {"gravity": 0.0}):
-        with pytest.raises(InputError) as error:
-            scene(1e-4, 20, column=still)
-        assert error.value.field == "input"
-    assert scene(1e-4, 20, column=column | {"gravity": 9.81}).stated_input is None
 
 
 SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))

@@ -56,15 +56,6 @@ def test_names(scene):
     assert told.value.field == "solver" and "femm:2" in str(told.value.value)
 
 
-@pytest.mark.parametrize("name", ["nowhere:solve", "nowhere.py:solve", "my_solver.py:solve", "my_solver.inner:solve"])
-def test_a_module_that_is_not_found_is_bad_input(scene, name):
-    with pytest.raises(InputError) as told:
-        get_solver(name).check_module()
-    assert (told.value.field, told.value.value) == ("solver", repr(name))
-    assert ("without .py" in told.value.rule) is (".py" in name)
-    assert os.getcwd() in str(told.value.advice)
-
-
 def test_a_user_solver_always_runs_afresh(scene, tmp_path, monkeypatch):
     from validation.engine.run import run_study
 
