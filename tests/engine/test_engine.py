@@ -56,6 +56,14 @@ def test_a_study_of_timings_takes_timed_rows_again_and_no_others(scene, tmp_path
         *([(False, False)] * 2), *([(True, True)] * 2)]  # fmt: skip
 
 
+def test_lines_that_an_action_executes_are_counted():
+    def action():
+        first = 1
+        return first
+
+    assert measure.lines_of(action) == measure.lines_of(action) == 2
+
+
 def test_processes_threads_and_one_process_give_the_same_rows(scene, tmp_path):
     kept = []
     with ThreadPoolExecutor(2) as pool:

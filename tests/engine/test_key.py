@@ -1,11 +1,25 @@
 """The key of a kept row covers everything that enters the row: sources of every room, measures, records, versions."""
 
+from pathlib import Path
+
 import pytest
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
 from validation.scenes.scene import load_scene
 from validation.solvers.fenicsx import FEniCSx
+
+
+def test_an_edited_source_gives_another_key_to_the_solvers_that_it_enters(scene, monkeypatch):
+    def keys():
+        case_module.source_digest.cache_clear()
+        return [Case(scene, solver).key() for solver in ("dda", "fem")]
+
+    before = keys()
+    read = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"# more" * ("dda/bodies" in path.as_posix()))
+    assert [a == b for a, b in zip(before, keys(), strict=True)] == [False, True]
+    case_module.source_digest.cache_clear()
 
 
 def keys_of(scene, solver, file, texts):

@@ -44,6 +44,7 @@ NAMES = [
 def test_every_outcome_has_its_name(scene, solver, values, outcome, kind):
     found = row(scene.with_values(values | {"fem.elements": 2}), solver)
     assert (found.outcome, found.metrics["stability.kind"]) == (outcome, kind)
+    assert any("predicted growth" in note for note in found.notes) is (kind in (Stability.UNSTABLE, Stability.OVERFLOW))
     assert outcome.sentence.endswith(".") and kind.sentence.endswith(".")
 
 

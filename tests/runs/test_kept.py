@@ -6,6 +6,7 @@ import platform
 import stat
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
 
+ROOT = Path(__file__).parents[2]
 needs_proc = pytest.mark.skipif(not Path("/proc/cpuinfo").exists(), reason="looks at /proc")
 
 
@@ -251,6 +253,16 @@ def test_where_results_come_from(monkeypatch):
     named = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     assert provenance._processor() == [*named, platform.machine()][0]
 
+    with monkeypatch.context() as patch:
+        for top, described, commit in (
+            (ROOT, "abc+", "abc+"),
+            (ROOT, None, "unknown (no commit yet)"),
+            (ROOT / "validation", "abc", "unknown (not a git checkout)"),
+        ):
+            told = {"rev-parse": str(top), "describe": described}
+            patch.setattr(provenance, "_git", lambda word, *more, told=told: told[word])
+            assert provenance._commit() == commit
+
     def absent(*given, **more):
         raise OSError
 
@@ -258,6 +270,11 @@ def test_where_results_come_from(monkeypatch):
     monkeypatch.setattr(platform, "processor", lambda: "a processor")
     assert provenance._processor() == "a processor"
     assert provenance._version("no-such-package") == "not installed"
+    sound = SimpleNamespace(stdout=" said\n")
+    environments = []
+    monkeypatch.setenv("GIT_DIR", "elsewhere")
+    monkeypatch.setattr(provenance.subprocess, "run", lambda *given, env, **more: environments.append(env) or sound)
+    assert provenance._git("status") == "said" and "PATH" in environments[0] and "GIT_DIR" not in environments[0]
     monkeypatch.setattr(provenance.subprocess, "run", absent)
     assert provenance._git("status") is None and provenance._commit() == "unknown (not a git checkout)"
     assert not provenance._is_source_root(Path("nowhere"))

@@ -19,6 +19,7 @@ from oracles.stated_scenes import STATED, asked, made
 
 from validation.advice.hooks import AdviceHooks
 from validation.errors import InputError
+from validation.problems.problem import ProblemHooks
 from validation.report.scene.hooks import ShowingHooks
 from validation.runs.run import Outcome
 from validation.scenes.plain import lines
@@ -77,7 +78,7 @@ def unless_refused(ask):
 def told(scene):
     """Return what the kind of a scene tells of it before anything is run, in numbers."""
     showing = ShowingHooks.of(scene)
-    drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
+    drawn = [left + right for left, right in showing.drawing(scene, 80)[1]]
     advice = AdviceHooks.of(scene)
     asked = {} if get_solver("fenicsx").refusal(scene) else request(scene)  # of another program
     facts = [*advice.motions(scene), advice.contact_limits(scene)]
@@ -90,6 +91,7 @@ def told(scene):
         "implausible": [value.sentence for value in implausible_values(scene)],
         "problem": unless_refused(lambda: lines(scene)),
         "asked": {name: repr(value) for name, value in asked.items()},
+        "changed": repr(ProblemHooks.of(scene).changes(scene)),
     }
 
 

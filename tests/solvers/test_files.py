@@ -1,5 +1,6 @@
 """Solvers that are no Python: programs that read a scene and print a table, and tables that are read."""
 
+import os
 import shutil
 import subprocess
 from pathlib import Path
@@ -65,7 +66,7 @@ SCENE = LOCKED.with_values({"time.step": 0.001, "time.steps": 3})
         ("echo time,displacement\necho 0.001,x", Outcome.WRONG_SHAPE, "displacement: must be a number, got 'x'"),
         ("exit 0", Outcome.WRONG_SHAPE, "got an empty file"),
         (f"echo time,displacement_m\n{ROWS.replace('-1e-3', 'nan')}", Outcome.WRONG_SHAPE, "must be a finite number"),
-        ("sleep 30", Outcome.TIMEOUT, "no history within"),
+        ("echo $$ > $0.pid\nsleep 30", Outcome.TIMEOUT, "no history within"),
     ],
 )
 def test_how_a_program_ends_is_named(text, outcome, said, tmp_path, monkeypatch):
@@ -76,6 +77,9 @@ def test_how_a_program_ends_is_named(text, outcome, said, tmp_path, monkeypatch)
     assert said in "".join(run.notes)
     if outcome is Outcome.COMPLETED:
         assert run.seconds["setup"] == 0 < run.seconds["stepping"] < 60
+    for written in tmp_path.glob("*.pid"):
+        with pytest.raises(ProcessLookupError):
+            os.kill(int(written.read_text()), 0)
 
 
 COLUMNS = {"displacement": "m", "rotation": "rad"}

@@ -8,10 +8,13 @@ import pytest
 from conftest import SCENE
 
 from validation.engine.run import run_study
+from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.solvers.hooks import SolvingHooks
+from validation.solvers.registry import solve
 from validation.suite.folders import scene_study
 
 MB = 2**20
@@ -72,6 +75,8 @@ def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
     monkeypatch.setattr(memory, "available", lambda: 1.0)
+    with pytest.raises(InputError, match=memory.REFUSED):
+        solve(load_scene(path), "dda")
     run_study(scene_study(str(path)), results)
     (row,) = results.rows().values()
     assert row.outcome is Outcome.REFUSED and any(memory.REFUSED in note for note in row.notes)

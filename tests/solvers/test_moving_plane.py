@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.plane.generators import WallSection
 from validation.models.plane.motion import forces_at, outlines_at
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
@@ -105,15 +104,3 @@ def test_a_step_that_does_not_end_names_the_contacts_that_flip():
     assert run.outcome is Outcome.NO_CONTACT_STATE and 0 < len(run.history.time) < 20
     flipping = re.findall(r"corner (\d+) of (\w+) on edge (\d+) of (\w+)", run.notes[-1])
     assert flipping and all(block.startswith("stone_") for _, block, _, _ in flipping)
-
-
-def test_a_wall_is_in_running_bond():
-    wall = WallSection(name="wall", rows=2, bricks=2, rectangle=(1.0, 0.5))
-    ends = {name: (corners[0], corners[2]) for name, corners, _ in wall.outlines()}
-    assert ends == {
-        "1_1": ((0.0, 0.0), (1.0, 0.5)),
-        "1_2": ((1.0, 0.0), (2.0, 0.5)),
-        "2_1": ((0.0, 0.5), (0.5, 1.0)),
-        "2_2": ((0.5, 0.5), (1.5, 1.0)),
-        "2_3": ((1.5, 0.5), (2.0, 1.0)),
-    }

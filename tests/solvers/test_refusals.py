@@ -122,10 +122,12 @@ def named(**gate):
 
 
 UNKNOWN = ["dda", "nowhere.py:solve"]
+UPWARDS = "time,x,y\n0,0,0\n1,0,1\n"
 ASKS += [
     (LOCKED, "gate.0.pair: must be solvers that run.solvers lists, got 'fem'", lambda scene: named()),
     (LOCKED, "gate.0.pair: must name a solver and a reference", lambda scene: named(pair=["dda"])),
     (LOCKED, "gate.0.metric: must be among", lambda scene: named(metric="pressure.l3")),
+    (LOCKED, r"run\.columns", lambda scene: solve(scene.with_values({"run.columns": ["rotation"]}), "dda-60")),
     (LOCKED, "'nowhere.py:solve'", lambda scene: check_names(scene.with_values({"run.solvers": UNKNOWN}), "mine.toml")),
 ]
 

@@ -1,6 +1,7 @@
 """Users' solvers: by name, by entry point, through the gates; what is wrong with one is named."""
 
 import os
+from importlib.metadata import EntryPoint
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ from validation.metrics.values import NOT_REPORTED
 from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
+from validation.solvers import registry
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import UserSolver
 from validation.suite.folders import scene_study
@@ -48,7 +50,10 @@ def test_what_is_not_reported_is_not_made_up(scene):
     assert row.metrics["displacement.static"] == -0.01
 
 
-def test_names(scene):
+def test_names(scene, monkeypatch):
+    points = [EntryPoint(name, "made:solve", registry.GROUP) for name in ("mine", "dda")]
+    monkeypatch.setattr(registry.importlib.metadata, "entry_points", lambda group: points)
+    assert registry.entry_points.__wrapped__() == {"mine": "made:solve"}
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
     with pytest.raises(InputError) as told:
