@@ -55,9 +55,14 @@ def oracles(monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def reports_of(tmp_path_factory):
+def results(tmp_path_factory):
+    """Return where runs of the suite's own solvers are kept for the next test."""
+    return Results(tmp_path_factory.mktemp("results"))
+
+
+@pytest.fixture(scope="module")
+def reports_of(results):
     """Return what the gates on some scenes say of a solver, or those of start and data, each once."""
-    results = Results(tmp_path_factory.mktemp("results"))  # runs of the suite's own solvers are kept for the next
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(ORACLES))
         answer_here(patch)
@@ -111,11 +116,13 @@ def noisy(scene):
         ("six_unknowns:sound", set(), []),
     ],
 )
-def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(solver, same_as, warned, tmp_path, monkeypatch):
+def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
+    solver, same_as, warned, results, tmp_path, monkeypatch
+):
     (tmp_path / "copies.py").write_text(COPIES)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(block_module, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=[]))
-    session = Session(solver, Results(tmp_path / "results"))
+    session = Session(solver, results)
     told = [session.judge(name)[1] for name in names_of(START[:1])]
     assert {name for t in told for name in t.same_as.split()} == same_as
     assert all(t.repeated for t in told)
