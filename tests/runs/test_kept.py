@@ -4,6 +4,7 @@ import itertools
 import os
 import platform
 import stat
+import tempfile
 from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
@@ -175,7 +176,7 @@ def written(path):
 
 
 @needs_proc
-def test_files_appear_whole_or_not_at_all(tmp_path):
+def test_files_appear_whole_or_not_at_all(tmp_path, monkeypatch):
     path = tmp_path / "a.txt"
     path.write_text("old")
     with pytest.raises(ZeroDivisionError), files.atomic_path(path) as temporary:
@@ -192,6 +193,11 @@ def test_files_appear_whole_or_not_at_all(tmp_path):
     (tmp_path / "self").symlink_to("self")
     for wrong in (tmp_path, tmp_path / "none/b", tmp_path / "self", Path("a\0")):
         assert refusal(files.check_output, wrong)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    Path(tempfile.tempdir).mkdir()
+    with path.open("w") as stream, files.atomic_path(Path(f"/proc/self/fd/{stream.fileno()}")) as temporary:
+        temporary.write_text("streamed")
+    assert path.read_text() == "streamed" and os.listdir(tempfile.tempdir) == []
     with path.open() as stream:
         assert files._is_stream(Path(f"/proc/self/fd/{stream.fileno()}")) and not files._is_stream(path)
     assert "reads" in refusal(written, tmp_path / "pipe")

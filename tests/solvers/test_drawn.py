@@ -20,6 +20,7 @@ from validation.models.plane.generators import (
     StackSection,
     WallSection,
 )
+from validation.models.plane.problems import box_problems, canon_problems
 from validation.report.figures.drawing import FigureHooks
 from validation.report.scene.hooks import ShowingHooks
 from validation.scenes.scene import load_scene
@@ -48,6 +49,7 @@ def drawn(axes):
             yield from np.ravel([artist.xy, artist.xyann]).tolist()
         if hasattr(artist, "get_text"):
             yield float(zlib.crc32(artist.get_text().encode()))
+    yield axes.yaxis.get_tick_params().get("labelleft", True)
     yield from np.ravel([axes.get_xlim(), axes.get_ylim()]).tolist()
 
 
@@ -86,6 +88,22 @@ def test_generators_draw_blocks_as_before():
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "generated", found, found)
     assert differing(found, kept(KEPT)["generated"]) == {}
+
+
+@np.errstate(all="ignore")
+def test_problems_of_blocks_are_posed_and_measured_as_before():
+    """Made anew, the first case and the last one, on histories that did not take place."""
+    found = {}
+    for name, posed in {**box_problems.__wrapped__(), **canon_problems.__wrapped__()}.items():
+        numbers = []
+        for case in {posed.cases[0].label: posed.cases[0], posed.cases[-1].label: posed.cases[-1]}.values():
+            scene = posed.scene(case)
+            for number in (case.quantities or posed.quantities)(scene):
+                numbers += [number.exact, number.low, number.high, number.scale, number.measure(history(scene))]
+        found[name] = summed(numbers)
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "problems", found, found)
+    assert differing(found, kept(KEPT)["problems"]) == {}
 
 
 def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):

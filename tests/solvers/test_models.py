@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 from oracles.made_cases import made_history
+from oracles.stated_scenes import made
 
 from validation import exact
 from validation.advice.goals import Question
@@ -58,10 +59,15 @@ def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
     assert " 24.5 %" in said
 
 
-def test_a_page_says_how_a_beam_is_cut(monkeypatch):
+def test_a_page_says_how_a_beam_and_a_column_are_cut(monkeypatch, tmp_path):
     monkeypatch.setattr(pages, "ELEMENTS", 2)
-    scene = load_scene("patch-strip").expand()[0]
-    data, _ = PageHooks.of(scene).page(scene, Question(error=0.3))
-    (offer,) = data["recommendations"]
-    assert offer["settings"] == {"plane.subdivide": [2, 1], "plane.pattern": "squares", "time.step": 10.0}
-    assert (offer["displacement_error"], offer["uncertainty"]) == pytest.approx((0.125, 0.0), abs=1e-9)
+    beam = load_scene("patch-strip").expand()[0]
+    column = made("layers on springs", tmp_path)  # whose input has no frequency of its own
+    (of_beam,), (of_column,) = (
+        PageHooks.of(scene).page(scene, Question(error=0.3))[0]["recommendations"] for scene in (beam, column)
+    )
+    assert of_beam["settings"] == {"plane.subdivide": [2, 1], "plane.pattern": "squares", "time.step": 10.0}
+    assert (of_beam["displacement_error"], of_beam["uncertainty"]) == pytest.approx((0.125, 0.0), abs=1e-9)
+    assert [layer["blocks"] for layer in of_column["settings"]["column.layer"]] == [1, 2]
+    numbers = of_column["settings"]["time.step"], of_column["displacement_error"], of_column["duration"]
+    assert numbers == pytest.approx((6.3934121e-3, 0.89664631, 1.27868242e-2), rel=1e-7)
