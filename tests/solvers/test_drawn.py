@@ -95,6 +95,8 @@ def test_problems_of_blocks_are_posed_and_measured_as_before():
     """Made anew, the first case and the last one, on histories that did not take place."""
     found = {}
     for name, posed in {**box_problems.__wrapped__(), **canon_problems.__wrapped__()}.items():
+        if name == "spinning":  # whose motion is integrated
+            continue
         numbers = []
         for case in {posed.cases[0].label: posed.cases[0], posed.cases[-1].label: posed.cases[-1]}.values():
             scene = posed.scene(case)
