@@ -1,7 +1,7 @@
 """All that solvers answer to scenes with every term, and what is known of these before: numbers, kept in `answers.txt`.
 
 A quantity is the sum of its values, each with a weight of its own: a step, a sign or a place that is another shows.
-What is kept is a number for each part, of the logarithms of its quantities: one that is another by 5e-5 of itself shows.
+What is kept is a number for each part, of logarithms of its quantities: one that is another by 5e-5 of itself shows.
 What a step that is shorter by 1e-11 of itself changes is decided by rounding, named behind a ~ and not judged.
 `KEEP_PAGES=1` writes the file anew.
 """

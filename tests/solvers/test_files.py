@@ -18,7 +18,7 @@ from validation.scenes.plain import lines, words
 from validation.scenes.scene import load_scene
 from validation.solvers import user
 from validation.solvers.history_table import read_table
-from validation.solvers.processes.user_worker import columns_of, plain, text_of
+from validation.solvers.processes.user_worker import columns_of, place_of, plain, text_of
 from validation.solvers.processes.worker import WorkerDied
 from validation.solvers.registry import get_solver
 from validation.solvers.user import VARIABLE
@@ -135,6 +135,10 @@ def test_a_solver_answers_in_one_of_a_few_forms():
         with pytest.raises(TypeError, match="x must hold real numbers"):
             plain("x", other)
     silent = type("Silent", (Exception,), {"__str__": lambda self: 1 / 0})()
+    with pytest.raises(ZeroDivisionError) as raised:
+        silent.__str__()
+    assert place_of(raised.value, Path(__file__).parent).startswith("test_files.py:")
+    assert place_of(ValueError(), Path()) == ""
     said = ["ValueError: no", "Silent, whose text raises ZeroDivisionError"]
     assert [text_of(error) for error in (ValueError("no"), silent)] == said
 
