@@ -26,7 +26,16 @@ from validation.report.scene.hooks import ShowingHooks
 from validation.scenes.scene import load_scene
 
 KEPT = Path(__file__).with_name("drawn.toml")
-DRAWN = ("sliding", "turning", "opening sub-blocks", "shaken", "lateral", "column that slips", "bars that open")
+DRAWN = (
+    "landing",
+    "sliding",
+    "turning",
+    "opening sub-blocks",
+    "shaken",
+    "lateral",
+    "column that slips",
+    "bars that open",
+)
 STATED_WHOLE = ("held by cohesion", "layers on springs", "struck layers", "row of cells", "subblocks-triangles")
 OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "boxes-pile")
 MOVED = ("pushing-held", "row of cells")

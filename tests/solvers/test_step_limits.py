@@ -1,6 +1,5 @@
 """A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
 
-import itertools
 import math
 import tomllib
 from pathlib import Path
@@ -147,21 +146,3 @@ def test_what_cannot_be_stepped_is_an_outcome(case, solver):
     run = attempt(get_solver(solver), limited, full=False)[1]
     assert run.outcome == case["outcome"]
     assert case["says"] in run.notes[-1]
-
-
-SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))
-
-
-@pytest.mark.parametrize(("name", "solver"), thinned(SOUND, 13))
-def test_a_column_with_gaps_and_hardly_a_drive_is_sound(name, solver, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("late.csv").write_text("time,velocity\n5,0\n6,1\n7,0\n")
-    case = TABLES["sound"][name]
-    column = RESTING | {"motion": "pressure", "law": "unilateral", "heights": [0.0, 2.0]} | case.get("column", {})
-    columns = ["displacement", *["gap_1", "gap_2"] * (column["law"] == "unilateral")]
-    stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | case.get("time", {})
-    tables = {"input": {"at": "base"} | case["input"]} if "input" in case else {}
-    run = {"solvers": [solver], "columns": columns}
-    still = parse_scene({"column": column, "time": stepped, "run": run, **tables}, "still")
-    assert get_solver(solver).refusal(still) is None
-    assert solve(still, solver).outcome is Outcome.COMPLETED
