@@ -2,7 +2,8 @@
 
 A quantity is the sum of its values, each with a weight of its own: a step, a sign or a place that is another shows.
 What is kept is a number for each part, of logarithms of its quantities: one that is another by 5e-5 of itself shows.
-What a step that is shorter by 1e-11 of itself changes is decided by rounding, named behind a ~ and not judged.
+What a step that is shorter by 1e-11 of itself changes, or what is nothing beside other static values, is decided by
+rounding, named behind a ~ and not judged.
 `KEEP_PAGES=1` writes the file anew.
 """
 
@@ -152,7 +153,13 @@ def written(solver, scene, tells):
     shorter = answers(solver, scene.with_values({"time.step": scene.time.step * (1 - 1e-11)}), tells)
     found = answers(solver, scene, tells)
     assert found.keys() == shorter.keys()
-    rounding = [name for name, value in found.items() if not math.isclose(value, shorter[name], rel_tol=1e-8)]
+    forces = max([abs(value) for name, value in found.items() if name.startswith("static.")], default=0.0)
+    rounding = [
+        name
+        for name, value in found.items()
+        if not math.isclose(value, shorter[name], rel_tol=1e-8)
+        or (name.startswith("static.") and 0 < abs(value) < 1e-14 * forces)
+    ]
     return " ".join([*(f"{value:.5f}" for value in in_parts(found, rounding).values()), "~", *rounding])
 
 

@@ -4,14 +4,18 @@ import math
 
 import numpy as np
 import pytest
+from oracles.box_scenes import box_scene
 from oracles.made_cases import made_history
 from oracles.stated_scenes import made
 
 from validation import exact
 from validation.advice.goals import Question
+from validation.advice.hooks import AdviceHooks
 from validation.advice.pages import PageHooks
+from validation.models.block.advice import _moves_as_a_whole
 from validation.models.column import pages as column_pages
 from validation.models.plane import pages
+from validation.models.plane.corner_springs import OVERLAP, moving_advice
 from validation.models.plane.history import PlaneColumns
 from validation.models.plane.measures import contact_time
 from validation.scenes.plausibility import implausible_values
@@ -58,6 +62,26 @@ def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
     scene = parse_scene({"column": column, "time": {"step": 1e-4, "steps": 3}}, "soft")
     (said,) = [value.sentence for value in implausible_values(scene) if value.kind == "strain"]
     assert " 24.5 %" in said
+
+
+def test_springs_carry_the_weight_of_what_stands_on_them():
+    scene = box_scene({"width": 2.0, "height": 1.0, "density": 700.0}, stiffness=1e6, gravity=3.0)
+    needed = 2 * 700 * 3.0 / (OVERLAP * scene.plane.assembly.moving[0].thickness)
+    assert moving_advice(scene, 0.1).settings["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
+
+
+def test_a_block_with_friction_moves_as_a_whole_on_a_slope():
+    block = load_scene("figures-3-4").expand()[0]
+    rough = {"contact": {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 20.0}}
+    scenes = [block, *(block.with_values(rough | {"load.gravity": 9.81, "load.slope": slope}) for slope in (0.0, 5.0))]
+    assert [_moves_as_a_whole(scene) for scene in scenes] == [False, False, True]
+
+
+def test_a_block_is_cut_into_rows_and_one_row_leaves_it_whole():
+    block = load_scene("figures-3-4").expand()[0]
+    cut = AdviceHooks.of(block).cut
+    assert cut(block, [1]) is block
+    assert [cut(scene, [3]).block.subdivide for scene in (block, cut(block, [2]))] == [(1, 3), (1, 3)]
 
 
 def test_a_page_says_how_a_beam_and_a_column_are_cut(monkeypatch, tmp_path):
