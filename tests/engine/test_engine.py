@@ -80,6 +80,9 @@ def test_a_key_depends_on_what_the_solver_reads_and_on_nothing_else(scene):
     assert Case(scene, "dda").key() == Case(other_mesh, "dda").key()
     assert Case(scene, "fem").key() != Case(other_mesh, "fem").key()
     assert Case(scene, "dda").key() != Case(other_step, "dda").key()
+    columns = ["displacement", "contact_pressure"]
+    ordered, reverse = (scene.with_values({"run.columns": names}) for names in (columns, columns[::-1]))
+    assert Case(ordered, "dda").key() == Case(reverse, "dda").key()
     assert Case(scene, "dda").key() != Case(scene, "dda:full").key() == Case(scene, "dda", True).key()
     assert Case(scene, "dda").key() != Case(scene, "dda-textbook").key()
     names = [Case(scene, solver, ranks=ranks).make_solver().name for solver in ("fenicsx", "dda") for ranks in (1, 2)]

@@ -135,8 +135,8 @@ def test_a_solver_answers_in_one_of_a_few_forms():
         with pytest.raises(TypeError, match="x must hold real numbers"):
             plain("x", other)
     silent = type("Silent", (Exception,), {"__str__": lambda self: 1 / 0})()
-    with pytest.raises(ZeroDivisionError) as raised:
-        silent.__str__()
+    with pytest.raises(np.linalg.LinAlgError) as raised:  # within numpy
+        np.linalg.solve(np.zeros((2, 2)), np.ones(2))
     assert place_of(raised.value, Path(__file__).parent).startswith("test_files.py:")
     assert place_of(ValueError(), Path()) == ""
     said = ["ValueError: no", "Silent, whose text raises ZeroDivisionError"]
