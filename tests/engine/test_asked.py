@@ -47,12 +47,17 @@ def study_of(scene):
     )
 
 
+@pytest.fixture(scope="module")
+def whole_rows(tmp_path_factory):
+    return tmp_path_factory.mktemp("whole")
+
+
 def judged(study, gate, cases, directory):
     return evaluate(gate, finish(cases, study, Results(directory)))
 
 
 @pytest.mark.parametrize("number", range(6))
-def test_what_a_gate_reads_is_enough_to_judge_it(scene, tmp_path, number):
+def test_what_a_gate_reads_is_enough_to_judge_it(scene, tmp_path, whole_rows, number):
     study = study_of(scene)
     gate = study.gates()[number]
     asked = list(reads(gate, study.recipes))
@@ -62,5 +67,5 @@ def test_what_a_gate_reads_is_enough_to_judge_it(scene, tmp_path, number):
         for case in whole
     ]
     found = judged(study, gate, some, tmp_path / "some")
-    assert found == judged(study, gate, whole, tmp_path / "whole") and isinstance(found.value, float)
+    assert found == judged(study, gate, whole, whole_rows) and isinstance(found.value, float)
     assert ("compared" in found.why) == (number == 5)  # the horizon is among what is read

@@ -1,11 +1,9 @@
 """Real processes: killed in the middle, writing where nothing can be written, two at once in one directory."""
 
 import errno
-import json
 import os
 import resource
 import sys
-from multiprocessing import Barrier, Process
 
 import numpy as np
 import pytest
@@ -23,26 +21,6 @@ from validation.runs.run import Outcome
 
 def rows_of(results):
     return Results(results).rows()
-
-
-def write_again_and_again(directory, study, start):
-    """Write verdicts, of which those before must still be there."""
-    start.wait(60)
-    for i in range(12):
-        kept = Results(directory).read_json("verdicts.json", [], list[dict[str, str]])
-        assert [verdict["id"] for verdict in kept if verdict["study"] == study] == [str(i - 1)] * (i > 0)
-        Results(directory).write_verdicts(study, [{"study": study, "id": str(i)}])
-
-
-def test_verdicts_of_two_studies_written_at_once_are_both_kept(tmp_path):
-    start = Barrier(2)
-    many = [Process(target=write_again_and_again, args=(tmp_path, name, start)) for name in ("a", "b")]
-    for process in many:
-        process.start()
-    for process in many:
-        process.join(60)
-    assert [process.exitcode for process in many] == [0, 0]
-    assert {verdict["study"] for verdict in json.loads((tmp_path / "verdicts.json").read_text())} == {"a", "b"}
 
 
 def finished(name):

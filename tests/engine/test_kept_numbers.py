@@ -11,27 +11,10 @@ from validation.engine.case import Case
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
-from validation.metrics.catalogue import solo
-from validation.metrics.measurable import Measurable
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
-
-
-def test_measures_of_stability_are_the_solvers_diagnostics_of_their_name():
-    names = ("predicted_radius", "spectral_radius", "condition_number", "scaled_residual", "largest_omega")
-    told = dict(zip(names, (0.91, 0.92, 3e5, 4e-16, 5.5), strict=True))
-    found = solo(Measurable(made_history(0.1, np.ones(3)), 0.1, diagnostics=told), ("stability",))
-    assert found == {
-        "stability.radius": 0.91,
-        "stability.radius_seen": 0.92,
-        "stability.condition": 3e5,
-        "stability.residual": 4e-16,
-        "stability.omega": 5.5,
-        "stability.growth": "undefined",
-        "stability.kind": "stable",
-    }
 
 
 # ---- rows ---------------------------------------------------------------------------------------------------------

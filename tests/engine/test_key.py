@@ -3,30 +3,23 @@
 from pathlib import Path
 
 import pytest
-from conftest import thinned
 
 from validation.engine import case as case_module
 from validation.engine.case import Case
 from validation.scenes.scene import load_scene
 from validation.solvers.fenicsx import FEniCSx
 
-ROOT = Path(__file__).parents[2]
-ROOMS = {f"validation/{room}": (True,) * 4 for room in ("runs", "scenes", "metrics", "solvers", "engine")}
-ROOMS |= {"dda/bodies": (True, False, False, False), "fem_reference/mesh": (False, True, True, False)}
 
-
-@pytest.mark.parametrize(("room", "changed"), thinned(ROOMS.items(), 3))
-def test_an_edited_source_of_any_room_that_enters_a_row_gives_another_key(room, changed, scene, monkeypatch):
+def test_an_edited_source_gives_another_key_to_the_solvers_that_it_enters(scene, monkeypatch):
     def keys():
         case_module.source_digest.cache_clear()
-        return [Case(scene, solver).key() for solver in ("dda", "fem", "bar", "dda-60")]
+        return [Case(scene, solver).key() for solver in ("dda", "fem")]
 
-    before, read = keys(), Path.read_bytes
-    edited = max(path for path in (ROOT / room).rglob("*.py") if path.name != "__init__.py")
-    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"# more" * (path == edited))
-    after = keys()
+    before = keys()
+    read = Path.read_bytes
+    monkeypatch.setattr(Path, "read_bytes", lambda path: read(path) + b"# more" * ("dda/bodies" in path.as_posix()))
+    assert [a == b for a, b in zip(before, keys(), strict=True)] == [False, True]
     case_module.source_digest.cache_clear()
-    assert tuple(a != b for a, b in zip(before, after, strict=True)) == changed
 
 
 def keys_of(scene, solver, file, texts):

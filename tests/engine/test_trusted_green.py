@@ -3,12 +3,13 @@
 import itertools
 import json
 import shutil
+import tomllib
 import zipfile
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import refused, thinned
+from conftest import SCENE, refused, thinned
 from faults import seams
 from oracles.made_cases import study
 
@@ -21,7 +22,7 @@ from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.row import Row
 from validation.runs.run import Outcome
-from validation.scenes.scene import load_scene
+from validation.scenes.scene import load_scene, parse_scene
 
 
 def ran(scene, results):
@@ -60,6 +61,14 @@ def infinite(history):
     return History(history.time, {**history.columns, "displacement": np.full(len(history.time), np.inf)})
 
 
+@pytest.fixture(scope="module")
+def rows_kept(tmp_path_factory):
+    """Return a directory with the rows of a study."""
+    directory = tmp_path_factory.mktemp("kept")
+    run_study(study(parse_scene(tomllib.loads(SCENE), "small")), Results(directory))
+    return directory
+
+
 HISTORIES = [shorter, without_pressure, infinite, lambda history: None]  # the last one takes the file away
 LINES = [
     lambda line: line.replace('"displacement.static": -0.01', '"displacement.static": -0.012'),
@@ -74,9 +83,9 @@ LINES = [
 @pytest.mark.parametrize(
     ("of_history", "change"), [*((True, one) for one in HISTORIES), *((False, one) for one in LINES)]
 )
-def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(of_history, change, scene, tmp_path):
+def test_what_is_not_as_it_was_written_is_run_again_and_nothing_else(of_history, change, scene, tmp_path, rows_kept):
+    shutil.copytree(rows_kept, tmp_path, dirs_exist_ok=True)
     results = Results(tmp_path)
-    run_study(study(scene), results)
     (row,) = (row for row in results.rows().values() if row.solver == "dda")
     history = results.history(row.key)
     if of_history:
@@ -105,15 +114,6 @@ def test_a_history_without_time_is_one_line(scene, tmp_path):
         np.save(stream, np.zeros(3))
     with pytest.raises(InputError, match="read"):
         results.history(path.stem)
-
-
-@pytest.mark.parametrize("outcome", [Outcome.REFUSED, Outcome.TIMEOUT, Outcome.RAISED, Outcome.NOT_RUN])
-def test_what_lacked_memory_time_or_a_package_is_tried_again(outcome, scene, tmp_path):
-    results, case = Results(tmp_path), Case(scene, "dda")
-    made = origin.of_row(case.make_solver())
-    results.append(Row(case.key(), "s", scene.name, "dda", outcome, {}, provenance=made), None)
-    rows = finish([case], study(scene), results).rows
-    assert rows[scene.name, "dda"].outcome is Outcome.COMPLETED
 
 
 # ---- records --------------------------------------------------------------------------------------------------------

@@ -6,7 +6,6 @@ whatever its contact is good for. What its contact is good for is no matter of t
 
 import importlib.util
 import math
-import re
 import sys
 import tomllib
 from dataclasses import dataclass
@@ -23,13 +22,12 @@ from peers import (
     exudyn,
     mujoco,
     mujoco_boxes,
-    mujoco_model,
     pymunk,
     siconos,
     siconos_boxes,
 )
 from peers.boxes import SLOW_CORRECTION, substeps
-from peers.spatial import OUT_OF_PLANE, Rotation, check_plane
+from peers.spatial import Rotation
 
 from validation.models.plane.boxes import boxes_of
 
@@ -184,22 +182,6 @@ def test_returns_the_asked_share_of_the_velocity_above_every_threshold(program, 
     assert velocity == pytest.approx(2.0 * restitution, abs=within)
 
 
-@pytest.mark.parametrize("program", of(*(name for name in WITH_RESTITUTION if name not in (DAMPED, *SICONOS))))
-def test_turns_after_a_landing_on_a_corner_by_its_moment_of_inertia(program):
-    """One impulse J = (1 + e) v / (1/m + r^2/I) at the lever r of the corner, without friction or gravity."""
-    box = {"width": 1.0, "height": 0.6, "tilt": 20.0, "lift": 0.2, "velocity": (0.0, -2.0)}
-    posed = scene(box, gravity=0.0, restitution=0.5, rows=12)
-    answer = program.solve(posed)
-    one = boxes_of(posed).boxes[0]
-    tilt = math.radians(20.0)
-    lever = one.height / 2 * math.sin(tilt) - one.width / 2 * math.cos(tilt)
-    impulse = 1.5 * 2.0 / (1 / one.mass + lever**2 / one.inertia)
-    velocity = (answer["box_1.y"][-1] - answer["box_1.y"][-3]) * 30
-    spin = (answer["box_1.angle"][-1] - answer["box_1.angle"][-3]) * 30
-    assert velocity == pytest.approx(impulse / one.mass - 2.0, abs=0.02 * 2.0)  # the lever turns by a step at most
-    assert spin == pytest.approx(lever * impulse / one.inertia, rel=0.02)
-
-
 REFUSED = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))["boxes"]
 
 
@@ -209,24 +191,6 @@ def test_refuses_what_a_program_cannot_express_before_it_is_imported(monkeypatch
     for name, values, words in REFUSED:
         with pytest.raises(NotImplementedError, match=words):
             PROGRAMS[name].solver().solve(scene(**values))
-
-
-def test_a_program_that_is_not_there_is_told_with_its_recipe(monkeypatch):
-    modules = {"mujoco": mujoco_model}
-    for name, program in PROGRAMS.items():
-        if name.endswith("default") or name == "siconos":
-            continue
-        recipe = modules.get(name, sys.modules[program.solver.__module__]).RECIPE
-        for module in (program.package, f"{program.package}.all"):
-            monkeypatch.setitem(sys.modules, module, None)
-        with pytest.raises(NotImplementedError, match=re.escape(recipe)):
-            program.solver().solve(scene())
-
-
-def test_a_box_that_leaves_the_plane_gives_no_answer():
-    check_plane(math.cos(0.9 * OUT_OF_PLANE))
-    with pytest.raises(NotImplementedError):
-        check_plane(math.cos(1.1 * OUT_OF_PLANE))
 
 
 def test_an_angle_goes_on_beyond_half_a_turn_both_ways():

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from peers import ntdda, ntdda_live
 from peers.ntdda import Histories
 
 from validation.models.plane.blocks import centroid
@@ -26,12 +25,6 @@ def test_a_block_on_a_slope_moves_sideways():
     found, told = Histories().solve(load_scene("field-creep")), rows("ntdda-phi22-slope20-dt2ms_meas.m")[:100]
     np.testing.assert_allclose(found["displacement"], told[:, 4] - 3, atol=2e-6)
     np.testing.assert_allclose(found["horizontal_displacement"], told[:, 3] - 5, atol=2e-6)
-
-
-def test_away_from_the_repository_it_says_where_the_histories_are(monkeypatch):
-    monkeypatch.setattr(ntdda, "PLACE", Path("nowhere"))
-    with pytest.raises(NotImplementedError, match="docs/examples/ntdda"):
-        Histories().solve(load_scene("field-opening"))
 
 
 # ---- the program itself, of rigid polygons at rest -------------------------------------------------------------------
@@ -87,12 +80,6 @@ def test_the_poses_are_those_of_two_measured_points(tmp_path, monkeypatch):
     np.testing.assert_allclose(columns["box.angle"], 0.0, atol=1e-12)
 
 
-def test_without_the_program_its_command_is_named(monkeypatch):
-    monkeypatch.setenv("PATH", "")
-    with pytest.raises(NotImplementedError, match="ntdda GEOMETRY ANALYSIS"):
-        Histories().solve(slope(30.0, 20.0))
-
-
 @pytest.mark.parametrize(
     ("name", "what"),
     [("stopping", "velocities"), ("pushing", "gravity"), ("truss", "touch"), ("spinning", "friction alone")],
@@ -100,10 +87,3 @@ def test_without_the_program_its_command_is_named(monkeypatch):
 def test_what_the_program_cannot_express_is_refused(name, what):
     with pytest.raises(NotImplementedError, match=what):
         Histories().solve(load_scene(f"rigid-{name}"))
-
-
-def test_edges_on_one_line_are_one_line():
-    points = [(0.0, 0.0), (2.0, 0.0), (1.0, 0.0), (3.0, 0.0), (5.0, 0.0), (6.0, 0.0), (0.0, 0.0), (0.0, 1.0)]
-    edges = [(np.array(a), np.array(b)) for a, b in zip(points[::2], points[1::2], strict=True)]
-    lengths = sorted(float(np.hypot(*(end - start))) for start, end in ntdda_live.on_lines(edges))
-    assert lengths == pytest.approx([1.0, 1.0, 3.0])

@@ -4,7 +4,6 @@ import functools
 import itertools
 import re
 import shutil
-import subprocess
 import sys
 import tomllib
 from pathlib import Path
@@ -12,7 +11,6 @@ from pathlib import Path
 import pytest
 from peers import calculix, mujoco, ntdda, opensees, siconos, yade
 
-from validation.scenes import features
 from validation.scenes.scene import load_scene
 
 REFUSALS = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text(encoding="utf-8"))
@@ -57,20 +55,6 @@ def test_a_program_that_is_absent_is_named_with_its_recipe():
     for name, problem in itertools.product(PROGRAMS, columns):
         with pytest.raises(NotImplementedError, match=r"(pip|apt-get) install"):
             PROGRAMS[name]().solve(field(problem).with_values(columns[problem]))
-
-
-def test_a_program_says_what_it_is_and_handles_features_of_scenes():
-    for program in PROGRAMS.values():
-        about = program().about
-        assert set(about) == {"program", "version", "recipe", "model", "settings"}
-        assert max(map(len, about.values())) <= 400
-        assert set(program.handles) <= {feature.name for feature in features.FEATURES}
-
-
-def test_a_python_without_numpy_has_no_siconos():
-    """Debian's own Python where the package is absent: -S leaves out what is installed beside the standard library."""
-    done = subprocess.run([sys.executable, "-I", "-S", str(siconos.PROGRAM), "none", "none"], capture_output=True)
-    assert done.returncode == siconos.ABSENT, done.stderr
 
 
 class Told:

@@ -4,15 +4,17 @@ import itertools
 import os
 import platform
 import stat
+import tempfile
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from oracles.made_cases import made_history, made_row
 
 from validation.errors import InputError
-from validation.runs import columns, extras, files, provenance, strict, tables, text, units
+from validation.runs import columns, extras, files, provenance, strict, tables, units
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
@@ -21,6 +23,7 @@ from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
 
+ROOT = Path(__file__).parents[2]
 needs_proc = pytest.mark.skipif(not Path("/proc/cpuinfo").exists(), reason="looks at /proc")
 
 
@@ -128,14 +131,6 @@ def test_names_of_cases_are_taken_apart_as_they_are_put_together():
     assert scene_of("b[x=1]") == "b"
 
 
-def test_what_reaches_a_terminal_is_printable():
-    assert text.printable("a\n b\x1b\ud800\u00a0") == "a b\\x1b\\ud800"
-    assert text.visible("a\n\tb\x1b\u00a0") == "a\n\tb\\x1b\u00a0"
-    assert (
-        text.error_text(ValueError("no\n more")) == "ValueError: no more" and text.error_text(KeyError()) == "KeyError"
-    )
-
-
 def test_json_is_strict(tmp_path):
     limit = 2**63
     assert strict.loads(f"[{limit}, -1.5e3]") == [limit, -1500.0]
@@ -181,7 +176,7 @@ def written(path):
 
 
 @needs_proc
-def test_files_appear_whole_or_not_at_all(tmp_path):
+def test_files_appear_whole_or_not_at_all(tmp_path, monkeypatch):
     path = tmp_path / "a.txt"
     path.write_text("old")
     with pytest.raises(ZeroDivisionError), files.atomic_path(path) as temporary:
@@ -198,6 +193,11 @@ def test_files_appear_whole_or_not_at_all(tmp_path):
     (tmp_path / "self").symlink_to("self")
     for wrong in (tmp_path, tmp_path / "none/b", tmp_path / "self", Path("a\0")):
         assert refusal(files.check_output, wrong)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "temporary"))
+    Path(tempfile.tempdir).mkdir()
+    with path.open("w") as stream, files.atomic_path(Path(f"/proc/self/fd/{stream.fileno()}")) as temporary:
+        temporary.write_text("streamed")
+    assert path.read_text() == "streamed" and os.listdir(tempfile.tempdir) == []
     with path.open() as stream:
         assert files._is_stream(Path(f"/proc/self/fd/{stream.fileno()}")) and not files._is_stream(path)
     assert "reads" in refusal(written, tmp_path / "pipe")
@@ -259,6 +259,16 @@ def test_where_results_come_from(monkeypatch):
     named = [line.partition(":")[2].strip() for line in lines if line.startswith("model name")]
     assert provenance._processor() == [*named, platform.machine()][0]
 
+    with monkeypatch.context() as patch:
+        for top, described, commit in (
+            (ROOT, "abc+", "abc+"),
+            (ROOT, None, "unknown (no commit yet)"),
+            (ROOT / "validation", "abc", "unknown (not a git checkout)"),
+        ):
+            told = {"rev-parse": str(top), "describe": described}
+            patch.setattr(provenance, "_git", lambda word, *more, told=told: told[word])
+            assert provenance._commit() == commit
+
     def absent(*given, **more):
         raise OSError
 
@@ -266,6 +276,11 @@ def test_where_results_come_from(monkeypatch):
     monkeypatch.setattr(platform, "processor", lambda: "a processor")
     assert provenance._processor() == "a processor"
     assert provenance._version("no-such-package") == "not installed"
+    sound = SimpleNamespace(stdout=" said\n")
+    environments = []
+    monkeypatch.setenv("GIT_DIR", "elsewhere")
+    monkeypatch.setattr(provenance.subprocess, "run", lambda *given, env, **more: environments.append(env) or sound)
+    assert provenance._git("status") == "said" and "PATH" in environments[0] and "GIT_DIR" not in environments[0]
     monkeypatch.setattr(provenance.subprocess, "run", absent)
     assert provenance._git("status") is None and provenance._commit() == "unknown (not a git checkout)"
     assert not provenance._is_source_root(Path("nowhere"))

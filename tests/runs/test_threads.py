@@ -1,7 +1,6 @@
 """One BLAS thread in every process of ours and in every calculation, and nobody's settings touched beside."""
 
 import logging
-import multiprocessing
 import os
 import subprocess
 import sys
@@ -10,11 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import scipy.linalg  # noqa: F401 - so that both libraries are loaded
-from conftest import thinned
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from validation.engine.case import Case
-from validation.engine.executor import _pool
 from validation.engine.measure import execute
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
@@ -22,7 +19,7 @@ from validation.runs.threads import ONE_THREAD, VARIABLES, limit_process
 from validation.scenes.scene import load_scene
 from validation.solvers.contract import Solver
 from validation.solvers.logs import errors_only, solver_logs
-from validation.solvers.registry import get_solver, solve
+from validation.solvers.registry import solve
 
 MANY = 3  # threads of this process, whatever the machine has
 
@@ -75,14 +72,6 @@ def test_solve_from_python_takes_one_thread_and_leaves_the_others_as_they_were(m
     assert threads() == {MANY}
 
 
-def test_what_the_user_says_is_left(many_threads, monkeypatch):
-    monkeypatch.setenv("OPENBLAS_NUM_THREADS", str(MANY))
-    looking = Looking()
-    solve(block(), looking)
-    assert looking.seen == [{MANY}]
-    monkeypatch.delenv("OPENBLAS_NUM_THREADS")
-
-
 def test_a_case_of_a_study_takes_one_thread_wherever_it_runs(many_threads, monkeypatch):
     """A gate of the pytest plug-in and a case on a Dask worker are executed so."""
     looking = Looking()
@@ -102,22 +91,6 @@ def test_a_process_of_ours_is_limited_for_good_unless_the_user_decides(many_thre
             patch.setenv(name, "")
         limit_process()
         assert threads() == {1} and {os.environ[name] for name in ONE_THREAD} == {"1"}
-
-
-@pytest.mark.parametrize("method", thinned(["fork", "spawn", "forkserver"], 3))
-def test_a_worker_process_has_one_thread(many_threads, method):
-    before = multiprocessing.get_start_method()
-    multiprocessing.set_start_method(method, force=True)
-    try:
-        with _pool(1) as pool:
-            assert pool.submit(threads_of_worker).result() == {1}
-    finally:
-        multiprocessing.set_start_method(before, force=True)
-
-
-def threads_of_worker():
-    """Return what a worker sees; imported by a worker that is no copy of this process."""
-    return threads()
 
 
 def test_errors_alone_are_logged_for_the_time_that_is_asked_for():
@@ -171,13 +144,3 @@ def test_a_command_has_as_many_as_the_user_says():
 def test_the_package_dda_touches_nothing():
     code = "import os; before = dict(os.environ); import dda, validation; print(dict(os.environ) == before)"
     assert run_python(code) == "True"
-
-
-def test_the_process_of_a_users_solver_has_one_thread(many_threads, tmp_path, monkeypatch):
-    (tmp_path / "counting.py").write_text(
-        "import os\nabout = {}\n"
-        "def solve(scene):\n    raise RuntimeError('threads: ' + os.environ.get('OMP_NUM_THREADS', 'all'))\n"
-    )
-    monkeypatch.syspath_prepend(str(tmp_path))
-    run = get_solver("counting:solve").solve(block())
-    assert "threads: 1" in run.notes[-1]

@@ -1,7 +1,9 @@
 """All that solvers answer to scenes with every term, and what is known of these before: numbers, kept in `answers.txt`.
 
-A number is the sum of a quantity's values, each with a weight of its own: a step, a sign or a place that is another one
-shows. What a step that is shorter by 1e-11 of itself changes is decided by rounding, written as ~ and not judged.
+A quantity is the sum of its values, each with a weight of its own: a step, a sign or a place that is another shows.
+What is kept is a number for each part, of logarithms of its quantities: one that is another by 5e-5 of itself shows.
+What a step that is shorter by 1e-11 of itself changes, or what is nothing beside other static values, is decided by
+rounding, named behind a ~ and not judged.
 `KEEP_PAGES=1` writes the file anew.
 """
 
@@ -15,16 +17,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.stand_ins import summed as logarithms
 from oracles.stated_scenes import STATED, asked, made
 
 from validation.advice.hooks import AdviceHooks
 from validation.errors import InputError
+from validation.problems.problem import ProblemHooks
 from validation.report.scene.hooks import ShowingHooks
 from validation.runs.run import Outcome
 from validation.scenes.plain import lines
 from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene
-from validation.solvers import memory
+from validation.solvers import events, memory
 from validation.solvers.contract import NotReported
 from validation.solvers.fenicsx import request
 from validation.solvers.registry import BUILT_IN, get_solver
@@ -60,7 +64,7 @@ def numbers_of(name, value):
 def scene_of(solver, name, directory):
     """Return a scene of `invariants.toml`, or the first steps of a built-in one, with the columns that a solver has."""
     scene = made(name, directory) if name in STATED else load_scene(name).expand()[0]
-    most = 2 if solver.endswith("events") else 300 if solver == "rigid-exact" else 12
+    most = 2 if solver.endswith("events") else 300 if solver == "rigid-exact" else 4 if name == "row of cells" else 12
     scene = scene.with_values({"time.steps": min(scene.time.steps, most)})
     if scene.fem.mesh is None:
         scene = scene.with_values({"fem.elements": 1 if "plate" in name else 2})
@@ -77,7 +81,7 @@ def unless_refused(ask):
 def told(scene):
     """Return what the kind of a scene tells of it before anything is run, in numbers."""
     showing = ShowingHooks.of(scene)
-    drawn = [left for left, _ in showing.drawing(scene, 80)[1]]
+    drawn = [left + right for left, right in showing.drawing(scene, 80)[1]]
     advice = AdviceHooks.of(scene)
     asked = {} if get_solver("fenicsx").refusal(scene) else request(scene)  # of another program
     facts = [*advice.motions(scene), advice.contact_limits(scene)]
@@ -90,11 +94,12 @@ def told(scene):
         "implausible": [value.sentence for value in implausible_values(scene)],
         "problem": unless_refused(lambda: lines(scene)),
         "asked": {name: repr(value) for name, value in asked.items()},
+        "changed": repr(ProblemHooks.of(scene).changes(scene)),
     }
 
 
-def answers(solver, scene):
-    """Return the numbers of all that a solver answers to a scene."""
+def answers(solver, scene, tells=True):
+    """Return the numbers of all that a solver answers to a scene, and what is told of it before."""
     begin = time.perf_counter()
     adapter = get_solver(solver)
     prepared = adapter.prepare(scene)
@@ -105,7 +110,7 @@ def answers(solver, scene):
     whole = {
         "memory": memory.needed(scene, adapter)[0],
         "reach": reach(scene),
-        **told(scene),
+        **(told(scene) if tells else {}),
         "history": {"time": run.history.time, **run.history.columns},
         "run": [dict(run.work), *run.notes, run.estimate or 0.0],
     }
@@ -134,14 +139,28 @@ def summed(numbers):
     return float(np.array(numbers, float) @ (1 + 0.4 * np.cos(np.arange(1, len(numbers) + 1))))
 
 
-def written(solver, scene):
-    """Return answers as they are kept."""
-    shorter = answers(solver, scene.with_values({"time.step": scene.time.step * (1 - 1e-11)}))
-    found = answers(solver, scene)
+def in_parts(found, rounding):
+    """Return a number for each part of what is answered, of which names that are rounding are left out."""
+    parts = {}
+    for name, value in found.items():
+        if name not in rounding:
+            parts.setdefault(name.partition(".")[0], []).append(value)
+    return {part: logarithms(values) for part, values in parts.items()}
+
+
+def written(solver, scene, tells):
+    """Return answers as they are kept: numbers of parts, and the names of what is rounding."""
+    shorter = answers(solver, scene.with_values({"time.step": scene.time.step * (1 - 1e-11)}), tells)
+    found = answers(solver, scene, tells)
     assert found.keys() == shorter.keys()
-    return " ".join(
-        "~" if not math.isclose(value, shorter[name], rel_tol=1e-8) else f"{value:.7g}" for name, value in found.items()
-    )
+    forces = max([abs(value) for name, value in found.items() if name.startswith("static.")], default=0.0)
+    rounding = [
+        name
+        for name, value in found.items()
+        if not math.isclose(value, shorter[name], rel_tol=1e-8)
+        or (name.startswith("static.") and 0 < abs(value) < 1e-14 * forces)
+    ]
+    return " ".join([*(f"{value:.5f}" for value in in_parts(found, rounding).values()), "~", *rounding])
 
 
 def keep():
@@ -150,20 +169,19 @@ def keep():
 
 @pytest.mark.parametrize("pair", [pair for pair in ASKED if " " in pair])
 @np.errstate(all="ignore")
-def test_solvers_answer_as_before(pair, tmp_path):
+def test_solvers_answer_as_before(pair, tmp_path, monkeypatch):
+    monkeypatch.setattr(events, "LEAST_SAMPLES", 40)
     solver, _, name = pair.partition(" ")
     scene = scene_of(solver, name, tmp_path)
+    tells = pair == next(key for key in ASKED if key.endswith(f" {name}"))  # of each scene once
     if os.environ.get("KEEP_PAGES"):
-        ASKED[pair] = written(solver, scene)
+        ASKED[pair] = written(solver, scene, tells)
         keep()
-    found = answers(solver, scene)
-    kept = ASKED[pair].split()
-    assert len(found) == len(kept)
-    assert {
-        name: value
-        for (name, value), number in zip(found.items(), kept, strict=True)
-        if number != "~" and value != pytest.approx(float(number), rel=1e-6, abs=1e-13, nan_ok=True)
-    } == {}
+    found = answers(solver, scene, tells)
+    numbers, _, rounding = ASKED[pair].partition("~")
+    parts = in_parts(found, rounding.split())
+    kept = dict(zip(parts, map(float, numbers.split()), strict=True))
+    assert {part: value for part, value in parts.items() if abs(value - kept[part]) > 2e-5} == {}, found
 
 
 def test_solvers_are_declared_as_before():

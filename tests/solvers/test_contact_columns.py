@@ -26,4 +26,5 @@ def test_residual_slips_of_a_site_are_those_of_an_independent_program(case, lowe
     assert not record.open_share.any() and not record.gap.any()
     switches = prepared.switches()
     assert {switch.opens for switch in switches} == {None}
+    assert min(switches, key=lambda switch: switch.time).slips
     assert {switch.slips for switch in switches} == {True, False}

@@ -17,9 +17,9 @@ from validation.runs.run import Outcome, Run
 from validation.scenes import features
 from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers import registry
-from validation.solvers.contract import Role, Solver
+from validation.solvers.contract import Solver
 from validation.solvers.names import check_names
-from validation.solvers.registry import by_role, get_solver, role
+from validation.solvers.registry import get_solver
 from validation.suite import Study
 
 JOINTS = "rusty joints"
@@ -78,15 +78,3 @@ def test_a_gate_of_a_scene_file_that_could_judge_nothing_is_refused(jointed):
         asked.definition() | {"sweep": {"block.hypothesis": ["plane strain", "plane stress"]}}, "mine.toml"
     )
     check_names(swept, "mine.toml")  # one of its cases is linear
-
-
-def test_roles_and_ranks_are_the_solvers_own(jointed):
-    for word in Role:
-        names = by_role(word)
-        assert set(names) == {name for name in registry.BUILT_IN if role(name) == word}
-        assert [*map(registry.rank, names)] == sorted(map(registry.rank, names), reverse=True)
-    assert by_role("judged") == ["dda"] and {"bar", "fem"} <= {*by_role("reference")}
-    assert {"layers", "bar-events", "continuum"} <= {*by_role("truth")} and "jointed" in by_role("other")
-    assert role("fem:full") == "repeat"
-    assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
-    assert registry.rank("jointed") < registry.rank("dda")

@@ -9,16 +9,34 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from oracles.stand_ins import differing, history, keep, kept, summed
+from oracles.stand_ins import differing, history, keep, kept, numbers_in, summed
 from oracles.stated_scenes import STATED, made
 
+from validation.models.plane.generators import (
+    ArchSection,
+    ColumnsSection,
+    RandomSection,
+    SlopeSection,
+    StackSection,
+    WallSection,
+)
+from validation.models.plane.problems import box_problems, canon_problems
 from validation.report.figures.drawing import FigureHooks
 from validation.report.scene.hooks import ShowingHooks
 from validation.scenes.scene import load_scene
 
 KEPT = Path(__file__).with_name("drawn.toml")
-DRAWN = ("sliding", "turning", "opening sub-blocks", "shaken", "lateral", "column that slips", "bars that open")
-STATED_WHOLE = ("layers on springs", "struck layers", "row of cells", "subblocks-triangles")
+DRAWN = (
+    "landing",
+    "sliding",
+    "turning",
+    "opening sub-blocks",
+    "shaken",
+    "lateral",
+    "column that slips",
+    "bars that open",
+)
+STATED_WHOLE = ("held by cohesion", "layers on springs", "struck layers", "row of cells", "subblocks-triangles")
 OF_PLANE = ("standing-truss-load", "pushing-held", "patch-strip", "boxes-pile")
 MOVED = ("pushing-held", "row of cells")
 VALUES = [  # what remarks on a block are made of: on both sides of what decides them
@@ -30,6 +48,8 @@ VALUES = [  # what remarks on a block are made of: on both sides of what decides
 def drawn(axes):
     """Yield the coordinates and the words of what axes show."""
     for artist in (*axes.lines, *axes.patches, *axes.texts, axes.title, axes.yaxis.label):
+        yield artist.get_zorder()
+        yield from [getattr(artist, name)() for name in ("get_linewidth", "get_fontsize") if hasattr(artist, name)]
         if hasattr(artist, "get_xydata"):
             yield from np.ravel(artist.get_xydata()).tolist()
         elif hasattr(artist, "get_xy") and not hasattr(artist, "get_width"):
@@ -38,6 +58,7 @@ def drawn(axes):
             yield from np.ravel([artist.xy, artist.xyann]).tolist()
         if hasattr(artist, "get_text"):
             yield float(zlib.crc32(artist.get_text().encode()))
+    yield axes.yaxis.get_tick_params().get("labelleft", True)
     yield from np.ravel([axes.get_xlim(), axes.get_ylim()]).tolist()
 
 
@@ -52,6 +73,48 @@ def numbers(name, directory):
         figure = FigureHooks.of(scene).frames(scene, history(scene), steps, "dda", 30.0)
         found[f"{name}, frames"] = summed(number for frame in figure.axes for number in drawn(frame))
     return found
+
+
+GENERATED = (  # tables that draw several blocks
+    ArchSection(name="arch", radius=3.0, thickness=0.7, voussoirs=3, opening=110.0, chords=2),
+    ColumnsSection(name="columns", width=0.7, heights=(1.1, 1.9), dip=13.0, rise=0.3, base=0.6),
+    SlopeSection(
+        **{"name": "slope", "angle": 17.0, "length": 5.0, "base": 0.4, "at": (0.2, 0.9), "turned": 4.0},
+        **{"rectangles": ((1.1, 0.6), (0.9, 0.8)), "noses": (0.1, 0.2), "gaps": (0.3, 0.4)},
+        **{"sinks": (0.01, 0.02), "speeds": (0.5, 0.7)},
+    ),
+    RandomSection(name="stones", count=3, seed=5, radii=(0.4, 0.6), corners=(3, 4), across=2),
+    StackSection(name="stack", count=2, rectangle=(2.1, 0.5), gap=0.1, offsets=(0.3, -0.1)),
+    WallSection(name="wall", rows=2, bricks=2, rectangle=(1.1, 0.4)),
+)
+
+
+def test_generators_draw_blocks_as_before():
+    found = {}
+    for section in GENERATED:
+        numbers = [number for block in section.blocks() for number in numbers_in(block.model_dump(exclude_none=True))]
+        found[section.name] = summed(numbers)
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "generated", found, found)
+    assert differing(found, kept(KEPT)["generated"]) == {}
+
+
+@np.errstate(all="ignore")
+def test_problems_of_blocks_are_posed_and_measured_as_before():
+    """Made anew, the first case and the last one, on histories that did not take place."""
+    found = {}
+    for name, posed in {**box_problems.__wrapped__(), **canon_problems.__wrapped__()}.items():
+        if name == "spinning":  # whose motion is integrated
+            continue
+        numbers = []
+        for case in {posed.cases[0].label: posed.cases[0], posed.cases[-1].label: posed.cases[-1]}.values():
+            scene = posed.scene(case)
+            for number in (case.quantities or posed.quantities)(scene):
+                numbers += [number.exact, number.low, number.high, number.scale, number.measure(history(scene))]
+        found[name] = summed(numbers)
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, "problems", found, found)
+    assert differing(found, kept(KEPT)["problems"]) == {}
 
 
 def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):

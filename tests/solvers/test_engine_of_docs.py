@@ -8,7 +8,6 @@ import pytest
 from oracles.box_scenes import box_scene
 
 from validation.models.plane.problems import box_problems
-from validation.solvers.user import UserSolver
 
 DOCS = Path(__file__).parents[2] / "docs"
 PAGE = (DOCS / "problems.md").read_text(encoding="utf-8")
@@ -42,12 +41,6 @@ def test_it_refuses_what_it_cannot_express(engine):
     for other in (scene({}, boxes=2), scene({}, stiffness=1e6)):
         with pytest.raises(NotImplementedError):
             engine(other)
-
-
-def test_the_suite_takes_it_for_a_solver(monkeypatch):
-    monkeypatch.syspath_prepend(str(DOCS / "examples/judge"))
-    solver = UserSolver("impulses", "impulses:Impulses")
-    assert solver.about()["program"] == "impulses"
 
 
 def numbers(text):

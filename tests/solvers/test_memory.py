@@ -2,16 +2,20 @@
 
 import math
 import os
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from conftest import SCENE
 
 from validation.engine.run import run_study
+from validation.errors import InputError
 from validation.runs.results import Results
 from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.solvers.hooks import SolvingHooks
+from validation.solvers.registry import solve
 from validation.suite.folders import scene_study
 
 MB = 2**20
@@ -71,11 +75,14 @@ def test_a_machine_that_does_not_say_what_is_available_says_what_it_has(monkeypa
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
+    study = replace(scene_study(str(path)), annotate=lambda *given: {"alarms": [], "budgets": []})
     monkeypatch.setattr(memory, "available", lambda: 1.0)
-    run_study(scene_study(str(path)), results)
+    with pytest.raises(InputError, match=memory.REFUSED):
+        solve(load_scene(path), "dda")
+    run_study(study, results)
     (row,) = results.rows().values()
     assert row.outcome is Outcome.REFUSED and any(memory.REFUSED in note for note in row.notes)
     monkeypatch.undo()
-    run_study(scene_study(str(path)), results)
+    run_study(study, results)
     (row,) = results.rows().values()
     assert row.outcome is Outcome.COMPLETED and not any(memory.REFUSED in note for note in row.notes)

@@ -11,10 +11,12 @@ def bytes_of(solver="fem", **changes):
     return memory.needed(scene_of(**changes), get_solver(solver))[0]
 
 
-def test_a_mesh_that_cannot_be_read_needs_no_memory():
+def test_a_mesh_needs_memory_by_its_file_and_none_that_cannot_be_read(tmp_path):
     """That it cannot be read is said where it is read."""
-    meshed = scene_of().with_values({"fem": {"mesh": "nowhere.msh"}})
-    assert memory.needed(meshed, get_solver("fem"))[0] == 8 * 50 * (4 * 3 + 6)
+    (tmp_path / "seven.msh").write_text("7" * 7)
+    for name, size in (("none.msh", 0), ("seven.msh", 7)):
+        meshed = scene_of().with_values({"fem": {"mesh": str(tmp_path / name)}})
+        assert memory.needed(meshed, get_solver("fem"))[0] == 8 * 50 * (4 * 3 + 6) + 200 * size
 
 
 @pytest.mark.parametrize(

@@ -7,12 +7,8 @@ import meshio
 import numpy as np
 import pytest
 
-import dda
 from validation.errors import InputError
-from validation.models.plane.blocks import PlaneBlockSection, second_moments
-from validation.models.plane.generators import WallSection
 from validation.models.plane.motion import forces_at, outlines_at
-from validation.models.plane.moving import model_of
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver, solve
@@ -96,17 +92,6 @@ def test_a_free_block_turns_from_where_it_was_put():
     assert x == pytest.approx(run.history.time) and momentum == pytest.approx(momentum[0])
 
 
-def test_contacts_that_are_found_are_those_that_a_scene_may_state():
-    """A corner that presses on a face is the same contact, stated or found."""
-    stated, found = (model_of(scene.plane) for scene in (sliding(), sliding(touch=[])))
-    scheme = dda.Scheme(0.5, 1.0, 1.0, 1e-3, "consistent")
-    first, second = (dda.solve_plane(model, scheme, 20, compiled=False) for model in (stated, found))
-    assert {*second.contacts} == {*first.contacts} and first.outcome == second.outcome == "completed"
-    assert second.displacement == pytest.approx(first.displacement, abs=1e-13)
-    order = [second.contacts.index(contact) for contact in first.contacts]
-    assert second.normal[1:, order] == pytest.approx(first.normal[1:], rel=1e-8)
-
-
 @pytest.mark.long
 def test_a_step_that_does_not_end_names_the_contacts_that_flip():
     """Stones on springs whose period is a hundredth of the step land with friction: no state of one corner agrees."""
@@ -119,31 +104,3 @@ def test_a_step_that_does_not_end_names_the_contacts_that_flip():
     assert run.outcome is Outcome.NO_CONTACT_STATE and 0 < len(run.history.time) < 20
     flipping = re.findall(r"corner (\d+) of (\w+) on edge (\d+) of (\w+)", run.notes[-1])
     assert flipping and all(block.startswith("stone_") for _, block, _, _ in flipping)
-
-
-def test_a_traction_loads_the_edges_along_its_line_and_no_joint_that_ends_there():
-    block = {"name": "row", "rectangle": [2.0, 1.0], "at": [1.0, 0.5], "subdivide": [2, 1]}
-    traction = {"edge": [[0.0, 1.0], [1.0, 1.0]], "traction": [0.0, -1e5]}
-    plane = {"young": 1e9, "density": MASS, "block": [block], "load": [traction]}
-    scene = parse_scene({"plane": plane, "time": {"step": 1e-3, "steps": 1}}, "row")
-    (load,) = scene.plane.assembly.loads
-    assert sorted(load.edge) == [(0.0, 1.0), (1.0, 1.0)]
-
-
-def test_a_regular_polygon_has_the_corners_and_the_moments_of_its_radius():
-    triangle = PlaneBlockSection(name="triangle", sides=3, radius=2.0).outline
-    expected = [(2.0, 0.0), (-1.0, math.sqrt(3)), (-1.0, -math.sqrt(3))]
-    assert np.array(triangle) == pytest.approx(np.array(expected))
-    assert second_moments(triangle) == pytest.approx(1.5 * math.sqrt(3) * np.eye(2), abs=1e-12)  # sqrt(3) a^4 / 96
-
-
-def test_a_wall_is_in_running_bond():
-    wall = WallSection(name="wall", rows=2, bricks=2, rectangle=(1.0, 0.5))
-    ends = {name: (corners[0], corners[2]) for name, corners, _ in wall.outlines()}
-    assert ends == {
-        "1_1": ((0.0, 0.0), (1.0, 0.5)),
-        "1_2": ((1.0, 0.0), (2.0, 0.5)),
-        "2_1": ((0.0, 0.5), (0.5, 1.0)),
-        "2_2": ((0.5, 0.5), (1.5, 1.0)),
-        "2_3": ((1.5, 0.5), (2.0, 1.0)),
-    }

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import SCENE, thinned
+from conftest import thinned
 from oracles.pages import write_my_solver
 from oracles.processes import answer_here
 
@@ -19,14 +19,13 @@ from validation.gates.gate import Gate
 from validation.runs.history import History
 from validation.runs.results import Results
 from validation.runs.run import Outcome
-from validation.scenes.scene import load_scene, parse_scene
+from validation.scenes.scene import load_scene
 from validation.solvers import user
-from validation.solvers.processes.user_worker import place_of
 from validation.solvers.processes.worker import WorkerHangs
 from validation.solvers.registry import get_solver
 from validation.suite.own_solver import block as block_module
 from validation.suite.own_solver import block_data, gates
-from validation.suite.own_solver.block import block, first, outside
+from validation.suite.own_solver.block import block, first
 from validation.suite.own_solver.history import AT_REST, root
 from validation.suite.own_solver.session import GateReport, Session
 from validation.theory import spectra
@@ -56,9 +55,14 @@ def oracles(monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def reports_of(tmp_path_factory):
+def results(tmp_path_factory):
+    """Return where runs of the suite's own solvers are kept for the next test."""
+    return Results(tmp_path_factory.mktemp("results"))
+
+
+@pytest.fixture(scope="module")
+def reports_of(results):
     """Return what the gates on some scenes say of a solver, or those of start and data, each once."""
-    results = Results(tmp_path_factory.mktemp("results"))  # runs of the suite's own solvers are kept for the next
     with pytest.MonkeyPatch.context() as patch:
         patch.syspath_prepend(str(ORACLES))
         answer_here(patch)
@@ -112,11 +116,13 @@ def noisy(scene):
         ("six_unknowns:sound", set(), []),
     ],
 )
-def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(solver, same_as, warned, tmp_path, monkeypatch):
+def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
+    solver, same_as, warned, results, tmp_path, monkeypatch
+):
     (tmp_path / "copies.py").write_text(COPIES)
     monkeypatch.syspath_prepend(str(tmp_path))
     monkeypatch.setattr(block_module, "compare", lambda *given: SimpleNamespace(sentence="a sentence", causes=[]))
-    session = Session(solver, Results(tmp_path / "results"))
+    session = Session(solver, results)
     told = [session.judge(name)[1] for name in names_of(START[:1])]
     assert {name for t in told for name in t.same_as.split()} == same_as
     assert all(t.repeated for t in told)
@@ -161,15 +167,6 @@ def test_the_solver_of_the_page_passes_every_gate(tmp_path, monkeypatch):
     reports = [session.judge(name)[1] for name in gates.applying()]
     assert not [report.id for report in reports if report.status == "FAIL"]
     assert {report.group for report in reports if report.status == "PASS"} == {*gates.GROUPS, gates.BLOCK_DATA}
-
-
-@pytest.mark.parametrize("solver", ["my_solver.py", "nope:solve"])
-def test_a_word_that_names_no_solver_is_refused_before_anything_runs(solver, monkeypatch):
-    monkeypatch.setenv(user.VARIABLE, "60")
-    options = {"--dda-solver": solver, "--dda-timeout": 60.0}
-    config = SimpleNamespace(addinivalue_line=lambda *_: None, getoption=lambda name, default=None: options[name])
-    with pytest.raises(pytest.UsageError, match=r"^--dda-solver: "):
-        plugin.pytest_configure(config)
 
 
 def gate_report(outcome, when="call"):
@@ -244,34 +241,9 @@ def test_the_scene_of_a_million_steps_is_not_run_for_a_history_alone(tmp_path):
 
 
 @pytest.mark.usefixtures("oracles")
-def test_an_error_is_told_with_file_and_line_of_the_authors_own_code(scene, monkeypatch):
-    monkeypatch.chdir(ORACLES)
-    run = completed(get_solver("six_unknowns:raises"), scene)
-    lines = (ORACLES / "six_unknowns.py").read_text().splitlines()
-    (number,) = (n for n, line in enumerate(lines, 1) if "np.linalg.solve(np.zeros" in line)  # raises inside numpy
-    assert f"(six_unknowns.py:{number}," in run.notes[0]
-    assert place_of(ValueError(), ORACLES) == ""
-
-
-@pytest.mark.usefixtures("oracles")
 def test_a_scene_that_is_not_for_the_solver_is_not_run(scene):
     run = completed(get_solver("six_unknowns:sound"), scene.with_values({"load.gravity": 9.81}))
     assert run.outcome is Outcome.NOT_APPLICABLE
-
-
-def test_the_time_limit_grows_with_the_steps(monkeypatch):
-    """20 steps have 0.1 s beside what is set, and 6000 have 30 s."""
-    limits = []
-
-    def ask(command, environment, request, limit):
-        limits.append(limit)
-        raise WorkerHangs
-
-    monkeypatch.setattr(user, "ask", ask)
-    monkeypatch.setenv(user.VARIABLE, "7")
-    small, solver = parse_scene(tomllib.loads(SCENE), "small"), get_solver("sleepy:solve")
-    runs = [completed(solver, small.with_values({"time.steps": steps})) for steps in (20, 6000)]
-    assert limits == pytest.approx([7.1, 37.0]) and {run.outcome for run in runs} == {Outcome.TIMEOUT}
 
 
 # ---- the block ------------------------------------------------------------------------------------------------------
@@ -311,11 +283,6 @@ KEPT = dict(
 @pytest.mark.parametrize("name", BLOCKS)
 def test_the_block_is_as_it_was(name):
     assert "\n".join(block(BLOCKS[name])) + "\n" == KEPT[name].removesuffix("\n") + "\n"
-
-
-def test_all_failing_gates_are_listed_where_it_is_asked():
-    lines = block(BLOCKS["many"], every=True)
-    assert all(f"  {report.scene}: {outside(report)}" in lines for report in BLOCKS["many"])
 
 
 @pytest.mark.parametrize(("causes", "lines"), [(["start"], 2), (["unexplained"], 2), ([], 1), (None, 1)])

@@ -121,23 +121,22 @@ def named(**gate):
     check_names(parse_scene(LOCKED.definition() | {"run": {"solvers": ["dda"]}, "gate": [whole]}, "mine"), "mine.toml")
 
 
+UNKNOWN = ["dda", "nowhere.py:solve"]
+UPWARDS = "time,x,y\n0,0,0\n1,0,1\n"
 ASKS += [
     (LOCKED, "gate.0.pair: must be solvers that run.solvers lists, got 'fem'", lambda scene: named()),
     (LOCKED, "gate.0.pair: must name a solver and a reference", lambda scene: named(pair=["dda"])),
     (LOCKED, "gate.0.metric: must be among", lambda scene: named(metric="pressure.l3")),
+    (LOCKED, r"run\.columns", lambda scene: solve(scene.with_values({"run.columns": ["rotation"]}), "dda-60")),
+    (LOCKED, "'nowhere.py:solve'", lambda scene: check_names(scene.with_values({"run.solvers": UNKNOWN}), "mine.toml")),
 ]
 
 
 def test_what_is_asked_of_a_scene_that_does_not_have_it_is_said():
+    check_names(SCENES["cells"], "mine.toml")  # whose columns no solver lists
     for scene, words, ask in ASKS:
         with pytest.raises(InputError, match=words):
             ask(scene)
-
-
-@pytest.mark.fenicsx
-def test_fenicsx_has_no_response():
-    with pytest.raises(InputError, match="no frequency response"):
-        response(LOCKED, 1.0, "fenicsx")
 
 
 @pytest.mark.parametrize("package", [dda, fem_reference])

@@ -1,6 +1,5 @@
 """A conditionally stable scheme is refused beyond its limit by every solver that steps; what grows is named."""
 
-import itertools
 import math
 import tomllib
 from pathlib import Path
@@ -10,7 +9,6 @@ import pytest
 from conftest import thinned
 
 from validation.engine.measure import attempt
-from validation.errors import InputError
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.scenes.scene import parse_scene
@@ -30,7 +28,6 @@ STACK = {
     "layer": [{"thickness": 6.0, "density": 2000.0, "young": 1e8, "blocks": 3, "velocity": -0.1}],
     "stiffness": 1e9,
 }
-PULSE = {"at": "base", "shape": "ricker", "velocity": 0.1, "frequency": 2.0}
 
 
 def scene(step, steps=300, **tables):
@@ -62,7 +59,7 @@ def tables_of(name):
 def test_a_step_just_beyond_the_limit_is_refused_and_one_just_below_it_does_not_grow(name):
     solver, tables = tables_of(name)
     said = refusal(solver, scene(1.0, 2, **tables))
-    assert said is not None
+    assert said is not None and "allow_unstable" in said
     limit = float(said.split("must not exceed ")[1].split(" s")[0])
     assert refusal(solver, scene(1.001 * limit, 2, **tables)) is not None
     run = solve(scene(0.999 * limit, **tables), solver)
@@ -149,30 +146,3 @@ def test_what_cannot_be_stepped_is_an_outcome(case, solver):
     run = attempt(get_solver(solver), limited, full=False)[1]
     assert run.outcome == case["outcome"]
     assert case["says"] in run.notes[-1]
-
-
-def test_a_column_that_nothing_moves_needs_an_input():
-    column = {"law": "unilateral", "motion": "pressure"} | RESTING
-    for still in (COLUMN, column | {"gravity": 0.0}):
-        with pytest.raises(InputError) as error:
-            scene(1e-4, 20, column=still)
-        assert error.value.field == "input"
-    assert scene(1e-4, 20, column=column | {"gravity": 9.81}).stated_input is None
-
-
-SOUND = itertools.product(TABLES["sound"], ("dda", "fem", "column-events", "bars-events"))
-
-
-@pytest.mark.parametrize(("name", "solver"), thinned(SOUND, 13))
-def test_a_column_with_gaps_and_hardly_a_drive_is_sound(name, solver, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    Path("late.csv").write_text("time,velocity\n5,0\n6,1\n7,0\n")
-    case = TABLES["sound"][name]
-    column = RESTING | {"motion": "pressure", "law": "unilateral", "heights": [0.0, 2.0]} | case.get("column", {})
-    columns = ["displacement", *["gap_1", "gap_2"] * (column["law"] == "unilateral")]
-    stepped = {"step": 1e-3, "steps": 20, "alpha": 0.25, "delta": 0.5} | case.get("time", {})
-    tables = {"input": {"at": "base"} | case["input"]} if "input" in case else {}
-    run = {"solvers": [solver], "columns": columns}
-    still = parse_scene({"column": column, "time": stepped, "run": run, **tables}, "still")
-    assert get_solver(solver).refusal(still) is None
-    assert solve(still, solver).outcome is Outcome.COMPLETED

@@ -62,7 +62,7 @@ def recommended_cut(scene: Scene, error: float, frequency: float | None = None) 
         raise InputError(advice.advice, source=scene.name)
     settings: dict[str, Any] = {"time.step": advice.advised.step}
     layers = AdviceHooks.of(scene).cut(scene, advice.blocks).table(ColumnSection).layer
-    settings["column.layer"] = [layer.model_dump(exclude_defaults=True) for layer in layers]
+    settings["column.layer"] = [layer.model_dump(exclude_defaults=True) | {"blocks": layer.blocks} for layer in layers]
     steps = min(MOST_STEPS, math.ceil(scene.time.duration / advice.advised.step))
     case = scene.with_values(settings | {"time.steps": steps, "run.columns": [DISPLACEMENT]})
     truth = truth_of(case)

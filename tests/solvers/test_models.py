@@ -1,0 +1,99 @@
+"""What kinds of scenes draw, measure and advise, against closed forms, row by row."""
+
+import math
+
+import numpy as np
+import pytest
+from oracles.box_scenes import box_scene
+from oracles.made_cases import made_history
+from oracles.stated_scenes import made
+
+from validation import exact
+from validation.advice.goals import Question
+from validation.advice.hooks import AdviceHooks
+from validation.advice.pages import PageHooks
+from validation.models.block.advice import _moves_as_a_whole
+from validation.models.column import pages as column_pages
+from validation.models.plane import pages
+from validation.models.plane.corner_springs import OVERLAP, moving_advice
+from validation.models.plane.history import PlaneColumns
+from validation.models.plane.measures import contact_time
+from validation.scenes.plausibility import implausible_values
+from validation.scenes.scene import load_scene, parse_scene
+from validation.solvers.rigid.sliding import rigid_slide
+
+
+def test_columns_of_what_moves_start_at_zero_but_poses():
+    names = ("a.x", "a.angle", "a.vx", "momentum.x", "a.0-b.2.normal")
+    assert [PlaneColumns()[name].from_zero for name in names] == [False, False, True, True, True]
+
+
+GAPS = [  # at rows 0.5 s apart, and how long they are closed for the first time
+    ([1.0, 0.5, -0.5, -1.5, 0.5, -1.0, 1.0], 2.25 * 0.5),
+    ([-1.0, 1.0, -1.0, 1.0], None),
+    ([1.0, -1.0, -1.0], None),
+    ([1.0, 2.0], None),
+]
+
+
+def test_contact_lasts_from_where_the_gap_closes_to_where_it_opens():
+    for gap, lasts in GAPS:
+        found = contact_time(made_history(0.5, gap), np.array(gap))
+        assert found == (lasts and pytest.approx(lasts)), gap
+
+
+def test_both_corners_of_a_block_land_when_it_has_fallen():
+    block = {"width": 2.0, "height": 1.0, "density": 2500.0, "young": 1e9, "stiffness": 2e6}
+    found = exact.unilateral_block([0.012], **block, gap=1e-2, velocity=-1.0)
+    assert (found.closings, found.openings) == (pytest.approx((0.01, 0.01), rel=1e-9), ())
+
+
+def test_a_rigid_mass_slides_by_what_friction_and_cohesion_leave():
+    values = {"load": {"gravity": 9.81, "slope": 30.0}, "time.step": 0.1, "time.steps": 3}
+    contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 20.0, "cohesion": 3e3}
+    scene = load_scene("figures-3-4").expand()[0].with_values(values | {"contact": contact, "block.side": 2.0})
+    held = 9.81 * math.tan(math.radians(20)) * math.cos(math.radians(30)) + 3e3 * 2.0 / scene.block.mass
+    assert rigid_slide(scene).slide[-1] == pytest.approx((9.81 * 0.5 - held) * 0.3**2 / 2)
+
+
+def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
+    layers = [{"thickness": 300.0, "density": 2500.0, "young": young, "blocks": 1} for young in (3e10, 3e7)]
+    column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": layers}
+    scene = parse_scene({"column": column, "time": {"step": 1e-4, "steps": 3}}, "soft")
+    (said,) = [value.sentence for value in implausible_values(scene) if value.kind == "strain"]
+    assert " 24.5 %" in said
+
+
+def test_springs_carry_the_weight_of_what_stands_on_them():
+    scene = box_scene({"width": 2.0, "height": 1.0, "density": 700.0}, stiffness=1e6, gravity=3.0)
+    needed = 2 * 700 * 3.0 / (OVERLAP * scene.plane.assembly.moving[0].thickness)
+    assert moving_advice(scene, 0.9).settings["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
+
+
+def test_a_block_with_friction_moves_as_a_whole_on_a_slope():
+    block = load_scene("figures-3-4").expand()[0]
+    rough = {"contact": {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 20.0}}
+    scenes = [block, *(block.with_values(rough | {"load.gravity": 9.81, "load.slope": slope}) for slope in (0.0, 5.0))]
+    assert [_moves_as_a_whole(scene) for scene in scenes] == [False, False, True]
+
+
+def test_a_block_is_cut_into_rows_and_one_row_leaves_it_whole():
+    block = load_scene("figures-3-4").expand()[0]
+    cut = AdviceHooks.of(block).cut
+    assert cut(block, [1]) is block
+    assert [cut(scene, [3]).block.subdivide for scene in (block, cut(block, [2]))] == [(1, 3), (1, 3)]
+
+
+def test_a_page_says_how_a_beam_and_a_column_are_cut(monkeypatch, tmp_path):
+    monkeypatch.setattr(pages, "ELEMENTS", 2)
+    monkeypatch.setattr(column_pages, "truth_of", lambda case: None)  # elements take less time
+    beam = load_scene("patch-strip").expand()[0]
+    column = made("layers on springs", tmp_path)  # whose input has no frequency of its own
+    (of_beam,), (of_column,) = (
+        PageHooks.of(scene).page(scene, Question(error=0.3))[0]["recommendations"] for scene in (beam, column)
+    )
+    assert of_beam["settings"] == {"plane.subdivide": [2, 1], "plane.pattern": "squares", "time.step": 10.0}
+    assert (of_beam["displacement_error"], of_beam["uncertainty"]) == pytest.approx((0.125, 0.0), abs=1e-9)
+    assert [layer["blocks"] for layer in of_column["settings"]["column.layer"]] == [1, 2]
+    numbers = of_column["settings"]["time.step"], of_column["displacement_error"], of_column["duration"]
+    assert numbers == pytest.approx((6.3934121e-3, 0.054649793, 1.27868242e-2), rel=1e-7)
