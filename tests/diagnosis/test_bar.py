@@ -11,7 +11,6 @@ import pytest
 from validation.diagnosis import evidence
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.bar import Bar
-from validation.diagnosis.fits.fit import Fit, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.variant import Variant
 
@@ -136,23 +135,6 @@ def test_two_columns_weigh_the_same():
     assert column([0.0, 0.0]).scales.tolist() == [[1.0]]
 
 
-def test_a_number_is_known_by_as_many_rows_as_are_independent():
-    def fitted(residual):
-        residual = np.asarray(residual, dtype=float)
-        return Fit(OWN, ("gg",), float(np.linalg.norm(residual)), residual, np.full((len(residual), 1), 2.0))
-
-    for residual, count in (
-        ([1, 1, -1, -1] * 5, 20 * 0.95 / 1.05),
-        ([1, -1] * 10, 20),
-        ([1] * 9 + [-1] * 3, 6),
-        ([1] * 4, 4),
-        ([0] * 9, 9),
-    ):
-        assert fitted(residual).independent == pytest.approx(count)
-    one = intervals(fitted([1, 1, -1, -1] * 5))["gg"]
-    assert one.value == 1.0 and 0 < one.half_width < intervals(fitted([2, 2, -2, -2] * 5))["gg"].half_width
-
-
 def test_a_history_grows_by_a_factor_a_step_where_the_scene_does_not():
     still = np.ones(90)
     grows = 1.2 ** np.arange(90.0)  # to 1.1e7
@@ -162,20 +144,3 @@ def test_a_history_grows_by_a_factor_a_step_where_the_scene_does_not():
     assert evidence.growth(1e5 * grows, 1e3 * grows) is None  # so does the scene
     assert evidence.growth(2e9 * still, still) == pytest.approx(1.0)  # no unit is so wrong
     assert evidence.growth(0.9e9 * still, still) is None
-
-
-@pytest.mark.parametrize(
-    ("name", "file", "scene", "agrees", "ratio"),
-    [
-        ("frequency", 100.09, 100.0, True, 1.0009),
-        ("frequency", 100.11, 100.0, False, 1.0011),
-        ("frequency", -99.89, -100.0, False, 0.9989),
-        ("damping", 0.0005, -0.0004, True, -1.25),
-        ("damping", 0.0015, 0.0, False, None),
-        ("damping", None, 0.1, None, None),
-    ],
-)
-def test_a_measured_number_stands_beside_the_scene_s(name, file, scene, agrees, ratio):
-    stage = evidence._beside(name, "has", "1/s", file, scene, 1e-3)
-    assert stage.agrees is agrees
-    assert stage.numbers == {"file": file, "scene": scene, "ratio": ratio if ratio is None else pytest.approx(ratio)}

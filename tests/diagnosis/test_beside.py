@@ -183,19 +183,6 @@ def test_a_scene_that_does_not_run_is_refused(monkeypatch):
     assert refusal.value.source == SCENE.name
 
 
-def test_every_row_is_that_of_its_step_also_of_a_program_with_more_steps():
-    fine = columns_of({"d": 0.9}, 3 * ROWS)[:, 2::3]
-    search = Swing(fine, step=3)
-    assert search.time == pytest.approx(0.03 * np.arange(1, ROWS + 1))
-    assert search.run({"d": 0.9}, 7) == pytest.approx(fine[:, :7], rel=1e-12)
-    assert search.run({"d": 0.9, "parts": 4}, 7) == pytest.approx(fine[:, :7], rel=1e-12)
-    assert search.run({"fails": True}, 7) is None
-    one = Swing(fine[:1], step=3)
-    assert one.run({"d": 0.9}, ROWS) == pytest.approx(fine[:1], rel=1e-12)
-    departs = Swing(fine * np.where(np.arange(ROWS) < 4, 1, 1.3), step=3)
-    assert one.rows == ROWS and departs.departure(RunVerdict(departs, False)).step == 3
-
-
 def test_what_remains_is_measured_by_column():
     scene = columns_of({})
     search = Swing(scene * [[1.0], [1.25]])

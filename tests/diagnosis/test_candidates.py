@@ -14,6 +14,7 @@ from validation.diagnosis.fits.target import Target
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.moves import moves
 from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
+from validation.diagnosis.slopes import candidates as of_slope
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.scenes.scene import load_scene
 
@@ -69,6 +70,8 @@ def changes_of(scene):
     ]
     if scene.column is not None and scene.column.law != "bonded":
         candidates += of_scene(scene)
+    if scene.name == "field-sliding":
+        candidates += of_slope(scene)
     for change in candidates:
         number = change.value(-0.2)
         yield change.id, "none" if np.isnan(number) else number, change.starts, change.changed(-0.2)

@@ -173,13 +173,6 @@ def test_numbers_that_have_words_are_told_by_them(cause, fields, word):
     assert word in said([cause], **fields)
 
 
-def test_the_answer_by_another_solver_is_told_with_its_numbers():
-    fault = wording.Subject("SCHEME", {"scheme": "FAULT"}, Departure(7, "phase"), "LEFT", model="BAR")
-    for subject, words in ((fault, ("7", "phase", "FAULT")), (replace(fault, words={}), ())):
-        text = wording.sentence(subject)
-        assert all(text.count(word) == 1 for word in ("SCHEME", "BAR", "LEFT", *words))
-
-
 def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong():
     about = wording.Subject("", {}, Departure(7, "phase"), "")
     near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}

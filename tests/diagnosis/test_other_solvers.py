@@ -107,14 +107,6 @@ def test_the_solver_is_named_with_what_is_changed_in_its_scene(theirs, values, c
     assert ("exact bar" in one.search.model_words) is (theirs == "bar")
 
 
-def test_of_dda_itself_a_discount_is_named():
-    one = verdict(recorded("dda", time__gg=0.98), ["dda"])
-    assert (
-        one.explained and one.causes == {"gg": pytest.approx(0.98)} and one.search.model == one.search.model_words == ""
-    )
-    assert verdict(recorded("dda"), ["dda"]).causes == {}
-
-
 def test_where_nothing_explains_a_history_the_nearest_solver_is_told(solvers):
     wave = 1 + 0.2 * np.sin(np.arange(44))
     one = verdict(recorded("bar") * wave, ["continuum", "bar"])

@@ -16,7 +16,7 @@ from validation.diagnosis.numbers import fixed
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping
 from validation.diagnosis.readings import Reading
-from validation.diagnosis.slopes import Habits, SlopeSearch, answer_on, candidates, habits_of, verdict_on
+from validation.diagnosis.slopes import Habits, SlopeSearch, answer_on, habits_of, verdict_on
 from validation.diagnosis.variant import GRAVITY
 
 STEPS = 40
@@ -241,21 +241,6 @@ def test_habits_are_values_of_the_scene():
     lifted = Habits("consistent", weight=-50.0, softness=0.2).values(SCENE)
     assert lifted["load.slope"] == pytest.approx(math.degrees(math.atan2(pull[0], 0.02 * GRAVITY)))
     assert lifted["contact.shear_stiffness"] == pytest.approx(4e8 * math.exp(-0.2)) and "contact.band" not in lifted
-
-
-def test_candidates_of_a_slope_are_these():
-    found = {}
-    for change in candidates(SCENE):
-        found.setdefault(change.id, []).append(change)
-    (normal,) = found["normal-springs-factor"]
-    assert normal.changed(math.log(1.2)) == {"contact.stiffness": pytest.approx(1.2e9), "contact.shear_stiffness": 4e8}
-    (cohesion,) = found["cohesion"]
-    limit = math.tan(math.radians(22)) * MASS * SCENE.load.gravity * math.cos(math.radians(20)) / 2.0
-    assert cohesion.changed(math.log(0.3)) == {"contact.cohesion": pytest.approx(0.3 * limit)}
-    assert cohesion.value(0.0) == pytest.approx(limit)
-    assert [change.changed(0.0)["time.alpha"] for change in found["scheme"]].count(0.0) == 0
-    assert len(found["scheme"]) == 12
-    assert [change.changed(0.0)["time.start"] for change in found["start"]] == ["consistent"]
 
 
 def test_signs_and_a_unit_of_both_columns_are_read_off_the_first_rows(monkeypatch):

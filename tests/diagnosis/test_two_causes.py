@@ -67,19 +67,6 @@ def test_two_causes_are_found_where_one_explains_nothing(theirs, ids, numbers):
     assert found.misfit < 1e-7 and two.left < 1e-5
 
 
-def test_what_surrounds_a_block_is_found_by_itself():
-    theirs = replace(OWN, weight=0.97, softness=0.02, point=1.0)
-    _, one, _ = told(theirs)
-    assert one.explained and {*one.best.ids} == {*search.SURROUNDINGS}
-    heavy = replace(OWN, base=7.0, softness=0.03)
-    _, one, _ = told(heavy)
-    assert one.best.ids == ("springs-factor",) and one.explained
-    assert (one.best.fit.variant.base, one.best.fit.variant.softness) == (
-        pytest.approx(7.0, rel=1e-3),
-        pytest.approx(0.03, rel=1e-3),
-    )
-
-
 def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     """Block and springs 1.2 times as stiff: the rows of a block of 1 / 1.2 of the mass under as much of the load."""
     young = Move("young-factor", {}, ("young",), (1.3,))
@@ -96,16 +83,6 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     for explained in (True, False):
         alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
         assert with_same_rows(target, OWN, alone).same_rows == ()
-
-
-def test_candidates_of_pairs_begin_where_they_are_best_alone_and_change_different_things():
-    alone = [Explanation((FEW[3],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
-    few = {move.id: move for move in search._few(target_of(OWN), OWN, alone)}
-    assert few["density-factor"].starts == (1.7,)
-    assert few["springs-factor"].starts == (-0.3,)
-    assert [move.changes for move in search._few(target_of(OWN), OWN, alone) if move.id == "scheme"] == [AVERAGE]
-    assert search._together(FEW[3:6]) and not search._together(FEW[:2])
-    assert not search._together([FEW[2], Move("start", {"gg": 1.0})])
 
 
 def test_two_variants_are_one_program_at_every_step():

@@ -281,11 +281,6 @@ def test_a_wrong_field_is_named(fields, field, value, tmp_path):
     assert shown.strip("'")[:50] == value.strip("'")[:50]
 
 
-def test_words_of_the_greatest_length_are_taken(tmp_path):
-    place = answered(tmp_path, names=("locked",), who=2000 * "x", settings_name=60 * "x")
-    assert read_sets(place)[0].data.settings_name == 60 * "x"
-
-
 @pytest.mark.parametrize(
     ("content", "defect"),
     [

@@ -146,13 +146,6 @@ def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, wor
     assert shares[0] <= 1 < shares[1] and SCENE.time.step / one.passing_step >= 2
 
 
-def test_a_scheme_at_half_the_step_is_no_step_of_the_scene():
-    half = motion(AVERAGE | {"time.step": 0.001, "time.steps": 100})
-    one = found(History(EXACT.time, {name: x[1::2] for name, x in half.columns.items()}))
-    assert (one.ids, one.values["step"]) == (("scheme",), 0.001)
-    assert "at this step" not in one.sentence and "0.001 s" in one.sentence
-
-
 def test_another_number_beside_the_usual_scheme_is_told_with_it():
     one = found(motion({"time.gg": 0.97}))
     assert one.ids == ("scheme", "gg") and one.values["gg"] == pytest.approx(0.97, rel=1e-5)
