@@ -1,0 +1,71 @@
+"""What tests are answered, as numbers that are kept beside them, and the fixture that compares.
+
+Sentences, and numbers at the level of rounding, are none of them. `KEEP_PAGES=1` writes the numbers anew.
+"""
+
+import dataclasses
+import os
+
+import numpy as np
+import pytest
+from oracles.stand_ins import differing, keep, kept, summed
+
+LEAST = 1e-5  # of a number that counts
+LARGE = {"search", "scene", "scene_fit", "reading", "problem", "jacobian", "residual"}
+
+
+def said(value, least=LEAST):
+    """Yield the numbers and names that are said by an answer, one by one."""
+    if dataclasses.is_dataclass(value):
+        value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+    if isinstance(value, dict):
+        for name in sorted(value):
+            if name not in LARGE:
+                yield str(name)
+                yield from said(value[name], least)
+    elif isinstance(value, np.ndarray):
+        yield from said([float(np.linalg.norm(value)), value.size], least)
+    elif isinstance(value, list | tuple):
+        yield len(value)
+        for part in value:
+            yield from said(part, least)
+    elif isinstance(value, str):
+        yield "" if " " in value else value
+    elif isinstance(value, int | float | np.generic):
+        yield float(value) if abs(value) > least else 0.0
+
+
+def compared(request, path, *names):
+    """Run a test, then compare what the functions of these names, which its module imports, have answered."""
+    if request.node.get_closest_marker("long"):
+        yield
+        return
+    answers = []
+
+    def recording(function):
+        def recorded(*given, **named):
+            answers.append(function(*given, **named))
+            return answers[-1]
+
+        return recorded
+
+    with pytest.MonkeyPatch.context() as patch:
+        for name in names:
+            if hasattr(request.module, name):
+                patch.setattr(request.module, name, recording(getattr(request.module, name)))
+        yield
+    name = f"{request.node.originalname[5:29]}{request.node.name.removeprefix(request.node.originalname)}"
+    table = request.module.__name__.rpartition("test_")[2]
+    before = kept(path).get(table, {})
+    found = {name: summed(said(answers))} if answers else {}
+    if os.environ.get("KEEP_PAGES"):
+        keep(path, table, before | found, {})
+    elif found:
+        assert differing(found, {name: before.get(name)}) == {}
+
+
+def assert_kept(path, table, found):
+    """Compare numbers with those that a table of a file keeps."""
+    if os.environ.get("KEEP_PAGES"):
+        keep(path, table, found, {})
+    assert differing(found, kept(path).get(table, {})) == {}
