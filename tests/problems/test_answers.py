@@ -301,6 +301,10 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
     (tmp_path / "locked.csv").write_text(text_of(rows_of()))
     answers = read_tables(tmp_path, [problem("locked"), problem("opening"), own]).answers
     assert [answer.name for answer in answers] == ["locked", "mine"]
+    (tmp_path / "opening.csv").write_text("")
+    with pytest.raises(DefectsError):
+        read_tables(tmp_path, [problem("locked"), problem("opening")])
+    (tmp_path / "opening.csv").unlink()
     assert read_tables(tmp_path / "mine.csv", [own]).answers[0].problem is own
     stated(tmp_path)
     ((answer, _),) = [one.answers for one in read_sets(tmp_path, own={"locked": problem("locked"), "mine": own})]

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from faults import seams
 from oracles import swings
+from oracles.kept_answers import assert_kept, said
+from oracles.stand_ins import summed
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.families import ONE_SCHEME
@@ -23,6 +26,7 @@ from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 
+KEPT = Path(__file__).with_name("numbers.toml")
 SCENE = load_scene("field-locked")
 OPENING = load_scene("field-opening")
 AVERAGE = {"time.alpha": 0.25, "time.delta": 0.5, "time.start": "consistent"}
@@ -173,6 +177,25 @@ def test_nothing_that_moves_no_numbers_and_other_units_need_no_search():
         one = found(changed(displacement=factor * x))
         assert one.ids == ids or (not ids and "unit" not in one.ids), factor
         assert not ids or list(one.values) == ["displacement"]
+
+
+def test_what_is_tried_is_as_before():
+    runs = Runs(SCENE, STANDARD)
+    found = []
+    for base in (runs.exact(), *list(runs.schemes())[:2], Base("", {}, 2)):
+        for cheap in (True, False):
+            tried = [*module.of_data(runs, base, cheap), *module.of_damping(runs, base)]
+            for change in (*tried, *module.of_output(runs, base, COLUMNS[: 1 + cheap])):
+                found.append([change.id, change.starts, change.nudge, change.value(0.3), change.words(1.3).split()[:3]])
+                found.append([change.changed(u) for u in (0.07, -0.4, 2.9, 7.0, -6.8, change.starts[-1])])
+    named = [Cause(f"C{i}", ids, dict.fromkeys(ids, 0.9), (), 1e-3 * i) for i, ids in enumerate((("gg",), ("x", "gg")))]
+    found += [[module._rank(one), module._short(one)] for one in named]
+    factors = (1.0, 1e-3, 0.98e-3, 970.0, 1e2)
+    for first in factors:
+        for second in factors:
+            both = changed(displacement=first * EXACT.displacement, contact_pressure=second * EXACT.contact_pressure)
+            found.append(module._units(both.columns, runs))
+    assert_kept(KEPT, "cause", {"tried": summed(said(found, 1e-9))})
 
 
 # ---- runs ------------------------------------------------------------------------------------------------------------
