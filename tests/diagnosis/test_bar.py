@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from validation.diagnosis import evidence
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.bar import Bar
 from validation.diagnosis.fits.target import Target
@@ -133,14 +132,3 @@ def test_two_columns_weigh_the_same():
     shares = [0.6**2 / 12 / 25 * 2, 0.6**2 / 12 / 2500 * 2]
     assert target.floor == pytest.approx(math.sqrt(sum(shares) / 2))
     assert column([0.0, 0.0]).scales.tolist() == [[1.0]]
-
-
-def test_a_history_grows_by_a_factor_a_step_where_the_scene_does_not():
-    still = np.ones(90)
-    grows = 1.2 ** np.arange(90.0)  # to 1.1e7
-    assert evidence.growth(grows, still) == pytest.approx(1.2)
-    assert evidence.growth(grows, 1e6 * still) is None  # as anything that the scene does
-    assert evidence.growth(grows, 1e4 * still) == pytest.approx(1.2)
-    assert evidence.growth(1e5 * grows, 1e3 * grows) is None  # so does the scene
-    assert evidence.growth(2e9 * still, still) == pytest.approx(1.0)  # no unit is so wrong
-    assert evidence.growth(0.9e9 * still, still) is None

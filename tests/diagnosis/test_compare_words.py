@@ -25,7 +25,6 @@ from validation.diagnosis.causes import (
     CAUSES,
     benign_springs,
     compliance,
-    round_factor,
     values_of,
     words_of,
 )
@@ -74,14 +73,6 @@ def test_a_base_that_adds_two_per_cent_is_benign():
     assert found == pytest.approx({"springs-factor": 1 / 1.04, "width-factor": 1.04}, rel=1e-5)
     # what is no fault is taken over into what is expected
     assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("factor", "error", "is_round"),
-    [(0.5, 1e-4, True), (0.8, 0.0, True), (1 / 1.1, 1e-5, True), (1 / 1.04, 0.0, False), (0.5, 0.01, False)],
-)
-def test_a_round_factor_has_two_digits_that_are_known(factor, error, is_round):
-    assert round_factor(factor, error) is is_round
 
 
 def target(**changes):
@@ -212,20 +203,6 @@ WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
 )
 def test_the_manner_of_a_departure(kind, given):
     assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
-
-
-@pytest.mark.parametrize(
-    ("rows", "noise", "step"),
-    [
-        (np.arange(200), 0.0, 100),
-        (4 * np.arange(200) + 3, 0.0, 400),  # every fourth step was recorded
-        (np.arange(200), 0.002, 100),
-        (np.arange(200), 0.003, 150),  # four standard deviations hide one per cent
-    ],
-)
-def test_the_first_step_of_a_departure_is_counted_from_one(rows, noise, step):
-    given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
-    assert evidence.measured(WANTED, given, rows, noise).step == step
 
 
 # ---- what is printed ----------------------------------------------------------------------------------------------

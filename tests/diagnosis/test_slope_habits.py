@@ -8,6 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.kept_answers import assert_kept, said
+from oracles.stand_ins import summed
 
 from validation import load_scene
 from validation.diagnosis import slopes
@@ -17,8 +19,8 @@ from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping
 from validation.diagnosis.readings import Reading
 from validation.diagnosis.slopes import Habits, SlopeSearch, answer_on, habits_of, verdict_on
-from validation.diagnosis.variant import GRAVITY
 
+KEPT = Path(__file__).with_name("numbers.toml")
 STEPS = 40
 SCENE = load_scene(Path(__file__).parents[2] / "docs" / "examples" / "ntdda" / "slope.toml")
 SCENE = SCENE.with_values({"time.steps": STEPS})
@@ -202,45 +204,17 @@ def of_base(search):
     return search.judged(Fitted(fixed("habits", "", habits.values(SCENE)), 0.0, math.nan))
 
 
-def test_a_base_is_no_number_of_springs_and_half_a_weight_is_none():
-    def causes(*given, **fields):
-        return [*Habits("consistent", *given, **fields).causes(beside(made({})))]
-
-    for softness, cause in (
-        (7e-4, ["springs-factor"]),
-        (8e-4, ["base-compliance"]),
-        (0.0722, ["base-compliance"]),
-        (0.074, ["springs-factor"]),
-        (-8e-4, ["springs-factor"]),
-    ):
-        assert causes(softness=softness) == cause, softness
-    assert causes(softness=-math.log(0.98), error=0.0) == ["springs-factor"]  # of two digits
-    assert causes(softness=-math.log(0.98), error=2e-3) == ["base-compliance"]
-    assert [Habits("", weight=weight).is_usual for weight in (0.0, 0.94, 0.96, 1.04, 1.06, 0.03)] == [
-        True,
-        False,
-        True,
-        True,
-        False,
-        False,
-    ]
-
-
-def test_habits_are_values_of_the_scene():
-    values = Habits("lagged", 2e-3, 0.7, 0.2, along=False).values(SCENE)
-    g, angle = SCENE.load.gravity, math.radians(20.0)
-    pull = (g * math.sin(angle), g * math.cos(angle) + 0.7 * GRAVITY)
-    assert values == {
-        "contact.rules": "lagged",
-        "contact.band": pytest.approx([2e-3, 2e-6]),
-        "load.gravity": pytest.approx(math.hypot(*pull)),
-        "load.slope": pytest.approx(math.degrees(math.atan2(*pull))),
-        "contact.stiffness": pytest.approx(1e9 * math.exp(-0.2)),
-        "contact.shear_stiffness": 4e8,
-    }
-    lifted = Habits("consistent", weight=-50.0, softness=0.2).values(SCENE)
-    assert lifted["load.slope"] == pytest.approx(math.degrees(math.atan2(pull[0], 0.02 * GRAVITY)))
-    assert lifted["contact.shear_stiffness"] == pytest.approx(4e8 * math.exp(-0.2)) and "contact.band" not in lifted
+def test_habits_are_values_of_the_scene_and_have_their_causes():
+    """A base is no number of springs, and half a weight is none."""
+    search = beside(made({}))
+    found = []
+    for softness in (0.0, 7e-4, 8e-4, -8e-4, 0.0722, 0.074, -math.log(0.98), math.log(2)):
+        for more in ({}, {"error": 2e-3}, {"along": False, "rules": "lagged"}, {"band": 2e-3, "weight": 0.7}):
+            habits = replace(Habits("consistent", softness=softness), **more)
+            found.append([habits.values(SCENE), habits.compliance(SCENE), habits.causes(search)])
+    weights = (0.0, 0.94, 0.96, 1.04, 1.06, 0.03, -50.0)
+    found += [[Habits("", weight=weight).is_usual, Habits("", weight=weight).values(SCENE)] for weight in weights]
+    assert_kept(KEPT, "habits", {"habits": summed(said(found, 1e-9))})
 
 
 def test_signs_and_a_unit_of_both_columns_are_read_off_the_first_rows(monkeypatch):

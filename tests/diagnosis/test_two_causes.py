@@ -10,7 +10,7 @@ import pytest
 from oracles.few_moves import AVERAGE, FEW, among
 
 from validation.diagnosis import families, judgement, search
-from validation.diagnosis.causes import band_interval, roundest
+from validation.diagnosis.causes import band_interval
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move
@@ -176,20 +176,3 @@ def test_a_limit_lies_between_two_that_happened(field):
     for end, outward in ((low, -1), (high, 1)):
         assert misfit(end * (1 - outward * 2e-3)) < 1e-9, "the same rows"
         assert misfit(end * (1 + outward * 2e-3)) > 1e-6, "others"
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "number"),
-    [
-        (0.93, 1.07, 1.0),
-        (2.1, 2.9, 2.0),
-        (2.41, 2.52, 2.5),
-        (8.0, 13.0, 10.0),
-        (0.00123, 0.00127, 0.0012),
-        (3.33, 3.34, 3.3),
-    ],
-)
-def test_the_roundest_number_has_the_fewest_digits(low, high, number):
-    found = roundest(low, high)
-    assert low <= found <= high
-    assert len(f"{found:.9g}") <= len(f"{(low * high) ** 0.5:.9g}")

@@ -4,6 +4,7 @@ Sentences, and numbers at the level of rounding, are none of them. `KEEP_PAGES=1
 """
 
 import dataclasses
+import math
 import os
 
 import numpy as np
@@ -54,14 +55,15 @@ def compared(request, path, *names):
             if hasattr(request.module, name):
                 patch.setattr(request.module, name, recording(getattr(request.module, name)))
         yield
-    name = f"{request.node.originalname[5:29]}{request.node.name.removeprefix(request.node.originalname)}"
+    call = getattr(request.node, "callspec", None)
+    name = " ".join([request.node.originalname[5:35], *map(str, call.indices.values() if call else ())])
     table = request.module.__name__.rpartition("test_")[2]
     before = kept(path).get(table, {})
     found = {name: summed(said(answers))} if answers else {}
-    if os.environ.get("KEEP_PAGES"):
+    if found and os.environ.get("KEEP_PAGES"):
         keep(path, table, before | found, {})
     elif found:
-        assert differing(found, {name: before.get(name)}) == {}
+        assert differing(found, {name: before.get(name, math.nan)}) == {}
 
 
 def assert_kept(path, table, found):

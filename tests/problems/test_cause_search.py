@@ -188,6 +188,10 @@ def test_what_is_tried_is_as_before():
             for change in (*tried, *module.of_output(runs, base, COLUMNS[: 1 + cheap])):
                 found.append([change.id, change.starts, change.nudge, change.value(0.3), change.words(1.3).split()[:3]])
                 found.append([change.changed(u) for u in (0.07, -0.4, 2.9, 7.0, -6.8, change.starts[-1])])
+    for scene in (SCENE, OPENING, load_scene("field-rocking"), load_scene("field-joint")):
+        for base in Runs(scene, STANDARD).schemes():
+            found.append([base.values, base.every, base.usual, base.alpha(scene.time), base.delta(scene.time)])
+            found.append([models.INTERCHANGED in base.words, base.exact])
     named = [Cause(f"C{i}", ids, dict.fromkeys(ids, 0.9), (), 1e-3 * i) for i, ids in enumerate((("gg",), ("x", "gg")))]
     found += [[module._rank(one), module._short(one)] for one in named]
     factors = (1.0, 1e-3, 0.98e-3, 970.0, 1e2)
@@ -233,35 +237,6 @@ def test_columns_are_apart_by_their_norms_and_bands():
     assert runs.apart({"displacement": math.nan * EXACT.displacement}, EXACT.columns) == math.inf
 
 
-def test_programs_step_by_these_schemes():
-    schemes = [*Runs(SCENE, STANDARD).schemes()]
-    pairs = [
-        (
-            one.values.get("time.alpha", 0.5),
-            one.values.get("time.delta", 1.0),
-            one.values.get("time.start", "zero"),
-            one.every,
-        )
-        for one in schemes
-    ]
-    assert len(pairs) == len(set(pairs)) == 22
-    assert pairs[0] == (0.5, 1.0, "zero", 1) and pairs[-4:] == [
-        (0.5, 1.0, "consistent", 2),
-        (0.25, 0.5, "consistent", 2),
-        (0.5, 1.0, "consistent", 4),
-        (0.25, 0.5, "consistent", 4),
-    ]
-    assert [pair for pair, one in zip(pairs, schemes, strict=True) if one.usual] == [
-        pairs[0],
-        (0.25, 0.5, "consistent", 1),
-    ]
-    assert [pair[:2] for pair, one in zip(pairs, schemes, strict=True) if models.INTERCHANGED in one.words] == [
-        (1.0, 0.5),
-        (0.5, 0.25),
-    ]
-    assert len([*Runs(load_scene("field-rocking"), STANDARD).schemes()]) == 1
-
-
 def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):
     monkeypatch.undo()
     ends = {
@@ -298,20 +273,6 @@ def test_springs_and_densities_that_do_the_same_are_told():
     assert " blocks" in module._scheme_sentence(base, load_scene("field-joint"))
     assert " blocks" not in module._scheme_sentence(base, load_scene("field-stack"))
     assert "damping" in module._scheme_sentence(base, SCENE.with_values({"time.gg": 0.9}))
-
-
-def test_time_runs_within_bounds_and_columns_start_where_they_are():
-    runs = Runs(SCENE, STANDARD)
-    dense = runs.dense(Base("", {}))
-    for rate, late in ((1.11, 0.0), (0.49, 0.0), (1.0, 2.01), (1.0, -2.01)):
-        assert module._moved(runs, dense, EXACT.columns, COLUMNS, rate, late) is None
-    short = History(dense.time[:50], {name: x[:50] for name, x in dense.columns.items()})
-    assert module._moved(runs, short, EXACT.columns, COLUMNS, 1.0, -0.5) is None
-    late = module._moved(runs, dense, EXACT.columns, COLUMNS[:1], 1.0, 2.0)
-    assert late["displacement"] == pytest.approx(np.r_[0.0, 0.0, dense.displacement[:48]], abs=1e-12)
-    assert late["contact_pressure"] is EXACT.columns["contact_pressure"]
-    stack = Runs(load_scene("field-stack").with_values({"time.step": 0.002, "time.steps": 50}), STANDARD)
-    assert module._moved(stack, dense, EXACT.columns, COLUMNS, 1.0, 2.0)["displacement"][0] == dense.displacement[0]
 
 
 def test_compare_is_asked_where_it_can_look(monkeypatch):

@@ -41,7 +41,7 @@ def numbers(name, factor=1.0):
     measured = [number.measure(answer) for number in posed.numbers]
     for number in ProblemHooks.of(posed.scene).shown_numbers(posed.scene) or ():
         measured.append(number.of(answer.time, answer.columns[number.column]))
-    return {f"{name} stated": summed(stated), f"{name} measured": summed(measured)}
+    return {name: summed([*stated, *measured])}
 
 
 @np.errstate(all="ignore")
