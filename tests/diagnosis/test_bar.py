@@ -39,41 +39,6 @@ def test_noise_is_what_no_recurrence_tells():
     assert bar.noise(white[:15]) == bar.noise(0 * white) == 0.0
 
 
-def test_a_remainder_is_white_by_the_statistic_of_ljung_and_box():
-    n = 60
-    draw = np.random.default_rng(2).standard_normal((2, n))
-    answers = []
-    for share in np.linspace(0, 1, 120):
-        r = draw[0] + share * 3.0 * np.sin(0.3 * np.arange(n))
-        rho = [sum(r[i] * r[i - k] for i in range(k, n)) / sum(r * r) for k in range(1, 11)]
-        statistic = n * (n + 2) * sum(one**2 / (n - k) for k, one in enumerate(rho, 1))
-        answers.append(bool(statistic <= 10 + 4 * math.sqrt(20) + 8))
-        assert bar.white(r) is answers[-1], share
-    assert {True, False} == {*answers}
-    assert bar.white(np.zeros(40)) and not bar.white(np.array([1.0, -1.0, 1.0]))
-
-
-def test_rows_stand_out_beyond_six_spreads():
-    assert bar.spread_of_most(np.array([0.0, 1.0, -2.0, 3.0, 10.0])) == pytest.approx(2 * 1.4826)
-    assert bar.spread_of_most(np.array([])) == 0.0
-    rows = np.array([0.0, -5.9, 5.9, 6.1, -6.1])
-    for spread, unit in ((1.0, 0.0), (0.6, 1.6)):
-        assert bar.outlying(rows, spread, np.full(5, unit)).tolist() == [False] * 3 + [True] * 2
-
-
-def test_a_row_deviates_by_its_digit_the_noise_and_double_precision():
-    rounding = np.array([0.0, 0.3, 0.6])
-    made = Bar(rounding, 2e6, 5.0, 0.2, np.array([True, True, False]))
-    least = (1e-8 * 2e6) ** 2
-    for remainder, spread in ((None, 0.2), (np.array([0.1, 0.1, 9.0]), 0.14826), (np.array([1.0, 1.0, 0.0]), 0.2)):
-        expected = np.sqrt(rounding**2 / 12 + spread**2 + least)
-        assert made.deviation(remainder) == pytest.approx(expected, rel=1e-12)
-    assert made.allowed == pytest.approx(1.6 * math.sqrt(0.45 / 12 + 3 * (0.04 + least)) / 5.0)
-    assert Bar.of(np.zeros(3), None).norm == 1.0
-    of_values = Bar.of(np.array([3.0, 0.0, -4.0]), None)
-    assert (of_values.size, of_values.norm, of_values.moving.tolist()) == (4.0, 5.0, [True, False, True])
-
-
 def test_what_is_left_is_held_up_to_the_bar():
     signs = np.sign(np.random.default_rng(1).standard_normal(80))
     digits = Bar(np.ones(80), 1.0, 1.0, 0.0, np.ones(80, dtype=bool))

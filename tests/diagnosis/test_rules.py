@@ -11,7 +11,7 @@ from oracles.kept_answers import assert_kept, said
 from oracles.stand_ins import summed
 
 from validation import load_scene
-from validation.diagnosis import causes, evidence, one_change, readings, search
+from validation.diagnosis import causes, evidence, families, one_change, readings, search
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.fit import NUMBERS, bounds, is_factor
@@ -20,7 +20,8 @@ from validation.diagnosis.moves import Move, moves
 from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping, steppings
-from validation.diagnosis.search import Explanation
+from validation.diagnosis.readings import Slip
+from validation.diagnosis.search import Explanation, Verdict
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 
 KEPT = Path(__file__).with_name("numbers.toml")
@@ -60,8 +61,15 @@ def digits():
     draw = np.random.default_rng(3).standard_normal(48)
     for count in (3, 7, 8, 15, 16, 20, 47, 48):
         yield bar.white(draw[:count]), bar.noise(draw[:count]), bar.spread_of_most(draw[:count])
-        fit = SimpleNamespace(residual=np.cumsum(draw[:count]))
-        yield search.Fit.independent.fget(fit)
+        yield search.Fit.independent.fget(SimpleNamespace(residual=np.cumsum(draw[:count])))
+    for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
+        of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
+        yield of_rows.allowed, of_rows.deviation()
+        for remainder in (0.15 + 0 * draw, 0.17 + 0 * draw, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
+            for further in (0.0, 1.15, 1.25):
+                rows = remainder + further * (np.arange(48) == 20)
+                yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)
+    yield bar.Bar.of(np.array([3.0, 0.0, -4.0]), None), bar.Bar.of(np.zeros(3), None)
 
 
 def decisions():
@@ -156,6 +164,34 @@ def scenes():
         yield asdict(own_variant(scene)), rectangle and [asdict(rectangle), rectangle.force, rectangle.static]
 
 
+def same_rows():
+    """Yield what gives the rows of causes, and the two causes of reversed columns."""
+    steps = np.full(30, 2e-3)
+    target = Target(BLOCK, steps, np.arange(30), np.ones((2, 30)))
+    of_gravity = replace(target, column=replace(BLOCK, gravity=9.81, pressure=0.0))
+    poisson = replace(target, column=replace(BLOCK, poisson=0.1))
+    reversed_columns = [Slip("sign", name, -1.0) for name in ("displacement", "contact_pressure")]
+    for one in (target, of_gravity, poisson):
+        for corrected in (reversed_columns, reversed_columns[:1]):
+            yield families.sign_or_gravity(one, ["sign"], corrected), families.sign_or_gravity(one, ["gg"], corrected)
+    for ids in (["density-factor"], ["springs-factor"], ["base-compliance"], ["base-compliance", "gg"]):
+        for changes in ({"density": 0.5}, {"softness": 0.03, "gg": 0.9}, {"softness": 0.03, "base": 3.0}):
+            v = replace(OWN, **changes)
+            fit = SimpleNamespace(variant=v)
+            for others in ([], [("gg",), (*ids, "gg"), ("springs-factor",)]):
+                same = [
+                    Explanation(tuple(Move(name) for name in names), fit) for names in others if "sign" not in names
+                ]
+                for one in (target, of_gravity, poisson):
+                    yield families.relatives(one, OWN, SimpleNamespace(same_rows=same), ids, v)
+    for causes_named in (("hht",), ("gg",)):
+        best = Explanation(tuple(Move(name) for name in causes_named), SimpleNamespace(variant=replace(OWN, gg=0.9)))
+        for explained in (True, False):
+            for alike in ((), (best,)):
+                verdict = Verdict(SimpleNamespace(variant=OWN), best, explained, alike, aliases=(best,))
+                yield families.as_good(target, verdict)
+
+
 def test_rules_decide_as_before():
-    tables = (departures, digits, decisions, names, fits, readings_of_rows, scenes)
+    tables = (departures, digits, decisions, names, fits, readings_of_rows, same_rows, scenes)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

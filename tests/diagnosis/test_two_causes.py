@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from oracles.few_moves import AVERAGE, FEW, among
 
-from validation.diagnosis import families, judgement, search
+from validation.diagnosis import judgement, search
 from validation.diagnosis.causes import band_interval
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
@@ -105,31 +104,6 @@ def test_a_base_is_accepted_where_without_it_much_more_is_left():
     assert not search.accepted(
         plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
     )
-
-
-def test_what_gives_the_rows_of_a_cause_is_told_with_its_numbers():
-    target = target_of(OWN)
-
-    def told_of(*ids, others=(), block=BLOCK, **numbers):
-        v = replace(OWN, **numbers)
-        fit = SimpleNamespace(variant=v)
-        same_rows = [Explanation(tuple(Move(name) for name in names), fit) for names in others]
-        told = families.relatives(replace(target, column=block), OWN, SimpleNamespace(same_rows=same_rows), ids, v)
-        return {tuple(one["causes"]): one["values"] for one in told}
-
-    half = ("density-factor",)
-    assert told_of(*half, density=0.5) == {("step-factor",): {"step-factor": pytest.approx(2**0.5, rel=1e-5)}}
-    assert told_of(*half, density=0.5, block=replace(BLOCK, gravity=9.81)) == {}
-    further = told_of("load-factor", load=1.5, others=[("load-factor", "gg"), ("gg",), ("load-factor",)])
-    assert further == {("gg",): {"gg": 1.0}, ("load-factor",): {"load-factor": 1.5}}  # not what has a part more
-    wider = {"width-factor": pytest.approx(1.03, rel=1e-5)}
-    softer = {"springs-factor": pytest.approx(1 / 1.03, rel=1e-5)}
-    base = {"softness": np.log(1.03)}
-    assert told_of("base-compliance", **base) == {("springs-factor",): softer, ("width-factor",): wider}
-    assert told_of("springs-factor", **base) == {("width-factor",): wider}
-    assert told_of("springs-factor", block=replace(BLOCK, poisson=0.1), **base) == {}
-    assert told_of("base-compliance", "gg", gg=0.9, **base) == {("gg", "springs-factor"): {"gg": 0.9} | softer}
-    assert told_of("base-compliance", "gg", gg=0.9, **base | {"base": 3.0}) == {}
 
 
 def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():

@@ -56,7 +56,7 @@ def compared(request, path, *names):
                 patch.setattr(request.module, name, recording(getattr(request.module, name)))
         yield
     call = getattr(request.node, "callspec", None)
-    name = " ".join([request.node.originalname[5:35], *map(str, call.indices.values() if call else ())])
+    name = " ".join([request.node.originalname[5:27], *map(str, call.indices.values() if call else ())])
     table = request.module.__name__.rpartition("test_")[2]
     before = kept(path).get(table, {})
     found = {name: summed(said(answers))} if answers else {}
