@@ -88,7 +88,7 @@ def decisions():
                 yield search.score(target, np.full((1, 30), 2e-3), explanation)
             fit.variant = replace(OWN, band=1e-3, reopening=1e-3, shift=1.0)
             yield search.score(target, np.full((1, 30), 2e-3), explanation)
-            yield search._together(several), [asdict(v) for v in search._starts(OWN, several)]
+            yield search._together(several), search._starts(OWN, several)
     for scene in (OWN, replace(OWN, gg=1.0, start="consistent", opens=True)):
         alone = [Explanation((by_id["density-factor"],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
         for move in search._few(target, scene, alone):

@@ -79,6 +79,11 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     lighter = pairs[frozenset(["density-factor", "load-factor"])]
     assert (stiffer.young, np.exp(-stiffer.softness)) == pytest.approx((1.2, 1.2), rel=1e-4)
     assert (lighter.density, lighter.load) == pytest.approx((1 / 1.2, 1 / 1.2), rel=1e-4)
+    both = two.best.moves
+    several = [Explanation(some, two.best.fit) for some in (both[:1], both, (*both, FEW[2]))]
+    monkeypatch.setattr(search, "relatives", lambda *given: several)
+    assert [each.ids for each in with_same_rows(target, OWN, two).alike] == [each.ids for each in several[:2]]
+    monkeypatch.undo()
     for explained in (True, False):
         alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
         assert with_same_rows(target, OWN, alone).same_rows == ()

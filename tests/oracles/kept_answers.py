@@ -18,7 +18,8 @@ LARGE = {"search", "scene", "scene_fit", "reading", "problem", "jacobian", "resi
 def said(value, least=LEAST):
     """Yield the numbers and names that are said by an answer, one by one."""
     if dataclasses.is_dataclass(value):
-        value = {field.name: getattr(value, field.name) for field in dataclasses.fields(value)}
+        fields = {field.name: (getattr(value, field.name), field.default) for field in dataclasses.fields(value)}
+        value = {name: part for name, (part, default) in fields.items() if part is not default}
     if isinstance(value, dict):
         for name in sorted(value):
             if name not in LARGE:
@@ -58,16 +59,20 @@ def compared(request, path, *names):
     call = getattr(request.node, "callspec", None)
     name = " ".join([request.node.originalname[5:27], *map(str, call.indices.values() if call else ())])
     table = request.module.__name__.rpartition("test_")[2]
+    if not answers:
+        return
+    found = {name: summed(said(answers))}
     before = kept(path).get(table, {})
-    found = {name: summed(said(answers))} if answers else {}
-    if found and os.environ.get("KEEP_PAGES"):
+    if os.environ.get("KEEP_PAGES"):
         keep(path, table, before | found, {})
-    elif found:
-        assert differing(found, {name: before.get(name, math.nan)}) == {}
+    else:
+        others = differing(found, {name: before.get(name, math.nan)})
+        assert not others, others
 
 
 def assert_kept(path, table, found):
     """Compare numbers with those that a table of a file keeps."""
     if os.environ.get("KEEP_PAGES"):
         keep(path, table, found, {})
-    assert differing(found, kept(path).get(table, {})) == {}
+    others = differing(found, kept(path).get(table, {}))
+    assert not others, others
