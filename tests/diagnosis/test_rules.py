@@ -164,6 +164,24 @@ def scenes():
         yield asdict(own_variant(scene)), rectangle and [asdict(rectangle), rectangle.force, rectangle.static]
 
 
+def parts():
+    """Yield single rows, rows that a shift leaves open, and parts of histories."""
+    draw = 1e-3 * np.random.default_rng(3).standard_normal((2, 60))
+    target = Target(
+        BLOCK, np.full(60, 2e-3), np.arange(60), np.linspace([1, 30], [2, -40], 60).T, np.full((2, 60), 0.6)
+    )
+    for rows in ((), (0,), (2,), (59,), (1, 30), (20, 40, 50), (20, 21, 40), (20, 21, 22), (10, 20, 30, 40)):
+        wrong = draw.copy()
+        wrong[0, list(rows)] += 0.1
+        yield replace(target, rounding=None).outlying((wrong / target.scales).ravel())
+    yield target.values, target.floor, target.scales, target.parts(target.values), target.deviations(target.values)
+    for changes in ({"shift": -2}, {"late": 0.5}, {"shift": 1, "late": 2.5}, {}):
+        for steps in (3, 23, 24, 30):
+            part = replace(target, left_out=draw > 1e-3).until(steps)
+            yield len(part.rows), part.steps, part.recorded, part.left_out.tolist(), part.values
+            yield part.inner(np.arange(2.0 * len(part.rows)), replace(OWN, **changes)).tolist()
+
+
 def same_rows():
     """Yield what gives the rows of causes, and the two causes of reversed columns."""
     steps = np.full(30, 2e-3)
@@ -193,5 +211,5 @@ def same_rows():
 
 
 def test_rules_decide_as_before():
-    tables = (departures, digits, decisions, names, fits, readings_of_rows, same_rows, scenes)
+    tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

@@ -44,7 +44,6 @@ def told(theirs, columns=2, scene=OWN):
 @pytest.mark.parametrize(
     ("theirs", "ids", "numbers"),
     [
-        ({"gg": 0.96} | AVERAGE, ("scheme", "gg"), {"gg": 0.96}),
         (
             {"viscous": 9.0, "structural": 3e-4},
             ("viscous-damping", "stiffness-damping"),

@@ -35,7 +35,13 @@ def number_of(name, factor=1.0):
     """Return the number of all that a problem says in numbers, and of what it measures on a stand-in."""
     posed = problem(name)
     answer = history(posed.scene, factor=factor)
-    stated = [len(posed.instants), float(posed.instants[-1]), *posed.columns, *map(posed.unit, posed.columns)]
+    stated = [
+        posed.title == posed.scene.title,
+        len(posed.instants),
+        float(posed.instants[-1]),
+        *posed.columns,
+        *map(posed.unit, posed.columns),
+    ]
     for number in posed.numbers:
         stated += [number.exact, number.low, number.high, number.scale, number.optional]
     measured = [number.measure(answer) for number in posed.numbers]

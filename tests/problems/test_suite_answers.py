@@ -40,13 +40,6 @@ def test_at_fine_steps_dda_passes(name):
     assert judge(one, sampled).status is Status.PASS
 
 
-@pytest.mark.parametrize("name", each(("locked", "opening")))
-def test_by_habit_dda_damps(name):
-    """Alpha = 1/2, delta = 1, one step an instant: as DDA codes are run."""
-    judgement = judge(problem(name), get_solver("dda").solve(problem(name).scene).history)
-    assert judgement.status is Status.FAIL and 1 < judgement.deciding.beside < 1e3
-
-
 @pytest.mark.parametrize("name", each(tuple(ASKS)))
 def test_the_page_has_the_bands(name):
     """One by one, or from the least to the largest."""
