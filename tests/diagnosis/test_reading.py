@@ -21,12 +21,16 @@ def written(tmp_path, text):
     return path
 
 
-def test_the_measured_point_of_ntdda():
+def test_the_measured_point_of_ntdda(tmp_path):
     found = read(EXAMPLE)
     assert len(found.time) == 200
     assert found.displacement[0] == -1.839377e-03
     assert found.displacement[-1] == -1.008814e-02
     np.testing.assert_allclose(found.steps, 0.002)
+    fewer = tmp_path / "fewer.m"
+    lines = EXAMPLE.read_text().splitlines()
+    fewer.write_text("\n".join([*lines[:9], *lines[10:]]))
+    np.testing.assert_allclose(read(fewer).displacement, np.delete(found.displacement, 5), rtol=1e-6)
 
 
 def test_a_point_is_picked_by_name(tmp_path):

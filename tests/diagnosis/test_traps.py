@@ -51,7 +51,7 @@ def named(answer, causes, values):
 def test_a_scheme_and_a_discount_are_named_together(monkeypatch):
     monkeypatch.setattr(judgement, "rivals_of", lambda scene: ())
     among(monkeypatch, FEW)
-    answer = judged(alpha=0.25, delta=0.5, gg=0.96)
+    answer = judged(replace(PLAIN, steps=30), alpha=0.25, delta=0.5, gg=0.96)
     assert (answer.causes, answer.values) == (["scheme", "gg"], {"gg": pytest.approx(0.96)})
 
 

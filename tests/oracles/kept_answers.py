@@ -4,6 +4,7 @@ Sentences, and numbers at the level of rounding, are none of them. `KEEP_PAGES=1
 """
 
 import dataclasses
+import functools
 import math
 import os
 
@@ -37,6 +38,9 @@ def said(value, least=LEAST):
         yield float(value) if abs(value) > least else 0.0
 
 
+kept_answers = functools.cache(kept)
+
+
 def compared(request, path, *names):
     """Run a test, then compare what the functions of these names, which its module imports, have answered."""
     if request.node.get_closest_marker("long"):
@@ -57,15 +61,15 @@ def compared(request, path, *names):
                 patch.setattr(request.module, name, recording(getattr(request.module, name)))
         yield
     call = getattr(request.node, "callspec", None)
-    name = " ".join([request.node.originalname[5:27], *map(str, call.indices.values() if call else ())])
+    name = " ".join([request.node.originalname[5:27], *map(str, dict.fromkeys(call.indices.values()) if call else ())])
     table = request.module.__name__.rpartition("test_")[2]
     if not answers:
         return
     found = {name: summed(said(answers))}
-    before = kept(path).get(table, {})
     if os.environ.get("KEEP_PAGES"):
-        keep(path, table, before | found, {})
+        keep(path, table, kept(path).get(table, {}) | found, {})
     else:
+        before = kept_answers(path).get(table, {})
         others = differing(found, {name: before.get(name, math.nan)})
         assert not others, others
 

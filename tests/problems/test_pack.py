@@ -16,8 +16,7 @@ from validation.problems.judge import judge
 from validation.problems.problem import names
 from validation.runs.defects import DefectsError
 
-QUICK = ("locked", "rocking", "column", "mass-ratio")
-OF_COLUMNS = ("column", "mass-ratio")
+QUICK = ("locked", "rocking", "column")
 BOXES = ("standing", "pile", "toppling-spin-0.95-of-critical")
 FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody", "scheme": "s",
           "step_s": None, "contact_model": "c", "processor": "p", "licence": "CC0-1.0"}  # fmt: skip
