@@ -158,7 +158,6 @@ def test_an_answer_names_the_law_with_what_each_leaves_and_when_both_corners_are
             False,
         ),
         ({"contact.cohesion": 3e4}, "cohesion", 3e4, False),
-        ({"block.young": 1.1e9}, "young-factor", 1.1, True),
         ({"contact.shear_stiffness": 4.4e8}, "shear-springs-factor", 1.1, False),
     ],
 )

@@ -62,7 +62,6 @@ def changed(**columns):
 
 FACTORS = [
     ({"contact.stiffness": 1.3e9}, "springs-factor", 1.3),
-    ({"contact.stiffness": 1e6}, "springs-factor", 1e-3),
     ({"damping.stiffness": 3e-5}, "stiffness-damping", 3e-5),
     ({"contact.law": "unilateral"}, "contact-opened", None),
 ]
@@ -91,8 +90,7 @@ def test_rows_and_columns_may_be_wrong_by_themselves():
     late = moved(late=0.4)
     for history, name, value, word in (
         (changed(displacement=1.07 * x), "factor", 1.07, "displacement is"),
-        (changed(**moved(late=-1.3)), "shift", -1.3, "all columns are 1.3 steps early"),
-        (changed(contact_pressure=late["contact_pressure"]), "shift", 0.4, "contact_pressure is"),
+        (changed(contact_pressure=late["contact_pressure"]), "shift", 0.4, "contact_pressure is 0.4 steps late"),
     ):
         one = found(history)
         assert one.ids == (name,), word
