@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from validation.diagnosis import evidence
 from validation.diagnosis.fits import bar
 from validation.diagnosis.fits.bar import Bar
-from validation.diagnosis.fits.fit import Fit, intervals
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.variant import Variant
 
@@ -41,41 +38,6 @@ def test_noise_is_what_no_recurrence_tells():
     assert bar.noise(white[:15]) == bar.noise(0 * white) == 0.0
 
 
-def test_a_remainder_is_white_by_the_statistic_of_ljung_and_box():
-    n = 60
-    draw = np.random.default_rng(2).standard_normal((2, n))
-    answers = []
-    for share in np.linspace(0, 1, 120):
-        r = draw[0] + share * 3.0 * np.sin(0.3 * np.arange(n))
-        rho = [sum(r[i] * r[i - k] for i in range(k, n)) / sum(r * r) for k in range(1, 11)]
-        statistic = n * (n + 2) * sum(one**2 / (n - k) for k, one in enumerate(rho, 1))
-        answers.append(bool(statistic <= 10 + 4 * math.sqrt(20) + 8))
-        assert bar.white(r) is answers[-1], share
-    assert {True, False} == {*answers}
-    assert bar.white(np.zeros(40)) and not bar.white(np.array([1.0, -1.0, 1.0]))
-
-
-def test_rows_stand_out_beyond_six_spreads():
-    assert bar.spread_of_most(np.array([0.0, 1.0, -2.0, 3.0, 10.0])) == pytest.approx(2 * 1.4826)
-    assert bar.spread_of_most(np.array([])) == 0.0
-    rows = np.array([0.0, -5.9, 5.9, 6.1, -6.1])
-    for spread, unit in ((1.0, 0.0), (0.6, 1.6)):
-        assert bar.outlying(rows, spread, np.full(5, unit)).tolist() == [False] * 3 + [True] * 2
-
-
-def test_a_row_deviates_by_its_digit_the_noise_and_double_precision():
-    rounding = np.array([0.0, 0.3, 0.6])
-    made = Bar(rounding, 2e6, 5.0, 0.2, np.array([True, True, False]))
-    least = (1e-8 * 2e6) ** 2
-    for remainder, spread in ((None, 0.2), (np.array([0.1, 0.1, 9.0]), 0.14826), (np.array([1.0, 1.0, 0.0]), 0.2)):
-        expected = np.sqrt(rounding**2 / 12 + spread**2 + least)
-        assert made.deviation(remainder) == pytest.approx(expected, rel=1e-12)
-    assert made.allowed == pytest.approx(1.6 * math.sqrt(0.45 / 12 + 3 * (0.04 + least)) / 5.0)
-    assert Bar.of(np.zeros(3), None).norm == 1.0
-    of_values = Bar.of(np.array([3.0, 0.0, -4.0]), None)
-    assert (of_values.size, of_values.norm, of_values.moving.tolist()) == (4.0, 5.0, [True, False, True])
-
-
 def test_what_is_left_is_held_up_to_the_bar():
     signs = np.sign(np.random.default_rng(1).standard_normal(80))
     digits = Bar(np.ones(80), 1.0, 1.0, 0.0, np.ones(80, dtype=bool))
@@ -94,88 +56,3 @@ def test_what_is_left_is_held_up_to_the_bar():
     noisy = Bar(np.zeros(80), 1.0, 1.0, 0.1, np.ones(80, dtype=bool))
     wave = np.sin(0.2 * np.arange(80))
     assert noisy.holds(0.1 * wave) and not noisy.holds(0.15 * wave)
-
-
-def test_single_rows_are_few_and_apart_and_not_the_first():
-    target = column(np.linspace(1, 2, 60))
-    remainder = 1e-3 * np.random.default_rng(3).standard_normal(60)
-
-    def standing_out(*rows):
-        wrong = remainder.copy()
-        wrong[list(rows)] += 0.1
-        rows_of = target.outlying(wrong / target.scales[0])
-        return None if rows_of is None else np.flatnonzero(rows_of[0]).tolist()
-
-    for rows in ((2,), (59,), (20, 40, 50), (20, 21, 40)):
-        assert standing_out(*rows) == [*rows]
-    for rows in ((), (0,), (1, 30), (20, 21, 22), (10, 20, 30, 40)):
-        assert standing_out(*rows) is None
-
-
-def test_rows_that_a_shift_leaves_open_are_not_judged():
-    target = column(np.ones(24))
-    joined = np.ones(24)
-    assert np.sum(target.inner(joined, OWN)) == 24
-    for changes, left in (({"shift": -2}, 20), ({"late": 0.5}, 22), ({"shift": 1, "late": 2.5}, 18)):
-        inner = target.inner(joined, SimpleNamespace(**({"shift": 0, "late": 0.0} | changes)))
-        assert np.sum(inner) == left and inner[12] == 1
-    few = column(np.ones(23))
-    assert np.sum(few.inner(np.ones(23), SimpleNamespace(shift=1, late=0))) == 23
-    cut = column(np.arange(40.0) + 1).until(30)
-    assert (len(cut.rows), len(cut.steps), cut.recorded[0, -1]) == (30, 30, 30.0)
-    assert len(column(np.ones(40)).until(3).rows) == 24
-
-
-def test_two_columns_weigh_the_same():
-    recorded = np.array([[3.0, 4.0], [30.0, -40.0]])
-    target = Target(None, np.ones(2), np.arange(2), recorded, np.full((2, 2), 0.6))
-    assert target.values == pytest.approx(np.array([0.6, 0.8, 0.6, -0.8]) / math.sqrt(2))
-    assert target.parts(target.values) == pytest.approx(recorded)
-    shares = [0.6**2 / 12 / 25 * 2, 0.6**2 / 12 / 2500 * 2]
-    assert target.floor == pytest.approx(math.sqrt(sum(shares) / 2))
-    assert column([0.0, 0.0]).scales.tolist() == [[1.0]]
-
-
-def test_a_number_is_known_by_as_many_rows_as_are_independent():
-    def fitted(residual):
-        residual = np.asarray(residual, dtype=float)
-        return Fit(OWN, ("gg",), float(np.linalg.norm(residual)), residual, np.full((len(residual), 1), 2.0))
-
-    for residual, count in (
-        ([1, 1, -1, -1] * 5, 20 * 0.95 / 1.05),
-        ([1, -1] * 10, 20),
-        ([1] * 9 + [-1] * 3, 6),
-        ([1] * 4, 4),
-        ([0] * 9, 9),
-    ):
-        assert fitted(residual).independent == pytest.approx(count)
-    one = intervals(fitted([1, 1, -1, -1] * 5))["gg"]
-    assert one.value == 1.0 and 0 < one.half_width < intervals(fitted([2, 2, -2, -2] * 5))["gg"].half_width
-
-
-def test_a_history_grows_by_a_factor_a_step_where_the_scene_does_not():
-    still = np.ones(90)
-    grows = 1.2 ** np.arange(90.0)  # to 1.1e7
-    assert evidence.growth(grows, still) == pytest.approx(1.2)
-    assert evidence.growth(grows, 1e6 * still) is None  # as anything that the scene does
-    assert evidence.growth(grows, 1e4 * still) == pytest.approx(1.2)
-    assert evidence.growth(1e5 * grows, 1e3 * grows) is None  # so does the scene
-    assert evidence.growth(2e9 * still, still) == pytest.approx(1.0)  # no unit is so wrong
-    assert evidence.growth(0.9e9 * still, still) is None
-
-
-@pytest.mark.parametrize(
-    ("name", "file", "scene", "agrees", "ratio"),
-    [
-        ("frequency", 100.09, 100.0, True, 1.0009),
-        ("frequency", 100.11, 100.0, False, 1.0011),
-        ("frequency", -99.89, -100.0, False, 0.9989),
-        ("damping", 0.0005, -0.0004, True, -1.25),
-        ("damping", 0.0015, 0.0, False, None),
-        ("damping", None, 0.1, None, None),
-    ],
-)
-def test_a_measured_number_stands_beside_the_scene_s(name, file, scene, agrees, ratio):
-    stage = evidence._beside(name, "has", "1/s", file, scene, 1e-3)
-    assert stage.agrees is agrees
-    assert stage.numbers == {"file": file, "scene": scene, "ratio": ratio if ratio is None else pytest.approx(ratio)}

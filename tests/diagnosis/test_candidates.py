@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from oracles.stand_ins import differing, keep, kept, numbers_in, summed
+from oracles.kept_answers import assert_kept
+from oracles.stand_ins import numbers_in, summed
 
 from validation.diagnosis.columns import of_scene
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.diagnosis.moves import moves
 from validation.diagnosis.one_change import of_discount, of_numbers, of_schemes
+from validation.diagnosis.slopes import candidates as of_slope
 from validation.diagnosis.variant import Rectangle, Variant
 from validation.scenes.scene import load_scene
 
@@ -69,6 +70,8 @@ def changes_of(scene):
     ]
     if scene.column is not None and scene.column.law != "bonded":
         candidates += of_scene(scene)
+    if scene.name == "field-sliding":
+        candidates += of_slope(scene)
     for change in candidates:
         number = change.value(-0.2)
         yield change.id, "none" if np.isnan(number) else number, change.starts, change.changed(-0.2)
@@ -89,6 +92,4 @@ def test_what_is_tried_is_as_before():
     for name, (rectangle, variant) in VARIANTS.items():
         for kind, steps, columns in (("equal", np.full(30, 2e-3), 2), ("unequal", 2e-3 + 1e-4 * np.arange(30.0), 1)):
             found[f"moves {name} {kind}"] = summed(numbers_in([*moves_of(rectangle, variant, steps, columns)]))
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "candidates", found, {})
-    assert differing(found, kept(KEPT)["candidates"]) == {}
+    assert_kept(KEPT, "candidates", found)

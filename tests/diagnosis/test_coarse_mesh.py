@@ -48,12 +48,3 @@ def test_a_number_is_found_on_a_coarse_mesh_and_borne_out_on_the_fine_one(runs, 
     assert (best.id, best.value, best.explains) == ("density-factor", pytest.approx(1.4, rel=1e-6), True)
     assert not any(other.explains for other in others)
     assert runs[COARSE + 2] < runs[COARSE]
-
-
-@pytest.mark.long
-def test_what_no_candidate_comes_near_on_a_coarse_mesh_costs_no_runs_on_the_fine_one(runs, monkeypatch):
-    seams.RIVAL_SLIPS.put(monkeypatch, {"young-factor"})
-    theirs = solve(fine_scene(), "fem")
-    wave = np.sin(np.arange(1.0, STEPS + 1))
-    assert explanations(np.array([theirs.displacement * wave, theirs.contact_pressure])) == []
-    assert runs[COARSE + 2] <= 2  # the scene's own, with its springs as they are and shifted

@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from oracles.few_moves import only
+from oracles.kept_answers import assert_kept
 from oracles.made_cases import line_in
+from oracles.stand_ins import numbers_in, summed
 
 from validation import load_scene, solve
 from validation.cli import compare as cli_compare
@@ -22,8 +25,6 @@ from validation.diagnosis.causes import (
     CAUSES,
     benign_springs,
     compliance,
-    round_factor,
-    values_of,
     words_of,
 )
 from validation.diagnosis.evidence import Departure, Stage
@@ -31,6 +32,7 @@ from validation.diagnosis.fits.fit import Interval
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
+from validation.diagnosis.schemes import FAMILIES, other_names
 from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
@@ -38,6 +40,7 @@ from validation.report.chapters import compare as chapters_compare
 from validation.report.figures import histories as figures
 from validation.report.figures.curves import style_of
 
+KEPT = Path(__file__).with_name("numbers.toml")
 STAGES = tuple(
     Stage(name, agrees, "words", {}) for name, agrees in (("at_rest", True), ("period", False), ("load", None))
 )
@@ -69,14 +72,6 @@ def test_a_base_that_adds_two_per_cent_is_benign():
     assert found == pytest.approx({"springs-factor": 1 / 1.04, "width-factor": 1.04}, rel=1e-5)
     # what is no fault is taken over into what is expected
     assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
-
-
-@pytest.mark.parametrize(
-    ("factor", "error", "is_round"),
-    [(0.5, 1e-4, True), (0.8, 0.0, True), (1 / 1.1, 1e-5, True), (1 / 1.04, 0.0, False), (0.5, 0.01, False)],
-)
-def test_a_round_factor_has_two_digits_that_are_known(factor, error, is_round):
-    assert round_factor(factor, error) is is_round
 
 
 def target(**changes):
@@ -134,63 +129,48 @@ def test_rows_that_are_shifted_by_a_step_are_said_so(late, monkeypatch):
 # ---- words --------------------------------------------------------------------------------------------------------
 
 
-NUMBERS = {"springs-factor": 0.25, "load-factor": 1.25, "density-factor": 0.5, "young-factor": 0.8, "dead-band": 1e-3,
-           "reported-point": 1.0, "pressure-factor": 0.5, "side-factor": 1.1, "poisson": 0.3}  # fmt: skip
-
-
-def said(causes, soft=0.0, **fields):
-    variant = Variant(**({"alpha": 0.5, "delta": 1.0, "gg": 0.97} | fields))
-    scene = Variant(0.25, 0.5, 0.99, "consistent")
-    gone = Departure(7, "phase")
-    further = {"open_steps": "3-5, 9", "scheme": wording.scheme_of(scene)}
-    numbers = values_of(BLOCK, causes, variant) | NUMBERS | {"base-compliance": soft}
-    words = {name: words_of(name, numbers.get(name, 0.0), variant, scene, **further) for name in causes}
-    return wording.sentence(wording.Subject(wording.scheme_of(variant), words, gone, wording.remaining(0.0123)))
-
-
-@pytest.mark.parametrize("cause", sorted(name for name, cause in CAUSES.items() if not cause.benign))
-def test_each_fault_is_told_with_its_number(cause):
-    """Whatever a sentence of the catalogue holds is filled in."""
-    text = said([cause])
-    assert cause not in NUMBERS or f"{NUMBERS[cause]:.5g}" in text
-    assert "{" not in text and " 7 " in text and " 1.2 %" in text
-
-
-@pytest.mark.parametrize(
-    ("cause", "fields", "word"),
-    [
-        ("gg-in-one-formula", {"discounted": "velocity"}, "V1"),
-        ("time-shift", {"shift": -1}, "early"),
-        ("time-shift", {"shift": 2}, "late"),
-        ("reported-point", {"point": 1.0}, "top"),
-        ("pressure-shift", {"late": 0.5}, "mean"),
-        ("load-row", {"strain_load": -1.0}, "sign"),
-        ("coupling", {"coupling": 0.0}, "missing"),
-        ("contact-opened", {"opens": True}, wording.span([3, 4, 5, 9])),
-    ],
-)
-def test_numbers_that_have_words_are_told_by_them(cause, fields, word):
-    assert word in said([cause], **fields)
-
-
-def test_the_answer_by_another_solver_is_told_with_its_numbers():
-    fault = wording.Subject("SCHEME", {"scheme": "FAULT"}, Departure(7, "phase"), "LEFT", model="BAR")
-    for subject, words in ((fault, ("7", "phase", "FAULT")), (replace(fault, words={}), ())):
-        text = wording.sentence(subject)
-        assert all(text.count(word) == 1 for word in ("SCHEME", "BAR", "LEFT", *words))
-
-
-def test_what_is_not_explained_names_the_nearest_and_what_is_right_and_wrong():
-    about = wording.Subject("", {}, Departure(7, "phase"), "")
-    near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98, "density-factor": 1.01}}
-    text = wording.not_explained(about, near, 0.034, STAGES)
-    for word in ("7", "phase", "gg 0.98", "density-factor 1.01", "3.4 %", "period"):
-        assert word in text
-    assert text.index(STAGES[0].name.replace("_", " ")) < text.index("period")  # right ones before wrong ones
+def test_sentences_are_as_before():
+    """Their numbers, and which of them are the same: of every cause, of schemes, of what is not explained."""
+    fields = [
+        {"discounted": "velocity"},
+        {"discounted": "(7)"},
+        {"kept": "springs"},
+        {"kept": "stress"},
+        {"point": 1.0},
+    ]
+    fields += [{"family": family, "spectral": 0.4} for family in (*FAMILIES, "newmark")]
+    fields += [{"contact": contact} for contact in ("impact", "mean gap")] + [
+        {"alpha": 1.0, "delta": 0.5, "gg": 0.9801}
+    ]
+    variants = [replace(OWN, **changes) for changes in fields]
+    numbers = (-1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.0, 12.0)
+    scene = replace(OWN, alpha=0.5, delta=1.0, gg=0.99, start="consistent")
+    near = {"causes": ["gg", "density-factor"], "values": {"gg": 0.98}}
     alike = [near | {"further_scene": "FURTHER"}, {"causes": ["scheme"], "values": {}, "further_scene": ""}]
-    text = wording.not_explained(replace(about, alike=alike), None, 0.034, STAGES)
-    for word in ("density-factor 1.01", "scheme", "FURTHER"):
-        assert word in text
+    about = wording.Subject("SCHEME", {"gg": "GG", "own-weight": "WEIGHT"}, Departure(7, "phase"), "LEFT", (), "BAR")
+    about_output = replace(about, words={"pressure-shift": "SHIFT"}, model="", departure=None)
+    columns = [("displacement", 3, 0.02), ("contact_pressure", 9, 0.1)]
+    of_causes = []
+    for name in CAUSES:
+        texts = [words_of(name, value, OWN, scene, scheme="S") for value in numbers]
+        texts += [words_of(name, 0.5, v, scene, scheme="S") for v in variants]
+        of_causes += [[texts.index(text), len(text.split()) - len(texts[0].split())] for text in texts]
+        of_causes += [NUMBER.findall(text) for text in texts]
+        assert not any("{" in text for text in texts), name
+    found = {
+        "of schemes": [wording.scheme_of(v) + other_names(v) for v in (*variants, replace(OWN, exact=True))],
+        "of several": [
+            *(wording.sentence(replace(one, alike=same)) for one in (about, about_output) for same in ((), alike)),
+            *(wording.not_explained(about, near, left, STAGES) for left in (0.034, 0.49, 0.51)),
+            wording.not_explained(replace(about, alike=alike), None, 0.034, ()),
+            *(wording.span(steps) for steps in ([3], [3, 4], [3, 4, 5, 9, 11, 12])),
+            *(evidence.words_of_rows(several) for several in (columns[:1], columns, 2 * columns)),
+            wording.diverged(Departure(7, "phase"), 1.23456),
+        ],
+    }
+    for name, texts in found.items():
+        found[name] = summed(numbers_in([[texts.index(text), NUMBER.findall(text)] for text in texts]))
+    assert_kept(KEPT, "sentences", found | {"of causes": summed(numbers_in(of_causes))})
 
 
 # ---- where and how a history departs ------------------------------------------------------------------------------
@@ -210,20 +190,6 @@ WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
 )
 def test_the_manner_of_a_departure(kind, given):
     assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
-
-
-@pytest.mark.parametrize(
-    ("rows", "noise", "step"),
-    [
-        (np.arange(200), 0.0, 100),
-        (4 * np.arange(200) + 3, 0.0, 400),  # every fourth step was recorded
-        (np.arange(200), 0.002, 100),
-        (np.arange(200), 0.003, 150),  # four standard deviations hide one per cent
-    ],
-)
-def test_the_first_step_of_a_departure_is_counted_from_one(rows, noise, step):
-    given = WANTED + 0.01 * (T > 0.4975) + 0.01 * (T > 0.7475)  # rows 100 and 150
-    assert evidence.measured(WANTED, given, rows, noise).step == step
 
 
 # ---- what is printed ----------------------------------------------------------------------------------------------

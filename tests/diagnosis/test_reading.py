@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from faults import seams
-from oracles.sliding_block import Plain, history, write_measured_point
 
 from validation.diagnosis import reading
 from validation.diagnosis.reading import MOST_STEPS, Foreign, parse_columns, parse_scale, read, steppings
@@ -22,21 +21,16 @@ def written(tmp_path, text):
     return path
 
 
-def test_the_measured_point_of_ntdda():
+def test_the_measured_point_of_ntdda(tmp_path):
     found = read(EXAMPLE)
     assert len(found.time) == 200
     assert found.displacement[0] == -1.839377e-03
     assert found.displacement[-1] == -1.008814e-02
     np.testing.assert_allclose(found.steps, 0.002)
-
-
-def test_signs_of_a_measured_point_that_rises_above_its_start(tmp_path):
-    program = Plain(dt=5e-4, steps=60, q=-5e6, p=2e9, updated=True)
-    made = history(program)
-    assert made.displacement.min() >= 0 or made.displacement.max() > 0
-    found = read(write_measured_point(made, tmp_path / "m.m", program.dt))
-    # seven digits of each size
-    np.testing.assert_allclose(found.displacement, made.displacement, rtol=1e-6)
+    fewer = tmp_path / "fewer.m"
+    lines = EXAMPLE.read_text().splitlines()
+    fewer.write_text("\n".join([*lines[:9], *lines[10:]]))
+    np.testing.assert_allclose(read(fewer).displacement, np.delete(found.displacement, 5), rtol=1e-6)
 
 
 def test_a_point_is_picked_by_name(tmp_path):
@@ -91,31 +85,10 @@ def history_at(times):
     return Foreign(np.asarray(times, dtype=float), np.ones(len(times)))
 
 
-def test_times_name_the_steps():
-    step, eight = 0.002, np.arange(1, 9)
-    every = steppings(history_at(step * eight), step)
-    assert [(len(s.steps), s.note) for s in every] == [(8, "")]
-    third = steppings(history_at(3 * step * eight), step)
-    np.testing.assert_array_equal(third[0].rows, 3 * eight - 1)
-    assert " 3 " in third[0].note and "0.006" in third[1].note
-    (some, *_) = steppings(history_at(step * np.array([1, 2, 4, 7, 9])), step)
-    np.testing.assert_array_equal(some.rows, [0, 1, 3, 6, 8])
-    for times, steps in ((0.0005 * eight, 0.0005), ([0.001, 0.0021, 0.0033, 0.0041], [0.001, 0.0011, 0.0012, 0.0008])):
-        (other, *_) = steppings(history_at(times), step)
-        np.testing.assert_allclose(other.steps, steps)
-        assert other.note != some.note != ""
-
-
 def test_a_program_s_own_steps_may_begin_late():
     late = [one for one in steppings(history_at(0.0007 * np.arange(5, 13)), 0.002) if " 5" in one.note]
     (rows,) = (one.rows for one in late)
     np.testing.assert_array_equal(rows, np.arange(4, 12))
-
-
-def test_times_in_milliseconds_are_a_slip_of_units():
-    found = steppings(history_at(2.0 * np.arange(1, 9)), 0.002)[0]
-    assert found.factor == 1000
-    np.testing.assert_allclose(found.steps, 0.002)
 
 
 # ---- histories that would take hours to judge -----------------------------------------------------------------------
@@ -146,12 +119,6 @@ def test_rows_too_many_steps_apart_are_refused(name):
 
 def test_as_many_steps_as_are_allowed_are_taken():
     assert steppings(at_steps(1, 2, 3, 4, MOST_STEPS), STEP)[0].rows[-1] == MOST_STEPS - 1
-
-
-def test_uniform_rows_far_apart_are_the_program_s_own_steps():
-    """A scene with a tiny step, a program with a large one: two hundred steps, not two million."""
-    found = steppings(Foreign(0.02 * np.arange(1, 201), -np.ones(200)), 1e-6)
-    assert [len(s.steps) for s in found] == [200]
 
 
 def test_too_many_rows_are_refused_before_they_are_parsed(tmp_path, monkeypatch):

@@ -58,7 +58,7 @@ OPENED = [
 @pytest.mark.parametrize("opens", [False, True])
 def test_candidates_step_as_the_recursions_of_the_papers(opens):
     body = Body(p=1e10)
-    dt, steps, gg = 2e-4, 60, 0.98
+    dt, steps, gg = 2e-4, 40, 0.98
     variants = []
     runs = []
     for method, numbers, changes in OPENED if opens else STEPPED:

@@ -6,10 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from oracles.few_moves import only
+from oracles.few_moves import FEW, among, only
 from oracles.program_scenes import scene_of
 from oracles.sliding_block import Plain, run
 
+from validation.diagnosis import judgement
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 
@@ -47,10 +48,17 @@ def named(answer, causes, values):
     assert answer.unexplained == 0 and answer.misfit < 1e-9
 
 
+def test_a_scheme_and_a_discount_are_named_together(monkeypatch):
+    monkeypatch.setattr(judgement, "rivals_of", lambda scene: ())
+    among(monkeypatch, FEW)
+    answer = judged(replace(PLAIN, steps=30), alpha=0.25, delta=0.5, gg=0.96)
+    assert (answer.causes, answer.values) == (["scheme", "gg"], {"gg": pytest.approx(0.96)})
+
+
 def test_a_run_that_diverges_is_told_so_and_nothing_else():
     answer = judged(replace(PLAIN, dt=0.01), alpha=0.05, delta=0.5)
     assert answer.causes == ["diverged"] and answer.departs
-    assert answer.values["diverged"] > 1.5
+    assert answer.values == {"diverged": 14.2068}
 
 
 @pytest.mark.long

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from oracles.few_moves import AVERAGE, FEW, among
 
-from validation.diagnosis import families, judgement, search
-from validation.diagnosis.causes import band_interval, roundest
+from validation.diagnosis import judgement, search
+from validation.diagnosis.causes import band_interval
 from validation.diagnosis.fits.fit import fit_one
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move
@@ -45,7 +44,6 @@ def told(theirs, columns=2, scene=OWN):
 @pytest.mark.parametrize(
     ("theirs", "ids", "numbers"),
     [
-        ({"gg": 0.96} | AVERAGE, ("scheme", "gg"), {"gg": 0.96}),
         (
             {"viscous": 9.0, "structural": 3e-4},
             ("viscous-damping", "stiffness-damping"),
@@ -58,26 +56,14 @@ def told(theirs, columns=2, scene=OWN):
         ),
     ],
 )
-def test_two_causes_are_found_where_one_explains_nothing(theirs, ids, numbers):
+def test_two_causes_are_found_where_one_explains_nothing(theirs, ids, numbers, monkeypatch):
+    among(monkeypatch, [move for move in FEW if move.id in (*ids, *search.SURROUNDINGS, "gg")])
     _, one, two = told(replace(OWN, **theirs))
     assert not one.explains and one.single[0].fit.misfit <= one.single[-1].fit.misfit
     assert two.explained and {*two.best.ids} == {*ids}
     found = two.best.fit
     assert {name: getattr(found.variant, name) for name in numbers} == pytest.approx(numbers, rel=1e-4)
     assert found.misfit < 1e-7 and two.left < 1e-5
-
-
-def test_what_surrounds_a_block_is_found_by_itself():
-    theirs = replace(OWN, weight=0.97, softness=0.02, point=1.0)
-    _, one, _ = told(theirs)
-    assert one.explained and {*one.best.ids} == {*search.SURROUNDINGS}
-    heavy = replace(OWN, base=7.0, softness=0.03)
-    _, one, _ = told(heavy)
-    assert one.best.ids == ("springs-factor",) and one.explained
-    assert (one.best.fit.variant.base, one.best.fit.variant.softness) == (
-        pytest.approx(7.0, rel=1e-3),
-        pytest.approx(0.03, rel=1e-3),
-    )
 
 
 def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
@@ -93,19 +79,14 @@ def test_two_factors_of_a_product_stand_for_two_others(monkeypatch):
     lighter = pairs[frozenset(["density-factor", "load-factor"])]
     assert (stiffer.young, np.exp(-stiffer.softness)) == pytest.approx((1.2, 1.2), rel=1e-4)
     assert (lighter.density, lighter.load) == pytest.approx((1 / 1.2, 1 / 1.2), rel=1e-4)
+    both = two.best.moves
+    several = [Explanation(some, two.best.fit) for some in (both[:1], both, (*both, FEW[2]))]
+    monkeypatch.setattr(search, "relatives", lambda *given: several)
+    assert [each.ids for each in with_same_rows(target, OWN, two).alike] == [each.ids for each in several[:2]]
+    monkeypatch.undo()
     for explained in (True, False):
         alone = Verdict(two.scene_fit, Explanation((), two.scene_fit), explained)
         assert with_same_rows(target, OWN, alone).same_rows == ()
-
-
-def test_candidates_of_pairs_begin_where_they_are_best_alone_and_change_different_things():
-    alone = [Explanation((FEW[3],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
-    few = {move.id: move for move in search._few(target_of(OWN), OWN, alone)}
-    assert few["density-factor"].starts == (1.7,)
-    assert few["springs-factor"].starts == (-0.3,)
-    assert [move.changes for move in search._few(target_of(OWN), OWN, alone) if move.id == "scheme"] == [AVERAGE]
-    assert search._together(FEW[3:6]) and not search._together(FEW[:2])
-    assert not search._together([FEW[2], Move("start", {"gg": 1.0})])
 
 
 def test_two_variants_are_one_program_at_every_step():
@@ -128,31 +109,6 @@ def test_a_base_is_accepted_where_without_it_much_more_is_left():
     assert not search.accepted(
         plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
     )
-
-
-def test_what_gives_the_rows_of_a_cause_is_told_with_its_numbers():
-    target = target_of(OWN)
-
-    def told_of(*ids, others=(), block=BLOCK, **numbers):
-        v = replace(OWN, **numbers)
-        fit = SimpleNamespace(variant=v)
-        same_rows = [Explanation(tuple(Move(name) for name in names), fit) for names in others]
-        told = families.relatives(replace(target, column=block), OWN, SimpleNamespace(same_rows=same_rows), ids, v)
-        return {tuple(one["causes"]): one["values"] for one in told}
-
-    half = ("density-factor",)
-    assert told_of(*half, density=0.5) == {("step-factor",): {"step-factor": pytest.approx(2**0.5, rel=1e-5)}}
-    assert told_of(*half, density=0.5, block=replace(BLOCK, gravity=9.81)) == {}
-    further = told_of("load-factor", load=1.5, others=[("load-factor", "gg"), ("gg",), ("load-factor",)])
-    assert further == {("gg",): {"gg": 1.0}, ("load-factor",): {"load-factor": 1.5}}  # not what has a part more
-    wider = {"width-factor": pytest.approx(1.03, rel=1e-5)}
-    softer = {"springs-factor": pytest.approx(1 / 1.03, rel=1e-5)}
-    base = {"softness": np.log(1.03)}
-    assert told_of("base-compliance", **base) == {("springs-factor",): softer, ("width-factor",): wider}
-    assert told_of("springs-factor", **base) == {("width-factor",): wider}
-    assert told_of("springs-factor", block=replace(BLOCK, poisson=0.1), **base) == {}
-    assert told_of("base-compliance", "gg", gg=0.9, **base) == {("gg", "springs-factor"): {"gg": 0.9} | softer}
-    assert told_of("base-compliance", "gg", gg=0.9, **base | {"base": 3.0}) == {}
 
 
 def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
@@ -183,36 +139,16 @@ def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
 STIFF = replace(BLOCK, young=3e9, density=2900.0, normal=6e10, shear=6e10, pressure=6e6)
 
 
-@pytest.mark.parametrize("field", ["band", "hold"])
-def test_a_limit_lies_between_two_that_happened(field):
-    steps = np.full(60, 2e-4)
-    theirs = replace(OWN, opens=True, **{field: 1e-3 if field == "band" else 3e-5})
-    target = target_of(theirs, 1, STIFF, steps)
-    cause = {"band": "dead-band", "hold": "opening-tension"}[field]
-    unit = 1.0 if field == "band" else STIFF.normal / STIFF.width
-    low, high = band_interval(target, theirs, cause)
-    assert low < getattr(theirs, field) * unit < high
+def test_a_limit_lies_between_two_that_happened():
+    theirs = replace(OWN, opens=True, hold=3e-5)
+    target = target_of(theirs, 1, STIFF, np.full(60, 2e-4))
+    unit = STIFF.normal / STIFF.width
+    low, high = band_interval(target, theirs, "opening-tension")
+    assert low < theirs.hold * unit < high
 
     def misfit(limit):
-        return fit_one(target, replace(theirs, **{field: limit / unit})).misfit
+        return fit_one(target, replace(theirs, hold=limit / unit)).misfit
 
     for end, outward in ((low, -1), (high, 1)):
         assert misfit(end * (1 - outward * 2e-3)) < 1e-9, "the same rows"
         assert misfit(end * (1 + outward * 2e-3)) > 1e-6, "others"
-
-
-@pytest.mark.parametrize(
-    ("low", "high", "number"),
-    [
-        (0.93, 1.07, 1.0),
-        (2.1, 2.9, 2.0),
-        (2.41, 2.52, 2.5),
-        (8.0, 13.0, 10.0),
-        (0.00123, 0.00127, 0.0012),
-        (3.33, 3.34, 3.3),
-    ],
-)
-def test_the_roundest_number_has_the_fewest_digits(low, high, number):
-    found = roundest(low, high)
-    assert low <= found <= high
-    assert len(f"{found:.9g}") <= len(f"{(low * high) ** 0.5:.9g}")

@@ -46,8 +46,6 @@ def test_a_row_printed_twice_is_told_by_its_step(slip, causes, monkeypatch):
 @pytest.mark.parametrize(
     ("base", "size", "seed"),
     [
-        (replace(STIFF, steps=80), 1e-6, 2),
-        (Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-6, 0),
         (Plain(steps=60, alpha=0.25, delta=0.5, gg=0.95), 1e-5, 0),
         (Plain(steps=60), 1e-3, 1),
     ],

@@ -56,19 +56,6 @@ def test_a_wider_band_is_worse_at_either_edge(band, kind):
     assert same_band(None, None) and not same_band(None, tuple(band)) and not same_band(tuple(band), None)
 
 
-def test_only_what_differs_is_told_and_the_worse_first():
-    old = [verdict("a", "PASS"), verdict("b", "PASS"), verdict("c", "FAIL", 3.0), verdict("d", "PASS", "undefined")]
-    new = [
-        verdict("a", "PASS"),
-        verdict("b", "FAIL", 2.0),
-        verdict("c", "FAIL", 3.5),
-        verdict("d", "PASS", "undefined"),
-    ]
-    assert [(c.kind, c.id) for c in changes(old, new)] == [("worse", "b"), ("value", "c")]
-    moved = [verdict("a", "PASS", 0.5), *new[1:]]
-    assert [(c.kind, c.id) for c in changes(old, moved)] == [("worse", "b"), ("value", "a"), ("value", "c")]
-
-
 def test_a_summary_counts_and_tells_what_failed_and_what_changed():
     old = [verdict("a", "PASS"), verdict("c`", "PASS", "undefined"), verdict("g", "FAIL", study="t")]
     new = [

@@ -48,13 +48,6 @@ def test_what_a_band_is_about_and_the_way_to_its_edges():
     assert gate(3.0, 3.0 + 6e-9).margin(3.0) == pytest.approx(0.0, abs=1e-6)  # of 1e-9 and no less
 
 
-def test_a_gate_has_an_id_and_its_cases():
-    assert gate(pair=("dda",), until=0.25).id == "s[a=1]:dda:displacement.l2@0.25s"
-    assert gate(against="fine").id == "s[a=1]:dda-bar(fine):displacement.l2"
-    assert gate(against="fine").cases == [("s[a=1]", "dda"), ("fine", "bar")]
-    assert gate().cases[1] == ("s[a=1]", "bar") and gate(pair=("dda",)).cases == [("s[a=1]", "dda")]
-
-
 def test_a_record_is_rounded_well_above_the_last_bits():
     one = gate(-math.inf, 1.2345678901234567, reference_uncertainty=0.5, reference_kind="bound")
     assert judge(one, 0.123456789).record("mine") == {

@@ -264,6 +264,7 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"pack": ...}, "pack", "nothing"),
         ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings", ANSWERS_TEMPLATE["settings"]),
         ({"wo": "x"}, "wo", "'x'"),
+        ({"program": "\u7a0b"}, "program", "'\u7a0b'"),
         ({"who": 2001 * "x"}, "who", 2001 * "x"),
         ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),
         ({"step_s": "0.002"}, "step_s", "'0.002'"),
@@ -279,11 +280,6 @@ def test_a_wrong_field_is_named(fields, field, value, tmp_path):
     ((place, found, shown),) = defects_of(answered(tmp_path, names=("locked",), **fields))
     assert place.startswith(f"{FILE}:") and found == field
     assert shown.strip("'")[:50] == value.strip("'")[:50]
-
-
-def test_words_of_the_greatest_length_are_taken(tmp_path):
-    place = answered(tmp_path, names=("locked",), who=2000 * "x", settings_name=60 * "x")
-    assert read_sets(place)[0].data.settings_name == 60 * "x"
 
 
 @pytest.mark.parametrize(
@@ -306,6 +302,10 @@ def test_tables_alone_answer_problems_and_scenes_of_ones_own(tmp_path):
     (tmp_path / "locked.csv").write_text(text_of(rows_of()))
     answers = read_tables(tmp_path, [problem("locked"), problem("opening"), own]).answers
     assert [answer.name for answer in answers] == ["locked", "mine"]
+    (tmp_path / "opening.csv").write_text("")
+    with pytest.raises(DefectsError):
+        read_tables(tmp_path, [problem("locked"), problem("opening")])
+    (tmp_path / "opening.csv").unlink()
     assert read_tables(tmp_path / "mine.csv", [own]).answers[0].problem is own
     stated(tmp_path)
     ((answer, _),) = [one.answers for one in read_sets(tmp_path, own={"locked": problem("locked"), "mine": own})]

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from validation.diagnosis.hooks import DiagnosisHooks
 from validation.gates.gate import Status
 from validation.problems import cause as module
 from validation.problems.bands import standard
@@ -43,20 +42,6 @@ def test_ddas_habit_and_another_integrator():
     assert (habit.ids, habit.values["alpha"]) == (("scheme",), 0.5)
     passing = fine("locked", {}, round(asked.scene.time.step / habit.passing_step), scheme={})
     assert judge(asked, passing).status is Status.PASS
-
-
-def test_what_gives_the_same_rows_has_one_name():
-    """A program may be wrong in Poisson's ratio, the speed below the base or an inertia: no datum of its own."""
-    scene = problem("column").scene
-    found = {number.id: number for number in DiagnosisHooks.of(scene).numbers(scene)}
-    doubled = scene.with_values(found["base-factor"].changed(scene, 2.0))
-    assert doubled.column.impedance == pytest.approx(2 * scene.column.impedance)
-    assert "impedance" in found["base-factor"].name
-    assert "Poisson" in found["young-factor"].name
-    for name, words in (("rocking", "moment of inertia"), ("sliding", "gravity")):
-        scene = problem(name).scene
-        named = {number.id: number.name for number in DiagnosisHooks.of(scene).numbers(scene)}
-        assert words in named["gravity-factor"]
 
 
 @pytest.mark.long

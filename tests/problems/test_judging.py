@@ -4,22 +4,9 @@ import numpy as np
 import pytest
 
 from validation.gates.gate import Status
-from validation.problems.problem import problem
 from validation.runs.history import History
 from validation.runs.run import Outcome, Run
 from validation.suite import judging
-
-
-def test_a_solver_of_the_suite_answers_what_it_takes():
-    labels = []
-    asked = [problem("locked"), problem("rocking")]
-    answers = judging.answers_of("dda-textbook", asked, lambda *label: labels.append(label))
-    assert labels == [(0, 2, "dda-textbook locked"), (1, 2, "dda-textbook rocking")]
-    locked, rocking = answers.answers
-    assert (locked.name, len(locked.history.time), locked.warnings) == ("locked", asked[0].scene.time.steps, ())
-    assert 0 < locked.seconds < 60
-    assert (rocking.history, rocking.status) == (None, Status.NOT_APPLICABLE)
-    assert (answers.program, answers.address[-1]) == ("dda-textbook", "")
 
 
 @pytest.mark.parametrize(

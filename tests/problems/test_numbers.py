@@ -8,6 +8,7 @@ import os
 from pathlib import Path
 
 import numpy as np
+from oracles.kept_answers import assert_kept
 from oracles.stand_ins import differing, history, keep, kept, numbers_in, summed
 
 from validation.problems.problem import ProblemHooks, names, problem
@@ -30,17 +31,23 @@ SCENES = {  # beside those of the problems, whose digests `packs.json` keeps
 }
 
 
-def numbers(name, factor=1.0):
+def number_of(name, factor=1.0):
     """Return the number of all that a problem says in numbers, and of what it measures on a stand-in."""
     posed = problem(name)
     answer = history(posed.scene, factor=factor)
-    stated = [len(posed.instants), float(posed.instants[-1]), *posed.columns, *map(posed.unit, posed.columns)]
+    stated = [
+        posed.title == posed.scene.title,
+        len(posed.instants),
+        float(posed.instants[-1]),
+        *posed.columns,
+        *map(posed.unit, posed.columns),
+    ]
     for number in posed.numbers:
         stated += [number.exact, number.low, number.high, number.scale, number.optional]
     measured = [number.measure(answer) for number in posed.numbers]
     for number in ProblemHooks.of(posed.scene).shown_numbers(posed.scene) or ():
         measured.append(number.of(answer.time, answer.columns[number.column]))
-    return {f"{name} stated": summed(stated), f"{name} measured": summed(measured)}
+    return summed(stated) + summed(measured)
 
 
 @np.errstate(all="ignore")
@@ -48,9 +55,10 @@ def test_problems_ask_and_measure_as_before():
     found = {}
     changed = {}
     for name in names():
-        found |= numbers(name)
+        family = name.partition("-")[0]
+        found[family] = found.get(family, 0.0) + number_of(name)
         if os.environ.get("KEEP_PAGES"):
-            changed |= numbers(name, 1 + 1e-11)
+            changed[family] = changed.get(family, 0.0) + number_of(name, 1 + 1e-11)
     if os.environ.get("KEEP_PAGES"):
         keep(KEPT, "problems", found, changed)
     assert differing(found, kept(KEPT)["problems"]) == {}
@@ -61,6 +69,4 @@ def test_scenes_are_stated_as_before():
     found = {}
     for name, (scene, values) in SCENES.items():
         found[name] = summed(numbers_in(scene_data(load_scene(scene).with_values(values))))
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "scenes", found, {})
-    assert differing(found, kept(KEPT)["scenes"]) == {}
+    assert_kept(KEPT, "scenes", found)

@@ -41,12 +41,6 @@ def test_another_question_has_another_digest(values):
     assert digest(replace(one, scene=fewer)) != digest(one)
 
 
-def test_other_words_are_the_same_question():
-    one = problem("locked")
-    other = one.scene.with_values({"title": "another title", "run.solvers": ["dda"]})
-    assert digest(replace(one, scene=other, asks="WORDS")) == digest(one)
-
-
 def test_an_answer_to_an_earlier_pack_stands_where_the_question_is_the_same(monkeypatch):
     now = packs.packs()[PACK]
     earlier = {"1.9": {"locked": "0" * 16, "opening": now["opening"], "gone": "1" * 16}, PACK: now}

@@ -19,7 +19,7 @@ from validation.solvers.registry import get_solver
 
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; of a block that turns, which takes long
 OF_BLOCKS = ("locked", "opening", "sliding", "rocking", "column")
-QUICK = ("locked", "column", "mass-ratio")  # to have an exact motion, and to run
+QUICK = ("locked", "column")  # to have an exact motion, and to run
 PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
 
 
@@ -38,13 +38,6 @@ def test_at_fine_steps_dda_passes(name):
     rows = slice(every - 1, None, every)
     sampled = History(history.time[rows], {column: x[rows] for column, x in history.columns.items()})
     assert judge(one, sampled).status is Status.PASS
-
-
-@pytest.mark.parametrize("name", each(("locked", "opening")))
-def test_by_habit_dda_damps(name):
-    """Alpha = 1/2, delta = 1, one step an instant: as DDA codes are run."""
-    judgement = judge(problem(name), get_solver("dda").solve(problem(name).scene).history)
-    assert judgement.status is Status.FAIL and 1 < judgement.deciding.beside < 1e3
 
 
 @pytest.mark.parametrize("name", each(tuple(ASKS)))

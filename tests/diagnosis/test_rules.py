@@ -1,0 +1,215 @@
+"""Rules of the diagnosis over tables of cases on both sides of their limits, as numbers kept in `numbers.toml`."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+from oracles.kept_answers import assert_kept, said
+from oracles.stand_ins import summed
+
+from validation import load_scene
+from validation.diagnosis import causes, evidence, families, one_change, readings, search
+from validation.diagnosis.evidence import Departure
+from validation.diagnosis.fits import bar
+from validation.diagnosis.fits.fit import NUMBERS, bounds, is_factor
+from validation.diagnosis.fits.target import Target
+from validation.diagnosis.moves import Move, moves
+from validation.diagnosis.numbers import CandidateChange
+from validation.diagnosis.one_change import Fitted
+from validation.diagnosis.reading import Foreign, Stepping, steppings
+from validation.diagnosis.readings import Slip
+from validation.diagnosis.search import Explanation, Verdict
+from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
+
+KEPT = Path(__file__).with_name("numbers.toml")
+BLOCK = Rectangle(2.0, 1.5, 2700.0, 1e9, 0.0, False, 2e9, 1.5e9, 5e6)
+OWN = Variant(0.5, 1.0, 0.99)
+SCENE = load_scene("figures-3-4")
+N = np.arange(1, 9)
+IDS = ("gg", "scheme", "hht", "contact-dashpot", "springs-factor", "own-weight", "viscous-damping", "dead-band")
+
+
+def departures():
+    """Yield first rows and manners of departures, and growths."""
+    for rows in (5, 24, 45):
+        t = np.arange(1, rows + 1) / rows
+        swing = np.exp(-2 * t) * np.cos(9 * t)
+        expected = swing - 1
+        late = np.cos(9.2 * t) * np.exp(-2 * t)
+        for change in (0.04 * t**0, 0.1 * swing, -0.3 * t * swing, late - swing, 0 * t, 9e-4 * t, 2.2e-3 * t):
+            for noise in (0.0, 4e-4):
+                yield asdict(evidence.measured(expected, expected + change, 3 * np.arange(rows) + 2, noise))
+        for factor in (1.0, 1.3, 2.5):
+            grows = factor ** np.arange(float(rows))
+            yield evidence.growth(grows, 0 * t + 1), evidence.growth(grows, 50 * t), evidence.growth(0 * t, 0 * t)
+            yield asdict(evidence.unbounded(0 * t + 1, grows, np.arange(rows)))
+    single_rows = [("displacement", 7, 0.03), ("contact_pressure", 4, 0.2)]
+    for departure in (None, Departure(3, "phase"), Departure(4, "phase"), Departure(9, "phase")):
+        yield asdict(evidence.earlier(departure, single_rows))
+    for numbers in ((1.0, 1.0), (1.0, 1.0009), (1.0, 1.0011), (-4e-4, 4e-4), (-2.0, 1e-7), (3.0, None), (2e-3, 0.0)):
+        for name in ("statics", "damping"):
+            yield asdict(evidence._beside(name, "is", "m", *numbers, 1e-3))
+
+
+def digits():
+    """Yield units of last digits, and what is left of rows."""
+    for values in ([5.0, 3.0], [0.05, 0.012, 100.0], [1 / 3, 2.0], [-250.0, 1e-30], [1e22, 0.0], [0.5]):
+        yield bar.last_digits(np.array(values)).tolist()
+    draw = np.random.default_rng(3).standard_normal(48)
+    for count in (3, 7, 8, 15, 16, 20, 47, 48):
+        yield bar.white(draw[:count]), bar.noise(draw[:count]), bar.spread_of_most(draw[:count])
+        yield search.Fit.independent.fget(SimpleNamespace(residual=np.cumsum(draw[:count])))
+    for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
+        of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
+        yield of_rows.allowed, of_rows.deviation()
+        for remainder in (0.15 + 0 * draw, 0.17 + 0 * draw, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
+            for further in (0.0, 1.15, 1.25):
+                rows = remainder + further * (np.arange(48) == 20)
+                yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)
+    yield bar.Bar.of(np.array([3.0, 0.0, -4.0]), None), bar.Bar.of(np.zeros(3), None)
+
+
+def decisions():
+    """Yield what explanations score, whether they stand out, and of which several causes are made."""
+    target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), np.ones((1, 30)))
+    by_id = {move.id: move for move in moves(target, OWN)} | {"dead-band": Move("dead-band", {}, ("band",))}
+    draw = np.random.default_rng(5).standard_normal(30)
+    for first in IDS:
+        for second in ("", "density-factor", "geometry-updated"):
+            several = tuple(by_id[name] for name in (first, second) if name)
+            free = tuple(name for move in several for name in move.free)
+            for misfit in (3e-6, 1.2e-3, 1.2e-2, 0.2):
+                fit = SimpleNamespace(free=free, misfit=misfit, residual=misfit * draw, variant=OWN)
+                explanation = Explanation(several, fit)
+                yield search._stands_out(target, SimpleNamespace(misfit=0.9), explanation)
+                yield search.score(target, np.full((1, 30), 2e-3), explanation)
+            fit.variant = replace(OWN, band=1e-3, reopening=1e-3, shift=1.0)
+            yield search.score(target, np.full((1, 30), 2e-3), explanation)
+            yield search._together(several), search._starts(OWN, several)
+    for scene in (OWN, replace(OWN, gg=1.0, start="consistent", opens=True)):
+        alone = [Explanation((by_id["density-factor"],), SimpleNamespace(variant=replace(OWN, density=1.7)))]
+        for move in search._few(target, scene, alone):
+            yield move.id, dict(move.changes), move.free, [*move.starts]
+
+
+def names():
+    """Yield what fitted variants are called, with their numbers."""
+    for soft in (-0.02, 0.0, 1e-4, 0.03, 0.1, np.log(2.0), 0.4):
+        for base in (0.0, 7.0):
+            v = replace(OWN, softness=soft, base=base, hold=2e-4, band=1e-3, point=-0.5, load=1.2, gravity=0.5)
+            for error in (0.0, 3e-3, 0.2):
+                yield causes.is_base(BLOCK, v, error), causes.round_factor(np.exp(-soft), error)
+            for more in ({}, {"family": "hht", "spectral": 0.2}, {"alpha": 0.25}, {"start": "consistent"}):
+                for ids in (IDS, ("springs-factor", "opening-tension"), ("rigid-contact", "start"), ("dead-band",)):
+                    yield causes.causes_of(BLOCK, ids, replace(v, **more), OWN, 1e-3)
+            yield causes.values_of(BLOCK, [*causes.CAUSES], v)
+    for name in NUMBERS:
+        yield name, bounds(name, OWN), bounds(name, replace(OWN, family="hht")), is_factor(name)
+    for low, high in ((0.93, 1.07), (2.1, 2.9), (0.00123, 0.00127), (8.0, 13.0), (33.3, 33.4), (0.96, 1.9)):
+        yield causes.roundest(low, high)
+
+
+def fits():
+    """Yield where fits of one number end, after how many runs."""
+    for target, start, hopeless in ((0.3, 0.1, 1e9), (0.3, 2.5, 1e9), (9.0, 0.1, 1e-3), (-0.2, 0.0, 1e-3)):
+        for rounds in (2, 3, 8):
+            calls = []
+
+            def residual(u, calls=calls, target=target):
+                calls.append(u)
+                return np.array([np.exp(u) - np.exp(target), 0.1 * u, np.tanh(9 * u)])
+
+            change = CandidateChange("gg", str, np.exp, lambda u: {}, (start, 0.5, 1.0))
+            best = one_change.fitted(residual, Fitted(change, start, np.inf), rounds, 1e-5, hopeless=hopeless)
+            begun = one_change.nearest_start(residual, change)
+            yield round(best.u, 6), round(best.remainder, 6), len(calls), begun.u, round(begun.remainder, 6)
+    several = [Fitted(change, float(i), remainder) for i, remainder in enumerate((3.0, 1.0, 2.0, 8.0))]
+    for number, least in ((1, 0.0), (2, 0.0), (2, 3.0), (9, 0.0)):
+        yield [one.u for one in one_change.nearest(several, number, least)], one_change.nearest([], number, least)
+        yield [one.u for one in one_change.alike(several, lambda one: one.remainder, float(number), least)]
+
+
+def readings_of_rows():
+    """Yield how times, signs and units are read."""
+    for times in (N, 3 * N, 1e-3 * N, 1e3 * N, 0.7 * N, 0.7 * (N + 4), N + (N > 4), N**1.2, N + 0.5, 1.0004 * N):
+        foreign = Foreign(2e-3 * np.asarray(times, dtype=float), -np.ones(8))
+        for changing in (None, np.full(8, 2e-3), 2e-3 * N):
+            for one in steppings(replace(foreign, steps=changing), 2e-3):
+                yield one.steps.tolist(), one.rows.tolist(), one.note, one.factor
+    swing = -1 + np.cos(0.4 * N)
+    for sign, factor in ((1, 1.0), (-1, 1.0), (1, 2e3), (-1, 700.0), (1, 1e-3), (1, 20.0)):
+        foreign = Foreign(2e-3 * N, sign * factor * swing, -sign * 1e6 * factor * swing)
+        for given in (foreign, replace(foreign, pressure=None), replace(foreign, pressure=0 * swing)):
+            for one in readings.slips(given, Stepping(np.full(8, 2e-3), N - 1), swing, 1e6 * swing):
+                yield [asdict(slip) for slip in one.corrected], one.recorded.tolist()
+
+
+def scenes():
+    """Yield what is taken of scenes."""
+    opens = {"contact.law": "unilateral"}
+    for values in (
+        {"load.gravity": 3.0, "load.ramp": 0.1, "time.gg": 0.9},
+        opens | {"contact.band": [1e-3, 4e-4]},
+        opens | {"contact.band": [0.0, 4e-4]},
+        opens | {"contact.gap": 0.1},
+        {"load.eccentricity": 0.1},
+        {"block.poisson": 0.2, "contact.shear_stiffness": 3.0, "time.scheme": "hht", "time.rho_inf": 0.7},
+        {"time.scheme": "composite", "time.rho_inf": 0.2, "time.split": 0.4},
+    ):
+        scene = SCENE.with_values(values)
+        rectangle = rectangle_of(scene)
+        yield asdict(own_variant(scene)), rectangle and [asdict(rectangle), rectangle.force, rectangle.static]
+
+
+def parts():
+    """Yield single rows, rows that a shift leaves open, and parts of histories."""
+    draw = 1e-3 * np.random.default_rng(3).standard_normal((2, 60))
+    target = Target(
+        BLOCK, np.full(60, 2e-3), np.arange(60), np.linspace([1, 30], [2, -40], 60).T, np.full((2, 60), 0.6)
+    )
+    for rows in ((), (0,), (2,), (59,), (1, 30), (20, 40, 50), (20, 21, 40), (20, 21, 22), (10, 20, 30, 40)):
+        wrong = draw.copy()
+        wrong[0, list(rows)] += 0.1
+        yield replace(target, rounding=None).outlying((wrong / target.scales).ravel())
+    yield target.values, target.floor, target.scales, target.parts(target.values), target.deviations(target.values)
+    for changes in ({"shift": -2}, {"late": 0.5}, {"shift": 1, "late": 2.5}, {}):
+        for steps in (3, 23, 24, 30):
+            part = replace(target, left_out=draw > 1e-3).until(steps)
+            yield len(part.rows), part.steps, part.recorded, part.left_out.tolist(), part.values
+            yield part.inner(np.arange(2.0 * len(part.rows)), replace(OWN, **changes)).tolist()
+
+
+def same_rows():
+    """Yield what gives the rows of causes, and the two causes of reversed columns."""
+    steps = np.full(30, 2e-3)
+    target = Target(BLOCK, steps, np.arange(30), np.ones((2, 30)))
+    of_gravity = replace(target, column=replace(BLOCK, gravity=9.81, pressure=0.0))
+    poisson = replace(target, column=replace(BLOCK, poisson=0.1))
+    reversed_columns = [Slip("sign", name, -1.0) for name in ("displacement", "contact_pressure")]
+    for one in (target, of_gravity, poisson):
+        for corrected in (reversed_columns, reversed_columns[:1]):
+            yield families.sign_or_gravity(one, ["sign"], corrected), families.sign_or_gravity(one, ["gg"], corrected)
+    for ids in (["density-factor"], ["springs-factor"], ["base-compliance"], ["base-compliance", "gg"]):
+        for changes in ({"density": 0.5}, {"softness": 0.03, "gg": 0.9}, {"softness": 0.03, "base": 3.0}):
+            v = replace(OWN, **changes)
+            fit = SimpleNamespace(variant=v)
+            for others in ([], [("gg",), (*ids, "gg"), ("springs-factor",)]):
+                same = [
+                    Explanation(tuple(Move(name) for name in names), fit) for names in others if "sign" not in names
+                ]
+                for one in (target, of_gravity, poisson):
+                    yield families.relatives(one, OWN, SimpleNamespace(same_rows=same), ids, v)
+    for causes_named in (("hht",), ("gg",)):
+        best = Explanation(tuple(Move(name) for name in causes_named), SimpleNamespace(variant=replace(OWN, gg=0.9)))
+        for explained in (True, False):
+            for alike in ((), (best,)):
+                verdict = Verdict(SimpleNamespace(variant=OWN), best, explained, alike, aliases=(best,))
+                yield families.as_good(target, verdict)
+
+
+def test_rules_decide_as_before():
+    tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes)
+    assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})
