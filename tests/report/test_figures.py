@@ -22,14 +22,6 @@ def test_thin_keeps_ends_and_every_spike():
     assert np.array_equal(ty, y[tx.astype(int)])
 
 
-@pytest.mark.parametrize(
-    ("places", "nudged"),
-    [([0.5, 0.5], [0.45, 0.55]), ([1.0, 0.95, 1.0], [0.9, 0.8, 1.0]), ([0.0] * 3, [0.0, 0.1, 0.2]), ([0.3], [0.3])],
-)
-def test_names_are_nudged_apart_as_little_as_they_may_within_their_limits(places, nudged):
-    assert curves.nudge(places, 0.1, 0.0, 1.0) == pytest.approx(nudged)
-
-
 def test_each_solver_has_one_style_and_no_two_share_it():
     styles = [curves.style_of(name) for name in SOLVERS]
     assert len({(s.color, s.dash) for s in styles}) == len(SOLVERS)

@@ -37,13 +37,6 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 
-def test_what_is_rounding_decides_nothing(drawn, tmp_path):
-    """Which of two cases is shown would depend on the processor."""
-    cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
-    (block,) = lead_figure(made_group(*cases), tmp_path)
-    assert block.caption.startswith("dt = 0.002 s, of 2 ")
-
-
 def test_a_count_that_is_none_is_no_small_number():
     assert value_cell(0.0, "displacement.fine_settling_step") == "0" and value_cell(0.0, "displacement.l2") == "<10⁻¹²"
     numbers = (Quantity("openings", "1", 0.0, 5.0), Quantity("damping ratio", "1", 0.0, 0.1))
