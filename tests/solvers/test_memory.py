@@ -71,6 +71,7 @@ def test_a_machine_that_does_not_say_what_is_available_says_what_it_has(monkeypa
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
+    monkeypatch.setattr(memory, "UNNOTICED", 0.0)
     monkeypatch.setattr(memory, "available", lambda: 1.0)
     run_study(scene_study(str(path)), results)
     (row,) = results.rows().values()
