@@ -179,7 +179,7 @@ def made_results(directory):
 
 def figure_text(figure):
     """Return what a figure shows, a line for each thing on it, without what depends on fonts or rounding."""
-    lines = []
+    lines = [f"{_short(25.4 * figure.get_size_inches())} mm"]
     for axes in figure.axes:
         place = (25.4 * np.outer([1, 1], figure.get_size_inches())).ravel() * axes.get_position().bounds
         off = "" if axes.axison else " off"

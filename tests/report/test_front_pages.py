@@ -12,9 +12,10 @@ from validation.report.front import front_chapter, front_pages
 # ---- the pages ------------------------------------------------------------------------------------------------------
 
 
-def test_the_first_pages_say_what_was_found(kept, core_results, drawn, tmp_path):
+def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, drawn, tmp_path):
     front = front_chapter(core_results, ["core"], tmp_path)
     kept("front", front_pages(front, {}, [])[1:])
+    kept_figures("figures-front", {}, drawn)
     damping, error = drawn["first.svg"].axes
     x, y = max((line[1:] for line in lines_of(damping)), key=lambda line: line[0].size)
     assert np.interp(2.0, x, y) == pytest.approx(16.02, abs=0.02)
