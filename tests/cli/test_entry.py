@@ -1,7 +1,9 @@
 """The entry point: no traceback and no warning for numbers out of range, the version, and a command that is none."""
 
 import importlib.metadata
+import io
 import signal
+import sys
 
 import numpy as np
 import pytest
@@ -69,6 +71,15 @@ def test_a_reader_that_has_gone_is_no_failure(monkeypatch):
     monkeypatch.setattr(entry, "command_line", lambda: fail)
     done = typed("list")
     assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_full_output_is_one_line(monkeypatch):
+    class Full(io.StringIO):
+        def flush(self):
+            raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(entry, "command_line", lambda: lambda **options: setattr(sys, "stdout", Full()))
+    assert refused("list") == "error: standard output: No space left on device\n"
 
 
 def test_a_module_that_is_nowhere_is_refused_before_anything_runs():

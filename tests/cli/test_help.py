@@ -86,9 +86,9 @@ def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
         started.set()
 
     monkeypatch.setattr("rich.progress.Progress.start", start)
-    monkeypatch.setattr("rich.progress.Progress.stop", lambda bar: stopped.append(bar.live.is_started))
+    monkeypatch.setattr("rich.progress.Progress.stop", lambda bar: stopped.append((bar.live.is_started, bar.disable)))
     monkeypatch.setattr("validation.problems.pack.write_pack", work)
     assert typed("export-pack", "pack", cwd=tmp_path).stderr == "error: shown\n"
-    assert stopped == [True]
+    assert stopped == [(True, True)]  # of no terminal it is not drawn
     monkeypatch.setattr("validation.problems.pack.write_pack", lambda *arguments: 7)
     assert re.fullmatch(r"wrote pack: 7 [a-z ]+\n", typed("export-pack", "pack", cwd=tmp_path).stdout)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from oracles.made_cases import line_in, lines_of, rules_of
 
-from validation.report.chapters.gates import verdict_line
+from validation.report.chapters.gates import not_passed, verdict_line
 from validation.report.figures.curves import GREY, style_of
 from validation.report.figures.model import model_figure
 from validation.report.front import front_chapter, front_pages
@@ -16,6 +16,9 @@ def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, dr
     front = front_chapter(core_results, ["core"], tmp_path)
     kept("front", front_pages(front, {}, [])[1:])
     kept_figures("figures-front", {}, drawn)
+    failed = core_results.verdicts()[:1]
+    failed[0] |= {"verdict": "FAIL"}
+    assert len(front_pages(front, {}, failed)) - len(front_pages(front, {}, [])) == 1 + len(not_passed(failed))
     damping, error = drawn["first.svg"].axes
     x, y = max((line[1:] for line in lines_of(damping)), key=lambda line: line[0].size)
     assert np.interp(2.0, x, y) == pytest.approx(16.02, abs=0.02)
