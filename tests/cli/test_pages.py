@@ -113,6 +113,7 @@ def desk():
         np.savetxt(place / f"{name}.csv", rows.T, "%.6g", ",", header=header, comments="")
     (place / "broken.py").write_text(BROKEN)
     (place / "mine.toml").write_text(SCENE.replace(", SOLVER", ""))
+    (place / "latin.toml").write_bytes(b"title = '\xe9'")
     (place / "answers").mkdir()
     (place / "answers/locked.csv").touch()
     (place / "twin").mkdir()

@@ -44,6 +44,12 @@ def kept():
     return check
 
 
+@pytest.fixture
+def kept_text():
+    """Hold lines to a page in `pages`."""
+    return lambda name, lines: _held(name, "".join(f"{line.strip()}\n" for line in lines if line.strip()))
+
+
 def is_told(word):
     """Whether a word is a number, a key, a sign or has one."""
     return re.search(r"[\d|@_=]", word) is not None

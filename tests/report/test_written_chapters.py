@@ -110,6 +110,7 @@ parts = [
     { heading = "Shown", figure = "chart", table = "cases", after = "said" },
     { heading = "Never", table = "nothing" },
     { text = "said", when = ["nowhere"] },
+    { table = "measured" },
     { maps = "steps" },
     { maps = "nothing" },
     { picture = "scenes" },
@@ -172,6 +173,9 @@ columns = [
     { title = "", of = "time.step", form = "g", pattern = "{}, {}", also = [{ of = "* work.unknowns", digits = 1 }] },
     { title = "v", of = "* displacement.static", decimals = 2, where = { "time.step" = 0.01 } },
 ]
+[table.measured]
+measured = true
+columns = [{ title = "dt", of = "time.step", form = "g" }, { title = "r", of = "closed: ratio", digits = 2 }]
 [table.nothing]
 of = "nowhere"
 columns = [{ title = "v", of = "dda displacement.static" }]
@@ -188,6 +192,7 @@ lines = [
     { x_ends = [0.0, 1.0], y = "closed: ratio", name = "level" },
 ]
 [panel.b]
+x_ticks = [[1.0, "one"]]
 [[panel.b.lines]]
 where = { "time.step" = 0.01 }
 history = "dda"
