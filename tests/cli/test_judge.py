@@ -293,4 +293,5 @@ def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypa
     np.savetxt(
         f"mine/{scene.name}.csv", rows * [1, 1.01, 1.01], "%r", ";", header=f"time;{';'.join(columns)}", comments=""
     )
-    assert typed("judge", "mine/", "--study", "own-solver").returncode == 1
+    done = typed("judge", "mine/", "--study", "own-solver")
+    assert done.returncode == 1 and "FAIL" in done.stdout

@@ -43,6 +43,13 @@ def test_an_end_says_once_that_it_was_one_and_has_the_status_of_the_first_signal
     assert signals._pending_messages == []
 
 
+def test_rows_that_are_kept_are_promised_instead(told):
+    signals.promise_rows()
+    with pytest.raises(Ended):
+        signals.end()
+    assert told == [(2, signals.RESUMABLE_MESSAGE), 130]
+
+
 def test_the_first_signal_interrupts_a_second_one_ends_and_a_fork_just_ends(told):
     handle = signals._handler(os.getpid())
     with pytest.raises(KeyboardInterrupt):

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.ticker import FuncFormatter
 from oracles.made_cases import between, kept_study, made_history, made_row
 
 from validation.engine.finished import Finished
@@ -217,7 +218,8 @@ def _axis(axis):
     ticks = axis.get_major_locator()()
     low, high = sorted(axis.get_view_interval())
     inside = [tick for tick in ticks if low <= tick <= high]
-    words = list(getattr(axis.get_major_formatter(), "seq", ()))
+    form = axis.get_major_formatter()
+    words = [form(tick) for tick in inside] if isinstance(form, FuncFormatter) else list(getattr(form, "seq", ()))
     labels = axis.get_ticklabels()[:: len(words) - 1 or 1] if words else []  # which take long to make
     sides = [label.get_horizontalalignment()[0] for label in labels]
     between = [tick for tick in axis.get_minor_locator()() if low <= tick <= high]

@@ -6,7 +6,6 @@ from oracles.made_cases import line_in, lines_of, rules_of
 
 from validation.report.chapters.gates import not_passed, verdict_line
 from validation.report.figures.curves import GREY, style_of
-from validation.report.figures.model import model_figure
 from validation.report.front import front_chapter, front_pages
 
 # ---- the pages ------------------------------------------------------------------------------------------------------
@@ -40,7 +39,3 @@ def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, dr
 def test_one_line_of_verdicts(words, said, tone):
     callout = verdict_line([{"verdict": word} for word in words])
     assert (callout.text, callout.tone) == (said, tone)
-
-
-def test_the_model_is_drawn_with_its_words(kept_figures):
-    kept_figures("figures-model", {"model.svg": model_figure("a = 2 m", "q = 5 MPa")})
