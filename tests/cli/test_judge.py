@@ -233,7 +233,7 @@ def test_all_defects_are_printed_and_nothing_is_written(layout, tmp_path, undraw
         assert done.returncode == 2 and done.stdout == ""
         *lines, last = done.stderr.splitlines()
         assert [line.partition(f"{folder}/")[2].split(" ")[0] for line in lines] == ["locked.csv:1:22:", "rokcing.csv:"]
-        assert "2 defects" in last
+        assert last.startswith("2 defects in 2 files; ")
         assert not (tmp_path / "site").exists() and not (tmp_path / "kept").exists()
 
 

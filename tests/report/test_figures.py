@@ -6,9 +6,16 @@ from matplotlib.figure import Figure
 
 from validation.report.figures import curves
 from validation.report.figures import histories as figures
+from validation.report.figures.drawing import FigureHooks
 from validation.report.figures.space_time import SpaceTime
 
 SOLVERS = ("dda", "dda-textbook", "fem", "bar", "continuum", "somebody's own")
+
+
+def test_a_kind_of_scene_that_nobody_draws_is_an_empty_sheet():
+    axes = Figure().add_subplot()
+    FigureHooks().draw(axes, None)
+    assert not axes.axison and not axes.lines
 
 
 def test_thin_keeps_ends_and_every_spike():

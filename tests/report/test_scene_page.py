@@ -43,6 +43,14 @@ def test_a_count_that_is_none_is_no_small_number():
     assert [row[1] for row in numbers_table(numbers).rows] == ["0", "<10⁻¹²"]
 
 
+def test_the_level_of_a_history_is_that_of_the_reference(drawn, tmp_path):
+    metrics = {solver: {"displacement.static": level} for solver, level in (("dda", -0.003), ("bar", -0.007))}
+    histories = {solver: made_history(0.001, -1e-3 * np.arange(9.0)) for solver in metrics}
+    history_block(made_group(made_case(BASE, metrics, histories)), ["displacement"], tmp_path)
+    levels = {float(line.get_ydata()[0]) for figure in drawn.values() for line in figure.axes[0].lines}
+    assert -7.0 in levels and -3.0 not in levels
+
+
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):
     """Ten steps of 1e-4 s end before the first of 0.02 s."""
     scenes = [BASE.with_values({"time.step": step}, label=True) for step in (0.02, 1e-4)]

@@ -168,7 +168,8 @@ def test_no_two_pages_share_a_file_whatever_the_letters_case():
 # ---- names of users -------------------------------------------------------------------------------------------------
 
 
-def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path):
+def test_a_column_with_an_escape_code_and_a_title_with_a_key_cost_no_page(tmp_path, monkeypatch):
+    monkeypatch.setattr(histories, "save", written_empty)
     scene = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 4})
     scene = scene.model_copy(update={"title": "After @feng2017"})
     columns = {"displacement": np.full(4, -0.01), "esc\x1b[31m": np.arange(4.0)}
