@@ -1,6 +1,5 @@
 """A step that is too long is told from the scheme alone, for every scene that has modes, and no other one."""
 
-import math
 import tomllib
 from pathlib import Path
 
@@ -8,7 +7,6 @@ import pytest
 
 from validation.advice.coarse import AGREEMENT, SAMPLED, coarse_alarms
 from validation.scenes.scene import Scene
-from validation.theory import columns
 
 GRANITE = {
     "block": {"side": 1.2, "density": 2650.0, "young": 5e10, "poisson": 0.25},
@@ -46,20 +44,3 @@ ROWS = tomllib.loads(Path(__file__).with_name("coarse.toml").read_text(encoding=
 def test_a_step_that_is_too_long_is_told_without_a_run(row):
     case = scene(COLUMN if row.get("column") else GRANITE, **row.get("set", {}))
     assert kinds(case) == {KINDS[name] for name in row["raised"]}
-
-
-@pytest.mark.parametrize(
-    ("column", "frequency"),
-    [
-        ({"layer": [{"blocks": 200}]}, math.pi / 2 * math.sqrt(1e9 / 2000) / 10),  # a bar, to 1e-5
-        ({"layer": [{"blocks": 1}]}, math.sqrt(3) * math.sqrt(1e9 / 2000) / 10),  # one strain
-        (
-            {"base": "springs", "base_stiffness": 1e5, "layer": [{"blocks": 4}]},
-            math.sqrt(5 / (1 + 1e-3 / 3)),
-        ),  # k H / 3 G
-    ],
-)
-def test_the_first_frequency_of_a_column(column, frequency):
-    layers = [{"thickness": 10.0, "density": 2000.0, "young": 2e9} | layer for layer in column["layer"]]
-    section = scene(COLUMN, column=column | {"motion": "shear", "layer": layers}).column
-    assert columns.first_frequency(section) == pytest.approx(frequency, rel=1e-4)

@@ -4,13 +4,9 @@ import pytest
 from conftest import refused, thinned, typed
 
 from validation import load_scene, solve
-from validation.advice.draft import GLUED_BODIES, KINDS, MOVING, draft
+from validation.advice.draft import GLUED_BODIES, KINDS, MOVING
 from validation.runs.run import Outcome
 from validation.scenes.plausibility import plausibility_warnings
-
-
-def default(question, value):
-    return value
 
 
 @pytest.mark.parametrize(("kind", "rock"), thinned([("slope", "shale"), *((kind, "granite") for kind in KINDS)], 20))
@@ -31,14 +27,3 @@ def test_a_scene_is_written_that_loads_runs_and_warns_of_nothing(kind, rock, tmp
 def test_numbers_that_do_not_go_together_are_refused_before_a_file_is_written(tmp_path):
     assert "plane.plate" in refused("new", "mine.toml", "--kind", "plate", "--hole", "3", cwd=tmp_path)
     assert not (tmp_path / "mine.toml").exists()
-
-
-def test_what_no_option_says_is_asked():
-    questions = []
-
-    def answer(question, value):
-        questions.append(question)
-        return 2 * value
-
-    text = draft({"kind": "slope", "width": 3.0}, answer)
-    assert len(questions) == 3 and "slope = 60.0" in text and "width = 3.0" in text

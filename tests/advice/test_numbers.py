@@ -1,14 +1,17 @@
 """What advice is known without a run, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` renews it."""
 
 import os
+import re
 import tomllib
 from itertools import cycle
 from pathlib import Path
 
-from oracles.stand_ins import differing, keep, kept, numbers_in, summed
+import pytest
+from oracles.made_cases import made_row
+from oracles.stand_ins import Numbers, differing, keep, kept, numbers_in, summed
 
 from validation import advise, damping, load_scene
-from validation.advice import budget, columns, contact, friction
+from validation.advice import budget, columns, contact, contact_page, friction, goals
 from validation.advice.coarse import coarse_alarms
 from validation.advice.draft import KINDS, ROCKS, draft
 from validation.advice.hooks import AdviceHooks
@@ -34,6 +37,14 @@ COLUMNS = {
 }
 TARGETS = ((0.02, "dt"), (0.3, "gg"), (0.1, "scheme"))
 SLOPES = ("slope-drag", "creep-steps", "slope-sliding")
+NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+PAGES = (  # scene, values, penetration
+    ("unlocked-constant", {"time.step": 1e-3, "contact.stiffness": 1e11, "time.gg": 0.97, "contact.gap": 0.3}),
+    ("unlocked-average", {"time.step": 1e-3, "block.velocity": -2.0, "contact.band": [0.0, 1e-4]}, 3e-4),
+    ("slope-drag", {"contact.stiffness": 1e9}),
+    ("slope-drag", {"load.slope": 10.0, "time.gg": 1.0}, 2e-5),
+    ("columns-weight", {"time.gg": 0.9}),
+)
 
 
 def first_of(name):
@@ -76,6 +87,31 @@ def typed(kind, rock, question):
     return tomllib.loads(draft({"kind": kind, "rock": rock}, lambda name, value: round(question * value, 3)))
 
 
+def of_contact_page(scene, *penetration):
+    """Yield what the page of contact says of rows that are made."""
+    bound = AdviceHooks.of(scene).contact_limits(scene)
+    lines = [line for kind in contact_page.LINES.values() for line in kind if "metric" in line]
+    measured = ["switches.first_opening", "switches.first_closing", "energy.given", *(line["metric"] for line in lines)]
+    rows = {}
+    for name, case in contact_page.scenes(scene, bound).items():
+        yield case.time.discount
+        made = Numbers(name, scene.name)
+        rows[name] = made_row(name, {metric: made[metric] for metric in ", ".join(measured).split(", ")}, scene.name)
+    data = contact_page.answer(scene, rows, *penetration, bound=bound)
+    lines = list(contact_page.page(scene, data, {}, bound))
+    yield data, len(lines), [float(text) for text in NUMBER.findall(" ".join(lines))]
+
+
+def of_goal(scene, goal, **changes):
+    """Yield what is recommended for a goal, searched on a coarse mesh with long steps."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, value in changes.items():
+            patch.setattr(goals, name, value)
+        patch.setattr(goals, "estimated_seconds", lambda *given: 1.0)
+        for offer in goals.recommend(scene, goal, goals.Question(error=0.2, frequency=30.0)):
+            yield vars(offer) | {"condition": len(offer.condition)}
+
+
 def numbers_of_advice(step=0.002):
     block = PAPER.with_values({"time.step": step})
     found = {f"block {name}": of_block(block.with_values(values)) for name, values in BLOCKS.items()}
@@ -86,6 +122,10 @@ def numbers_of_advice(step=0.002):
         found[f"slope {name}"] = (friction.sliding(scene).as_dict(), [*alarms_of(scene)])
     for kind, rock in zip(KINDS, cycle(ROCKS), strict=False):
         found[f"new {kind}"] = typed(kind, rock, 1.1)
+    for number, (name, values, *penetration) in enumerate(PAGES):
+        found[f"page {number}"] = of_contact_page(first_of(name).with_values(values), *penetration)
+    found["goal quake"] = of_goal(block, "quake", ELEMENTS=2, REFINEMENTS=2, COARSEST=12)
+    found["goal slide"] = of_goal(first_of("slope-drag"), "static", FINEST_SLIDE=16, FEWEST_SLIDE=2)
     ends = [{"time.step": step} for step in (4e-7, 0.4)]
     found["budgets"] = budget.budgets([block.with_values(values) for values in (*ends, BLOCKS["discount"])])
     return {name: summed(numbers_in([*plain(value)])) for name, value in found.items()}

@@ -16,6 +16,7 @@ from validation.advice.overview import HEADS, Fact, Overview, PresentError, line
 from validation.advice.pages import PageHooks, page_of_cut
 from validation.errors import InputError
 from validation.runs.history import History
+from validation.scenes.plain import PlainHooks
 from validation.scenes.scene import load_scene
 
 PAPER = load_scene("figures-3-4").with_values({"time.step": 0.002})
@@ -122,6 +123,7 @@ def test_kinds_of_scenes_of_which_nothing_is_known_are_refused():
         lambda: PageHooks.page(PageHooks.of(scene), scene, Question()),
         lambda: AdviceHooks.of(scene).cut(scene, [1]),
         lambda: AdviceHooks.of(scene).layers(scene),
+        lambda: PlainHooks().data(scene),
     ):
         with pytest.raises(InputError) as refusal:
             ask()

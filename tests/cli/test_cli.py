@@ -1,8 +1,5 @@
 """The command line as a user types it: exit status, one line for bad input, nothing half-written."""
 
-import subprocess
-import sys
-
 import pytest
 from conftest import refused, typed
 
@@ -27,25 +24,6 @@ def test_springs_that_no_mode_can_have_are_named_by_an_alarm_not_by_a_warning(sc
     )
     assert "small" in done.stdout and "FloatingPointError" in done.stdout
     assert "RuntimeWarning" not in done.stderr
-
-
-INTERRUPTED = (130, "", "interrupted\n")
-
-
-def interrupted(code):
-    """Return status and words of a command line that hears Ctrl-C in the middle of what the code makes of it."""
-    raised = (
-        "import signal, threading, time\nfrom validation.cli import entry, signals\n"
-        + code
-        + ("\nthreading.Timer(0.2, signal.raise_signal, [signal.SIGINT]).start()\nentry.main()")
-    )
-    done = subprocess.run([sys.executable, "-c", raised], capture_output=True, text=True, timeout=60)
-    return done.returncode, done.stdout, done.stderr
-
-
-@pytest.mark.usefixtures("interruptible")
-def test_an_interruption_is_one_line():
-    assert interrupted("entry.command_line = lambda: lambda **options: time.sleep(50)") == INTERRUPTED
 
 
 def test_an_end_of_a_file_is_no_interruption(monkeypatch):

@@ -7,7 +7,6 @@ from conftest import refused, typed
 from oracles.made_cases import kept_study, made_row
 
 from validation.cli.run import _status
-from validation.gates.changes import changes, markdown
 from validation.gates.gate import Gate, Status, Verdict
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
@@ -31,32 +30,6 @@ from validation.scenes.scene import load_scene
 def test_the_status_of_a_run(words, required, refused, worse, status):
     gate = Gate("s", ("dda", "bar"), "displacement.l2", 0.0, 1.0, "why")
     assert _status([Verdict(gate, None, Status(word)) for word in words], required, refused, worse) == status
-
-
-# ---- verdicts side by side ----------------------------------------------------------------------------------------
-
-
-def verdict(name, word, value, study="s"):
-    return {"study": study, "id": name, "verdict": word, "value": value, "band": [0.25, 0.75], "reason": "why"}
-
-
-OLD = [verdict("a", "PASS", 0.5), verdict("b", "FAIL", 0.125), verdict("c", "PASS", 0.3)]
-NEW = [verdict("a", "FAIL", 0.875), verdict("b", "FAIL", 0.1), OLD[2], verdict("d", "NOT RUN", None, "t")]
-
-
-def test_a_summary_shows_counts_values_bands_and_what_changed_from_and_to():
-    lines = markdown(NEW, changes(OLD, NEW[:3])).splitlines()
-    assert lines[0] == "## dda-validation: 1 PASS, 2 FAIL, 1 NOT RUN"
-    assert lines[2] == "| study | PASS | FAIL | NOT RUN |"
-    assert lines[4:6] == ["| s | 1 | 2 | 0 |", "| t | 0 | 0 | 1 |"]
-    assert "| gate | value | band | why |" in lines and "| `a` | 0.875 | 0.25 .. 0.75 | why |" in lines
-    assert "| `d` | - | 0.25 .. 0.75 | why |" in lines
-    assert lines[-4:] == [
-        "| change | gate | verdict | value |",
-        "|---|---|---|---|",
-        "| worse | `a` | PASS → FAIL | 0.5 → 0.875 |",
-        "| value | `b` | FAIL | 0.125 → 0.1 |",
-    ]
 
 
 # ---- rows -----------------------------------------------------------------------------------------------------------

@@ -1,8 +1,9 @@
 """The entry point: no traceback and no warning for numbers out of range, the version, and a command that is none."""
 
 import importlib.metadata
+import io
 import signal
-import warnings
+import sys
 
 import numpy as np
 import pytest
@@ -72,13 +73,13 @@ def test_a_reader_that_has_gone_is_no_failure(monkeypatch):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-def test_a_librarys_warning_of_numbers_is_not_printed(monkeypatch):
-    def warn(**options):
-        warnings.warn_explicit("overflow", RuntimeWarning, "scipy/linalg.py", 1, module="scipy.linalg")
+def test_a_full_output_is_one_line(monkeypatch):
+    class Full(io.StringIO):
+        def flush(self):
+            raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(entry, "command_line", lambda: warn)
-    done = typed("list")
-    assert (done.returncode, done.stderr) == (0, "")
+    monkeypatch.setattr(entry, "command_line", lambda: lambda **options: setattr(sys, "stdout", Full()))
+    assert refused("list") == "error: standard output: No space left on device\n"
 
 
 def test_a_module_that_is_nowhere_is_refused_before_anything_runs():

@@ -19,7 +19,6 @@ from validation.problems.data import PACK
 from validation.problems.pack import table_of
 from validation.problems.problem import names, problem
 from validation.report.chapters import judged
-from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.solvers import registry
 from validation.suite import judging
@@ -39,10 +38,6 @@ def undrawn(monkeypatch):
     monkeypatch.setattr(judging, "cause", lambda *given: Cause("a <cause> & more", ("factor",)))
 
 
-def scaled(history, factor):
-    return History(history.time, {name: factor * values for name, values in history.columns.items()})
-
-
 def table(place, history):
     """Write the answer to `locked` as a table alone."""
     place.write_text(table_of(problem("locked"), history, [*history.columns]))
@@ -50,22 +45,6 @@ def table(place, history):
 
 
 # ---- one answer -----------------------------------------------------------------------------------------------------
-
-
-def test_a_right_answer_passes_in_a_table_alone_and_in_a_folder(tmp_path, exact):
-    answered(tmp_path / "mine", 1.0, ("locked",))
-    for arguments, who in (
-        ((table(tmp_path / "my.csv", exact), "locked"), "my"),
-        ((tmp_path / "mine", "locked"), "Bob's <code>"),
-    ):
-        done = typed("judge", *arguments)
-        assert done.returncode == 0, done.stderr
-        assert done.stdout.startswith(who)
-        (found,) = json.loads(typed("judge", *arguments, "--json").stdout)["answers"]
-        assert (found["verdict"], found["cause"], len(found["warnings"])) == ("PASS", None, 1)
-        assert all(criterion["error"] < 1e-10 for criterion in found["criteria"])
-    found = json.loads(typed("judge", table(tmp_path / "my.csv", scaled(exact, 1.001)), "locked", "--json").stdout)
-    assert found["answers"][0]["warnings"] == []
 
 
 def test_a_withheld_column_that_the_problem_asks_for_is_no_full_pass(tmp_path, exact, undrawn):
@@ -254,7 +233,7 @@ def test_all_defects_are_printed_and_nothing_is_written(layout, tmp_path, undraw
         assert done.returncode == 2 and done.stdout == ""
         *lines, last = done.stderr.splitlines()
         assert [line.partition(f"{folder}/")[2].split(" ")[0] for line in lines] == ["locked.csv:1:22:", "rokcing.csv:"]
-        assert "2 defects" in last
+        assert last.startswith("2 defects in 2 files; ")
         assert not (tmp_path / "site").exists() and not (tmp_path / "kept").exists()
 
 
@@ -314,4 +293,5 @@ def test_a_file_of_a_history_is_put_to_the_gates_of_its_scene(tmp_path, monkeypa
     np.savetxt(
         f"mine/{scene.name}.csv", rows * [1, 1.01, 1.01], "%r", ";", header=f"time;{';'.join(columns)}", comments=""
     )
-    assert typed("judge", "mine/", "--study", "own-solver").returncode == 1
+    done = typed("judge", "mine/", "--study", "own-solver")
+    assert done.returncode == 1 and "FAIL" in done.stdout

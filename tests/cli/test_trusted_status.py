@@ -1,22 +1,16 @@
 """The exit status of a run: no 0 where nothing was measured, where a baseline is no baseline, where names collide."""
 
 import json
-import subprocess
 import sys
-from dataclasses import replace
-from pathlib import Path
 
 import pytest
 from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
-from validation.engine.measured import JudgedStudy
 from validation.report import book
 from validation.report.blocks import Callout, FigureBlock
 from validation.runs.results import Results
-from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
-from validation.suite.folders import get_study
 
 RUN = "[run]\nsolvers = {}\n"
 GATE = '[[gate]]\npair = {}\nmetric = "{}"\nband = {}\nreason = "a reason"\n'
@@ -30,14 +24,6 @@ def gated(band, pair='["dda", "bar"]', solvers='["dda", "bar"]'):
 GOOD = "a good file"
 WIDE, TIGHT = gated("[0.0, 1.0]"), gated("[0.0, 1e-3]")
 # ---- nothing measured -----------------------------------------------------------------------------------------------
-
-
-def test_a_study_whose_question_is_how_runs_end_expects_it():
-    study, ends = get_study("core"), {("small", "dda"): Outcome.OVERFLOW}
-    for expects, failed in (((), True), ((Outcome.OVERFLOW,), False), ((Outcome.MISPREDICTED,), True)):
-        run = JudgedStudy(replace(study, expects=expects), [], ends)
-        assert bool(run.failed) is failed
-    assert get_study("stability-small").expects
 
 
 # ---- baselines ------------------------------------------------------------------------------------------------------
@@ -93,17 +79,6 @@ def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(scene_file,
     monkeypatch.setattr("validation.engine.measure.completed", lambda *arguments: run)
     assert "--fields" in refused("solve", scene_file, "--solver", "fem", "--fields", out)
     assert out.read_text() == GOOD
-
-
-@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no full device")
-@pytest.mark.parametrize("words", thinned(["--help", "list", "run small.toml"], 3))
-def test_a_full_output_is_one_line(words, scene_file):
-    with open("/dev/full", "w") as full:
-        done = subprocess.run(
-            command(*words.split()), stdout=full, stderr=subprocess.PIPE, text=True, timeout=100, cwd=scene_file.parent
-        )
-    assert done.returncode == 2
-    assert done.stderr.count("\n") == 1
 
 
 def test_a_chapter_that_cannot_be_drawn_does_not_cost_the_report(scene_file, tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ import tomllib
 
 import pytest
 
-from validation.entry.siblings import HOME, shadowed
+from validation.entry.siblings import HOME
 
 ENTRY = HOME / "validation/entry"
 PYTEST = ["-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "dda_validation.plugin"]
@@ -19,10 +19,6 @@ STARTS = {
 }
 SOLVE = ["solve", "figures-3-4", "--set", "time.step=0.002"]
 SOLVER = "def solve(scene):\n    return [0.0] * scene.time.steps, [0.0] * scene.time.steps\n"
-
-
-def test_our_own_packages_are_not_in_the_way():
-    assert shadowed() is None
 
 
 def test_an_install_holds_every_module_of_the_folder_under_its_second_name():

@@ -20,11 +20,3 @@ def test_a_warning_of_our_own_is_an_error(kind):
     for module in (*PACKAGES, *(f"{name}.some.module" for name in PACKAGES), "tests.x", *OWN_TESTS):
         with pytest.raises(kind, match="old"):
             warn(module, kind)
-
-
-@pytest.mark.filterwarnings("ignore:old name:UserWarning")  # it would be in every summary
-def test_a_warning_between_dependencies_is_none():
-    for module in ("matplotlib._mathtext", "scipy.sparse", "ddatools", "validation_of_others"):
-        with warnings.catch_warnings(record=True) as seen:
-            warn(module, DeprecationWarning)
-        assert len(seen) == 1

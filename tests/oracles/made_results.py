@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.colors import to_hex
+from matplotlib.ticker import FuncFormatter
 from oracles.made_cases import between, kept_study, made_history, made_row
 
 from validation.engine.finished import Finished
@@ -179,7 +180,7 @@ def made_results(directory):
 
 def figure_text(figure):
     """Return what a figure shows, a line for each thing on it, without what depends on fonts or rounding."""
-    lines = []
+    lines = [f"{_short(25.4 * figure.get_size_inches())} mm"]
     for axes in figure.axes:
         place = (25.4 * np.outer([1, 1], figure.get_size_inches())).ravel() * axes.get_position().bounds
         off = "" if axes.axison else " off"
@@ -217,7 +218,8 @@ def _axis(axis):
     ticks = axis.get_major_locator()()
     low, high = sorted(axis.get_view_interval())
     inside = [tick for tick in ticks if low <= tick <= high]
-    words = list(getattr(axis.get_major_formatter(), "seq", ()))
+    form = axis.get_major_formatter()
+    words = [form(tick) for tick in inside] if isinstance(form, FuncFormatter) else list(getattr(form, "seq", ()))
     labels = axis.get_ticklabels()[:: len(words) - 1 or 1] if words else []  # which take long to make
     sides = [label.get_horizontalalignment()[0] for label in labels]
     between = [tick for tick in axis.get_minor_locator()() if low <= tick <= high]

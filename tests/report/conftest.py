@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from oracles import made_results as made
 from oracles.made_results import figure_text
+from oracles.stand_ins import summed
 
 from validation.report.blocks import TableColumn
 from validation.report.figures import histories
@@ -41,6 +42,12 @@ def kept():
         _held(name, "\n".join(line for block in blocks for line in lines_of(block)) + "\n")
 
     return check
+
+
+@pytest.fixture
+def kept_text():
+    """Hold lines to a page in `pages`."""
+    return lambda name, lines: _held(name, "".join(f"{line.strip()}\n" for line in lines if line.strip()))
 
 
 def is_told(word):
@@ -78,10 +85,14 @@ def lines_of(block):
 
 @pytest.fixture
 def kept_figures():
-    """Hold figures to a page in `pages`, as `kept` holds blocks."""
+    """Hold figures to a page in `pages`, as `kept` holds blocks; of others what their numbers are together."""
 
-    def check(name, figures):
+    def check(name, figures, others=()):
         text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
+        for file in sorted({*others} - {*figures}):
+            other = figure_text(others[file])
+            numbers = summed(map(float, re.findall(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", other)))
+            text += f"\n{file}: {len(other.splitlines())} lines, {numbers:.2f}"
         _held(name, with_line_numbers(text) + "\n")
 
     return check

@@ -8,6 +8,7 @@ from validation.report.blocks import Callout, FigureBlock, Heading, PageBreak, P
 from validation.report.figures.histories import save
 from validation.report.render.pdf import typeset
 
+pytestmark = pytest.mark.long
 LINES = 46  # of text that fill a page
 CASES = range(2, LINES, 6)  # lines above a chapter, so that it begins at each height of a page
 

@@ -37,17 +37,18 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 
-def test_what_is_rounding_decides_nothing(drawn, tmp_path):
-    """Which of two cases is shown would depend on the processor."""
-    cases = [vibrating(step, share, {"mode1.frequency": FREQUENCY}) for step, share in ((0.002, 1e-15), (0.001, 1e-13))]
-    (block,) = lead_figure(made_group(*cases), tmp_path)
-    assert block.caption.startswith("dt = 0.002 s, of 2 ")
-
-
 def test_a_count_that_is_none_is_no_small_number():
     assert value_cell(0.0, "displacement.fine_settling_step") == "0" and value_cell(0.0, "displacement.l2") == "<10⁻¹²"
     numbers = (Quantity("openings", "1", 0.0, 5.0), Quantity("damping ratio", "1", 0.0, 0.1))
     assert [row[1] for row in numbers_table(numbers).rows] == ["0", "<10⁻¹²"]
+
+
+def test_the_level_of_a_history_is_that_of_the_reference(drawn, tmp_path):
+    metrics = {solver: {"displacement.static": level} for solver, level in (("dda", -0.003), ("bar", -0.007))}
+    histories = {solver: made_history(0.001, -1e-3 * np.arange(9.0)) for solver in metrics}
+    history_block(made_group(made_case(BASE, metrics, histories)), ["displacement"], tmp_path)
+    levels = {float(line.get_ydata()[0]) for figure in drawn.values() for line in figure.axes[0].lines}
+    assert -7.0 in levels and -3.0 not in levels
 
 
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):

@@ -8,14 +8,13 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.plane.geometry import inside, overlap, shared_edges, triangles_of
+from validation.models.plane.geometry import overlap, shared_edges
 from validation.report.figures.curves import HistoryPanel, common_range
 from validation.runs.columns import axis_of, unit_of
 from validation.runs.history import History
-from validation.scenes import features
 from validation.scenes.outline import area
 from validation.scenes.scene import parse_scene
-from validation.solvers.registry import get_solver, solve
+from validation.solvers.registry import solve
 
 FLOOR = {"name": "floor", "rectangle": [6.0, 1.0], "at": [0.0, -0.5], "fixed": True}
 SQUARE = {"name": "square", "rectangle": [1.0, 1.0], "at": [0.0, 0.5]}
@@ -91,13 +90,6 @@ def test_a_gap_that_nobody_looked_at_is_no_number():
     assert not np.any(history.columns["square.2-floor.2.normal"])
 
 
-def test_a_scene_keeps_the_poses_of_what_moves_and_elements_take_no_contact_that_is_found():
-    assert scene().run.columns == ("square.x", "square.y", "square.angle")
-    assert features.MOVING_BLOCKS in features.of(scene()) and not features.linear(scene())
-    assert features.MOVING_BLOCKS in (get_solver("bar").refusal(scene()) or "")
-    assert "plane.touch" in (get_solver("fem").refusal(scene()) or "")
-
-
 GENERATED = {
     "stack": ({"count": 3, "rectangle": [2.0, 0.5], "offsets": [0.0, 0.3, 0.2]}, 3, 3.0),
     "wall": ({"rows": 4, "bricks": 5, "rectangle": [0.4, 0.2]}, 22, 1.6),
@@ -140,30 +132,6 @@ def test_random_polygons_are_the_same_by_the_same_seed():
     assert outlines() == outlines() != outlines(seed=8)
 
 
-def test_parts_of_a_block_that_turns_move_as_one_body_and_are_glued_along_all_edges():
-    changes = {"subdivide": [2, 2], "young": 1e9, "spin": 2.0, "velocity": [1.0, 0.0], "at": [0.0, 5.0], "turned": 20.0}
-    assembly = scene(square(**changes)).plane.assembly
-    parts = [assembly.blocks[number] for number in assembly.members["square"]]
-    middle = np.mean([np.mean(part.vertices, axis=0) for part in parts], axis=0)
-    for part in parts:
-        arm = np.mean(part.vertices, axis=0) - middle
-        assert part.velocity == pytest.approx((1.0 - 2.0 * arm[1], 2.0 * arm[0]), abs=1e-12)
-    assert [bond.stiffness for bond in assembly.bonds] == [1e15] * 4
-
-
-def test_a_pair_replaces_what_it_states_of_the_springs_of_all_its_blocks():
-    stack = [{"name": "pile", "count": 2, "rectangle": [1.0, 1.0]}]
-    assembly = scene(
-        {"block": [FLOOR], "stack": stack, "pair": [{"blocks": ["pile", "floor"], "friction": 10.0}]}
-    ).plane.assembly
-    floor, low, high = (assembly.members[name][0] for name in ("floor", "pile_1", "pile_2"))
-    assert [assembly.springs_between(*pair).friction for pair in ((low, floor), (floor, high), (low, high))] == [
-        10,
-        10,
-        30,
-    ]
-
-
 @pytest.mark.parametrize(
     ("shift", "depth"), [((2.0, 0.0), 0.0), ((1.0, 1.0), 0.0), ((0.9, 1.0), 0.1), ((0.0, 0.0), 0.5)]
 )
@@ -171,9 +139,3 @@ def test_outlines_that_are_not_convex_overlap_by_what_lies_inside(shift, depth):
     other = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
     moved = tuple((x + shift[0], y + shift[1]) for x, y in other)
     assert overlap(L_SHAPE, moved) == pytest.approx(depth, abs=1e-12) == overlap(moved, L_SHAPE)
-
-
-def test_triangles_tile_an_outline():
-    triangles = [tuple(L_SHAPE[corner] for corner in corners) for corners in triangles_of(L_SHAPE)]
-    assert sum(map(area, triangles)) == area(L_SHAPE) and min(map(area, triangles)) > 0
-    assert inside(np.array([[1.5, 1.5], [0.5, 1.5]]), L_SHAPE).tolist() == [False, True]

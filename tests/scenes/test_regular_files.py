@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import SCENE, refused
+from conftest import refused
 
 from validation.diagnosis.reading import read
 from validation.errors import InputError
@@ -20,9 +20,6 @@ from validation.runs.row import Row
 from validation.runs.run import Outcome
 from validation.scenes.record import read_record
 from validation.scenes.scene import load_scene
-
-MARK = b"\xef\xbb\xbf"
-TABLE = b"time,x\n0,0\n1,0.5\n2,1\n"
 
 
 @pytest.fixture
@@ -69,18 +66,6 @@ def test_devices_and_directories_are_named(tmp_path):
             with pytest.raises(InputError) as error:
                 reader(place)
             assert (error.value.source, error.value.value) == (place, f"a {kind}")
-
-
-def test_a_byte_order_mark_is_no_part_of_a_table(tmp_path):
-    path = tmp_path / "record.csv"
-    path.write_bytes(MARK + TABLE)
-    assert np.array_equal(read_record(path).x, [0, 0.5, 1])
-    assert read_table(path)[0] == ["time", "x"]
-    path.write_bytes(MARK + b"time,displacement\n1,1\n2,2\n3,3\n4,4\n")
-    assert np.array_equal(read(path).displacement, [1, 2, 3, 4])
-    scene = tmp_path / "marked.toml"
-    scene.write_bytes(MARK + SCENE.encode())
-    assert load_scene(scene).name == "marked"
 
 
 def test_a_large_file_is_refused_before_it_is_read(tmp_path):

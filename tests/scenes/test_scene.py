@@ -77,11 +77,6 @@ def test_a_swept_value_is_checked_like_any_other_and_once(sweep, field, value):
     assert (error.value.field, error.value.value) == (field, value)
 
 
-def test_swept_values_that_agree_to_six_digits_are_two_cases():
-    close = parse(sweep={"time.step": [0.1, 0.1 + 1e-9]}).expand()
-    assert [case.name for case in close] == ["scene[time.step=0.1]", "scene[time.step=0.100000001]"]
-
-
 def test_keys_that_exclude_each_other_are_not_set_or_swept_together():
     for values in ({"time.gg": 0.9, "time.gg_rate": 3.0}, {"block.side": 1.0, "block.width": 2.0, "block.height": 1.0}):
         with pytest.raises(InputError, match=r"got both$"):

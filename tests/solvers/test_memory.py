@@ -76,6 +76,7 @@ def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
     path, results = tmp_path / "own.toml", Results(tmp_path / "r")
     path.write_text(SCENE + '[run]\nsolvers = ["dda"]\n')
     study = replace(scene_study(str(path)), annotate=lambda *given: {"alarms": [], "budgets": []})
+    monkeypatch.setattr(memory, "UNNOTICED", 0.0)
     monkeypatch.setattr(memory, "available", lambda: 1.0)
     with pytest.raises(InputError, match=memory.REFUSED):
         solve(load_scene(path), "dda")

@@ -88,7 +88,10 @@ def check_needs(tables: Mapping[str, Section]) -> None:
     """
     for place, table in tables.items():
         for inside, entry in [("", table), *_entries(table)]:
+            stated_fields = entry.model_fields_set
             for name, field, key in _keys_with_needs(type(entry)):
+                if _attribute(type(entry), name) not in stated_fields:
+                    continue
                 value = stated_value(entry, name)
                 if value == field.default:
                     continue
@@ -105,9 +108,9 @@ def _keys_with_needs(table: type[Section]) -> list[tuple[str, FieldInfo, Key]]:
 
 def _entries(table: Section) -> Iterator[tuple[str, Section]]:
     """Yield the tables of the lists in a table, each with the name of its list and a dot."""
+    stated_fields = table.model_fields_set
     for name in type(table).model_fields:
-        value = getattr(table, name)
-        if isinstance(value, tuple):
+        if name in stated_fields and isinstance(value := getattr(table, name), tuple):
             yield from ((f"{name}.", entry) for entry in value if isinstance(entry, Section))
 
 

@@ -13,7 +13,7 @@ import json
 import math
 import re
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Set
 from pathlib import Path
 from typing import Any, Self, get_args
 
@@ -46,11 +46,12 @@ class Scene(SceneTables):
     @model_validator(mode="after")
     def _check(self) -> Self:
         lists = self._swept()
+        definition = self.definition() if lists else {}
         for field, values in lists.items():
             if not (isinstance(values, list) and values):
                 raise ValueError(f"sweep: {field} must be a list of values that is not empty, got {values!r}")
             table, _, _ = field.partition(".")
-            _, key = _table_of(self.definition(), field)
+            _, key = _table_of(definition, field)
             if table in ("run", "gate", field) or "." in key:
                 raise ValueError(f'sweep: must name a key of a table, such as "time.step", got {field!r}')
         mode = self.sweep.get("mode", "product")
@@ -62,24 +63,13 @@ class Scene(SceneTables):
         count = max(lengths, default=1) if mode == "zip" else math.prod(lengths)
         if count > MOST_CASES:
             raise ValueError(f"sweep: must make at most {MOST_CASES} cases, got {count}")
-        check_needs(self.tables())
+        tables = self.tables()
+        check_needs(tables)
         self.kind.check(self)
         if self.damping.kinetic == "adaptive" and self.time.discount != 1:
             raise ValueError(f'time: gg must be 1 with damping.kinetic = "adaptive", got {self.time.discount:g}')
-        self._check_files()
+        _check_files(tables)
         return self
-
-    def _check_files(self) -> None:
-        for place, _, table, key in named_files(self.tables()):
-            name = getattr(table, key)
-            if "\0" in name:
-                raise ValueError(f"{place}: {key}: must not hold a NUL, got {name!r}")
-            try:
-                regular(Path(name))
-            except InputError as error:
-                raise ValueError(f"{place}: {key}: {error}") from None
-            except (OSError, ValueError):  # that it cannot be read is said where it is read
-                continue
 
     def tables(self) -> dict[str, Section]:
         """Return the tables that the scene has, by the names that its file gives them."""
@@ -132,7 +122,7 @@ class Scene(SceneTables):
         InputError
             A key is no key of a scene, a value is not allowed, or two of the keys exclude each other.
         """
-        data = self.definition()
+        data = self._data_but_for({field.partition(".")[0] for field in values})
         replaced_keys = set(values)
         for field, value in values.items():
             excluded = _excluded(field, value)
@@ -159,6 +149,19 @@ class Scene(SceneTables):
     def definition(self) -> dict[str, Any]:
         """Return the scene as plain data (what a file would state)."""
         data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
+        return data
+
+    def _data_but_for(self, changing: Set[str]) -> dict[str, Any]:
+        """Return what the scene states: tables that change as plain data, the others as they are, once checked."""
+        data = {}
+        for name, field in type(self).model_fields.items():
+            if name not in self.model_fields_set:
+                continue
+            value = getattr(self, name)
+            table = field.alias or name
+            if isinstance(value, Section) and table in changing:
+                value = json.loads(value.model_dump_json(exclude_unset=True, by_alias=True))
+            data[table] = value
         return data
 
 
@@ -400,8 +403,21 @@ def named_files(tables: Mapping[str, Any]) -> Iterator[tuple[str, str, Any, str]
                 yield place, role, holder, key
 
 
+def _check_files(tables: Mapping[str, Section]) -> None:
+    for place, _, table, key in named_files(tables):
+        name = getattr(table, key)
+        if "\0" in name:
+            raise ValueError(f"{place}: {key}: must not hold a NUL, got {name!r}")
+        try:
+            regular(Path(name))
+        except InputError as error:
+            raise ValueError(f"{place}: {key}: {error}") from None
+        except (OSError, ValueError):  # that it cannot be read is said where it is read
+            continue
+
+
 def _value(table: Any, key: str) -> Any:
-    return table.get(key) if isinstance(table, Mapping) else getattr(table, key, None)
+    return table.get(key) if isinstance(table, dict) else getattr(table, key, None)
 
 
 def _read(path: Path) -> bytes:

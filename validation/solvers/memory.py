@@ -19,6 +19,7 @@ FILL = 150  # bytes of the factor for each unknown and doubling of the mesh
 REFUSED = "must fit into memory"  # what a refusal says; it holds for the moment and is not kept
 MODES = 6  # of one block, stepped together
 GIGABYTE = 1e9
+UNNOTICED = 1e6  # bytes: of so little nobody asks what is left, which takes as long as a step; Python alone has more
 
 
 def sparse(unknowns: float) -> float:
@@ -42,6 +43,8 @@ def check(scene: Scene, solver: Solver, limit: float = math.inf) -> None:
         With the field, the estimate and what is available.
     """
     required_bytes, field = needed(scene, solver)
+    if required_bytes <= min(UNNOTICED, limit):
+        return
     available_bytes = min(available(), limit)
     if required_bytes > available_bytes:
         section, _, key = field.partition(".")

@@ -73,6 +73,10 @@ def print_lines(lines: Iterable[StyledLine]) -> None:
     from validation.report.render.terminal import STYLES
 
     printer = console()
+    if printer.color_system is None:  # which no style would be seen in
+        for text, _ in lines:
+            echo(text)
+        return
     for text, word in lines:
         styled_text = Text(text)
         if word:

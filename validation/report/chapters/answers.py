@@ -13,7 +13,7 @@ from validation.problems.data import PACK
 from validation.problems.problem import names, problem
 from validation.report.blocks import Blocks, Heading, Paragraph, Table, TableColumn, table
 from validation.report.chapters.judged import as_data
-from validation.runs.numbers import DASH, error_percent, short, significant
+from validation.runs.numbers import DASH, error_percent, short
 from validation.suite.judging import JudgedAnswer, JudgedSet
 
 FORMAT = "dda-validation verdicts"
@@ -177,7 +177,7 @@ def answer_table(of_all: Sequence[JudgedSet]) -> Table:
 def _seconds(judged: JudgedSet) -> str:
     """Return what the answers of a program took together [s], to two digits."""
     times = [answer.seconds for answer in judged.answers.answers if answer.seconds is not None and answer.history]
-    return short(significant(sum(times), 2), 2) if times else DASH
+    return short(sum(times), 2) if times else DASH
 
 
 def reason_blocks(sets: Sequence[JudgedSet]) -> Blocks:

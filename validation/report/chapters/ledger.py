@@ -139,7 +139,7 @@ def ledger_panels(lines: LedgerLines) -> list[ChartPanel]:
     last = math.ceil(math.log10(min(max(largest, ROUNDING), 1e3)) + 0.05)
     high = 10.0**last
     heights = np.arange(len(lines), dtype=float)[::-1]
-    powers = range(-12, last, max(1, math.ceil((last + 12) / 3)))
+    powers = range(-12, last, math.ceil((last + 12) / 3))
     panels = []
     for part in names:
         dots = [ChartLine("", np.array([EDGE, high]), np.full(2, y), RULE_COLOR, width=HAIR) for y in heights]

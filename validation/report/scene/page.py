@@ -82,8 +82,8 @@ class SceneDescription:
             rows.append((name, " .. ".join(ends), number.unit, number.says))
         return [
             Listing("\n".join(drawing(self.cases[0], width))),
-            table(("", TableColumn("", "fill")), list(self._facts()), ruled=False),
-            table(("", TableColumn("value"), "", TableColumn("what it is", "fill")), rows, caption, ruled=False),
+            table(("", TableColumn("", "fill")), list(self._facts())),
+            table(("", TableColumn("value"), "", TableColumn("what it is", "fill")), rows, caption),
             *(
                 Callout(f"{text} (in {count} of {sample} cases)" if sample > 1 else text, "warn")
                 for text, count in self.remarks.items()
