@@ -92,11 +92,6 @@ def solve_modes(scene):
     return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
 
 
-def test_a_history_of_long_steps_is_straight_between_them():
-    values = measures.on_grid(made_history(0.5, [1.0, 1.0], [0.0, 2.0]), "displacement", np.linspace(0, 1, 5))
-    assert measures.running_mean(values, 2) == pytest.approx([0, 0.125, 0.5, 0.875, 1.0])
-
-
 def test_errors_are_of_means_of_means():
     """A constant doubled from t = 0 on is 100 % off in every mean; a zigzag of one step is nearly nothing in them."""
     ladder = SimpleNamespace(mean=1.0)
@@ -165,13 +160,6 @@ def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
 
 
 # ---- orders -------------------------------------------------------------------------------------------------------
-
-
-def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times():
-    """Step n of dt and step 4 n of dt / 4 end at the same time."""
-    fine = made_history(0.25, np.arange(1, 13) ** 2, np.arange(1, 13))
-    columns = formulas._columns(fine, 4)
-    assert columns["displacement"].tolist() == [16, 64, 144] and columns["pressure"].tolist() == [4, 8, 12]
 
 
 def test_the_grid_convergence_index_is_that_of_the_last_change():

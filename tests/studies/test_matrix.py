@@ -80,12 +80,6 @@ def test_a_gate_without_phenomenon_or_sources_is_found(stated, lacks, tmp_path, 
     assert {lack for lack, _ in found} == lacks and {gate.metric for _, gate in found} <= {"displacement.static"}
 
 
-def test_a_phenomenon_goes_by_its_name_a_part_of_it_and_its_study(few):
-    for shown in phenomena():
-        assert phenomenon(shown.name) == shown
-    assert phenomenon("OVERTURNING").study == "rocking" and phenomenon("boxes").study == "boxes"
-
-
 @pytest.mark.parametrize(("text", "advice"), [("ing", "several"), ("rokcing", "rocking"), ("", "lists them")])
 def test_a_name_of_none_or_several_is_refused(text, advice, few):
     with pytest.raises(InputError) as refusal:

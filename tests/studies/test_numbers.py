@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.stand_ins import Numbers, differing, history, keep, kept, summed
+from oracles.stand_ins import Numbers, differing, history, keep, kept, numbers_in, summed
 from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
@@ -74,9 +74,19 @@ def rows_of(study, factor=1.0):
     return {name: summed(found) for name, found in values.items()}
 
 
+def told_by(gate):
+    """Return what a gate says: what it judges, its edges and how wide it is, where more than rounding decides that."""
+    width = gate.high - gate.low
+    wide = width > 7e-11 * max(abs(gate.low), abs(gate.high))
+    numbers = (gate.low, gate.high, 1e9 * width * wide, gate.until, gate.reference_uncertainty)
+    return (gate.scene, *gate.pair, gate.metric, gate.reference_kind, *numbers)
+
+
 def numbers(study):
-    edges = [edge for gate in study.gates() for edge in (gate.low, gate.high)]
-    found = {"bands": summed(edges), "data": summed(values_in(dict(study.data()))), **rows_of(study)}
+    gates = [part for gate in study.gates() for part in told_by(gate)]
+    scenes = [scene.definition() for scene in study.scenes if not isinstance(scene, str)]
+    found = {"gates": summed(gates), "scenes": summed(numbers_in(scenes)) if scenes else 0.0}
+    found |= {"data": summed(values_in(dict(study.data()))), **rows_of(study)}
     return {name: value for name, value in found.items() if value}
 
 

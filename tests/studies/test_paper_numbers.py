@@ -8,23 +8,10 @@ import pytest
 from scipy.linalg import eigh
 
 from validation import load_scene, solve
-from validation.metrics.columns import settling_step
 from validation.solvers.registry import get_solver
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
 LIGHT = load_scene("figure-9").with_values({"time.gg": 1.0})
-STIFF = load_scene("figures-5-6").expand()[2]
-
-
-def settles(scene, tolerance):
-    run, static = solve(scene, "dda"), get_solver("dda").static(scene)
-    pairs = ((run.displacement, static["displacement"]), (run.contact_pressure, static["contact_pressure"]))
-    return tuple(settling_step(x, end, tolerance) for x, end in pairs)
-
-
-def test_a_stiff_contact_rings_long_after_the_block_rests():
-    assert settles(STIFF, 1e-4) == (41, 157)
-    assert settles(STIFF, 1e-2) == (21, 24)
 
 
 def exact(scene, time, rate):

@@ -8,12 +8,10 @@ import pytest
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, scaled, told
 from faults.kill_matrix import check_study
-from oracles.sliding_block import SLIDER, history
 
 from validation import solve
 from validation.scenes.scene import load_scene
 from validation.studies.creep import formulas as creep
-from validation.suite.bands import cases
 from validation.theory import friction
 
 
@@ -111,25 +109,6 @@ def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path, finishe
 def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path, finished_cases):
     scenes = (creep.STEPS, creep.LAGGED, "creep-claim", "slope-exact-constant", "slope-exact-average")
     check_creep([*CREEP, SPRINGS[2]], tmp_path, finished_cases, scenes)
-
-
-def test_dda_is_the_plain_program_step_by_step():
-    """The oracle shares no line with it; consistent and lagged, sticking, slipping and open."""
-    for rules in ("consistent", "lagged"):
-        case = next(iter(cases(creep.LAGGED))).with_values(
-            {"contact.rules": rules, "contact.band": [0.0, 0.0], "time.step": 1e-3, "time.steps": 150}
-        )
-        data = oracle(case, rules == "lagged")
-        found, plain = solve(case, "dda").history.columns, history(data)
-        for name, other in (("horizontal_displacement", plain.sideways), ("displacement", plain.displacement)):
-            assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
-
-
-def oracle(case, lagged):
-    c, t = case.contact, case.time
-    pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
-    values = {"phi": c.friction or 0.0, "p": c.stiffness, "ps": c.shear, "dt": t.step, "steps": t.steps}
-    return replace(SLIDER, force=pull, lagged=lagged, **values)
 
 
 CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n
