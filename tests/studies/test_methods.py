@@ -8,8 +8,10 @@ import pytest
 from faults import seams
 from faults.fault import Fault, energy_changed, of_first, told
 from faults.kill_matrix import check_study
+from scipy.linalg import expm
 
-from validation import solve
+from validation import load_scene, solve
+from validation.solvers.registry import get_solver
 from validation.studies.methods import formulas as methods
 from validation.studies.methods.methods import METHODS, SCHEMES, method
 
@@ -102,3 +104,20 @@ def test_the_exact_locked_block_is_that_of_the_exact_solver():
         np.abs(methods.exact_locked(case, solve(case, "block-events").time) - exact).max() < 1e-12 * np.abs(exact).max()
     )
     assert math.isclose(case.time.duration, methods.LOCKED_TIME)
+
+
+def test_a_rate_of_discount_converges_in_the_order_of_the_scheme():
+    """Beside the end of M D'' + c M D' + K D = F from rest, by an exponential; without a rate `cost` gates it."""
+    light = load_scene("figure-9").with_values({"time.gg": 1.0})
+    model = get_solver("dda").prepare(light).model
+    of_block = np.ix_([1, 4], [1, 4])  # displacement and strain along y
+    stiffness = np.linalg.solve(model.mass[of_block], model.stiffness[of_block])
+    load = np.linalg.solve(model.mass[of_block], model.force[[1, 4]])
+    rate = 60.0
+    motion = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -rate * np.eye(2)]])
+    end = np.linalg.solve(motion, (expm(0.02 * motion) - np.eye(4)) @ [0.0, 0.0, *load])
+    errors = []
+    for steps in (400, 800):
+        values = {"time.step": 0.02 / steps, "time.steps": steps, "time.start": "consistent", "time.gg_rate": rate}
+        errors.append(solve(light.with_values(values), "dda").displacement[-1] - end[0])
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02) and abs(errors[1]) < 1e-4 * abs(end[0])
