@@ -85,7 +85,8 @@ def told_by(gate):
 
 
 def numbers(study):
-    gates = [part for gate in study.gates() for part in told_by(gate)]
+    judged = () if study.name == "stability" else study.gates()  # 3,400 cases: `stability-small` has its formulas
+    gates = [part for gate in judged for part in told_by(gate)]
     generated = [scene.definition() for scene in study.scenes if not isinstance(scene, str)]
     scenes = json.loads(json.dumps(generated).replace(str(ROOT), ""))
     found = {"gates": summed(gates), "scenes": summed(numbers_in(scenes)) if scenes else 0.0}
@@ -93,11 +94,7 @@ def numbers(study):
     return {name: value for name, value in found.items() if value}
 
 
-LONG = ("stability",)  # of which `stability-small` has the formulas
-STUDIES = [pytest.param(name, marks=[pytest.mark.long] * (name in LONG)) for name in study_names()]
-
-
-@pytest.mark.parametrize("name", STUDIES)
+@pytest.mark.parametrize("name", study_names())
 def test_formulas_give_what_they_gave(name):
     found = numbers(get_study(name))
     if os.environ.get("KEEP_PAGES"):
