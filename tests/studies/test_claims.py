@@ -82,6 +82,11 @@ def test_the_page_has_every_claim_with_its_finding_and_a_condition_where_that_is
     assert len(lines) == 3 + 4 * len(CLAIMS)
 
 
+def test_a_band_holds_its_edges():
+    held = [Band("x", 1.0, 2.0).holds({"x": value}) for value in (0.9, 1.0, 2.0, 2.1)]
+    assert held == [False, True, True, False] and not Band("x", 1.0, 2.0).holds({"y": 1.5})
+
+
 def damped(delta):
     return delta + 0.05
 

@@ -13,7 +13,14 @@ from validation.studies.beams import formulas as beams
 from validation.studies.patch import formulas as patch
 from validation.studies.waves import formulas as waves
 from validation.suite.matrix import _reported
-from validation.suite.own_solver.block_data import MISREADINGS, is_misread
+from validation.suite.own_solver.block_data import (
+    MISREADINGS,
+    AtRest,
+    is_misread,
+    misread_displacement,
+    misreadings,
+    scenes,
+)
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -59,6 +66,18 @@ def test_a_block_is_misread_where_it_would_rest_elsewhere():
     assert [is_misread(odd, one) for one in MISREADINGS] == [True, True, True, True, False, True, False, True, True]
     unloaded = odd.with_values({"load.eccentricity": 0.0, "load.pressure": 0.0})
     assert not any(is_misread(unloaded, one) for one in MISREADINGS)
+
+
+def test_misreadings_are_named_by_where_a_solver_rests():
+    """One that reads every scene so; the plane that is taken for the other shows where Poisson's ratio counts."""
+    for misreading in MISREADINGS:
+        rests = [AtRest(scene.name, misread_displacement(scene, misreading), 1e-9) for scene in scenes()]
+        named = misreadings(rests)
+        assert misreading in named, misreading.words
+        apart = [at.scene for at, scene in zip(rests, scenes(), strict=True) if is_misread(scene, misreading)]
+        assert named[misreading] == apart
+        rests[-1] = AtRest(rests[-1].scene, rests[-1].value + 2e-9, 1e-9)
+        assert (misreading in misreadings(rests)) == (apart[-1] != rests[-1].scene)
 
 
 def test_what_a_solver_cannot_report_is_no_failure():

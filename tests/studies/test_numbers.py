@@ -13,13 +13,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.stand_ins import Numbers, differing, history, keep, kept, numbers_in, summed
+from oracles.stand_ins import Numbers, differing, history, keep, kept, numbers_in, share, summed
 from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
 from validation.runs.case_name import scene_of
 from validation.runs.row import Row
 from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
+from validation.studies.cost.ladder import Ladder
+from validation.studies.paper import open_close
+from validation.studies.paper.formulas import CLAIMS
+from validation.suite.claims import Evidence
 from validation.suite.folders import get_study, study_names
 from validation.suite.own_solver import gates
 
@@ -84,22 +89,33 @@ def told_by(gate):
     return (gate.scene, *gate.pair, gate.metric, gate.reference_kind, *numbers)
 
 
+def told_by_row(row):
+    """Return what a row is of: its name, the cases that it needs and what it reads of them."""
+    return (row.scene, row.name, *(part for need in row.needs for part in need), *row.reads)
+
+
 def numbers(study):
     judged = () if study.name == "stability" else study.gates()  # 3,400 cases: `stability-small` has its formulas
     gates = [part for gate in judged for part in told_by(gate)]
     generated = [scene.definition() for scene in study.scenes if not isinstance(scene, str)]
     scenes = json.loads(json.dumps(generated).replace(str(ROOT), ""))
-    found = {"gates": summed(gates), "scenes": summed(numbers_in(scenes)) if scenes else 0.0}
+    rows = [part for row in study.recipes.values() for part in told_by_row(row)]
+    found = {"rows": summed(rows), "gates": summed(gates), "scenes": summed(numbers_in(scenes)) if scenes else 0.0}
     found |= {"data": summed(values_in(dict(study.data()))), **rows_of(study)}
     return {name: value for name, value in found.items() if value}
 
 
+def check(name, found, changed=None):
+    """Compare numbers with those that are kept, or keep them."""
+    if os.environ.get("KEEP_PAGES"):
+        keep(KEPT, name, found, found if changed is None else changed())
+    assert differing(found, kept(KEPT)[name]) == {}
+
+
 @pytest.mark.parametrize("name", study_names())
 def test_formulas_give_what_they_gave(name):
-    found = numbers(get_study(name))
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, name, found, rows_of(get_study(name), 1 + 1e-11))
-    assert differing(found, kept(KEPT)[name]) == {}
+    study = get_study(name)
+    check(name, numbers(study), lambda: rows_of(study, 1 + 1e-11))
 
 
 def test_gates_for_users_solvers_are_what_they_were(tmp_path):
@@ -107,7 +123,31 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
     for gate in gates.START.gates():
         edges += [gate.scene, gate.metric, gate.low, gate.high, gate.until or 0.0]
     blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
-    found = {"gates": summed(edges), "kinds": summed(kind for scene in blocks for kind in gates.unseen([scene]))}
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "own-solver", found, found)
-    assert differing(found, kept(KEPT)["own-solver"]) == {}
+    kinds = summed(kind for scene in blocks for kind in gates.unseen([scene]))
+    check("own-solver", {"gates": summed(edges), "kinds": kinds})
+
+
+class Settling(Evidence):
+    """Evidence of histories that come to rest about their static values, some in ten steps, some in a hundred."""
+
+    def number(self, case, metric, solver="dda"):
+        return Numbers(case, solver)[metric]
+
+    def scaled(self, case, quantity):
+        steps = np.arange(1, 250)
+        return 1 + 0.9 * (0.6 + 0.36 * share(case, quantity)) ** steps * np.cos(2.6 * steps)
+
+
+def test_claims_measure_what_they_measured():
+    found = {}
+    for claim in CLAIMS:
+        if claim.id not in open_close.TESTS:  # which read histories by other names
+            measured = claim.measure(Settling(None))
+            found[claim.id] = summed([*measured, *measured.values(), claim.finding(measured)])
+    check("claims", found)
+
+
+def test_an_odd_block_is_solved_in_the_scenes_that_it_was():
+    odd = {"block.poisson": 0.2, "block.subdivide": [2, 3], "fem.elements": 7, "contact.stiffness": 3e8}
+    scenes = Ladder.of(load_scene("cost-paper").with_values(odd)).scenes()
+    check("cost-odd", {scene.name: summed(numbers_in(scene.definition())) for scene in scenes})
