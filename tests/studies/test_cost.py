@@ -106,35 +106,6 @@ def test_errors_are_of_means_of_means():
     assert found["displacement"] < 2e-3 and found["force"] == 0.0
 
 
-@pytest.mark.parametrize(
-    ("block", "values", "reference"),
-    [
-        (PAPER, {}, "continuum"),
-        (PAPER, {"block.poisson": 0.25}, "fem"),
-        (PAPER, {"load.ramp": 0.01}, "fem"),
-        (GRANITE, {}, "fem"),
-        (OPENING, {}, "bar-events"),
-        (OPENING, {"block.poisson": 0.25}, "fem"),
-    ],
-)
-def test_the_reference_is_exact_where_an_exact_motion_applies(block, values, reference):
-    ladder = Ladder.of(block.with_values(values))
-    assert ladder.reference.solver == reference
-    finest = ladder.scene(ladder.reference).expand()[-1]
-    assert finest.time.duration == pytest.approx(ladder.window, rel=1e-5)
-
-
-def test_a_method_sets_its_scheme_cut_mesh_and_springs_alone():
-    ladder = Ladder.of(PAPER.with_values({"time.scheme": "leapfrog", "time.start": "consistent"}))
-    by_id = {method.id: ladder.scene(method).expand()[-1] for method in methods()}
-    assert by_id["block-generalised"].time.rho_inf == 0.0 and by_id["block-constant"].time.delta == 1.0
-    assert by_id["many-average"].block.subdivide == (1, 16)
-    assert (by_id["fem-linear"].fem.degree, by_id["fem-linear"].fem.per_side) == (1, 16)
-    assert by_id["p-tenfold"].contact.stiffness == pytest.approx(1e10)
-    assert by_id["gg-0.99"].time.discount == 0.99
-    assert Ladder.of(PAPER.with_values({"block.poisson": 0.2})).scene(methods()[3]).block.subdivide == (3, 3)
-
-
 # ---- what reaches an error ----------------------------------------------------------------------------------------
 
 
@@ -154,9 +125,6 @@ def test_a_run_reaches_an_error_if_all_finer_ones_of_its_method_do():
 def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
     row = made_row("dda", {}, "w", work={"lines": 400, "unknowns": 20, "steps": 50})
     assert measures.effort(row) == 400 + 20 * 50 / measures.NUMBERS_A_LINE
-
-
-# ---- the table of a study -----------------------------------------------------------------------------------------
 
 
 # ---- orders -------------------------------------------------------------------------------------------------------

@@ -21,6 +21,7 @@ from validation.suite.own_solver.block_data import (
     misreadings,
     scenes,
 )
+from validation.suite.own_solver.gates import shown_by_history
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -78,6 +79,22 @@ def test_misreadings_are_named_by_where_a_solver_rests():
         assert named[misreading] == apart
         rests[-1] = AtRest(rests[-1].scene, rests[-1].value + 2e-9, 1e-9)
         assert (misreading in misreadings(rests)) == (apart[-1] != rests[-1].scene)
+
+
+def test_what_a_history_shows_is_asked_of_it():
+    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    flat = square.with_values({"block.poisson": 0.2})
+    rows = [
+        (square, ("mine",), "displacement.static", True),
+        (square, ("mine", "dda-60"), "displacement.static", False),
+        (flat, ("mine",), "displacement.static", False),
+        (scenes()[1], ("mine",), "displacement.static", True),
+        (scenes()[1], ("mine",), "mode1.frequency", False),
+        (square, ("mine",), "mode1.frequency", True),
+        (square, ("mine",), "stability.growth", False),
+    ]
+    for scene, pair, metric, is_shown in rows:
+        assert shown_by_history(Gate("s", pair, metric, 0.0, 1.0, "r"), scene) == is_shown, (scene.name, pair, metric)
 
 
 def test_what_a_solver_cannot_report_is_no_failure():
