@@ -135,7 +135,7 @@ class Settling(Evidence):
 
     def scaled(self, case, quantity):
         steps = np.arange(1, 250)
-        return 1 + 0.9 * (0.6 + 0.36 * share(case, quantity)) ** steps * np.cos(2.6 * steps)
+        return 1 + 0.9 * (-0.85 - 0.12 * share(case, quantity)) ** steps
 
 
 def test_claims_measure_what_they_measured():
