@@ -103,6 +103,11 @@ def scaled(**factors):
     return of_first(lambda first: {name: getattr(first, name) * factor for name, factor in factors.items()})
 
 
+def larger(factor):
+    """Multiply the columns of a history."""
+    return told(lambda result: {"columns": {name: factor * x for name, x in result.columns.items()}})
+
+
 def of_fields(**changes):
     """Change fields of the first argument of a function, each by a function of its value."""
     return of_first(lambda first: changed_fields(first, changes))

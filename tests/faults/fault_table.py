@@ -13,11 +13,12 @@ def faults_of(study, functions):
     """Return the faults of a table; what they are made by is looked up in ``functions`` too."""
     known = vars(fault) | functions
     faults = []
-    for solvers, rows in tomllib.loads(TABLE.read_text(encoding="utf-8"))[study].items():
-        for seam, function, *arguments in rows:
-            replacement = made(known[function], arguments, known) if arguments else known[function]
-            name = f"{seam} {function} {arguments}"
-            faults.append(fault.Fault(name, tuple(solvers.split()), getattr(seams, seam), replacement))
+    for solvers, rows_by_seam in tomllib.loads(TABLE.read_text(encoding="utf-8"))[study].items():
+        for seam, rows in rows_by_seam.items():
+            for function, *arguments in rows:
+                replacement = made(known[function], arguments, known) if arguments else known[function]
+                name = f"{seam} {function} {arguments}"
+                faults.append(fault.Fault(name, tuple(solvers.split()), getattr(seams, seam), replacement))
     return faults
 
 
@@ -34,7 +35,9 @@ def argument(value, known):
     if not isinstance(value, str):
         return value
     sign, _, number = value.partition(" ")
-    return functools.partial(CHANGES[sign], float(number)) if sign in CHANGES else known.get(value, value)
+    if sign in CHANGES:
+        return functools.partial(CHANGES[sign], float(number))
+    return known[value] if callable(known.get(value)) else value
 
 
 def multiplied(number, value):

@@ -7,18 +7,16 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import beside
-from faults import seams
-from faults.fault import Fault, swapped, times
+from faults.fault import changed_fields
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_kill_matrix
 from oracles.made_cases import made_history, made_row
 from oracles.pages import table
 from typer.testing import CliRunner
 
 from validation.cli.app import app
-from validation.engine.run import run_study
 from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
 from validation.studies.cost import formulas, measures
 from validation.studies.cost.answer import answer
@@ -225,7 +223,7 @@ def of_newmark(**changes):
             scheme = sound(scene)
             if scene.time.scheme != "newmark":
                 return scheme
-            return replace(scheme, **{name: change(getattr(scheme, name)) for name, change in changes.items()})
+            return replace(scheme, **changed_fields(scheme, changes))
 
         return faulty
 
@@ -237,64 +235,15 @@ def softer(share):
     return lambda sound: lambda p: sound(replace(p, young=p.young * (1 - share(p.elements))))
 
 
-def of_continuum(**changes):
-    """The exact motion of another bar."""
-
-    def wrap(sound):
-        def faulty(bar, *a, **k):
-            return sound(
-                replace(bar, **{name: factor * getattr(bar, name) for name, factor in changes.items()}), *a, **k
-            )
-
-        return faulty
-
-    return wrap
+def by_one_element(elements):
+    return 1 / elements
 
 
-def on_soft_springs(sound):
-    return lambda problem, *a, **k: sound(replace(problem, base_stiffness=problem.base_stiffness / 3), *a, **k)
-
-
-FAULTS = [
-    Fault("dda: a discount", ("dda",), seams.DDA_SCHEME, of_newmark(gg=lambda gg: 0.99 * gg)),
-    Fault("dda: other start", ("dda",), seams.DDA_SCHEME, of_newmark(start=swapped)),
-    Fault("dda: delta 1/2", ("dda",), seams.DDA_SCHEME, of_newmark(delta=lambda delta: 0.5)),
-    Fault("fem: column 0.1 % soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1e-3)),
-    Fault("fem: column of first order", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1 / elements)),
-    Fault("fem: fine columns soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 0.1 * (elements > 40))),
-    Fault("fem: mass of first order", ("fem",), seams.FEM_MASS, heavier_on_coarse_meshes),
-    Fault("bar: 2 % large", ("bar",), seams.BAR_HISTORIES, times(1.02)),
-    Fault("continuum: too large", ("continuum",), seams.BAR_CONTINUUM, of_continuum(pressure=1.2)),
-    Fault("continuum: as fast as one strain", ("continuum",), seams.BAR_CONTINUUM, of_continuum(density=0.905)),
-    Fault("bar-events: softer springs", ("bar-events",), seams.EVENTS_BAR, on_soft_springs),
-]
+def where_fine(elements):
+    return 0.1 * (elements > 40)
 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
-
-
-@pytest.fixture(scope="module")
-def sound(tmp_path_factory, finished_cases):
-    """Return the results of the paper's block alone, untimed."""
-    results = beside(finished_cases, tmp_path_factory.mktemp("cost"))
-    run_study(paper_alone(), results)
-    return results
-
-
-def paper_alone():
-    scenes = [scene for scene in COST.scenes if isinstance(scene, Scene) and scene.name.startswith("cost-paper")]
-    derived = [row for row in COST.derived() if row.scene.startswith("cost-paper")]
-    gates = [gate for gate in COST.gates() if gate.scene == "cost-paper"]
-    return replace(COARSE, scenes=scenes, derived=lambda: tuple(derived), gates=lambda: tuple(gates))
-
-
-@pytest.mark.long
-def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
-    verdicts = sound.verdicts("cost")
-    assert len(verdicts) == 2 * 8 and {verdict["verdict"] for verdict in verdicts} == {"PASS"}
-    rows = {(row["scene"], row["name"]): row["metrics"] for row in sound.manifest("cost")["derived"]}
-    cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
-    assert cheapest["error.force"] <= 1e-3
-    assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
+    faults = faults_of("cost", globals())
+    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), faults, tmp_path, finished_cases)

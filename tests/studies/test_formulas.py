@@ -11,6 +11,7 @@ from validation.metrics.values import NOT_REPORTED
 from validation.scenes.scene import load_scene
 from validation.studies.beams import formulas as beams
 from validation.studies.patch import formulas as patch
+from validation.studies.two_codes import formulas as two_codes
 from validation.studies.waves import formulas as waves
 from validation.suite.matrix import _reported
 from validation.suite.own_solver.block_data import (
@@ -22,6 +23,7 @@ from validation.suite.own_solver.block_data import (
     scenes,
 )
 from validation.suite.own_solver.gates import shown_by_history
+from validation.suite.own_solver.history import _bound
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -94,6 +96,18 @@ def test_what_a_history_shows_is_asked_of_it():
     ]
     for scene, pair, metric, is_shown in rows:
         assert shown_by_history(Gate("s", pair, metric, 0.0, 1.0, "r"), scene) == is_shown, (scene.name, pair, metric)
+
+
+def test_a_slanting_top_carries_its_load_onto_the_base():
+    edges = {"top": ((0.0, 2.0), (3.0, 6.0)), "base": ((1.0, 0.0), (5.0, 2.0))}
+    block = SimpleNamespace(edge=edges.get, top="top", base="base", base_length=20**0.5)
+    assert two_codes.carried(SimpleNamespace(block=block, load=SimpleNamespace(pressure=7.0))) == pytest.approx(7.0)
+
+
+def test_the_root_of_a_history_is_known_the_better_the_longer_it_swings():
+    """Of N samples, and those a root of size |z| leaves: (1 - |z|^2 + 1/N)^(3/2)."""
+    assert _bound(0.6 + 0.3j, 50) == pytest.approx(0.57**1.5)
+    assert _bound(1.2j, 50) == pytest.approx(0.02**1.5)
 
 
 def test_what_a_solver_cannot_report_is_no_failure():

@@ -38,11 +38,6 @@ def wrong_sign(sound):
     return faulty
 
 
-def larger(factor):
-    """Multiply what a column's history holds."""
-    return told(lambda result: {"columns": {name: factor * x for name, x in result.columns.items()}})
-
-
 def heavier(part, factor):
     """Multiply the density of blocks or bars."""
     return of_first(lambda p: {part: tuple(replace(one, density=factor * one.density) for one in getattr(p, part))})

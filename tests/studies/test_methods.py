@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from faults import seams
-from faults.fault import Fault, energy_changed, of_first, told
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_study
 from scipy.linalg import expm
 
@@ -14,8 +13,6 @@ from validation import load_scene, solve
 from validation.solvers.registry import get_solver
 from validation.studies.methods import formulas as methods
 from validation.studies.methods.methods import METHODS, SCHEMES, method
-
-DDA = ("dda",)
 
 
 def of_scheme(change):
@@ -57,25 +54,17 @@ def growing(result):
     return {"columns": {name: factor * values for name, values in result.columns.items()}}
 
 
-FAULTS = [
-    Fault("steps 1 % long", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, step=1.01 * scheme.step))),
-    Fault("gg = 0.999", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, gg=0.999))),
-    Fault("am and af exchanged", DDA, seams.DDA_SCHEME, of_table(exchanged)),
-    Fault("composite: split 1/2 with the numbers of another", DDA, seams.DDA_SCHEME, of_table(half_split)),
-    Fault("A0 = 0", DDA, seams.DDA_SCHEME, of_scheme(from_rest)),
-    Fault("leapfrog without its first half step", DDA, seams.DDA_SCHEME,
-          of_table(lambda table: table._replace(lag=0.0))),
-    Fault("a few joules too many", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: e + 9e4)),
-    Fault("locked histories 1 % high", DDA, seams.DDA_SOLVE,
-          told(lambda result: {"columns": {name: 1.01 * x for name, x in result.columns.items()}})),
-    Fault("histories that grow with the step", DDA, seams.DDA_OPENED, told(growing)),
-    Fault("a rigid stop on springs", DDA, seams.DDA_OPENED, of_first(lambda model: {"contact": sprung(model.contact)})),
-    Fault("steps of contact solved twenty times", DDA, seams.DDA_OPENED,
-          told(lambda result: {"step_solves": 20 * result.step_solves})),
-    Fault("columns that grow with the step", DDA, seams.CONTACT_COLUMN, told(growing)),
-    Fault("every solve counted twenty times", DDA, seams.CONTACT_COLUMN,
-          told(lambda result: {"step_solves": 20 * result.step_solves})),
-]  # fmt: skip
+def long_steps(scheme):
+    return replace(scheme, step=1.01 * scheme.step)
+
+
+def discounted(scheme):
+    return replace(scheme, gg=0.999)
+
+
+def without_lag(table):
+    """Take leapfrog without its first half step."""
+    return table._replace(lag=0.0)
 
 
 @pytest.mark.long
@@ -85,7 +74,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     def is_checked(gate):
         return (gate.scene, gate.pair[0]) not in without_runs
 
-    check_study("methods", FAULTS, tmp_path, finished_cases, is_checked)
+    check_study("methods", faults_of("methods", globals()), tmp_path, finished_cases, is_checked)
 
 
 def test_every_method_is_one_scheme_of_the_theory():
