@@ -103,6 +103,25 @@ def scaled(**factors):
     return of_first(lambda first: {name: getattr(first, name) * factor for name, factor in factors.items()})
 
 
+def larger(factor):
+    """Multiply the columns of a history."""
+    return told(lambda result: {"columns": {name: factor * x for name, x in result.columns.items()}})
+
+
+def of_fields(**changes):
+    """Change fields of the first argument of a function, each by a function of its value."""
+    return of_first(lambda first: changed_fields(first, changes))
+
+
+def returned(**changes):
+    """Change fields of what a function returns, each by a function of its value."""
+    return told(lambda found: changed_fields(found, changes))
+
+
+def changed_fields(record, changes):
+    return {name: change(getattr(record, name)) for name, change in changes.items()}
+
+
 def energy_changed(name, change):
     """Change one of the energies that a function returns, where they are kept."""
     return told(lambda found: {"energies": found.energies and found.energies | {name: change(found.energies[name])}})

@@ -333,7 +333,9 @@ def test_positions_of_boxes_are_measured(tmp_path):
     place = answered(tmp_path, names=())
     for name in ("standing", "standing-friction-19-deg", "pile"):
         boxes_answered(place, name)
-    (judged,) = judged_sets(read_sets(place), lambda *given: None)
+    told = []
+    (judged,) = judged_sets(read_sets(place), lambda *given: told.append(given[:2]))
+    assert told == [(0, 3), (1, 3), (2, 3)]
     words = {name: str(one.judgement.status) for name, one in judged.judged.items()}
     assert words == {"standing": "PASS", "standing-friction-19-deg": "FAIL", "pile": "PASS"}
     # Forces are not asked: what is measured on them alone is not among the numbers.

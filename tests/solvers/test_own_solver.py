@@ -126,6 +126,7 @@ def test_a_solver_of_the_suite_and_one_that_does_not_repeat_are_told(
     told = [session.judge(name)[1] for name in names_of(START[:1])]
     assert {name for t in told for name in t.same_as.split()} == same_as
     assert all(t.repeated for t in told)
+    assert {t.group for t in told} >= {"start", "digits", "pressure"}
     assert {0.01 < t.apart < 0.1 for t in told} == {solver == "copies:noisy"}
     headings = [text.partition(":")[0].strip() for text in block(told)]
     assert [heading for heading in WARNINGS if heading in headings] == warned

@@ -7,18 +7,15 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from conftest import beside
-from faults import seams
-from faults.fault import Fault, swapped, times
+from faults.fault import changed_fields
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_kill_matrix
 from oracles.made_cases import made_history, made_row
-from oracles.pages import table
 from typer.testing import CliRunner
 
 from validation.cli.app import app
-from validation.engine.run import run_study
 from validation.errors import InputError
-from validation.scenes.scene import Scene, load_scene
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import solve
 from validation.studies.cost import formulas, measures
 from validation.studies.cost.answer import answer
@@ -92,11 +89,6 @@ def solve_modes(scene):
     return sorted(mode.frequency for mode in get_solver("dda").modes(scene))
 
 
-def test_a_history_of_long_steps_is_straight_between_them():
-    values = measures.on_grid(made_history(0.5, [1.0, 1.0], [0.0, 2.0]), "displacement", np.linspace(0, 1, 5))
-    assert measures.running_mean(values, 2) == pytest.approx([0, 0.125, 0.5, 0.875, 1.0])
-
-
 def test_errors_are_of_means_of_means():
     """A constant doubled from t = 0 on is 100 % off in every mean; a zigzag of one step is nearly nothing in them."""
     ladder = SimpleNamespace(mean=1.0)
@@ -109,35 +101,6 @@ def test_errors_are_of_means_of_means():
     }
     found = measures.errors(ladder, zigzag, reference)
     assert found["displacement"] < 2e-3 and found["force"] == 0.0
-
-
-@pytest.mark.parametrize(
-    ("block", "values", "reference"),
-    [
-        (PAPER, {}, "continuum"),
-        (PAPER, {"block.poisson": 0.25}, "fem"),
-        (PAPER, {"load.ramp": 0.01}, "fem"),
-        (GRANITE, {}, "fem"),
-        (OPENING, {}, "bar-events"),
-        (OPENING, {"block.poisson": 0.25}, "fem"),
-    ],
-)
-def test_the_reference_is_exact_where_an_exact_motion_applies(block, values, reference):
-    ladder = Ladder.of(block.with_values(values))
-    assert ladder.reference.solver == reference
-    finest = ladder.scene(ladder.reference).expand()[-1]
-    assert finest.time.duration == pytest.approx(ladder.window, rel=1e-5)
-
-
-def test_a_method_sets_its_scheme_cut_mesh_and_springs_alone():
-    ladder = Ladder.of(PAPER.with_values({"time.scheme": "leapfrog", "time.start": "consistent"}))
-    by_id = {method.id: ladder.scene(method).expand()[-1] for method in methods()}
-    assert by_id["block-generalised"].time.rho_inf == 0.0 and by_id["block-constant"].time.delta == 1.0
-    assert by_id["many-average"].block.subdivide == (1, 16)
-    assert (by_id["fem-linear"].fem.degree, by_id["fem-linear"].fem.per_side) == (1, 16)
-    assert by_id["p-tenfold"].contact.stiffness == pytest.approx(1e10)
-    assert by_id["gg-0.99"].time.discount == 0.99
-    assert Ladder.of(PAPER.with_values({"block.poisson": 0.2})).scene(methods()[3]).block.subdivide == (3, 3)
 
 
 # ---- what reaches an error ----------------------------------------------------------------------------------------
@@ -161,17 +124,7 @@ def test_work_counts_lines_of_python_and_numbers_of_compiled_loops():
     assert measures.effort(row) == 400 + 20 * 50 / measures.NUMBERS_A_LINE
 
 
-# ---- the table of a study -----------------------------------------------------------------------------------------
-
-
 # ---- orders -------------------------------------------------------------------------------------------------------
-
-
-def test_histories_of_finer_steps_are_read_at_the_coarse_steps_times():
-    """Step n of dt and step 4 n of dt / 4 end at the same time."""
-    fine = made_history(0.25, np.arange(1, 13) ** 2, np.arange(1, 13))
-    columns = formulas._columns(fine, 4)
-    assert columns["displacement"].tolist() == [16, 64, 144] and columns["pressure"].tolist() == [4, 8, 12]
 
 
 def test_the_grid_convergence_index_is_that_of_the_last_change():
@@ -202,14 +155,9 @@ def test_a_user_s_block_is_run_and_told(tmp_path, monkeypatch):
     monkeypatch.setattr(measures, "methods", lambda: short)
     path = tmp_path / "mine.toml"
     path.write_text("\n".join(f"{name} = {inline(table)}" for name, table in MINE.items()))
-    where = ["--results", str(tmp_path / "results")]
-    run = CliRunner().invoke(app, ["run", "cost", "--scene", str(path), *where])
+    run = CliRunner().invoke(app, ["run", "cost", "--scene", str(path), "--results", str(tmp_path / "results")])
     assert run.exit_code == 0, run.output
     assert "2 modes" in run.output and "no run gets there" in run.output
-    assert CliRunner().invoke(app, ["run", "cost", "--scene", str(path), *where]).exit_code == 0
-    assert CliRunner().invoke(app, ["rows", "cost-of-mine", "--csv", str(tmp_path / "a.csv"), *where]).exit_code == 0
-    lines = table(tmp_path / "a.csv")
-    assert {"work.lines", "seconds.spread", "error.force"} <= {line["metric"] for line in lines}
 
 
 def inline(values):
@@ -269,7 +217,7 @@ def of_newmark(**changes):
             scheme = sound(scene)
             if scene.time.scheme != "newmark":
                 return scheme
-            return replace(scheme, **{name: change(getattr(scheme, name)) for name, change in changes.items()})
+            return replace(scheme, **changed_fields(scheme, changes))
 
         return faulty
 
@@ -281,64 +229,15 @@ def softer(share):
     return lambda sound: lambda p: sound(replace(p, young=p.young * (1 - share(p.elements))))
 
 
-def of_continuum(**changes):
-    """The exact motion of another bar."""
-
-    def wrap(sound):
-        def faulty(bar, *a, **k):
-            return sound(
-                replace(bar, **{name: factor * getattr(bar, name) for name, factor in changes.items()}), *a, **k
-            )
-
-        return faulty
-
-    return wrap
+def by_one_element(elements):
+    return 1 / elements
 
 
-def on_soft_springs(sound):
-    return lambda problem, *a, **k: sound(replace(problem, base_stiffness=problem.base_stiffness / 3), *a, **k)
-
-
-FAULTS = [
-    Fault("dda: a discount", ("dda",), seams.DDA_SCHEME, of_newmark(gg=lambda gg: 0.99 * gg)),
-    Fault("dda: other start", ("dda",), seams.DDA_SCHEME, of_newmark(start=swapped)),
-    Fault("dda: delta 1/2", ("dda",), seams.DDA_SCHEME, of_newmark(delta=lambda delta: 0.5)),
-    Fault("fem: column 0.1 % soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1e-3)),
-    Fault("fem: column of first order", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 1 / elements)),
-    Fault("fem: fine columns soft", ("fem",), seams.FEM_COLUMN, softer(lambda elements: 0.1 * (elements > 40))),
-    Fault("fem: mass of first order", ("fem",), seams.FEM_MASS, heavier_on_coarse_meshes),
-    Fault("bar: 2 % large", ("bar",), seams.BAR_HISTORIES, times(1.02)),
-    Fault("continuum: too large", ("continuum",), seams.BAR_CONTINUUM, of_continuum(pressure=1.2)),
-    Fault("continuum: as fast as one strain", ("continuum",), seams.BAR_CONTINUUM, of_continuum(density=0.905)),
-    Fault("bar-events: softer springs", ("bar-events",), seams.EVENTS_BAR, on_soft_springs),
-]
+def where_fine(elements):
+    return 0.1 * (elements > 40)
 
 
 @pytest.mark.long
 def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
-    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), FAULTS, tmp_path, finished_cases)
-
-
-@pytest.fixture(scope="module")
-def sound(tmp_path_factory, finished_cases):
-    """Return the results of the paper's block alone, untimed."""
-    results = beside(finished_cases, tmp_path_factory.mktemp("cost"))
-    run_study(paper_alone(), results)
-    return results
-
-
-def paper_alone():
-    scenes = [scene for scene in COST.scenes if isinstance(scene, Scene) and scene.name.startswith("cost-paper")]
-    derived = [row for row in COST.derived() if row.scene.startswith("cost-paper")]
-    gates = [gate for gate in COST.gates() if gate.scene == "cost-paper"]
-    return replace(COARSE, scenes=scenes, derived=lambda: tuple(derived), gates=lambda: tuple(gates))
-
-
-@pytest.mark.long
-def test_the_paper_s_block_reaches_a_tenth_of_a_percent(sound):
-    verdicts = sound.verdicts("cost")
-    assert len(verdicts) == 2 * 8 and {verdict["verdict"] for verdict in verdicts} == {"PASS"}
-    rows = {(row["scene"], row["name"]): row["metrics"] for row in sound.manifest("cost")["derived"]}
-    cheapest = rows["cost-paper", "cheapest force 0.1 % any"]
-    assert cheapest["error.force"] <= 1e-3
-    assert rows["cost-paper", "cheapest force 10 % dda"]["cut"] == "1 × 4"
+    faults = faults_of("cost", globals())
+    check_kill_matrix(COARSE, COARSE.cases(), list(COARSE.gates()), faults, tmp_path, finished_cases)

@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import thinned, typed
+from conftest import typed
 
 import validation.studies
 from validation.engine import run_study
@@ -111,15 +111,6 @@ def test_a_folder_that_is_added_is_run_judged_and_told(added, tmp_path, monkeypa
     monkeypatch.setattr(validation.studies, "__path__", [str(HERE)])  # and is taken away: its results tell themselves
     assert "added-study" not in study_names() and "added-scene" not in scene_files()
     assert chapter_of("added-study") is scene_chapter
-
-
-@pytest.mark.parametrize("name", thinned(study_names(), 9))
-def test_what_gates_and_derived_rows_need_is_run(name):
-    study = get_study(name)
-    owned = {(case.scene.name, case.solver) for case in study.cases()} | set(study.recipes)
-    needed = {pair for gate in study.gates() for pair in study.needs(gate)}
-    needed |= {tuple(pair) for recipe in study.recipes.values() for pair in recipe.needs}
-    assert not needed - owned
 
 
 def test_no_study_stands_on_what_is_of_another_alone():

@@ -11,9 +11,19 @@ from validation.metrics.values import NOT_REPORTED
 from validation.scenes.scene import load_scene
 from validation.studies.beams import formulas as beams
 from validation.studies.patch import formulas as patch
+from validation.studies.two_codes import formulas as two_codes
 from validation.studies.waves import formulas as waves
 from validation.suite.matrix import _reported
-from validation.suite.own_solver.block_data import MISREADINGS, is_misread
+from validation.suite.own_solver.block_data import (
+    MISREADINGS,
+    AtRest,
+    is_misread,
+    misread_displacement,
+    misreadings,
+    scenes,
+)
+from validation.suite.own_solver.gates import shown_by_history
+from validation.suite.own_solver.history import _bound
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -59,6 +69,45 @@ def test_a_block_is_misread_where_it_would_rest_elsewhere():
     assert [is_misread(odd, one) for one in MISREADINGS] == [True, True, True, True, False, True, False, True, True]
     unloaded = odd.with_values({"load.eccentricity": 0.0, "load.pressure": 0.0})
     assert not any(is_misread(unloaded, one) for one in MISREADINGS)
+
+
+def test_misreadings_are_named_by_where_a_solver_rests():
+    """One that reads every scene so; and no more where it rests elsewhere in a scene that shows it."""
+    for misreading in (MISREADINGS[0], MISREADINGS[3], MISREADINGS[-1]):
+        rests = [AtRest(scene.name, misread_displacement(scene, misreading), 1e-9) for scene in scenes()]
+        apart = [scene.name for scene in scenes() if is_misread(scene, misreading)]
+        assert misreadings(rests)[misreading] == apart, misreading.words
+    assert apart[-1] == rests[-1].scene
+    rests[-1] = AtRest(rests[-1].scene, rests[-1].value + 2e-9, 1e-9)
+    assert misreading not in misreadings(rests)
+
+
+def test_what_a_history_shows_is_asked_of_it():
+    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
+    flat = square.with_values({"block.poisson": 0.2})
+    rows = [
+        (square, ("mine",), "displacement.static", True),
+        (square, ("mine", "dda-60"), "displacement.static", False),
+        (flat, ("mine",), "displacement.static", False),
+        (scenes()[1], ("mine",), "displacement.static", True),
+        (scenes()[1], ("mine",), "mode1.frequency", False),
+        (square, ("mine",), "mode1.frequency", True),
+        (square, ("mine",), "stability.growth", False),
+    ]
+    for scene, pair, metric, is_shown in rows:
+        assert shown_by_history(Gate("s", pair, metric, 0.0, 1.0, "r"), scene) == is_shown, (scene.name, pair, metric)
+
+
+def test_a_slanting_top_carries_its_load_onto_the_base():
+    edges = {"top": ((0.0, 2.0), (3.0, 6.0)), "base": ((1.0, 0.0), (5.0, 2.0))}
+    block = SimpleNamespace(edge=edges.get, top="top", base="base", base_length=20**0.5)
+    assert two_codes.carried(SimpleNamespace(block=block, load=SimpleNamespace(pressure=7.0))) == pytest.approx(7.0)
+
+
+def test_the_root_of_a_history_is_known_the_better_the_longer_it_swings():
+    """Of N samples, and those a root of size |z| leaves: (1 - |z|^2 + 1/N)^(3/2)."""
+    assert _bound(0.6 + 0.3j, 50) == pytest.approx(0.57**1.5)
+    assert _bound(1.2j, 50) == pytest.approx(0.02**1.5)
 
 
 def test_what_a_solver_cannot_report_is_no_failure():

@@ -80,12 +80,6 @@ def test_a_gate_without_phenomenon_or_sources_is_found(stated, lacks, tmp_path, 
     assert {lack for lack, _ in found} == lacks and {gate.metric for _, gate in found} <= {"displacement.static"}
 
 
-def test_a_phenomenon_goes_by_its_name_a_part_of_it_and_its_study(few):
-    for shown in phenomena():
-        assert phenomenon(shown.name) == shown
-    assert phenomenon("OVERTURNING").study == "rocking" and phenomenon("boxes").study == "boxes"
-
-
 @pytest.mark.parametrize(("text", "advice"), [("ing", "several"), ("rokcing", "rocking"), ("", "lists them")])
 def test_a_name_of_none_or_several_is_refused(text, advice, few):
     with pytest.raises(InputError) as refusal:
@@ -121,9 +115,9 @@ def test_a_phenomenon_judges_another_solver_behind_derived_rows(factor, status, 
 
 
 def test_a_phenomenon_is_run_and_judged_and_who_cannot_answer_is_told(few, finished_cases, tmp_path):
-    sliding = replace(phenomenon("boxes"), scenes=("boxes-sliding",))
-    verdicts, remarks = verify(sliding, Results(finished_cases))
-    assert ([str(verdict.status) for verdict in verdicts], remarks) == (["PASS", "PASS"], [])
-    verdicts, (remark,) = verify(sliding, Results(tmp_path), "dda-textbook")
-    assert [str(verdict.status) for verdict in verdicts] == ["NOT RUN", "NOT RUN"]
-    assert remark.split(": ")[:3] == ["1 of 2 runs", "dda-textbook", str(Outcome.NOT_APPLICABLE)]
+    dominoes = replace(phenomena(["columns"])[0], scenes=("columns-domino",))
+    verdicts, remarks = verify(dominoes, Results(finished_cases))
+    assert ([str(verdict.status) for verdict in verdicts], remarks) == (["PASS"] * 4, [])
+    verdicts, (remark,) = verify(dominoes, Results(tmp_path), "dda-textbook")
+    assert [str(verdict.status) for verdict in verdicts] == ["NOT RUN"] * 4
+    assert remark.split(": ")[:3] == ["4 of 4 runs", "dda-textbook", str(Outcome.NOT_APPLICABLE)]

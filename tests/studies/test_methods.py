@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from faults import seams
-from faults.fault import Fault, energy_changed, of_first, told
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_study
+from scipy.linalg import expm
 
-from validation import solve
+from validation import load_scene, solve
+from validation.solvers.registry import get_solver
 from validation.studies.methods import formulas as methods
 from validation.studies.methods.methods import METHODS, SCHEMES, method
-
-DDA = ("dda",)
 
 
 def of_scheme(change):
@@ -55,25 +54,17 @@ def growing(result):
     return {"columns": {name: factor * values for name, values in result.columns.items()}}
 
 
-FAULTS = [
-    Fault("steps 1 % long", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, step=1.01 * scheme.step))),
-    Fault("gg = 0.999", DDA, seams.DDA_SCHEME, of_scheme(lambda scheme: replace(scheme, gg=0.999))),
-    Fault("am and af exchanged", DDA, seams.DDA_SCHEME, of_table(exchanged)),
-    Fault("composite: split 1/2 with the numbers of another", DDA, seams.DDA_SCHEME, of_table(half_split)),
-    Fault("A0 = 0", DDA, seams.DDA_SCHEME, of_scheme(from_rest)),
-    Fault("leapfrog without its first half step", DDA, seams.DDA_SCHEME,
-          of_table(lambda table: table._replace(lag=0.0))),
-    Fault("a few joules too many", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: e + 9e4)),
-    Fault("locked histories 1 % high", DDA, seams.DDA_SOLVE,
-          told(lambda result: {"columns": {name: 1.01 * x for name, x in result.columns.items()}})),
-    Fault("histories that grow with the step", DDA, seams.DDA_OPENED, told(growing)),
-    Fault("a rigid stop on springs", DDA, seams.DDA_OPENED, of_first(lambda model: {"contact": sprung(model.contact)})),
-    Fault("steps of contact solved twenty times", DDA, seams.DDA_OPENED,
-          told(lambda result: {"step_solves": 20 * result.step_solves})),
-    Fault("columns that grow with the step", DDA, seams.CONTACT_COLUMN, told(growing)),
-    Fault("every solve counted twenty times", DDA, seams.CONTACT_COLUMN,
-          told(lambda result: {"step_solves": 20 * result.step_solves})),
-]  # fmt: skip
+def long_steps(scheme):
+    return replace(scheme, step=1.01 * scheme.step)
+
+
+def discounted(scheme):
+    return replace(scheme, gg=0.999)
+
+
+def without_lag(table):
+    """Take leapfrog without its first half step."""
+    return table._replace(lag=0.0)
 
 
 @pytest.mark.long
@@ -83,7 +74,7 @@ def test_every_gate_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     def is_checked(gate):
         return (gate.scene, gate.pair[0]) not in without_runs
 
-    check_study("methods", FAULTS, tmp_path, finished_cases, is_checked)
+    check_study("methods", faults_of("methods", globals()), tmp_path, finished_cases, is_checked)
 
 
 def test_every_method_is_one_scheme_of_the_theory():
@@ -102,3 +93,20 @@ def test_the_exact_locked_block_is_that_of_the_exact_solver():
         np.abs(methods.exact_locked(case, solve(case, "block-events").time) - exact).max() < 1e-12 * np.abs(exact).max()
     )
     assert math.isclose(case.time.duration, methods.LOCKED_TIME)
+
+
+def test_a_rate_of_discount_converges_in_the_order_of_the_scheme():
+    """Beside the end of M D'' + c M D' + K D = F from rest, by an exponential; without a rate `cost` gates it."""
+    light = load_scene("figure-9").with_values({"time.gg": 1.0})
+    model = get_solver("dda").prepare(light).model
+    of_block = np.ix_([1, 4], [1, 4])  # displacement and strain along y
+    stiffness = np.linalg.solve(model.mass[of_block], model.stiffness[of_block])
+    load = np.linalg.solve(model.mass[of_block], model.force[[1, 4]])
+    rate = 60.0
+    motion = np.block([[np.zeros((2, 2)), np.eye(2)], [-stiffness, -rate * np.eye(2)]])
+    end = np.linalg.solve(motion, (expm(0.02 * motion) - np.eye(4)) @ [0.0, 0.0, *load])
+    errors = []
+    for steps in (400, 800):
+        values = {"time.step": 0.02 / steps, "time.steps": steps, "time.start": "consistent", "time.gg_rate": rate}
+        errors.append(solve(light.with_values(values), "dda").displacement[-1] - end[0])
+    assert errors[0] / errors[1] == pytest.approx(4.0, rel=0.02) and abs(errors[1]) < 1e-4 * abs(end[0])

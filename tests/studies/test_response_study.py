@@ -1,8 +1,7 @@
 """The study `response`: each of its gates is bitten by a fault, and its records are what its scenes say."""
 
 import pytest
-from faults import seams
-from faults.fault import Fault, late, thousandth, with_scheme
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_kill_matrix, failed
 
 from validation.engine.run import finish
@@ -18,23 +17,12 @@ def another_frequency(sound):
     return lambda *a, **k: (lambda w2, factor: (w2 * (1 + 1e-6 + 1e-6j), factor))(*sound(*a, **k))
 
 
-ANSWERS = [
-    Fault("dda", ("dda",), seams.DDA_ANSWERING, another_frequency),
-    Fault("fem", ("fem",), seams.FEM_ANSWERING, another_frequency),
-    Fault("bar", ("bar",), seams.BAR_ANSWERING, another_frequency),
-]
-STEPS = [
-    Fault("dda: delta 0.1 % high", ("dda",), seams.DDA_CARRIED, with_scheme(0, delta=thousandth)),
-    Fault("dda: delta of the velocity 0.1 % high", ("dda",), seams.DDA_VELOCITY, with_scheme(0, delta=thousandth)),
-    Fault("fem: one step late", ("fem",), seams.FEM_RUN, late),
-]
-
-
-@pytest.mark.parametrize("fault", ANSWERS, ids=lambda fault: fault.name)
+@pytest.mark.parametrize("number", range(3))
 @pytest.mark.long
-def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(fault, finished_cases):
+def test_a_response_at_another_frequency_is_seen_by_every_gate_on_it(number, finished_cases):
+    fault = faults_of("response-answers", globals())[number]
     judged = [g for g in STUDY.gates() if g.metric not in ("damping.steps", "mode1.damping")]
-    gates = [g for g in judged if reached(g, fault.name)]
+    gates = [g for g in judged if reached(g, *fault.solvers)]
     finished = finish(STUDY.cases(), STUDY, Results(finished_cases))
     with pytest.MonkeyPatch.context() as patch:
         fault.seam.wrap(patch, fault.replacement)
@@ -50,4 +38,4 @@ def reached(gate, solver):
 def test_gates_on_steps_are_bitten(tmp_path, finished_cases):
     stepped = (BASE, "viscous")
     gates = [gate for gate in STUDY.gates() if gate.scene.startswith(stepped) or gate.metric == "damping.steps"]
-    check_kill_matrix(STUDY, STUDY.cases(), gates, STEPS, tmp_path, finished_cases)
+    check_kill_matrix(STUDY, STUDY.cases(), gates, faults_of("response-steps", globals()), tmp_path, finished_cases)

@@ -3,81 +3,48 @@
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
-from faults import seams
-from faults.fault import Fault, energy_changed, of_first, scaled, told
+from faults.fault import changed_fields, of_first, told
+from faults.fault_table import faults_of
 from faults.kill_matrix import check_study
-from oracles.sliding_block import SLIDER, history
 
 from validation import solve
 from validation.scenes.scene import load_scene
 from validation.studies.creep import formulas as creep
-from validation.suite.bands import cases
 from validation.theory import friction
 
 
 def of_law(**changes):
-    """Change fields of the contact law, each a function of the law."""
-    return of_first(
-        lambda model: {"contact": replace(model.contact, **{k: f(model.contact) for k, f in changes.items()})}
-    )
+    """Change fields of the contact law, each by a function of its value."""
+    return of_first(lambda model: {"contact": replace(model.contact, **changed_fields(model.contact, changes))})
 
 
-def of_scheme(change):
-    """Change the scheme."""
-    return lambda sound: lambda model, scheme, *a, **k: sound(model, replace(scheme, **change(scheme)), *a, **k)
+def with_lag(rules):
+    return "lagged"
 
 
-DDA = ("dda",)
-FAULTS = [
-    Fault("the angle of friction for its tangent", DDA, seams.DDA_OPENED,
-          of_law(friction=lambda law: law.friction and math.atan(law.friction))),
-    Fault("friction a millionth high", DDA, seams.DDA_OPENED,
-          of_law(friction=lambda law: law.friction and (1 + 1e-6) * law.friction)),
-    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0, cohesion=lambda law: 0.0)),
-    Fault("no cohesion", DDA, seams.DDA_OPENED, of_law(cohesion=lambda law: 0.0)),
-    Fault("friction lagged", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "lagged")),
-    Fault("the slope turned", DDA, seams.DDA_OPENED, scaled(slope=-1.0)),
-    Fault("the slope in the weight only", DDA, seams.DDA_OPENED, scaled(slope=0.0)),
-    Fault("gravity a millionth high", DDA, seams.DDA_OPENED, scaled(gravity=1 + 1e-6)),
-    Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
-    Fault("gg twice", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": scheme.gg**2})),
-    Fault("gg left out", DDA, seams.DDA_OPENED, of_scheme(lambda scheme: {"gg": 1.0})),
-    Fault("work of friction a hundredth high", DDA, seams.DDA_OPENED, energy_changed("friction", lambda e: 1.01 * e)),
-    Fault("kinetic energy doubled", DDA, seams.DDA_OPENED, energy_changed("kinetic", lambda e: 2.0 * e)),
-    Fault("energy of the load left out", DDA, seams.DDA_OPENED, energy_changed("load", np.zeros_like)),
-    Fault("slip counted on", DDA, seams.DDA_OPENED, told(lambda found: {"slip": found.slip + found.time * 1e-6})),
-]  # fmt: skip
+def consistently(rules):
+    return "consistent"
+
+
+def atan(friction):
+    """Take the angle of friction for its tangent."""
+    return friction and math.atan(friction)
+
+
+def squared(gg):
+    return gg**2
+
+
+counted_on = told(lambda found: {"slip": found.slip + found.time * 1e-6})
 
 
 @pytest.mark.long
 def test_every_gate_of_sliding_is_bitten_and_every_fault_is_seen(tmp_path, finished_cases):
     # The facts are bitten in test_facts.py.
-    check_study("slopes", FAULTS, tmp_path, finished_cases, lambda gate: gate.scene != "slope-facts")
-
-
-def check_creep(faults, directory, finished_cases, scenes, is_checked=lambda gate: True):
-    """Check the kill matrix of the gates of the study of creep on some scenes."""
     check_study(
-        "creep",
-        faults,
-        directory,
-        finished_cases,
-        lambda gate: gate.scene.partition("[")[0] in scenes and is_checked(gate),
+        "slopes", faults_of("slopes", globals()), tmp_path, finished_cases, lambda gate: gate.scene != "slope-facts"
     )
-
-
-CREEP = [
-    Fault("friction consistent", DDA, seams.DDA_OPENED, of_law(rules=lambda law: "consistent")),
-    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
-]
-
-
-@pytest.mark.long
-def test_every_gate_of_creep_holds_and_the_exact_ones_are_bitten(tmp_path, finished_cases):
-    faults = [Fault("gravity a fifth high", ("block-events",), seams.EVENTS_BLOCK, scaled(gravity=1.2))]
-    check_creep(faults, tmp_path, finished_cases, (creep.EXACT,), lambda gate: gate.metric != "share")
 
 
 def kept_reference(sound):
@@ -92,44 +59,20 @@ def kept_reference(sound):
     return faulty
 
 
-SPRINGS = [
-    Fault("shear reference kept while open", DDA, seams.DDA_REFERENCES, kept_reference),
-    Fault("gravity a hundredth high", DDA, seams.DDA_OPENED, scaled(gravity=1.01)),
-    Fault("springs a thousandth soft", DDA, seams.DDA_OPENED, of_law(stiffness=lambda law: 0.999 * law.stiffness)),
-    Fault("no friction at all", DDA, seams.DDA_OPENED, of_law(friction=lambda law: 0.0)),
-    Fault("no friction in the exact motion", ("block-events",), seams.EVENTS_BLOCK,
-          of_first(lambda problem: {"friction": 0.0})),
-]  # fmt: skip
+CREEP = {  # scenes by their faults
+    "creep-exact": (creep.EXACT,),
+    "creep-springs": (creep.STIFFNESS, creep.DAMPED),
+    "creep-steps": (creep.STEPS, creep.LAGGED, "creep-claim", "slope-exact-constant", "slope-exact-average"),
+}
 
 
 @pytest.mark.long
-def test_creep_on_springs_of_any_stiffness_is_gated_and_bitten(tmp_path, finished_cases):
-    check_creep(SPRINGS, tmp_path, finished_cases, (creep.STIFFNESS, creep.DAMPED))
+@pytest.mark.parametrize("name", CREEP)
+def test_creep_is_gated_and_bitten(name, tmp_path, finished_cases):
+    def is_checked(gate):
+        return gate.scene.partition("[")[0] in CREEP[name] and (name != "creep-exact" or gate.metric != "share")
 
-
-@pytest.mark.long
-def test_creep_at_fine_steps_and_its_orders_are_bitten(tmp_path, finished_cases):
-    scenes = (creep.STEPS, creep.LAGGED, "creep-claim", "slope-exact-constant", "slope-exact-average")
-    check_creep([*CREEP, SPRINGS[2]], tmp_path, finished_cases, scenes)
-
-
-def test_dda_is_the_plain_program_step_by_step():
-    """The oracle shares no line with it; consistent and lagged, sticking, slipping and open."""
-    for rules in ("consistent", "lagged"):
-        case = next(iter(cases(creep.LAGGED))).with_values(
-            {"contact.rules": rules, "contact.band": [0.0, 0.0], "time.step": 1e-3, "time.steps": 150}
-        )
-        data = oracle(case, rules == "lagged")
-        found, plain = solve(case, "dda").history.columns, history(data)
-        for name, other in (("horizontal_displacement", plain.sideways), ("displacement", plain.displacement)):
-            assert found[name] == pytest.approx(other, rel=1e-9, abs=1e-12)
-
-
-def oracle(case, lagged):
-    c, t = case.contact, case.time
-    pull = case.block.mass * friction.along(case), -case.block.mass * friction.across(case)
-    values = {"phi": c.friction or 0.0, "p": c.stiffness, "ps": c.shear, "dt": t.step, "steps": t.steps}
-    return replace(SLIDER, force=pull, lagged=lagged, **values)
+    check_study("creep", faults_of(name, globals()), tmp_path, finished_cases, is_checked)
 
 
 CREEP_FACTORS = [  # slope and friction [deg], shear springs over normal ones, speed of the exact block over g / w_n

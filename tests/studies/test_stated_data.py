@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from validation.scenes.record import base_record
-from validation.scenes.scene import load_scene
 from validation.studies.impacts import formulas as impacts
 from validation.studies.response import formulas as response
 from validation.studies.rocking import formulas as rocking
@@ -48,6 +47,7 @@ def pulse(t):
     return rocking.PUSH * np.where(t <= end, t**2 / 2, end**2 / 2 + end * (t - end))
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("name", "direction", "formula"),
     [
@@ -62,15 +62,6 @@ def test_a_record_is_its_formula(name, direction, formula):
         record = base_record(case)
         assert record.time[-1] >= case.time.duration * (1 - 1e-12)
         assert getattr(record, direction) == pytest.approx(formula(record.time), rel=1e-9, abs=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("name", "frequencies"), [(response.BASE, response.FREQUENCIES), (response.DAMPING, response.LOW)]
-)
-def test_a_window_holds_whole_periods(name, frequencies):
-    step = load_scene(name).expand()[0].time.step
-    periods = np.array(frequencies) * step * response.WINDOWS[name]
-    assert periods == pytest.approx(np.round(periods), rel=1e-12)
 
 
 @pytest.mark.parametrize(
