@@ -13,12 +13,15 @@ intervals end where a patch ends, so that it is integrated exactly on any mesh.
 
 from __future__ import annotations
 
+import functools
+import operator
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import coo_array, csr_array, diags_array
-from skfem import Basis, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
+from skfem import Basis, BilinearForm, ElementQuad1, ElementQuad2, ElementTriP1, ElementTriP2, ElementVector, Mesh
+from skfem.helpers import ddot, div, dot, sym_grad
 
 from fem_reference.problem.material import Elastic
 from fem_reference.problem.problem import Array, Indices, Problem
@@ -37,6 +40,24 @@ CONVERGED = 1e-14
 """Step of Newton's method in a cell's own coordinates, from 0 to 1, that only rounding leaves."""
 
 
+@BilinearForm
+def mass_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(u, v)."""
+    return dot(u, v)
+
+
+@BilinearForm
+def dilatation_form(u, v, w):  # type: ignore[no-untyped-def]
+    """(div u, div v)."""
+    return div(u) * div(v)
+
+
+@BilinearForm
+def strain_form(u, v, w):  # type: ignore[no-untyped-def]
+    """2 (eps(u), eps(v))."""
+    return 2 * ddot(sym_grad(u), sym_grad(v))
+
+
 class Rule(NamedTuple):
     """Points on facets with weights."""
 
@@ -52,48 +73,32 @@ def vector_basis(mesh: Mesh, degree: int) -> Basis:
     return Basis(mesh, element, intorder=2 * degree + 1)
 
 
-def assembled(basis: Basis, terms: Sequence[tuple[float, Array]]) -> csr_array:
-    """Matrix of a sum of coefficients times (a, b), with the a of each basis function and the b of each other one.
+def assembled(terms: list[tuple[float, BilinearForm]], basis: Basis, congruent: bool) -> csr_array:
+    """Matrix of a sum of coefficients times forms; a term whose coefficient is zero leaves no entry.
 
-    Parameters
-    ----------
-    basis
-        The displacement basis.
-    terms
-        Coefficient and parts of a in each cell, shape (basis functions, parts, cells, points); of the first cell
-        alone where all are its translates.
+    Where all cells are translates of the first one its element matrix is that of all.
     """
-    local = np.zeros((1, basis.Nbfun, basis.Nbfun))
-    for coefficient, parts in terms:
-        weights = basis.dx[: parts.shape[2]]
-        local = local + coefficient * np.einsum("kpcq,lpcq,cq->ckl", parts, parts, weights)
+    terms = [(coefficient, form) for coefficient, form in terms if coefficient != 0]
+    if not congruent:
+        parts = [coefficient * csr_array(form.assemble(basis)) for coefficient, form in terms]
+        return functools.reduce(operator.add, parts)
+    first = Basis(basis.mesh, basis.elem, quadrature=basis.quadrature, elements=np.array([0]))
+    local = sum(coefficient * form.elemental(first).tolocal()[0] for coefficient, form in terms)
     dofs = basis.element_dofs.T.astype(np.int32)
     rows = np.repeat(dofs, dofs.shape[1], axis=1)
     columns = np.tile(dofs, dofs.shape[1])
-    data = np.broadcast_to(local, (len(dofs), *local.shape[1:]))
-    matrix = csr_array(coo_array((data.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
-    matrix.eliminate_zeros()
-    return matrix
+    data = np.tile(local.ravel(), len(dofs))
+    return csr_array(coo_array((data, (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
 
 
 def mass(basis: Basis, density: float, congruent: bool = False) -> csr_array:
     """Consistent mass matrix [kg]; `congruent` where all cells are translates of the first one."""
-    cells = slice(1 if congruent else None)
-    values = np.array([np.asarray(field)[:, cells] for (field,) in basis.basis])
-    return assembled(basis, [(density, values)])
+    return assembled([(density, mass_form)], basis, congruent)
 
 
 def stiffness(basis: Basis, body: Elastic, congruent: bool = False) -> csr_array:
     """Elastic stiffness matrix [N/m]; `congruent` where all cells are translates of the first one."""
-    cells = slice(1 if congruent else None)
-    gradient = np.array([field.grad[:, :, cells] for (field,) in basis.basis])
-    e_xx = gradient[:, 0, 0]
-    e_yy = gradient[:, 1, 1]
-    g_xy = gradient[:, 0, 1] + gradient[:, 1, 0]
-    # eps : eps has e_xy twice, which is half of g_xy
-    strain = np.stack([e_xx, e_yy, g_xy * np.sqrt(0.5)], axis=1)
-    dilatation = (e_xx + e_yy)[:, None]
-    return assembled(basis, [(2 * body.shear_modulus, strain), (body.lame, dilatation)])
+    return assembled([(body.shear_modulus, strain_form), (body.lame, dilatation_form)], basis, congruent)
 
 
 def values(basis: Basis, rule: Rule) -> tuple[csr_array, csr_array]:
