@@ -18,7 +18,7 @@ from validation.runs import columns, extras, files, provenance, strict, tables, 
 from validation.runs.case_name import CaseName, scene_of
 from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
-from validation.runs.modes import Mode
+from validation.runs.modes import Mode, contact_index
 from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
@@ -122,6 +122,12 @@ def test_a_motion_beyond_nyquist_shows_the_frequency_that_its_samples_have():
     assert mode.alias(step) == pytest.approx(np.hypot(2 * np.pi - turned, decay) / step)
     slow = replace(mode, frequency=33.0, eigenvalues=(value / 2, value.conjugate() / 2))  # 3.3 without its decay
     assert slow.alias(step) is None and replace(mode, sampled=False).alias(step) is None
+
+
+def test_the_contact_mode_has_most_of_the_pressure_of_those_after_the_first():
+    for shares, place in (((0.9, 0.1, -0.4, 0.3), 2), ((0.9,), None), ((None, 0.1), None), ((0.1, None), 1)):
+        modes = [Mode(1.0, 1.0, (1.0, 0.5), share) for share in shares]
+        assert contact_index(modes) == place, shares
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():
