@@ -38,6 +38,7 @@ def test_what_is_to_be_feared_of_a_scheme_is_told_with_its_number(stepping, fear
     names += ("period too long", "period too short", "few steps")
     assert {name for name in names if say(name, offer, **words) in offer.fears} == fears
     assert len(offer.fears) == len(fears)
+    assert ("gg = 0" in offer.name) == (stepping.gg != 1)
 
 
 def test_a_block_that_opens_must_not_gain_unless_allowed(monkeypatch):

@@ -3,6 +3,8 @@
 import pytest
 from conftest import refused, typed
 
+from validation.cli import run
+
 
 def test_verdicts_that_are_no_text_are_told_as_such(tmp_path):
     (tmp_path / "verdicts.json").write_bytes(b"\xff\xfe")
@@ -33,3 +35,17 @@ def test_an_end_of_a_file_is_no_interruption(monkeypatch):
     monkeypatch.setattr("validation.suite.folders.get_study", torn)
     with pytest.raises(EOFError):
         typed("list", "studies")
+
+
+def test_a_quiet_run_shows_no_bar(scene_file, tmp_path, monkeypatch):
+    shown = []
+    bar = run._progress
+
+    def recorded(title, visible):
+        shown.append((title, visible))
+        return bar(title, visible)
+
+    monkeypatch.setattr(run, bar.__name__, recorded)
+    for words in ([], ["--quiet"]):
+        typed("run", scene_file, "--set", 'run.solvers=["dda"]', "--results", tmp_path / "r", *words)
+    assert shown == [("small", True), ("small", False)]

@@ -14,6 +14,7 @@ from oracles.pages import ROOT, write_my_solver
 
 from validation import load_scene, solve
 from validation.cli import app as command_line
+from validation.cli import entry
 from validation.cli.entry import GROUPS, app
 from validation.errors import InputError
 
@@ -46,6 +47,14 @@ def test_every_command_has_an_example_a_page_and_a_group():
     assert sorted(itertools.chain.from_iterable(GROUPS.values())) == sorted(GROUP)
     page = typed("--help").stdout
     assert all(group in page for group in GROUPS)
+
+
+def test_the_page_of_a_wheel_stands_below_its_environment(tmp_path, monkeypatch):
+    page = tmp_path / "share/doc/dda-validation/judge.md"
+    page.parent.mkdir(parents=True)
+    page.touch()
+    monkeypatch.setattr(entry, "__file__", str(tmp_path / "lib/site-packages/validation/cli/entry.py"))
+    assert entry.page_of("judge") == page.resolve()
 
 
 @pytest.mark.long

@@ -28,7 +28,7 @@ NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 WHOLE = re.compile(r"show|list|advise (?:damping|step|wave|response|contact)")  # whose numbers are no rounding
 KEPT = dict(page.split("\n", 1) for page in re.split(r"(?:\A|\n)\$ ", PAGES.read_text(encoding="utf-8"))[1:])
 SLOW = re.compile(
-    r"advise (?:contact unlocked-constant .*1e11|figures-3-4 .*--error 0|beams|waves-site|rigid-pile)"
+    r"advise (?:contact (?:unlocked-constant .*1e11|slope)|figures-3-4 .*--error 0|beams|waves-site|rigid-pile)"
     r"|compare figures-3-4 discount"
 )
 ORDERED = sorted(KEPT, key=lambda line: line.partition(" | ")[0])
