@@ -68,9 +68,8 @@ def element_numbers():
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
             yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
-            if scheme is not COMPOSITE:
-                yield "mode", *(mode.frequency for mode in modes(problem, scheme, model=model)[:2])
-                yield "response", response(problem, scheme, np.array([0.0, 37.0]), COLUMNS, model=model)
+            yield "response", response(problem, scheme, np.array([37.0]), COLUMNS, model=model)
+        yield "mode", *(mode.frequency for mode in modes(problem, ALPHA, model=model)[:2])
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
     yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
@@ -100,7 +99,8 @@ def contact_numbers():
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
         yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
         for at_top in (False, True):
-            yield "vibrates", line_response(ground, [2, 1], 2, ALPHA, np.array([13.0, 60.0]), at_top, names[:2])
+            for scheme in (ALPHA, COMPOSITE):
+                yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
             yield "layers", layers.amplitudes(ground, [80.0, 400.0], names[:2], [])[at_top]
 
 

@@ -163,6 +163,15 @@ def ended(place, lines):
     return json.loads(done.stdout.splitlines()[-1])
 
 
+FILLED = {"engine/run.py", "diagnosis/beside.py", "diagnosis/stepping.py", "problems/cause.py", "problems/models.py"}
+
+
+def test_records_are_frozen_but_for_what_a_search_or_a_run_fills():
+    modules = {path.relative_to(ROOT / "validation").as_posix(): path for path in (ROOT / "validation").rglob("*.py")}
+    decorated = re.compile(r"^@dataclass(?!\(.*frozen=True)", re.MULTILINE)
+    assert {name for name, path in modules.items() if decorated.search(path.read_text(encoding="utf-8"))} == FILLED
+
+
 @pytest.mark.long
 def test_a_plain_install_judges_and_compares(tmp_path):
     answered(tmp_path / "answer", 1.001, ("rocking", "column"))

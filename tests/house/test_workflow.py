@@ -36,6 +36,33 @@ def commands():
     return typer.main.get_command(app).commands
 
 
+def steps_of(workflow, job):
+    """Return the steps of a job."""
+    return yaml.safe_load((WORKFLOWS / workflow).read_text(encoding="utf-8"))["jobs"][job]["steps"]
+
+
+# ---- workflows and hooks --------------------------------------------------------------------------------------------
+
+
+def test_the_workflow_calls_the_script_of_continuous_integration_on_every_python():
+    steps = steps_of("ci.yml", "suite")
+    used = [step["uses"].partition("@")[0] for step in steps if "uses" in step]
+    assert used == ["actions/checkout", "actions/setup-python"]
+    script = next(step["run"] for step in reversed(steps) if "run" in step)
+    assert script == ".ci/run" and os.access(ROOT / script, os.X_OK)
+    job = yaml.safe_load((WORKFLOWS / "ci.yml").read_text(encoding="utf-8"))["jobs"]["suite"]
+    assert steps[1]["with"]["python-version"] == "${{ matrix.python }}"
+    assert f">={job['strategy']['matrix']['python'][0]}" == PROJECT["project"]["requires-python"]
+
+
+def test_nothing_is_released_that_was_not_refused_as_unready_and_tested_before():
+    runs = [step["run"] for step in steps_of("release.yml", "release") if "run" in step]
+    order = [next(i for i, run in enumerate(runs) if word in run) for word in ("--release", ".ci/run", "gh release")]
+    assert order == sorted(order)
+    triggers = yaml.safe_load((WORKFLOWS / "release.yml").read_text(encoding="utf-8"))[True]  # `on` is a truth in YAML
+    assert triggers == {"push": {"tags": ["v*"]}}
+
+
 def test_the_action_s_last_step_asks_what_its_inputs_say(tmp_path):
     action = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
     step = action["runs"]["steps"][-1]
@@ -64,6 +91,13 @@ def test_every_make_target_that_is_named_exists():
     assert {"test", "lint", "portable", "docs", "bench", "gates", "dist"} <= named[ROOT / "CONTRIBUTING.md"]
 
 
+def test_every_file_and_test_that_a_script_names_exists():
+    for script in (ROOT / "Makefile", *(path for path in (ROOT / ".ci").iterdir() if path.is_file())):
+        for name in re.findall(r"\btests/[\w/]+\.py(?:::\w+)?", script.read_text(encoding="utf-8")):
+            path, _, test = name.partition("::")
+            assert (ROOT / path).is_file() and f"def {test}" in (ROOT / path).read_text("utf-8"), (script.name, name)
+
+
 def test_every_path_that_a_page_names_exists():
     rooms = r"(?:dda|fem_reference|validation|tests|docs|reports|\.ci|\.github)"
     for page in PAGES:
@@ -88,6 +122,13 @@ def test_commands_and_options_of_pages_exist():
                     command = command.commands.get(words[2], command.commands["everything"])
                 known = {option for parameter in command.params for option in parameter.opts}
                 assert {word for word in words if word.startswith("--")} <= known, line
+
+
+def test_readme_names_every_command():
+    shell = [text for language, _, text in BLOCK.findall(README) if language == "sh"]
+    shown = re.findall(r"^dda-validate ([a-z-]+)", shell[1], re.M)
+    others = README.partition("The other commands: ")[2].partition("\n\n")[0]
+    assert len(shown) == 8 and {*shown, *re.findall(r"`([a-z-]+)`", others)} == set(commands())
 
 
 # ---- CONTRIBUTING.md and releases -----------------------------------------------------------------------------------

@@ -2,11 +2,24 @@
 
 import numpy as np
 import pytest
-from oracles.made_cases import line_in, lines_of, rules_of
+from oracles.made_cases import line_in, lines_of, made_row, rules_of
 
 from validation.report.chapters.gates import not_passed, verdict_line
 from validation.report.figures.curves import GREY, style_of
 from validation.report.front import front_chapter, front_pages
+from validation.scenes.scene import load_scene
+from validation.studies.core import decisions
+
+@pytest.mark.parametrize(
+    ("at_rest", "least", "words"),
+    [(5e6, 1e5, ("right", "none")), (5.004e6, -1e-3, ("right", "none")), (4.9e6, -2e5, ("wrong", -2e5))],
+)
+def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest, least, words):
+    dda = made_row("dda", {"pressure.static": at_rest, "pressure.minimum": least, "pressure.peak": 8.4e6})
+    row = decisions.first_peak(load_scene("figures-3-4"), dda, made_row("bar", {"pressure.peak": 8e6}))
+    told = row["at rest"], row["tension"]
+    assert row["excess"] == pytest.approx(0.05) and told == words
+
 
 # ---- the pages ------------------------------------------------------------------------------------------------------
 

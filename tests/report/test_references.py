@@ -1,12 +1,26 @@
 """The bibliography: sources that are cited are known, and a report that lists them sets their numbers."""
 
+import re
+
 import pytest
 from pypdf import PdfReader
 
 from validation.report.blocks import Paragraph, References
 from validation.report.names import quoted
+from validation.report.references import PAPER, references
 from validation.report.render.html import page
 from validation.report.render.pdf import typeset
+from validation.suite.folders import sources_of, study_folders, study_names
+
+CITATION = re.compile(r"@([a-z]+\d{4})\b")
+
+
+def test_what_is_cited_is_a_source():
+    texts = [PAPER, *map(sources_of, study_names())]
+    texts += [(folder.path / "front.toml").read_text("utf-8") for folder in [study_folders()["core"]]]
+    cited = set(CITATION.findall(" ".join(texts)))
+    assert {"feng2017", "shi1985", "newmark1959", "doolin2004", "hatzor2004", "armero1998", "kane1999"} <= cited
+    assert {"housner1963", "miller1978"} <= cited <= set(references())
 
 
 @pytest.mark.parametrize("lists", [True, False])

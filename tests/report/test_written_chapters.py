@@ -1,5 +1,7 @@
 """Chapters are queries of the table of a study: what is looked up, put into sentences, tables and charts, by name."""
 
+import fnmatch
+import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -18,9 +20,10 @@ from validation.report.chapters.registry import chapter_of
 from validation.report.chapters.written import WrittenChapter
 from validation.report.figures.drawing import FigureHooks
 from validation.results import Results
+from validation.runs.case_name import scene_of
 from validation.scenes.scene import load_scene
 from validation.studies.waves.rows import curves
-from validation.suite.folders import get_study
+from validation.suite.folders import get_study, study_folders
 
 DERIVED = [
     {"scene": "figures-3-4[time.step=0.01]", "name": "closed", "metrics": {"ratio": 0.5, "word": "stands"}},
@@ -28,6 +31,7 @@ DERIVED = [
     {"scene": "owner-a", "name": "dda at 10 blocks", "metrics": {"piece 1": 3.0, "piece 2": 4.0, "other": 9.0}},
     {"scene": "owner-b", "name": "dda at 20 blocks", "metrics": {"piece 1": 5.0}},
 ]
+FOLDERS = {name: folder for name, folder in study_folders().items() if (folder.path / "chapter.toml").exists()}
 
 
 @pytest.fixture
@@ -263,3 +267,48 @@ def test_closed_forms_of_the_page_of_waves_hold_the_rule_of_ten():
     left = np.interp(np.log(10), np.log(line["blocks"]), line["left"])
     assert left == pytest.approx(0.008969, rel=0.03)
     assert set(drawn["(1/4, 1/2)", 1.0]["left"]) == {1.0}
+
+
+def queries(folder):
+    """Yield the tables of a description that hold expressions, with the query that they stand in."""
+
+    def walk(place, part, query):
+        if isinstance(part, dict):
+            own = query | part
+            yield place, own
+            for key, value in part.items():
+                yield from walk(f"{place}.{key}", value, {} if key in ("maps", "rows") else own)
+        elif isinstance(part, list):
+            for value in part:
+                yield from walk(place, value, query)
+
+    page = Description(folder.path / "chapter.toml")
+    for kind in ("number", "list", "table", "panel"):
+        for name, part in page._data.get(kind, {}).items():
+            yield from walk(f"{kind}.{name}", part, {})
+
+
+SHORT = {"waves", "plates", "boxes"}  # studies of few cases
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.long] * (name not in SHORT)) for name in FOLDERS]
+)
+def test_a_chapter_asks_for_what_its_study_has(name):
+    folder = FOLDERS[name]
+    study = get_study(name)
+    cases = {case.scene.name for case in study.cases()}
+    rows = study.derived()
+    owners = {*cases, *map(scene_of, cases), *(row.scene for row in rows)}
+    names = {row.name for row in rows}
+    for place, query in queries(folder):
+        for pattern in [query.get("of", [])] if isinstance(query.get("of"), str) else query.get("of", []):
+            if isinstance(pattern, str) and not re.search(r"[ .:]", pattern) and place.split(".")[0] != "table":
+                assert fnmatch.filter(owners, pattern), (place, pattern)
+        for key in ("x", "y", "value", "among"):
+            for expression in str(query.get(key, "")).split(" else "):
+                row = expression.rpartition(": ")[0].rpartition("/")[2]
+                assert not row or row in names, (place, expression)
+        if "row" in query:
+            pattern = re.compile(re.sub(r"\\\{\w+\\\}", ".+", re.escape(query["row"])))
+            assert any(pattern.fullmatch(one) for one in names), (place, query["row"])
