@@ -59,6 +59,8 @@ def digits():
     for values in ([5.0, 3.0], [0.05, 0.012, 100.0], [1 / 3, 2.0], [-250.0, 1e-30], [1e22, 0.0], [0.5]):
         yield bar.last_digits(np.array(values)).tolist()
     draw = np.random.default_rng(3).standard_normal(48)
+    for share in np.linspace(0, 3, 120):
+        yield bar.white(draw + share * np.sin(0.3 * np.arange(48)))
     for count in (3, 7, 8, 15, 16, 20, 47, 48):
         yield bar.white(draw[:count]), bar.noise(draw[:count]), bar.spread_of_most(draw[:count])
         yield search.Fit.independent.fget(SimpleNamespace(residual=np.cumsum(draw[:count])))
