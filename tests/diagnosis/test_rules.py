@@ -21,6 +21,7 @@ from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Slip
+from validation.diagnosis.scene_keys import assignments
 from validation.diagnosis.search import Explanation, Verdict
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 
@@ -108,6 +109,11 @@ def names():
                 for ids in (IDS, ("springs-factor", "opening-tension"), ("rigid-contact", "start"), ("dead-band",)):
                     yield causes.causes_of(BLOCK, ids, replace(v, **more), OWN, 1e-3)
             yield causes.values_of(BLOCK, [*causes.CAUSES], v)
+    for more in ({}, {"alpha": 1 / 6, "gg": 0.123456789, "start": "consistent"}, {"family": "hht", "spectral": 0.2}):
+        for contact in ("springs", "impact", "dashpot", "rigid", "implicit"):
+            v = replace(OWN, **more, contact=contact, dashpot=0.3, restitution=0.4)
+            for name in ("scheme", "impact-law", "contact-dashpot", "gg"):
+                yield assignments([name], v, OWN).split()
     for name in NUMBERS:
         yield name, bounds(name, OWN), bounds(name, replace(OWN, family="hht")), is_factor(name)
     for low, high in ((0.93, 1.07), (2.1, 2.9), (0.00123, 0.00127), (8.0, 13.0), (33.3, 33.4), (0.96, 1.9)):
