@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from validation import load_scene
+from validation.diagnosis import beside
 from validation.diagnosis.beside import (
     FARTHEST,
     LEAST_ROWS,
@@ -83,7 +84,7 @@ def named(search):
     return [(one.id, one.value) for one in search.alike(search.explanations())]
 
 
-def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits():
+def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits(monkeypatch):
     changes = (DAMPED, SPRINGS, LOAD, MASS)
     search = Swing(columns_of({"m": 1.3 * 1.17}), changes)
     found = search.explanations()
@@ -98,6 +99,9 @@ def test_the_number_of_the_candidate_that_gives_a_history_is_found_to_its_digits
     slow = Swing(columns_of({"m": 1.3 * 1.17}), changes)
     slow.is_slow = True
     assert named(slow) == [("density-factor", 1.17)]
+    monkeypatch.setattr(beside, "PURSUED", 1)
+    begun = [Fitted(change, 0.0, math.inf) for change in (SPRINGS, LOAD, MASS)]
+    assert [one.change.id for one in slow._fitted(begun, 24, 0, 0.0)] == ["density-factor"]
     assert named(Swing(columns_of({"d": 2.1}), changes)) == [("no-friction", None)]
     assert verdict_of(search, []).causes == {}
 
@@ -285,6 +289,7 @@ def test_answers_hold_scheme_departure_nearest_and_curves():
     search = Swing(moved, (MASS,))
     answer = answer_of(FOREIGN, verdict_of(search, search.explanations()))
     assert (answer.causes, answer.values, answer.departure.step) == (["unexplained"], {}, 5)
+    assert " 4 " in answer.sentence and "0.04 s" in answer.sentence
     for one in (search, Swing(columns_of({"m": 3.0})), Swing(columns_of({}))):
         for given in ({}, {"gg": 0.5}):
             answer = answer_of(FOREIGN, RunVerdict(one, False, given, dict.fromkeys(given, ""), {"d": 60.0}))

@@ -142,6 +142,8 @@ def test_sentences_are_as_before():
     fields += [{"contact": contact} for contact in ("impact", "mean gap")] + [
         {"alpha": 1.0, "delta": 0.5, "gg": 0.9801}
     ]
+    fields += [{"family": "hht", "alpha": 1.0, "delta": 0.5}, {"family": "composite", "split": 0.5}]
+    fields += [{"family": "composite", "split": 0.4}, {"family": "chung-hulbert", "spectral": 0.5}]
     variants = [replace(OWN, **changes) for changes in fields]
     numbers = (-1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 3.0, 12.0)
     scene = replace(OWN, alpha=0.5, delta=1.0, gg=0.99, start="consistent")

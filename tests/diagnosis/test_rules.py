@@ -21,6 +21,7 @@ from validation.diagnosis.numbers import CandidateChange
 from validation.diagnosis.one_change import Fitted
 from validation.diagnosis.reading import Foreign, Stepping, steppings
 from validation.diagnosis.readings import Slip
+from validation.diagnosis.scene_keys import assignments
 from validation.diagnosis.search import Explanation, Verdict
 from validation.diagnosis.variant import Rectangle, Variant, own_variant, rectangle_of
 
@@ -59,6 +60,8 @@ def digits():
     for values in ([5.0, 3.0], [0.05, 0.012, 100.0], [1 / 3, 2.0], [-250.0, 1e-30], [1e22, 0.0], [0.5]):
         yield bar.last_digits(np.array(values)).tolist()
     draw = np.random.default_rng(3).standard_normal(48)
+    for share in np.linspace(0, 3, 120):
+        yield bar.white(draw + share * np.sin(0.3 * np.arange(48)))
     for count in (3, 7, 8, 15, 16, 20, 47, 48):
         yield bar.white(draw[:count]), bar.noise(draw[:count]), bar.spread_of_most(draw[:count])
         yield search.Fit.independent.fget(SimpleNamespace(residual=np.cumsum(draw[:count])))
@@ -106,6 +109,11 @@ def names():
                 for ids in (IDS, ("springs-factor", "opening-tension"), ("rigid-contact", "start"), ("dead-band",)):
                     yield causes.causes_of(BLOCK, ids, replace(v, **more), OWN, 1e-3)
             yield causes.values_of(BLOCK, [*causes.CAUSES], v)
+    for more in ({}, {"alpha": 1 / 6, "gg": 0.123456789, "start": "consistent"}, {"family": "hht", "spectral": 0.2}):
+        for contact in ("springs", "impact", "dashpot", "rigid", "implicit"):
+            v = replace(OWN, **more, contact=contact, dashpot=0.3, restitution=0.4)
+            for name in ("scheme", "impact-law", "contact-dashpot", "gg"):
+                yield assignments([name], v, OWN).split()
     for name in NUMBERS:
         yield name, bounds(name, OWN), bounds(name, replace(OWN, family="hht")), is_factor(name)
     for low, high in ((0.93, 1.07), (2.1, 2.9), (0.00123, 0.00127), (8.0, 13.0), (33.3, 33.4), (0.96, 1.9)):

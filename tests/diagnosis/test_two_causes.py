@@ -105,6 +105,10 @@ def test_a_base_is_accepted_where_without_it_much_more_is_left():
     scene = fit_one(other, OWN)
     assert search.accepted(other, scene, fit_one(other, base))
     assert not search.accepted(other, scene, fit_one(other, replace(base, softness=0.04)))
+    digits = np.array([[float(f"{x:.4e}") for x in row] for row in target_of(replace(OWN, density=0.9)).recorded])
+    printed = Target(BLOCK, STEPS, target.rows, digits)
+    light = fit_one(printed, replace(OWN, density=0.9))
+    assert light.misfit > 1e-6 and search.accepted(printed, fit_one(printed, OWN), light)
     plain = Target(BLOCK, STEPS, target.rows, target_of(OWN).recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
     assert not search.accepted(
         plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))

@@ -53,6 +53,7 @@ def test_what_became_of_a_gate(before, after, kind):
 def test_a_wider_band_is_worse_at_either_edge(band, kind):
     found = changes([verdict("a", "PASS")], [verdict("a", "PASS") | {"band": band}])
     assert [change.kind for change in found] == ([] if kind is None else [kind])
+    assert same_band((0.0, 1e9), (0.0, 1e9 + 9)) and not same_band((0.0, 1e9), (0.0, 1e9 + 11))
     assert same_band(None, None) and not same_band(None, tuple(band)) and not same_band(tuple(band), None)
 
 

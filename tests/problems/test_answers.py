@@ -201,6 +201,7 @@ def scaled(column, factor):
         (lambda r: [], "", None, "an empty file"),
         (scaled(1, 1e3), ":1:8", "displacement_m", None),
         (scaled(2, 1e-6), ":1:23", "contact_pressure_Pa", None),
+        (scaled(2, 2.0), ":1:23", "contact_pressure_Pa", None),  # a force
         (scaled(1, -1.0), ":1:8", "displacement_m", None),
     ],
 )

@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
+from pathlib import Path
 
 import pytest
 from conftest import typed
+from oracles.kept_answers import assert_kept, said
+from oracles.stand_ins import summed
 
 from validation.errors import InputError
 from validation.problems import pack
@@ -16,6 +19,7 @@ from validation.problems.judge import judge
 from validation.problems.problem import names
 from validation.runs.defects import DefectsError
 
+KEPT = Path(__file__).with_name("numbers.toml")
 QUICK = ("locked", "rocking", "column")
 BOXES = ("standing", "pile", "toppling-spin-0.95-of-critical")
 FILLED = {"program": "Some code", "version": "1.0", "settings": "exact", "who": "somebody", "scheme": "s",
@@ -47,6 +51,12 @@ def test_problems_are_answered_by_the_files_of_the_pack(written, tmp_path):
     assert {answer.name: judge(answer.problem, answer.history).verdict for answer in answers} == dict.fromkeys(
         sorted(QUICK, key=names().index), "PASS"
     )
+
+
+def test_problems_say_what_they_are_judged_by(written):
+    """Columns and numbers with their bands, instants and blocks."""
+    stated = {name: json.loads((written / f"{name}.json").read_text()) for name in (*QUICK, *BOXES)}
+    assert_kept(KEPT, "pack", {name: summed(said(data, 0.0)) for name, data in stated.items()})
 
 
 def test_schemas_and_the_page_are_those_of_the_pack(written):
