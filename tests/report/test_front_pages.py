@@ -10,6 +10,7 @@ from validation.report.front import front_chapter, front_pages
 from validation.scenes.scene import load_scene
 from validation.studies.core import decisions
 
+
 @pytest.mark.parametrize(
     ("at_rest", "least", "words"),
     [(5e6, 1e5, ("right", "none")), (5.004e6, -1e-3, ("right", "none")), (4.9e6, -2e5, ("wrong", -2e5))],

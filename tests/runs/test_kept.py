@@ -271,8 +271,8 @@ def test_where_results_come_from(monkeypatch):
             (ROOT, None, "unknown (no commit yet)"),
             (ROOT / "validation", "abc", "unknown (not a git checkout)"),
         ):
-            told = {"rev-parse": str(top), "describe": described}
-            patch.setattr(provenance, "_git", lambda word, *more, told=told: told[word])
+            told = {"rev-parse": str(top), "describe": described or ""}
+            patch.setattr(provenance.subprocess, "run", lambda words, told=told, **given: SimpleNamespace(stdout=told[words[1]]))
             assert provenance._commit() == commit
 
     def absent(*given, **more):
