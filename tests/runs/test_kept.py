@@ -272,7 +272,8 @@ def test_where_results_come_from(monkeypatch):
             (ROOT / "validation", "abc", "unknown (not a git checkout)"),
         ):
             told = {"rev-parse": str(top), "describe": described or ""}
-            patch.setattr(provenance.subprocess, "run", lambda words, told=told, **given: SimpleNamespace(stdout=told[words[1]]))
+            said = {word: SimpleNamespace(stdout=text) for word, text in told.items()}
+            patch.setattr(provenance.subprocess, "run", lambda words, said=said, **given: said[words[1]])
             assert provenance._commit() == commit
 
     def absent(*given, **more):
