@@ -37,8 +37,10 @@ def parts_of(result):
             yield flat(part)
         elif isinstance(part, dict):
             yield flat(np.concatenate([np.ravel(part[name]) for name in sorted(part) if name != "balance"]))
-        elif hasattr(part, "_asdict") and not isinstance(part, str):
+        elif hasattr(part, "_asdict"):
             yield from parts_of(part)
+        elif isinstance(part, tuple) and part and not isinstance(part[0], str):
+            yield flat(part)
 
 
 def numbers_of(result):
