@@ -71,10 +71,12 @@ def kept_numbers():
 
 
 @pytest.fixture
-def held(kept_numbers):
-    """Hold a result to its numbers."""
+def held(kept_numbers, request):
+    """Hold a result of a short test to its numbers."""
 
     def check(name, result):
+        if request.node.get_closest_marker("long"):
+            return
         numbers, sizes = numbers_of(result)
         if os.environ.get("KEEP_PAGES"):
             write(name, numbers)
