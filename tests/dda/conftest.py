@@ -37,8 +37,10 @@ def parts_of(result):
             yield flat(part)
         elif isinstance(part, dict):
             yield flat(np.concatenate([np.ravel(part[name]) for name in sorted(part) if name != "balance"]))
-        elif hasattr(part, "_asdict") and not isinstance(part, str):
+        elif hasattr(part, "_asdict"):
             yield from parts_of(part)
+        elif isinstance(part, tuple) and part and not isinstance(part[0], str):
+            yield flat(part)
 
 
 def numbers_of(result):
@@ -69,10 +71,12 @@ def kept_numbers():
 
 
 @pytest.fixture
-def held(kept_numbers):
-    """Hold a result to its numbers."""
+def held(kept_numbers, request):
+    """Hold a result of a short test to its numbers."""
 
     def check(name, result):
+        if request.node.get_closest_marker("long"):
+            return
         numbers, sizes = numbers_of(result)
         if os.environ.get("KEEP_PAGES"):
             write(name, numbers)

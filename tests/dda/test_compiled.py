@@ -3,7 +3,6 @@
 import gc
 import logging
 import os
-import subprocess
 import sys
 import threading
 from collections import Counter
@@ -46,20 +45,6 @@ def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
         scale = np.max(np.abs(values), axis=0, initial=0.0)
         assert np.all(np.abs(values - others) <= 1e-14 * scale), field
     assert fast.outcome == plain.outcome and fast.factorisations == plain.factorisations
-
-
-@pytest.mark.long
-def test_importing_costs_numpy_only_and_a_short_history_no_numba():
-    code = (
-        "import sys; from dda import *; "
-        "others = {'scipy', 'skfem', 'matplotlib', 'validation', 'fem_reference'}; "
-        "assert not others & set(sys.modules); "
-        "b = Block.rectangle(2.0, 2.0, Material(2700.0, 1e9, 0.0)); "
-        "r = solve_unilateral(UnilateralModel(b, Unilateral(1e9), 5e6), Scheme(0.5, 1.0, 1.0, 1e-4), 100); "
-        "assert 'plain Python' in r.notes[-1]; print('numba' in sys.modules)"
-    )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert done.stdout.strip() == "False"
 
 
 class Numbers(NamedTuple):

@@ -38,7 +38,7 @@ def of_every_body(names, every=1, always=()):
 
 
 @of_every_body(CASES)
-def test_a_body_obeys_its_laws(name, seed, held, request):
+def test_a_body_obeys_its_laws(name, seed, held):
     case = CASES[name](seed)
     result = case.run()
     assert result.outcome == "completed" and len(result.time) == case.steps
@@ -48,8 +48,7 @@ def test_a_body_obeys_its_laws(name, seed, held, request):
     keeps_energy(case, result)
     loses_energy(case, result)
     keeps_mirror(case, result)
-    if not request.node.get_closest_marker("long"):
-        held(name, result)
+    held(name, result)
 
 
 # ---- laws ------------------------------------------------------------------------------------------------------------

@@ -68,6 +68,11 @@ def test_a_wide_matrix_is_answered_in_a_small_space_as_a_narrow_one_by_eliminati
             small = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
             patch.setattr(krylov, "LARGEST", 2)  # which resolves none
             whole = dda.response(body(replace(LOAD, motion=MOVED)), scheme, [0.0, 3.0, 41.0], along=along)
+        averaged = dda.named_scheme("chung-hulbert", step=2e-3, gg=0.97, rho_inf=0.4)
+        held(
+            f"by averages {body.__name__} {along}",
+            dda.response(body(replace(LOAD, motion=MOVED)), averaged, [3.0, 41.0], along=along),
+        )
         for name, values in narrow.items():
             largest = np.abs(values).max()
             assert small[name] == pytest.approx(values, rel=1e-8, abs=1e-9 * largest), name

@@ -103,8 +103,7 @@ def test_a_step_that_fails_is_made_in_parts_and_keeps_its_accounts(name, monkeyp
     whole = solve_plane(model, SCHEMES[name], 6)
     monkeypatch.setattr(solution, "make_steps", steps_by(stubborn, step.account, step.keep, step.keep_rows))
     parts = solve_plane(model, SCHEMES[name], 6)
-    if name == "composite":
-        held("parts of steps", parts)
+    held("parts of steps", parts)
     assert parts.outcome == OUTCOMES[FOUND] and parts.cuts.tolist() == [0, *(0, 1, 0) * 2]
     assert np.abs(parts.energy["balance"]).max() <= 1e-10 * parts.energy["kinetic"].max()
     assert parts.displacement == pytest.approx(whole.displacement, abs=0.02 * np.abs(whole.displacement).max())

@@ -15,7 +15,7 @@ SPRINGS = ContactSprings(1e8, 4e7, 0.4)
 
 
 @pytest.mark.parametrize(("name", "dense"), thinned(product(SCHEMES, [solution.DENSE, 0]), 5))
-def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name, dense, monkeypatch, held, request):
+def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name, dense, monkeypatch, held):
     """Few contacts by their forces, or as many are by the blocks."""
     monkeypatch.setattr(solution, "DENSE", dense)
     block = PlaneBlock(rectangle(0, 0.002, 2, 1), 2700.0, 1e9, 0.2, velocity=(0.2, -1.0), spin=-0.01)
@@ -24,8 +24,7 @@ def test_contacts_that_are_found_give_the_numbers_of_those_that_are_stated(name,
     free = PlaneModel([floor(), block], gravity=(0, -GRAVITY), found=SPRINGS)
     found = solve_plane(free, SCHEMES[name], 16, compiled=False)
     assert np.abs(found.displacement - stated.displacement).max() <= 1e-9 * np.abs(stated.displacement).max()
-    if not request.node.get_closest_marker("long"):
-        held(f"found by {name}", found)
+    held(f"found by {name}", found)
     columns = [found.contacts.index((1, corner, 0, 2)) for corner in (0, 1)]
     assert found.normal[:, columns] == pytest.approx(stated.normal, abs=1e-7 * stated.normal.max())
     assert np.array_equal(found.state[:, columns], stated.state)

@@ -111,12 +111,11 @@ def test_what_grows_is_stepped_and_overflows_by_name():
 
 
 @few_schemes
-def test_diagnostics_and_modes(name, values, held, request):
+def test_diagnostics_and_modes(name, values, held):
     scheme = scheme_of(name, values, 3e-4, 0.99)
     measured = diagnostics(square(2.0, 0.2), scheme)
     assert measured.spectral_radius == pytest.approx(measured.predicted_radius, rel=1e-9)
-    if not request.node.get_closest_marker("long"):
-        held(f"diagnostics {name}", measured)
+    held(f"diagnostics {name}", measured)
     for mode in modes(square(2.0, 0.2), scheme):
         assert abs(mode.eigenvalues[0]) == pytest.approx(abs(roots.roots(scheme, mode.frequency * 3e-4)[0]), rel=1e-9)
 

@@ -300,7 +300,7 @@ def block_case(model, scheme, steps=40, **options):
     return Case(OneBlock, model, scheme, options, steps)
 
 
-def turning_case(seed, scheme=None, steps=40, model=None, **options):
+def turning_case(seed, scheme=None, steps=55, model=None, **options):
     """Return a thrown block: frictionless, bonded or rough by its seed."""
     made, dt = random_rolling(seed)
     made = with_law(made, gap=made.contact.gap / 100)  # it lands soon
@@ -329,7 +329,7 @@ CASES = {
     "dashpot": lambda seed: block_case(dashpots(seed), NEWMARK[seed % 4]),
     "dashpot by two stages": lambda seed: block_case(dashpots(seed), of_scheme("composite")),
     "dashpot by averages": lambda seed: block_case(dashpots(seed), of_scheme("chung-hulbert", rho_inf=0.5)),
-    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), 60, rule="implicit"),
+    "implicit": lambda seed: block_case(random_model(seed), replace(AVERAGE, step=DT / 3), 80, rule="implicit"),
     "implicit, rough": lambda seed: block_case(rubbing_model(seed), AVERAGE, rule="implicit"),
     "conserving": lambda seed: block_case(
         with_law(random_model(seed, glued=False), stiffness=[1e9, 1e11, 1e13, 1e16][seed % 4]),
