@@ -3,13 +3,16 @@
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 from oracles.made_cases import made_row
 
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
+from validation.runs.history import History
 from validation.scenes.scene import load_scene
 from validation.studies.beams import formulas as beams
+from validation.studies.paper import formulas as paper
 from validation.studies.patch import formulas as patch
 from validation.studies.two_codes import formulas as two_codes
 from validation.studies.waves import formulas as waves
@@ -23,7 +26,7 @@ from validation.suite.own_solver.block_data import (
     scenes,
 )
 from validation.suite.own_solver.gates import shown_by_history
-from validation.suite.own_solver.history import _bound
+from validation.suite.own_solver.history import _bound, rest, root
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -55,8 +58,8 @@ def test_waves_in_a_layer_are_told_by_its_blocks(monkeypatch):
     layer = SimpleNamespace(thickness=6.0, blocks=4, density=3.0)
     column = SimpleNamespace(layer=[layer], modulus=lambda layer: 12.0, glue=5.0)
     monkeypatch.setattr(waves, "column_of", lambda case: column)
-    case = SimpleNamespace(time=SimpleNamespace(step=0.3, alpha=0.25, delta=0.5, discount=0.98))
-    assert waves.closed(case) == {"courant": 0.4, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
+    case = SimpleNamespace(time=SimpleNamespace(step=0.31, alpha=0.25, delta=0.5, discount=0.98))
+    assert waves.closed(case) == {"courant": 0.413333, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
     column.glue = None
     assert "glue" not in waves.closed(case)
 
@@ -108,6 +111,18 @@ def test_the_root_of_a_history_is_known_the_better_the_longer_it_swings():
     """Of N samples, and those a root of size |z| leaves: (1 - |z|^2 + 1/N)^(3/2)."""
     assert _bound(0.6 + 0.3j, 50) == pytest.approx(0.57**1.5)
     assert _bound(1.2j, 50) == pytest.approx(0.02**1.5)
+
+
+def test_a_history_rests_in_the_middle_of_its_last_fifth():
+    assert rest(np.array([9.0] * 8 + [1.0, 4.0])) == (2.5, 3.0)
+    still = History(0.1 * np.arange(1, 31), {"displacement": np.zeros(30)})
+    assert root(load_scene("figures-3-4").with_values({"time.step": 0.1}), still) is None
+
+
+def test_modes_are_told_by_their_angle_in_a_step():
+    case = SimpleNamespace(time=SimpleNamespace(step=0.002))
+    frequencies = {"mode1.frequency": 50.0, "contact.frequency": 1e9}
+    assert paper.angles(case, made_row("dda", frequencies)) == {"mode1": pytest.approx(0.1)}
 
 
 def test_what_a_solver_cannot_report_is_no_failure():
