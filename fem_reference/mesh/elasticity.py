@@ -33,6 +33,8 @@ LUMPED = {
 WHOLE = (-np.inf, np.inf)
 SLIVER = 1e-12
 """Piece of a facet over its length that only rounding leaves between an interval's end and the facet's."""
+CANCELLED = 1e-15
+"""Entry of a matrix over its greatest one that only rounding leaves of terms that cancel."""
 CONVERGED = 1e-14
 """Step of Newton's method in a cell's own coordinates, from 0 to 1, that only rounding leaves."""
 
@@ -72,6 +74,8 @@ def assembled(basis: Basis, terms: Sequence[tuple[float, Array]]) -> csr_array:
     columns = np.tile(dofs, dofs.shape[1])
     data = np.broadcast_to(local, (len(dofs), *local.shape[1:]))
     matrix = csr_array(coo_array((data.ravel(), (rows.ravel(), columns.ravel())), shape=(basis.N, basis.N)))
+    # what cancels to rounding would be another number of entries on another processor
+    matrix.data[np.abs(matrix.data) <= CANCELLED * np.max(np.abs(matrix.data), initial=0.0)] = 0.0
     matrix.eliminate_zeros()
     return matrix
 
