@@ -130,13 +130,13 @@ def _window(signal: Array, order: int | None, tolerance: float) -> tuple[Array, 
 
 def _low_pass(signal: Array, thin: int) -> Array:
     """Return every k-th sample of a signal whose powers up to `TURN` between these pass and those beyond pi do not."""
+    from scipy.signal import fftconvolve, firwin, kaiserord
+
     passes = TURN / np.pi  # of pi between two of the samples that are left
     stops = 1.0  # the same
-    # Kaiser's window and the length of the filter for what is to be stopped (Oppenheim and Schafer, section 7.5)
-    taps = math.ceil((STOPPED - 7.95) / (2.285 * np.pi * (stops - passes)) * thin + 1) | 1
-    cutoff = (passes + stops) / 2 / thin
-    low = np.sinc(cutoff * (np.arange(taps) - taps // 2)) * np.kaiser(taps, 0.1102 * (STOPPED - 8.7))
-    return np.asarray(np.lib.stride_tricks.sliding_window_view(signal, taps)[::thin] @ (low / low.sum()))
+    taps, beta = kaiserord(STOPPED, (stops - passes) / thin)
+    low = firwin(taps | 1, (passes + stops) / 2 / thin, window=("kaiser", beta))
+    return np.asarray(fftconvolve(signal, low, mode="valid")[::thin])
 
 
 def _fit(y: Array, order: int | None, tolerance: float) -> tuple[NDArray[np.complex128], NDArray[np.complex128], float]:
