@@ -221,7 +221,7 @@ def _axis(axis):
     form = axis.get_major_formatter()
     words = [form(tick) for tick in inside] if isinstance(form, FuncFormatter) else list(getattr(form, "seq", ()))
     labels = axis.get_ticklabels()[:: len(words) - 1 or 1] if words else []  # which take long to make
-    sides = [label.get_horizontalalignment()[0] for label in labels]
+    sides = dict.fromkeys(label.get_horizontalalignment()[0] for label in labels)  # their number is the library's
     between = [tick for tick in axis.get_minor_locator()() if low <= tick <= high]
     minor = f" and {len(between)} between" if between else ""
     hidden = axis.get_tick_params()
