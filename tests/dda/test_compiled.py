@@ -144,6 +144,7 @@ def test_code_is_the_same_for_arrays_of_all_lengths_in_named_tuples(fresh):
 
 
 def test_steps_decide_what_is_compiled_what_is_read_and_what_is_made_each_time(monkeypatch):
+    monkeypatch.setattr(compiled, "numba_version", lambda: "a version")
     monkeypatch.setattr(compiled, "SHORT", SHORT)
     steps = SHORT, compiled.LONG, compiled.ANEW
     assert steps[0] <= 2_000 and steps[1] <= 28_000 < steps[2]  # a slope of 28,000 steps is compiled

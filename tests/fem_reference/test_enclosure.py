@@ -147,11 +147,11 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, 
                 late = Start(arb(offset) * arb(length), *other.state(arb(offset)), moved)
                 other = expand(model, states, late, drives, length)
             pairs = zip(watched(model, states, start), watched(model, states, Start(arb(0), u, v, moved)), strict=True)
-            for watch, of_other in pairs:
+            for number, (watch, of_other) in enumerate(pairs):
                 reaches = ellipsoid.reach(watch, states, segment, offset * length).terms()
                 off = [abs(x - y) for x, y in zip(segment.function(watch), other.function(of_other), strict=False)]
                 assert all(one <= reach for one, reach in zip(off, reaches, strict=False))
-                largest[watch] = max(largest.get(watch, 0.0), float(off[0] / reaches[0]))
+                largest[number] = max(largest.get(number, 0.0), float(off[0] / reaches[0]))
         assert all(share > 0.03 for share in largest.values()) or offset
 
 

@@ -61,7 +61,9 @@ def compared(request, path, *names):
                 patch.setattr(request.module, name, recording(getattr(request.module, name)))
         yield
     call = getattr(request.node, "callspec", None)
-    name = " ".join([request.node.originalname[5:27], *map(str, dict.fromkeys(call.indices.values()) if call else ())])
+    # the number of each parameter, in the order of their names: that of stacked ones is the library's
+    numbers = [number for _, number in sorted(call.indices.items())] if call else []
+    name = " ".join([request.node.originalname[5:27], *map(str, dict.fromkeys(numbers))])
     table = request.module.__name__.rpartition("test_")[2]
     if not answers:
         return
