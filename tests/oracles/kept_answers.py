@@ -61,9 +61,7 @@ def compared(request, path, *names):
                 patch.setattr(request.module, name, recording(getattr(request.module, name)))
         yield
     call = getattr(request.node, "callspec", None)
-    # the number of each parameter, in the order of their names: that of stacked ones is the library's
-    numbers = [number for _, number in sorted(call.indices.items())] if call else []
-    name = " ".join([request.node.originalname[5:27], *map(str, dict.fromkeys(numbers))])
+    name = " ".join([request.node.originalname[5:27], *([call.id[:30]] if call else [])])
     table = request.module.__name__.rpartition("test_")[2]
     if not answers:
         return
