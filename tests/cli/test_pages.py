@@ -20,11 +20,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.pages import NUMBER
 
 PAGES = Path(__file__).with_name("pages.txt")
 SECONDS = re.compile(r"[\d.]+(?=(?: s| +)?$)", re.M)  # of `run`, at the end of a line
 COSTS = re.compile(r"^((?:static|slide|wave|impact|quake) .*?) +\S+ +\S+$", re.M)  # of `advise`: seconds by two solvers
-NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 WHOLE = re.compile(r"show|list|advise (?:damping|step|wave|response|contact)")  # whose numbers are no rounding
 KEPT = dict(page.split("\n", 1) for page in re.split(r"(?:\A|\n)\$ ", PAGES.read_text(encoding="utf-8"))[1:])
 SLOW = re.compile(

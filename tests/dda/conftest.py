@@ -6,12 +6,12 @@ written as nan, and stays so.
 
 import math
 import os
-import tomllib
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
+from oracles.stand_ins import kept
 
 KEPT = Path(__file__).with_name("numbers.toml")
 DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states")  # of a history on contact
@@ -57,7 +57,7 @@ def numbers_of(result):
 
 def write(name, numbers):
     """Write the numbers of a result; what was left out as rounding stays so."""
-    table = tomllib.loads(KEPT.read_text(encoding="utf-8")) if KEPT.exists() else {}
+    table = kept(KEPT)
     old = table.get(name, [])
     is_left = [len(old) == len(numbers) and math.isnan(value) for value in old] or [False] * len(numbers)
     table[name] = [math.nan if left else value for left, value in zip(is_left, numbers, strict=False)]
@@ -67,7 +67,7 @@ def write(name, numbers):
 
 @pytest.fixture(scope="session")
 def kept_numbers():
-    return tomllib.loads(KEPT.read_text(encoding="utf-8"))
+    return kept(KEPT)
 
 
 @pytest.fixture

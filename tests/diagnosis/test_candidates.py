@@ -6,8 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from oracles.kept_answers import assert_kept
-from oracles.stand_ins import numbers_in, summed
+from oracles.stand_ins import assert_kept, numbers_in, summed
 
 from validation.diagnosis.columns import of_scene
 from validation.diagnosis.fits.target import Target

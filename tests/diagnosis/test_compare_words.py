@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,9 +10,9 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_hex
 from oracles.few_moves import only
-from oracles.kept_answers import assert_kept
 from oracles.made_cases import line_in
-from oracles.stand_ins import numbers_in, summed
+from oracles.pages import NUMBER
+from oracles.stand_ins import assert_kept, numbers_in, summed
 
 from validation import load_scene, solve
 from validation.cli import compare as cli_compare
@@ -46,7 +45,6 @@ STAGES = tuple(
 )
 SCENE = load_scene("figures-3-4").with_values({"time.step": 0.002, "time.steps": 30})
 OWN = Variant(0.5, 1.0, 1.0)
-NUMBER = re.compile(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 BLOCK = Rectangle(2.0, 2.0, 2700.0, 1e9, 0.0, False, 2e9, 2e9, 5e6)
 
 

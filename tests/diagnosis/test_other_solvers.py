@@ -8,8 +8,8 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from oracles.kept_answers import assert_kept, said
-from oracles.stand_ins import summed
+from oracles.kept_answers import said
+from oracles.stand_ins import assert_kept, summed
 from oracles.swings import motion
 
 from validation import load_scene

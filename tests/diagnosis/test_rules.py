@@ -7,8 +7,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
-from oracles.kept_answers import assert_kept, said
-from oracles.stand_ins import summed
+from oracles.kept_answers import said
+from oracles.stand_ins import assert_kept, summed
 
 from validation import load_scene
 from validation.diagnosis import causes, evidence, families, one_change, readings, search

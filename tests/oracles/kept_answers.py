@@ -72,11 +72,3 @@ def compared(request, path, *names):
         before = kept_answers(path).get(table, {})
         others = differing(found, {name: before.get(name, math.nan)})
         assert not others, others
-
-
-def assert_kept(path, table, found):
-    """Compare numbers with those that a table of a file keeps."""
-    if os.environ.get("KEEP_PAGES"):
-        keep(path, table, found, {})
-    others = differing(found, kept(path).get(table, {}))
-    assert not others, others

@@ -2,6 +2,7 @@
 
 import json
 import math
+import os
 import tomllib
 import zlib
 
@@ -98,6 +99,17 @@ def keep(path, name, found, changed):
         text += f"[{table}]\n"
         text += "".join(f"{json.dumps(key)} = {json.dumps(value)}\n" for key, value in numbers.items())
     path.write_text(text, encoding="utf-8")
+
+
+def assert_kept(path, table, found, changed=dict):
+    """Compare numbers with those that a table of a file keeps; ``KEEP_PAGES=1`` writes them anew.
+
+    ``changed`` returns what they are when what they are of is changed by rounding.
+    """
+    if os.environ.get("KEEP_PAGES"):
+        keep(path, table, found, changed())
+    others = differing(found, kept(path).get(table, {}))
+    assert not others, others
 
 
 def differing(found, before):

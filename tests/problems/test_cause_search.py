@@ -12,8 +12,8 @@ import numpy as np
 import pytest
 from faults import seams
 from oracles import swings
-from oracles.kept_answers import assert_kept, said
-from oracles.stand_ins import summed
+from oracles.kept_answers import said
+from oracles.stand_ins import assert_kept, summed
 
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.families import ONE_SCHEME

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 from conftest import typed
-from oracles.kept_answers import assert_kept, said
-from oracles.stand_ins import summed
+from oracles.kept_answers import said
+from oracles.stand_ins import assert_kept, summed
 
 from validation.errors import InputError
 from validation.problems import pack

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from oracles import made_results as made
 from oracles.made_results import figure_text
+from oracles.pages import NUMBER
 from oracles.stand_ins import summed
 
 from validation.report.blocks import TableColumn
@@ -91,7 +92,7 @@ def kept_figures():
         text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
         for file in sorted({*others} - {*figures}):
             other = figure_text(others[file])
-            numbers = summed(map(float, re.findall(r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?", other)))
+            numbers = summed(map(float, NUMBER.findall(other)))
             text += f"\n{file}: {len(other.splitlines())} lines, {numbers:.2f}"
         _held(name, with_line_numbers(text) + "\n")
 

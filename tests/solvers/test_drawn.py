@@ -3,13 +3,12 @@
 `KEEP_PAGES=1` writes the file anew.
 """
 
-import os
 import zlib
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
-from oracles.stand_ins import differing, history, keep, kept, numbers_in, summed
+from oracles.stand_ins import assert_kept, history, numbers_in, summed
 from oracles.stated_scenes import STATED, made
 
 from validation.models.plane.generators import (
@@ -94,9 +93,7 @@ def test_generators_draw_blocks_as_before():
     for section in GENERATED:
         numbers = [number for block in section.blocks() for number in numbers_in(block.model_dump(exclude_none=True))]
         found[section.name] = summed(numbers)
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "generated", found, found)
-    assert differing(found, kept(KEPT)["generated"]) == {}
+    assert_kept(KEPT, "generated", found)
 
 
 @np.errstate(all="ignore")
@@ -112,15 +109,11 @@ def test_problems_of_blocks_are_posed_and_measured_as_before():
             for number in (case.quantities or posed.quantities)(scene):
                 numbers += [number.exact, number.low, number.high, number.scale, number.measure(history(scene))]
         found[name] = summed(numbers)
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "problems", found, found)
-    assert differing(found, kept(KEPT)["problems"]) == {}
+    assert_kept(KEPT, "problems", found)
 
 
 def test_scenes_are_drawn_and_remarked_on_as_before(tmp_path):
     found = {}
     for name in (*DRAWN, *STATED_WHOLE, *OF_PLANE):
         found |= numbers(name, tmp_path)
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, "drawn", found, found)
-    assert differing(found, kept(KEPT)["drawn"]) == {}
+    assert_kept(KEPT, "drawn", found)

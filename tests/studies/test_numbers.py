@@ -8,12 +8,11 @@ anew.
 """
 
 import json
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
-from oracles.stand_ins import Numbers, differing, history, keep, kept, numbers_in, share, summed
+from oracles.stand_ins import Numbers, assert_kept, history, numbers_in, share, summed
 from oracles.stated_scenes import SCENES, made
 
 from validation.engine.finished import Finished
@@ -105,17 +104,10 @@ def numbers(study):
     return {name: value for name, value in found.items() if value}
 
 
-def check(name, found, changed=None):
-    """Compare numbers with those that are kept, or keep them."""
-    if os.environ.get("KEEP_PAGES"):
-        keep(KEPT, name, found, found if changed is None else changed())
-    assert differing(found, kept(KEPT)[name]) == {}
-
-
 @pytest.mark.parametrize("name", study_names())
 def test_formulas_give_what_they_gave(name):
     study = get_study(name)
-    check(name, numbers(study), lambda: rows_of(study, 1 + 1e-11))
+    assert_kept(KEPT, name, numbers(study), lambda: rows_of(study, 1 + 1e-11))
 
 
 def test_gates_for_users_solvers_are_what_they_were(tmp_path):
@@ -124,7 +116,7 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
         edges += [gate.scene, gate.metric, gate.low, gate.high, gate.until or 0.0]
     blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
     kinds = summed(kind for scene in blocks for kind in gates.unseen([scene]))
-    check("own-solver", {"gates": summed(edges), "kinds": kinds})
+    assert_kept(KEPT, "own-solver", {"gates": summed(edges), "kinds": kinds})
 
 
 class Settling(Evidence):
@@ -144,7 +136,7 @@ def test_claims_measure_what_they_measured():
         if claim.id not in open_close.TESTS:  # which read histories by other names
             measured = claim.measure(Settling(None))
             found[claim.id] = summed([*measured, *measured.values(), claim.finding(measured)])
-    check("claims", found)
+    assert_kept(KEPT, "claims", found)
 
 
 ODD = {"block.poisson": 0.2, "block.subdivide": [2, 3], "fem.elements": 7, "contact.stiffness": 3e8}
@@ -157,4 +149,6 @@ def test_other_blocks_are_solved_in_the_scenes_that_they_were():
     references = [ladder.scene(ladder.reference).definition() for ladder in ladders]
     found = {"odd": summed(numbers_in([scene.definition() for scene in odd.scenes()]))}
     data = [scene.definition() for scene in gates.START.scenes]
-    check("others", found | {"references": summed(numbers_in(references)), "data": summed(numbers_in(data))})
+    assert_kept(
+        KEPT, "others", found | {"references": summed(numbers_in(references)), "data": summed(numbers_in(data))}
+    )

@@ -148,8 +148,7 @@ class Scene(SceneTables):
 
     def definition(self) -> dict[str, Any]:
         """Return the scene as plain data (what a file would state)."""
-        data: dict[str, Any] = json.loads(self.model_dump_json(exclude_unset=True, by_alias=True))
-        return data
+        return _stated(self)
 
     def _data_but_for(self, changing: Set[str]) -> dict[str, Any]:
         """Return what the scene states: tables that change as plain data, the others as they are, once checked."""
@@ -160,9 +159,15 @@ class Scene(SceneTables):
             value = getattr(self, name)
             table = field.alias or name
             if isinstance(value, Section) and table in changing:
-                value = json.loads(value.model_dump_json(exclude_unset=True, by_alias=True))
+                value = _stated(value)
             data[table] = value
         return data
+
+
+def _stated(table: Section) -> dict[str, Any]:
+    """Return what a table states as plain data."""
+    data: dict[str, Any] = json.loads(table.model_dump_json(exclude_unset=True, by_alias=True))
+    return data
 
 
 def _table_of(data: dict[str, Any], field: str) -> tuple[dict[str, Any], str]:
