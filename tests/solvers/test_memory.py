@@ -15,7 +15,7 @@ from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers import memory
 from validation.solvers.hooks import SolvingHooks
-from validation.solvers.registry import solve
+from validation.solvers.registry import get_solver, solve
 from validation.suite.folders import scene_study
 
 MB = 2**20
@@ -70,6 +70,15 @@ def test_a_machine_that_does_not_say_what_is_available_says_what_it_has(monkeypa
     monkeypatch.setattr(Path, "read_text", lambda path, **options: "MemAvailable: 7 kB")
     assert memory._of_machine() == 7 * 1024.0
     assert SolvingHooks().memory(None, None) == (0.0, "time.steps") and SolvingHooks().reach(None) == math.inf
+
+
+def test_a_worker_that_may_have_less_than_goes_unnoticed_is_asked_all_the_same(tmp_path):
+    path = tmp_path / "own.toml"
+    path.write_text(SCENE)
+    scene, solver = load_scene(path), get_solver("dda")
+    memory.check(scene, solver)
+    with pytest.raises(InputError, match=memory.REFUSED):
+        memory.check(scene, solver, limit=1.0)
 
 
 def test_a_refusal_for_want_of_memory_is_not_kept(tmp_path, monkeypatch):
