@@ -6,6 +6,7 @@ from types import SimpleNamespace
 
 import pytest
 from conftest import typed
+from oracles.processes import answer_here
 
 from validation.cli import verify as cli_verify
 from validation.entry import plugin
@@ -57,6 +58,7 @@ def test_a_solver_of_a_user_has_the_limit_of_time_that_is_stated(monkeypatch):
     plugin.pytest_addoption(SimpleNamespace(getgroup=lambda *words: group))
     assert options["--dda-timeout"]["default"] == 60.0
     monkeypatch.setenv("DDA_VALIDATE_TIMEOUT", "1")
+    answer_here(monkeypatch)
     marks = []
     for user, seconds in (("bar", 7.5), ("no such solver", 8.0), ("nowhere:solve", 9.0), ("json:nothing", 7.5)):
         values = {"--dda-solver": user, "--dda-timeout": seconds}

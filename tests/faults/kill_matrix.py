@@ -41,27 +41,28 @@ def whole(fault, faulty):
     assert not broken, f"{fault}: breaks the solver, which bites every gate: {sorted(broken)}"
 
 
-def cases_of(study, gates):
+def cases_of(study, gates, judged=None):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
-    return as_gates_run(study, [case for case in study.cases() if (case.scene.name, case.solver) in needed])
+    cases = [case for case in study.cases() if (case.scene.name, case.solver) in needed]
+    return as_gates_run(study, cases, judged or judged_studies())
 
 
-def as_gates_run(study, cases):
-    """Return cases of a study with the metrics alone that gates ask for.
+def as_gates_run(study, cases, judged):
+    """Return cases of a study with the metrics alone that gates of judged studies ask for.
 
-    Their rows are those that `validation/test_gates.py` has finished, but for a study whose gates it leaves out.
+    Where all studies are judged, their rows are those that `validation/test_gates.py` has finished, but for a study
+    whose gates it leaves out.
     """
-    judged = tuple(judged_studies())
-    metrics = asked(judged if study.name in judged else (study.name,))
+    metrics = asked(tuple(judged) if study.name in judged else (study.name,))
     return [replace(case, only=metrics.get((case.scene.name, case.solver), frozenset())) for case in cases]
 
 
-def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True, first=None):
+def check_study(name, faults, directory, finished_cases, is_checked=lambda gate: True, first=None, judged=None):
     """Check the kill matrix of a study, or of some of its gates."""
     study = get_study(name)
     gates = [gate for gate in study.gates() if is_checked(gate)]
-    check_kill_matrix(study, cases_of(study, gates), gates, faults, directory, finished_cases, first)
+    check_kill_matrix(study, cases_of(study, gates, judged), gates, faults, directory, finished_cases, first)
 
 
 def check_kill_matrix(study, cases, gates, faults, directory, finished_cases, first=None):

@@ -28,6 +28,7 @@ HERE = Path(__file__).parent / "user_solvers"
 @pytest.fixture
 def scene(scene_file, monkeypatch):
     monkeypatch.syspath_prepend(str(HERE))
+    answer_here(monkeypatch)
     return load_scene(scene_file)
 
 

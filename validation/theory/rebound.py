@@ -11,7 +11,8 @@ gap at the end there is no answer where the dashpot alone stops the mass. W = in
 
 The phase theta is the overshoot of the first step that would end below the contact, over V dt: uniform from 0 to 1.
 The rebound e is the speed after it over that before it. Under generalised alpha v goes on changing in flight, by the
-powers of am/(am - 1): it is read `FLIGHT` steps after the last force. There is no discount: it would change flights.
+powers of am/(am - 1): it is read `FLIGHT` steps after the last force, or when a is 0. There is no discount: it would
+change flights.
 
 Kane's rule is Newmark's (1/2, 1) here (a rigid mass has nothing but the contact's force), symplectic Euler is
 leapfrog, and a soft constraint is implicit Euler with zeta.
@@ -30,7 +31,7 @@ from validation.runs.history import Array
 from validation.theory.stages import Stages
 
 FLIGHT = 80
-"""Steps without force after which e is read."""
+"""Steps without force after which e is read where an acceleration is left."""
 LONGEST = 200_000
 """Steps after which a mass that is still pressed counts as stuck."""
 REST = 1e-18
@@ -165,7 +166,8 @@ def rebounds(advance: Advance, theta: ArrayLike) -> Array:
     for _ in range(LONGEST):
         motion = advance(motion)
         flight = np.where(motion.pressed > 0, 0, flight + 1)
-        leaves = ~is_over & (flight >= FLIGHT) & (motion.v >= 0)
+        is_free = (flight >= FLIGHT) | (flight > 0) & (motion.a == 0)
+        leaves = ~is_over & is_free & (motion.v >= 0)
         e[leaves] = motion.v[leaves]
         is_over |= leaves | (sum(map(np.abs, motion)) < REST)
         if is_over.all():
