@@ -3,6 +3,7 @@
 import math
 
 import pytest
+from conftest import thinned
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -64,7 +65,7 @@ LOADS = {
 }
 
 
-@pytest.mark.parametrize("load", LOADS.values(), ids=LOADS)
+@pytest.mark.parametrize("load", thinned(LOADS.values(), 3), ids=LOADS)
 def test_settling_is_that_of_the_history_under_the_loads_of_the_scene(load):
     from validation.engine.case import Case
     from validation.engine.measure import execute

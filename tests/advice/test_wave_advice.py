@@ -34,7 +34,7 @@ def with_blocks(scene, blocks):
 @pytest.mark.parametrize(
     ("scheme", "scene", "frequency"),
     [
-        (LINEAR, COLUMN.with_values(FREE), 5.0),
+        pytest.param(LINEAR, COLUMN.with_values(FREE), 5.0, marks=pytest.mark.long),
         (EXPLICIT, SITE, 8.0),
         (EXPLICIT, JOINT, 250.0),
         ({"time.alpha": 0.2, "time.delta": 0.6, "time.gg_rate": 0.1}, GLUE, 20.0),

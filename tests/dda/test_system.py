@@ -73,7 +73,7 @@ STILL = {"traction": 2e5, "gravity": 9.81}
     [
         (3, 0.25, 2e9, LOADS, SCHEME, None),
         # without corrections a step of 10 s loses to 1e-5; the elements' own double arithmetic leaves some 1e-11
-        (3, 0.3, 1e12, STILL, dda.Scheme(0.25, 0.5, 1.0, 10.0), 2),
+        pytest.param(3, 0.3, 1e12, STILL, dda.Scheme(0.25, 0.5, 1.0, 10.0), 2, marks=pytest.mark.long),
     ],
 )
 def test_stiffly_glued_triangles_are_linear_finite_elements(n, mu, p, loads, scheme, corrections):

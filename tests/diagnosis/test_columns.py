@@ -64,7 +64,7 @@ def judged(scene, digits=DIGITS, pressure=True, **values):
 # ---- what is named ---------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scene", [DROPPED, SHEARED])
+@pytest.mark.parametrize("scene", [DROPPED, pytest.param(SHEARED, marks=pytest.mark.long)])
 def test_the_scene_s_own_history_is_the_scene_s(scene):
     answer = judged(scene.with_values({"time.steps": 60}))
     assert (answer.causes, answer.departs, answer.departure) == ([], False, None)

@@ -25,7 +25,7 @@ def judged(**changes):
     ("changes", "causes"),
     [
         ({}, []),
-        ({"contact__law": "locked"}, ["contact-locked"]),
+        pytest.param({"contact__law": "locked"}, ["contact-locked"], marks=pytest.mark.long),
         pytest.param({"block__young": 0.8e9}, ["young-factor"], marks=pytest.mark.long),
         pytest.param({"time__gg": 0.97}, ["gg"], marks=pytest.mark.long),
         pytest.param({"load__gravity": 9.81}, ["own-weight"], marks=pytest.mark.long),

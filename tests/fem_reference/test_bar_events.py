@@ -48,7 +48,7 @@ HISTORIES = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 3))
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 4))
 def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * problem.travel)
     assert motion.closed_at_start

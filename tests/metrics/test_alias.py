@@ -28,7 +28,7 @@ def seen(scene, solver):
     return Measurable(history, scene.time.step, prepared.static(), prepared.modes())
 
 
-@pytest.mark.parametrize("gg", [1.0, 0.9])
+@pytest.mark.parametrize("gg", [1.0, pytest.param(0.9, marks=pytest.mark.long)])
 def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_not(gg):
     m = seen(figure(0.01, gg), "continuum")
     w, c = m.modes[0].frequency, -math.log(gg) / 0.01

@@ -62,7 +62,7 @@ def changed(**columns):
 
 FACTORS = [
     ({"contact.stiffness": 1.3e9}, "springs-factor", 1.3),
-    ({"damping.stiffness": 3e-5}, "stiffness-damping", 3e-5),
+    pytest.param({"damping.stiffness": 3e-5}, "stiffness-damping", 3e-5, marks=pytest.mark.long),
     ({"contact.law": "unilateral"}, "contact-opened", None),
 ]
 
