@@ -14,7 +14,7 @@ import pytest
 from oracles.stand_ins import kept
 
 KEPT = Path(__file__).with_name("numbers.toml")
-DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states")  # of a history on contact
+DERIVED = ("energies", "slide", "gap", "velocity", "horizontal_velocity", "states", "angle")  # of a history on contact
 DIGITS = 6e-6
 
 
@@ -59,8 +59,8 @@ def write(name, numbers):
     """Write the numbers of a result; what was left out as rounding stays so."""
     table = kept(KEPT)
     old = table.get(name, [])
-    is_left = [len(old) == len(numbers) and math.isnan(value) for value in old] or [False] * len(numbers)
-    table[name] = [math.nan if left else value for left, value in zip(is_left, numbers, strict=False)]
+    is_left = [place < len(old) and math.isnan(old[place]) for place in range(len(numbers))]
+    table[name] = [math.nan if left else value for left, value in zip(is_left, numbers, strict=True)]
     lines = [f'"{key}" = [{", ".join(f"{value:.6g}" for value in table[key])}]\n' for key in sorted(table)]
     KEPT.write_text("".join(lines), encoding="utf-8")
 

@@ -113,7 +113,8 @@ def test_contacts_whose_states_go_round_are_named(monkeypatch):
     """The search comes back after two states, in which one of six contacts opens and closes."""
     monkeypatch.setattr(step, "find", lambda *_: (NONE, 7))
     monkeypatch.setattr(step, "find_many", lambda *_: (NONE, 7))
-    monkeypatch.setattr(outcomes, "solve", lambda *_: None)
+    solved = []
+    monkeypatch.setattr(outcomes, "solve", lambda *given: solved.append(len(given)))
 
     def turned(laws, flexible, after, work, together):
         work.tried[3] = LOWER if work.tried[3] == INSIDE else INSIDE
@@ -122,7 +123,7 @@ def test_contacts_whose_states_go_round_are_named(monkeypatch):
     monkeypatch.setattr(solution, "make_steps", steps_by(step.make_stage, step.account, step.keep, step.keep_rows))
     result = solve_plane(slope(0.3, 0.6), scheme(CONSTANT, 1e-3), 3, compiled=False)
     assert result.reached == 0 and result.outcome.startswith(OUTCOMES[NONE])
-    assert result.unsettled == (PlaneContact(2, 1, 0, 2),)
+    assert result.unsettled == (PlaneContact(2, 1, 0, 2),) and solved == [5, 5]
 
 
 def test_contacts_are_named_by_their_blocks():
