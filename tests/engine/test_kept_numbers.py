@@ -34,7 +34,7 @@ def test_a_kept_row_that_another_case_brings_has_the_names_of_this_one(scene, tm
 
 
 @pytest.mark.parametrize("values", [{"time.gg": 0.9}, {"time.gg_rate": 30.0}], ids=str)
-def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(values, tmp_path):
+def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(values, tmp_path, monkeypatch):
     """At 10 ms for 0.07 s the first mode turns four times; a discount per step must not become one per instant."""
     scene = load_scene("figures-3-4").with_values({"time.step": 0.01, "time.steps": 7} | values)
     results = Results(tmp_path)
@@ -48,6 +48,8 @@ def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(value
         scale = np.abs(column).max()
         # rounding: of the instants, and of a root of gg that is raised to its power again
         np.testing.assert_allclose(exact.between.columns[name][parts - 1 :: parts], column, atol=1e-11 * scale)
+    monkeypatch.setattr(measure, "INSTANTS", 15)
+    assert len(measure.execute(Case(scene, "continuum"), "", "s")[1].between.time) == 14
     assert exact.until(0.05).between.time[-1] == pytest.approx(0.05)
 
 

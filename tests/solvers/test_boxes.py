@@ -1,11 +1,15 @@
 """Boxes on a ground as DDA takes them, against what is known of them without it."""
 
+import math
+
 import pytest
 from oracles.box_scenes import GROUND, box_scene
 
 from validation.models.plane.boxes import boxes_of
 from validation.runs.run import Outcome
+from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
+from validation.solvers.user import base_limit
 
 BOX = {"width": 0.8, "height": 1.5, "density": 800.0}
 
@@ -18,10 +22,16 @@ def test_the_ground_carries_a_box_along_that_friction_holds():
 
 BESIDE = {"name": "box_1", "rectangle": [1.0, 1.0], "at": [5.0, 0.5]}
 ABOVE = {"name": "box_1", "sides": 4, "radius": 1.0, "at": [0.0, 4.0]}
+TIP = {"name": "ground", "vertices": [[4.0, -1.0], [6.0, -1.0], [5.3, 0.0]], "fixed": True}
 NO_BOXES = [  # what is changed of a box on a ground, and what is said
     ({"plane.contact.cohesion": 10.0, "plane.contact.friction": 5.0}, "friction alone"),
     ({"plane.ramp": 0.1}, "weight alone, got ramp"),
     ({"plane.block": [GROUND, BESIDE, BESIDE | {"name": "b", "at": [9.0, 0.5], "fixed": True}]}, "got 2 such blocks"),
+    (
+        {"plane.block": [BESIDE | {"name": "b", "at": [9, -0.5], "fixed": True}, GROUND, BESIDE]},
+        "got 2 such blocks",
+    ),
+    ({"plane.block": [TIP, BESIDE]}, "got 1 such blocks"),
     ({"plane.block": [GROUND, ABOVE]}, "lower left corner, got box_1"),
     ({"plane.block": [GROUND, BESIDE, BESIDE | {"name": "low", "at": [9.0, 0.5]}]}, "got low below another"),
     ({"plane.block": [GROUND, BESIDE | {"young": 1e9}]}, "lower left corner, got box_1"),
@@ -32,6 +42,17 @@ def test_what_is_no_box_on_a_ground_is_said():
     for values, words in NO_BOXES:
         with pytest.raises(ValueError, match=words):
             boxes_of(box_scene({}).with_values(values))
+
+
+def test_boxes_are_on_the_ground_that_is_stated():
+    blocks = [GROUND | {"at": [7.0, -0.5]}, BESIDE, BESIDE | {"name": "box_2", "at": [5.0, 1.5]}]
+    contact = {"stiffness": math.inf}
+    scene = box_scene({}, slope=13.0, steps=70).with_values({"plane.block": blocks, "plane.contact": contact})
+    ground = boxes_of(scene)
+    assert (ground.ends, ground.friction, ground.stiffness) == ((-93.0, 107.0), 90.0, None)
+    assert (ground.slope, ground.gravity) == (pytest.approx(13.0), pytest.approx(9.81))
+    assert base_limit(scene) == 60.0 + 3.0 * 0.7 * 2
+    assert base_limit(load_scene("figures-3-4")) == base_limit()
 
 
 def test_a_restitution_that_springs_do_not_have_is_refused():

@@ -20,6 +20,7 @@ from validation.models.plane.history import PlaneColumns
 from validation.models.plane.measures import contact_time
 from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene, parse_scene
+from validation.solvers.hooks import SolvingHooks
 from validation.solvers.rigid.sliding import rigid_slide
 
 
@@ -54,6 +55,16 @@ def test_a_rigid_mass_slides_by_what_friction_and_cohesion_leave():
     scene = load_scene("figures-3-4").expand()[0].with_values(values | {"contact": contact, "block.side": 2.0})
     held = 9.81 * math.tan(math.radians(20)) * math.cos(math.radians(30)) + 3e3 * 2.0 / scene.block.mass
     assert rigid_slide(scene).slide[-1] == pytest.approx((9.81 * 0.5 - held) * 0.3**2 / 2)
+
+
+def test_a_scene_of_the_same_size_has_other_springs_or_another_mass(tmp_path):
+    block = load_scene("figures-3-4").expand()[0]
+    stops = {"law": "unilateral", "stiffness": math.inf, "shear_stiffness": 0.0}
+    scenes = block, block.with_values({"contact": stops}), made("layers on springs", tmp_path)
+    changes = [SolvingHooks.of(scene).scaled(scene, 1.7) for scene in scenes]
+    assert changes[0] == {"contact.stiffness": block.contact.stiffness * 1.7}
+    assert changes[1] == {"block.density": block.block.density * 1.7}
+    assert [layer["density"] for layer in changes[2]["column.layer"]] == [3400.0, 3060.0]
 
 
 def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
