@@ -8,11 +8,13 @@ from oracles.made_cases import made_history, made_row
 
 from validation.engine import measure
 from validation.engine.case import Case
+from validation.engine.horizon import shadow
 from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
 from validation.runs.results import Results
 from validation.scenes.scene import load_scene
+from validation.solvers.registry import get_solver
 
 # ---- metrics of one run -------------------------------------------------------------------------------------------
 
@@ -51,6 +53,13 @@ def test_an_exact_motion_is_kept_between_its_steps_and_passes_through_them(value
     monkeypatch.setattr(measure, "INSTANTS", 15)
     assert len(measure.execute(Case(scene, "continuum"), "", "s")[1].between.time) == 14
     assert exact.until(0.05).between.time[-1] == pytest.approx(0.05)
+
+
+def test_a_shadow_is_the_motion_in_other_digits():
+    scene = load_scene("figures-3-4").expand()[0].with_values({"time.step": 0.01, "time.steps": 7})
+    solver = get_solver("dda")
+    motion, other = (h.columns["displacement"] for h in (solver.solve(scene).history, shadow(solver, scene, False)))
+    assert other == pytest.approx(motion, rel=1e-9) and np.all(other != motion)
 
 
 def test_damage_between_the_steps_is_refused(tmp_path):

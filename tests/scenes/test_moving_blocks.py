@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.plane.geometry import overlap, separated, shared_edges
+from validation.models.plane.geometry import overlap, separated, shared_edges, triangles_of
 from validation.report.figures.curves import HistoryPanel, common_range
 from validation.runs.columns import axis_of, unit_of
 from validation.runs.history import History
@@ -61,6 +61,7 @@ def test_a_column_of_nothing_is_refused(columns, nothing, changes):
     with pytest.raises(InputError) as caught:
         scene(changes, columns=[nothing])
     assert caught.value.field == "run"
+    assert ("[[plane.touch]]" in caught.value.rule) == ("touch" in changes)
 
 
 def test_every_column_has_its_unit_on_an_axis():
@@ -122,6 +123,23 @@ def test_generators_draw_blocks_that_touch_and_do_not_overlap(generator):
     assert sum(map(area, outlines)) == pytest.approx(total, rel=1e-12)
     touching = {k for pair in combinations(range(count), 2) if any(shared(outlines, *pair)) for k in pair}
     assert len(touching) == count
+
+
+def test_springs_of_a_pair_take_the_place_of_the_common_ones():
+    contact = {"stiffness": 3e8, "friction": 30.0}
+    pair = {"blocks": ["square", "floor"], "stiffness": 3e8}
+    common, own, soft = (
+        solve(scene(changes, columns=["square.y"]), "dda").history.columns["square.y"] - 0.5
+        for changes in ({}, {"pair": [pair]}, {"contact": contact})
+    )
+    assert own == pytest.approx(soft, rel=1e-9) and own[-1] < 1.1 * common[-1]
+
+
+def test_triangles_tile_an_outline_from_any_corner():
+    for start in range(len(L_SHAPE)):
+        outline = (*L_SHAPE[start:], *L_SHAPE[:start])
+        areas = [area([outline[corner] for corner in triangle]) for triangle in triangles_of(outline)]
+        assert len(areas) == 4 and min(areas) > 0.1 and sum(areas) == pytest.approx(3.0)
 
 
 def test_random_polygons_are_the_same_by_the_same_seed():

@@ -2,6 +2,7 @@
 
 import math
 
+import numpy as np
 import pytest
 from oracles.box_scenes import GROUND, box_scene
 
@@ -53,6 +54,19 @@ def test_boxes_are_on_the_ground_that_is_stated():
     assert (ground.slope, ground.gravity) == (pytest.approx(13.0), pytest.approx(9.81))
     assert base_limit(scene) == 60.0 + 3.0 * 0.7 * 2
     assert base_limit(load_scene("figures-3-4")) == base_limit()
+
+
+def test_the_ground_is_shaken_along_itself_by_a_cosine_alone(tmp_path):
+    scene = box_scene(BOX, base=(0.013, 3.0), steps=9)
+    ground = boxes_of(scene)
+    assert (ground.base_amplitude, ground.base_frequency) == pytest.approx((0.013, 3.0))
+    time = np.linspace(0.0, 0.2, 41)
+    cosine = 0.013 * (1 - np.cos(6 * np.pi * time))
+    for name, x, y in (("up", cosine, time), ("straight", time, 0 * time)):
+        path = tmp_path / f"{name}.csv"
+        np.savetxt(path, np.column_stack([time, x, y]), "%.17g", ",", header="time,x,y", comments="")
+        with pytest.raises(ValueError, match="another motion"):
+            boxes_of(scene.with_values({"plane.block.0.motion": str(path)}))
 
 
 def test_a_restitution_that_springs_do_not_have_is_refused():

@@ -15,12 +15,13 @@ from validation.advice.pages import PageHooks
 from validation.models.block.advice import _moves_as_a_whole
 from validation.models.column import pages as column_pages
 from validation.models.plane import pages
-from validation.models.plane.corner_springs import OVERLAP, moving_advice
+from validation.models.plane.corner_springs import OVERLAP
 from validation.models.plane.history import PlaneColumns
-from validation.models.plane.measures import contact_time
+from validation.models.plane.measures import contact_time, peak
 from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene, parse_scene
 from validation.solvers.hooks import SolvingHooks
+from validation.solvers.registry import get_solver
 from validation.solvers.rigid.sliding import rigid_slide
 
 
@@ -41,6 +42,17 @@ def test_contact_lasts_from_where_the_gap_closes_to_where_it_opens():
     for gap, lasts in GAPS:
         found = contact_time(made_history(0.5, gap), np.array(gap))
         assert found == (lasts and pytest.approx(lasts)), gap
+
+
+def test_the_peak_of_a_flat_top_is_its_height():
+    """Of three values that differ by rounding alone no parabola has a curvature."""
+    assert peak(np.array([0.5, np.nextafter(1.0, 0.0), 1.0, 1.0])) == 1.0
+    assert peak(np.array([0.5, 2.9, 3.1, 1.7])) == pytest.approx(3.1 + 1.2**2 / (8 * 1.6))
+
+
+def test_no_step_is_short_enough_for_a_rigid_stop(tmp_path):
+    scene = made("turning", tmp_path).with_values({"contact.stiffness": math.inf})
+    assert get_solver("dda").prepare(scene).highest_frequency() == math.inf
 
 
 def test_both_corners_of_a_block_land_when_it_has_fallen():
@@ -78,7 +90,8 @@ def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
 def test_springs_carry_the_weight_of_what_stands_on_them():
     scene = box_scene({"width": 2.0, "height": 1.0, "density": 700.0}, stiffness=1e6, gravity=3.0)
     needed = 2 * 700 * 3.0 / (OVERLAP * scene.plane.assembly.moving[0].thickness)
-    assert moving_advice(scene, 0.9).settings["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
+    (page, _) = PageHooks.of(scene).page(scene, Question(error=0.9))
+    assert page["settings"]["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
 
 
 def test_a_block_with_friction_moves_as_a_whole_on_a_slope():
