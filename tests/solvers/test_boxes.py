@@ -7,6 +7,8 @@ import pytest
 from oracles.box_scenes import GROUND, box_scene
 
 from validation.models.plane.boxes import boxes_of
+from validation.problems.problem import ProblemHooks
+from validation.runs.history import History
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
@@ -67,6 +69,15 @@ def test_the_ground_is_shaken_along_itself_by_a_cosine_alone(tmp_path):
         np.savetxt(path, np.column_stack([time, x, y]), "%.17g", ",", header="time,x,y", comments="")
         with pytest.raises(ValueError, match="another motion"):
             boxes_of(scene.with_values({"plane.block.0.motion": str(path)}))
+
+
+def test_a_height_in_another_unit_is_named():
+    scene = box_scene(BOX | {"lift": 0.3})
+    hooks = ProblemHooks.of(scene)
+    for unit, told in ((1.0, []), (1e3, ["box_1.y"]), (7.0, [])):
+        history = History(np.array([0.01, 0.02]), {"box_1.y": np.array([1.05, 1.04]) * unit})
+        found = list(hooks.other_units(scene, history))
+        assert [column for column, _ in found] == told and all("mm" in rule for _, rule in found)
 
 
 def test_a_restitution_that_springs_do_not_have_is_refused():

@@ -65,6 +65,8 @@ def test_a_rigid_mass_slides_by_what_friction_and_cohesion_leave():
     values = {"load": {"gravity": 9.81, "slope": 30.0}, "time.step": 0.1, "time.steps": 3}
     contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 20.0, "cohesion": 3e3}
     scene = load_scene("figures-3-4").expand()[0].with_values(values | {"contact": contact, "block.side": 2.0})
+    loose = scene.with_values({"contact.friction": 0.0, "contact.cohesion": 0.0})
+    assert rigid_slide(loose).slide[-1] == pytest.approx(9.81 * 0.5 * 0.3**2 / 2)
     held = 9.81 * math.tan(math.radians(20)) * math.cos(math.radians(30)) + 3e3 * 2.0 / scene.block.mass
     assert rigid_slide(scene).slide[-1] == pytest.approx((9.81 * 0.5 - held) * 0.3**2 / 2)
 
