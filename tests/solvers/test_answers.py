@@ -189,7 +189,7 @@ def test_solvers_are_declared_as_before():
     for name in BUILT_IN:
         solver = get_solver(name)
         line = vars(solver.line).values() if solver.line else ()
-        flags = (solver.cached, solver.distributed, solver.meshed, solver.saves)
+        flags = (solver.cached, solver.distributed, solver.meshed, solver.saves, len(solver.columns() or ()))
         declared[name] = " ".join(map(str, [solver.role.name, solver.rank, *line, *flags]))
     if os.environ.get("KEEP_PAGES"):
         ASKED.update(declared)

@@ -17,6 +17,7 @@ from validation.models.column import pages as column_pages
 from validation.models.plane import pages
 from validation.models.plane.corner_springs import OVERLAP
 from validation.models.plane.history import PlaneColumns
+from validation.models.plane.limits import leaning_friction, recursion, seat_forces, stepped_dip
 from validation.models.plane.measures import contact_time, peak
 from validation.scenes.plausibility import implausible_values
 from validation.scenes.scene import load_scene, parse_scene
@@ -53,6 +54,14 @@ def test_the_peak_of_a_flat_top_is_its_height():
 def test_no_step_is_short_enough_for_a_rigid_stop(tmp_path):
     scene = made("turning", tmp_path).with_values({"contact.stiffness": math.inf})
     assert get_solver("dda").prepare(scene).highest_frequency() == math.inf
+
+
+def test_piles_and_columns_stand_as_before():
+    heights = [1.3, 2.9, 4.1]
+    assert np.ravel(seat_forces(2, 3.1, 0.7)) == pytest.approx([10 / 13, 3 / 13, 18 / 11, 4 / 11])
+    assert leaning_friction(0.9, 5.3) == pytest.approx(0.302435951)
+    assert recursion(heights, 0.7, 0.3, 0.31, 0.62) == pytest.approx(0.594431200)
+    assert stepped_dip(heights, 0.7, 0.3, 0.62) == pytest.approx(0.217121793)
 
 
 def test_both_corners_of_a_block_land_when_it_has_fallen():

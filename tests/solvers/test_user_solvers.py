@@ -67,6 +67,9 @@ def test_names(scene, monkeypatch):
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.by_role("judged") == ["dda"] and registry.role("fem:full") == "repeat"
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
+    UserSolver("mine", "json.decoder:JSONDecoder").check_module()
+    with pytest.raises(InputError):
+        UserSolver("mine", "my_solver.part:solve").check_module()
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
     with pytest.raises(InputError) as told:
         get_solver("femm:2")
