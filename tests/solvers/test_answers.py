@@ -160,7 +160,9 @@ def written(solver, scene, tells):
         if not math.isclose(value, shorter[name], rel_tol=1e-8)
         or (name.startswith("static.") and 0 < abs(value) < 1e-14 * forces)
     ]
-    return " ".join([*(f"{value:.5f}" for value in in_parts(found, rounding).values()), "~", *rounding])
+    return " ".join(
+        [*(f"{value:.5f}".rstrip("0").rstrip(".") for value in in_parts(found, rounding).values()), "~", *rounding]
+    )
 
 
 def keep():
