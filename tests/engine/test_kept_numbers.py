@@ -1,6 +1,7 @@
 """Rows, windows and comparisons: each number is of its own case, steps and static value."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from validation.engine.run import finish, run_study
 from validation.engine.study import Study
 from validation.errors import InputError
 from validation.runs.results import Results
+from validation.runs.run import Outcome, Run
 from validation.scenes.scene import load_scene
 from validation.solvers.registry import get_solver
 
@@ -60,6 +62,16 @@ def test_a_shadow_is_the_motion_in_other_digits():
     solver = get_solver("dda")
     motion, other = (h.columns["displacement"] for h in (solver.solve(scene).history, shadow(solver, scene, False)))
     assert other == pytest.approx(motion, rel=1e-9) and np.all(other != motion)
+
+
+def test_seconds_are_the_least_of_a_run_and_their_spread(monkeypatch):
+    clocks = {"process_time": [0.0, 5.0, 10.0, 13.0], "perf_counter": [0.0, 5.0, 10.0, 14.0]}
+    ticking = {name: iter(instants).__next__ for name, instants in clocks.items()}
+    monkeypatch.setattr(measure, "time", SimpleNamespace(**ticking))
+    run = Run(Outcome.COMPLETED, seconds={"stepping": 1.0})
+    solver = SimpleNamespace(solve=lambda scene, full: run)
+    least, spread = measure.timed(run, solver, SimpleNamespace(scene=None, full=False, repeats=2))
+    assert least.seconds == {"setup": 2.25, "stepping": 0.75} and spread == 2.0
 
 
 def test_damage_between_the_steps_is_refused(tmp_path):

@@ -53,6 +53,8 @@ def test_layers_of_one_material_are_one_bar():
     problem, feet = bars_of(scene_of(column, ["displacement"]))
     assert feet.tolist() == pytest.approx([0.0, 0.9, 3.5])
     assert [bar.length for bar in problem.bars] == pytest.approx([0.9, 2.6, 2.0])
+    heavy = column | {"gravity": 0.7, "layer": 2 * [layer | {"velocity": 0.0}]}
+    assert scene_of(heavy, ["displacement"]).stated_input is None  # its weight moves it
     assert problem.joints == (None, BarJoint("unilateral", 3e8, 1e-3), BONDED)
 
 
