@@ -22,6 +22,12 @@ def test_an_edited_source_gives_another_key_to_the_solvers_that_it_enters(scene,
     case_module.source_digest.cache_clear()
 
 
+def test_what_a_solver_does_not_read_is_no_part_of_its_key(scene):
+    other = scene.with_values({"time.alpha": 0.37})
+    same = [Case(scene, solver).key() == Case(other, solver).key() for solver in ("continuum", "dda")]
+    assert same == [True, False]
+
+
 def keys_of(scene, solver, file, texts):
     """Return the keys of a scene as a file that it names has one content and another."""
     keys = set()

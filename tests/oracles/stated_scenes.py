@@ -9,6 +9,7 @@ import numpy as np
 from validation.scenes.scene import parse_scene
 from validation.solvers.registry import get_solver
 
+COLUMNS = ("displacement", "contact_pressure")
 TIME = {"step": 2e-3, "steps": 12}
 TABLES = tomllib.loads((Path(__file__).parents[1] / "solvers/invariants.toml").read_text(encoding="utf-8"))
 SCENES = TABLES["scenes"]
@@ -59,7 +60,10 @@ def made(name, directory, units=(1.0, 1.0, 1.0), load=1.0):
         rows = np.array(RECORD) * factors
         drive["base_motion"] = str(directory / f"{units[0]}-{load}.csv")
         np.savetxt(drive["base_motion"], rows, "%.17g", ",", header="time,x,y", comments="")
-    data["run"] = {"columns": list(SCENES[name]["columns"]), "geometry": SCENES[name].get("geometry", "small")}
+    data["run"] = {
+        "columns": list(SCENES[name].get("columns", COLUMNS)),
+        "geometry": SCENES[name].get("geometry", "small"),
+    }
     return parse_scene({"name": name, **data, "fem": {"elements": 2}}, name)
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from validation.errors import InputError
-from validation.models.plane.geometry import overlap, shared_edges
+from validation.models.plane.geometry import overlap, separated, shared_edges, triangles_of
 from validation.report.figures.curves import HistoryPanel, common_range
 from validation.runs.columns import axis_of, unit_of
 from validation.runs.history import History
@@ -25,6 +25,7 @@ PLANE = {
     "contact": {"stiffness": 1e9, "friction": 30.0},
     "block": [FLOOR, SQUARE],
 }
+UNIT_SQUARE = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
 L_SHAPE = ((0.0, 0.0), (2.0, 0.0), (2.0, 1.0), (1.0, 1.0), (1.0, 2.0), (0.0, 2.0))
 
 
@@ -60,6 +61,7 @@ def test_a_column_of_nothing_is_refused(columns, nothing, changes):
     with pytest.raises(InputError) as caught:
         scene(changes, columns=[nothing])
     assert caught.value.field == "run"
+    assert ("[[plane.touch]]" in caught.value.rule) == ("touch" in changes)
 
 
 def test_every_column_has_its_unit_on_an_axis():
@@ -123,6 +125,23 @@ def test_generators_draw_blocks_that_touch_and_do_not_overlap(generator):
     assert len(touching) == count
 
 
+def test_springs_of_a_pair_take_the_place_of_the_common_ones():
+    contact = {"stiffness": 3e8, "friction": 30.0}
+    pair = {"blocks": ["square", "floor"], "stiffness": 3e8}
+    common, own, soft = (
+        solve(scene(changes, columns=["square.y"]), "dda").history.columns["square.y"] - 0.5
+        for changes in ({}, {"pair": [pair]}, {"contact": contact})
+    )
+    assert own == pytest.approx(soft, rel=1e-9) and own[-1] < 1.1 * common[-1]
+
+
+def test_triangles_tile_an_outline_from_any_corner():
+    for start in range(len(L_SHAPE)):
+        outline = (*L_SHAPE[start:], *L_SHAPE[:start])
+        areas = [area([outline[corner] for corner in triangle]) for triangle in triangles_of(outline)]
+        assert len(areas) == 4 and min(areas) > 0.1 and sum(areas) == pytest.approx(3.0)
+
+
 def test_random_polygons_are_the_same_by_the_same_seed():
     table = {"name": "made", "count": 20, "seed": 7, "radii": [0.1, 0.3], "across": 5}
 
@@ -133,9 +152,20 @@ def test_random_polygons_are_the_same_by_the_same_seed():
 
 
 @pytest.mark.parametrize(
-    ("shift", "depth"), [((2.0, 0.0), 0.0), ((1.0, 1.0), 0.0), ((0.9, 1.0), 0.1), ((0.0, 0.0), 0.5)]
+    ("shift", "depth", "lines"),  # and whose edges' lines part the two
+    [
+        (2.0, 0.0, "both"),
+        (-1.3 + 0.4j, 0.0, "both"),
+        (1.0 + 1.0j, 0.0, "none"),
+        (2.5 - 3.0j, 0.0, "both"),
+        (0.9 + 1.0j, 0.1, "none"),
+        (0.0, 0.5, "none"),
+    ],
 )
-def test_outlines_that_are_not_convex_overlap_by_what_lies_inside(shift, depth):
-    other = ((0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0))
-    moved = tuple((x + shift[0], y + shift[1]) for x, y in other)
-    assert overlap(L_SHAPE, moved) == pytest.approx(depth, abs=1e-12) == overlap(moved, L_SHAPE)
+def test_outlines_that_are_not_convex_overlap_by_what_lies_inside(shift, depth, lines):
+    first, second = (
+        tuple((place.real, place.imag) for place in ((complex(*corner) + at) * np.exp(0.3j) + 7 for corner in outline))
+        for outline, at in ((L_SHAPE, 0.0), (UNIT_SQUARE, shift))
+    )
+    assert overlap(first, second) == pytest.approx(depth, abs=1e-12) == overlap(second, first)
+    assert {separated(first, second), separated(second, first)} == {lines == "both"}

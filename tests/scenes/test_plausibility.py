@@ -6,14 +6,18 @@ from pathlib import Path
 
 import pytest
 from conftest import thinned
+from oracles.stand_ins import assert_kept, summed
+from oracles.stated_scenes import made
 
 import validation
 from validation.errors import PlausibilityWarning
-from validation.scenes.plausibility import implausible_values, plausibility_warnings
+from validation.scenes import plausibility
+from validation.scenes.plausibility import PlausibilityHooks, implausible_values, plausibility_warnings
 from validation.scenes.scene import load_scene, parse_scene, scene_names
 
 ROCK = {"block": {"side": 2.0, "density": 2700.0, "young": 3e10}, "contact": {"stiffness": 1e9}}
-WARNED = tomllib.loads(Path(__file__).with_name("implausible.toml").read_text(encoding="utf-8"))["warned"]
+TABLES = tomllib.loads(Path(__file__).with_name("implausible.toml").read_text(encoding="utf-8"))
+KEPT = Path(__file__).with_name("judged.toml")
 
 
 def rock(**tables):
@@ -23,11 +27,40 @@ def rock(**tables):
 
 
 def test_a_value_in_another_unit_is_named_with_what_to_write():
-    for values, kind, advice, *other in WARNED:
+    for values, kind, advice, *other in TABLES["warned"]:
         (found,) = implausible_values(rock().with_values(values))
         (field,) = other or [*values][-1:]
         assert (found.field, found.kind) == (field, kind), values
         assert advice in found.sentence and 'extreme = "why"' in found.sentence, values
+
+
+class Numbers:
+    """A row of a table that holds for every value, and says the numbers that its sentence may tell."""
+
+    def get(self, limit, otherwise):
+        return otherwise
+
+    def __getitem__(self, key):
+        return self
+
+    def format(self, **told):
+        return " ".join(str(float(value)) for value in told.values() if isinstance(value, float))
+
+
+def test_every_quantity_that_is_held_against_a_limit_is_what_it_was(tmp_path, monkeypatch):
+    quantities = [*plausibility.TABLE]
+    sums = {}
+    for name, values in TABLES["judged"]:
+        scene = made(name, tmp_path).with_values(values)
+        hooks = PlausibilityHooks.of(scene)
+        told = []
+        for without in ((), ("density", "modulus")):  # where neither is told, the wave and the strain of both are
+            table = {quantity: [] if quantity in without else [Numbers()] for quantity in quantities}
+            monkeypatch.setattr(plausibility, "TABLE", table)
+            for value in (*hooks.values(scene), *hooks.sinks(scene)):
+                told += [value.field, value.kind, *map(float, value.sentence.partition(",")[0].split())]
+        sums[name] = summed(told)
+    assert_kept(KEPT, "judged", sums)
 
 
 @pytest.mark.parametrize("name", thinned(scene_names(), 25))

@@ -160,7 +160,9 @@ def written(solver, scene, tells):
         if not math.isclose(value, shorter[name], rel_tol=1e-8)
         or (name.startswith("static.") and 0 < abs(value) < 1e-14 * forces)
     ]
-    return " ".join([*(f"{value:.5f}" for value in in_parts(found, rounding).values()), "~", *rounding])
+    return " ".join(
+        [*(f"{value:.5f}".rstrip("0").rstrip(".") for value in in_parts(found, rounding).values()), "~", *rounding]
+    )
 
 
 def keep():
@@ -189,7 +191,7 @@ def test_solvers_are_declared_as_before():
     for name in BUILT_IN:
         solver = get_solver(name)
         line = vars(solver.line).values() if solver.line else ()
-        flags = (solver.cached, solver.distributed, solver.meshed, solver.saves)
+        flags = (solver.cached, solver.distributed, solver.meshed, solver.saves, len(solver.columns() or ()))
         declared[name] = " ".join(map(str, [solver.role.name, solver.rank, *line, *flags]))
     if os.environ.get("KEEP_PAGES"):
         ASKED.update(declared)

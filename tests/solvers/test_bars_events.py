@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from fem_reference.events.bars_model import BONDED, BarJoint
 from validation.runs.run import Outcome
 from validation.scenes.scene import parse_scene
-from validation.solvers.columns.bars import BarsOfColumn
+from validation.solvers.columns.bars import BarsOfColumn, bars_of
 from validation.solvers.registry import get_solver, solve
 
 LAYERS = [
@@ -42,6 +43,19 @@ def test_a_motion_that_outgrows_the_work_ends_at_a_horizon_and_is_that_of_elemen
     monkeypatch.setattr(BarsOfColumn, "most_terms", 10.0)  # less than it takes for certain
     early = solve(scene, "bars-events")
     assert early.outcome is Outcome.HORIZON and early.notes != run.notes
+
+
+def test_layers_of_one_material_are_one_bar():
+    layer = LAYERS[0] | {"blocks": 1}
+    joint = {"height": 0.9, "stiffness": 3e8, "gap": 1e-3}
+    layers = [layer, layer | {"thickness": 1.5}, layer | {"velocity": 0.3}]
+    column = {"motion": "pressure", "law": "unilateral", "base": "free", "joint": [joint], "layer": layers}
+    problem, feet = bars_of(scene_of(column, ["displacement"]))
+    assert feet.tolist() == pytest.approx([0.0, 0.9, 3.5])
+    assert [bar.length for bar in problem.bars] == pytest.approx([0.9, 2.6, 2.0])
+    heavy = column | {"gravity": 0.7, "layer": 2 * [layer | {"velocity": 0.0}]}
+    assert scene_of(heavy, ["displacement"]).stated_input is None  # its weight moves it
+    assert problem.joints == (None, BarJoint("unilateral", 3e8, 1e-3), BONDED)
 
 
 def test_the_elements_count_their_solves_and_end_at_their_limit():

@@ -9,7 +9,7 @@ from conftest import thinned
 from validation import load_scene, response
 from validation.scenes.scene import parse_scene
 
-SITE = Path(__file__).with_name("site.toml").read_text(encoding="utf-8")
+SITE = load_scene(Path(__file__).with_name("site.toml"))
 BASES = {
     "half-space": {},
     "jointed half-space": {"column.joint": [{"height": 0.0, "stiffness": 3e8}, {"height": 10.0, "stiffness": 1e8}]},
@@ -23,29 +23,19 @@ BASES_AND_ENDS = [
 ]
 
 
-@pytest.fixture
-def site(tmp_path):
-    path = tmp_path / "site.toml"
-    path.write_text(SITE)
-    return load_scene(path)
-
-
-def standing(site, base):
+def standing(base):
     """Return the site on another base."""
-    data = site.definition()
+    data = SITE.definition()
     if base in ("rigid", "springs"):
         for key in ("base_density", "base_speed"):
             del data["column"][key]
     return parse_scene(data | {"column": data["column"] | {k[7:]: v for k, v in BASES[base].items()}}, base)
 
 
-# ---- vibrations -----------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("base", "top"), thinned(BASES_AND_ENDS, 4))
-def test_fine_columns_vibrate_as_the_exact_layers(site, base, top):
-    layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in site.column.layer]
-    scene = standing(site, base).with_values({"column.layer": layers, "time.gg": 0.99})
+def test_fine_columns_vibrate_as_the_exact_layers(base, top):
+    layers = [x.model_dump() | {"blocks": 40 * x.blocks} for x in SITE.column.layer]
+    scene = standing(base).with_values({"column.layer": layers, "time.gg": 0.99})
     if top:
         given = {"at": "top", "shape": "ricker", "pressure": 1.0, "frequency": 4.0}
         scene = parse_scene(scene.definition() | {"input": given}, "top")
@@ -54,6 +44,3 @@ def test_fine_columns_vibrate_as_the_exact_layers(site, base, top):
     for solver in ("dda", "fem"):
         for name, values in response(scene, frequency, solver, exact=True).columns.items():
             assert np.abs(values - exact[name]).max() < 2e-4 * np.abs(exact[name]).max(), (solver, name)
-
-
-# ---- what is refused ------------------------------------------------------------------------------------------------

@@ -66,7 +66,7 @@ def numbers(name, directory):
     axes = Figure().add_subplot()
     FigureHooks.of(scene).draw(axes, scene)
     remarks = [remark for values in VALUES for remark in ShowingHooks.of(scene).remarks(scene, values)]
-    found = {name: summed(drawn(axes)), f"{name}, remarks": summed(remarks)}
+    found = {name: summed([*drawn(axes), *remarks])}
     if name in MOVED:
         steps = (0, scene.time.steps - 1)
         figure = FigureHooks.of(scene).frames(scene, history(scene), steps, "dda", 30.0)

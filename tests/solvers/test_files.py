@@ -65,6 +65,7 @@ SCENE = LOCKED.with_values({"time.step": 0.001, "time.steps": 3})
         ("echo no licence >&2\nexit 3", Outcome.RAISED, "ended with status 3: no licence"),
         ("echo time,displacement\necho 0.001,x", Outcome.WRONG_SHAPE, "displacement: must be a number, got 'x'"),
         ("exit 0", Outcome.WRONG_SHAPE, "got an empty file"),
+        (f"echo time,displacement\n{ROWS.replace('0.00', '')}", Outcome.WRONG_SHAPE, "milliseconds?"),
         (f"echo time,displacement_m\n{ROWS.replace('-1e-3', 'nan')}", Outcome.WRONG_SHAPE, "must be a finite number"),
         ("sleep 30", Outcome.TIMEOUT, "no history within"),
     ],

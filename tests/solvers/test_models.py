@@ -15,11 +15,13 @@ from validation.advice.pages import PageHooks
 from validation.models.block.advice import _moves_as_a_whole
 from validation.models.column import pages as column_pages
 from validation.models.plane import pages
-from validation.models.plane.corner_springs import OVERLAP, moving_advice
+from validation.models.plane.corner_springs import OVERLAP
 from validation.models.plane.history import PlaneColumns
-from validation.models.plane.measures import contact_time
-from validation.scenes.plausibility import implausible_values
-from validation.scenes.scene import load_scene, parse_scene
+from validation.models.plane.limits import leaning_friction, recursion, seat_forces, stepped_dip
+from validation.models.plane.measures import contact_time, peak
+from validation.scenes.scene import load_scene
+from validation.solvers.hooks import SolvingHooks
+from validation.solvers.registry import get_solver
 from validation.solvers.rigid.sliding import rigid_slide
 
 
@@ -42,6 +44,25 @@ def test_contact_lasts_from_where_the_gap_closes_to_where_it_opens():
         assert found == (lasts and pytest.approx(lasts)), gap
 
 
+def test_the_peak_of_a_flat_top_is_its_height():
+    """Of three values that differ by rounding alone no parabola has a curvature."""
+    assert peak(np.array([0.5, np.nextafter(1.0, 0.0), 1.0, 1.0])) == 1.0
+    assert peak(np.array([0.5, 2.9, 3.1, 1.7])) == pytest.approx(3.1 + 1.2**2 / (8 * 1.6))
+
+
+def test_no_step_is_short_enough_for_a_rigid_stop(tmp_path):
+    scene = made("turning", tmp_path).with_values({"contact.stiffness": math.inf})
+    assert get_solver("dda").prepare(scene).highest_frequency() == math.inf
+
+
+def test_piles_and_columns_stand_as_before():
+    heights = [1.3, 2.9, 4.1]
+    assert np.ravel(seat_forces(2, 3.1, 0.7)) == pytest.approx([10 / 13, 3 / 13, 18 / 11, 4 / 11])
+    assert leaning_friction(0.9, 5.3) == pytest.approx(0.302435951)
+    assert recursion(heights, 0.7, 0.3, 0.31, 0.62) == pytest.approx(0.594431200)
+    assert stepped_dip(heights, 0.7, 0.3, 0.62) == pytest.approx(0.217121793)
+
+
 def test_both_corners_of_a_block_land_when_it_has_fallen():
     block = {"width": 2.0, "height": 1.0, "density": 2500.0, "young": 1e9, "stiffness": 2e6}
     found = exact.unilateral_block([0.012], **block, gap=1e-2, velocity=-1.0)
@@ -52,22 +73,27 @@ def test_a_rigid_mass_slides_by_what_friction_and_cohesion_leave():
     values = {"load": {"gravity": 9.81, "slope": 30.0}, "time.step": 0.1, "time.steps": 3}
     contact = {"law": "unilateral", "stiffness": 1e9, "shear_stiffness": 4e8, "friction": 20.0, "cohesion": 3e3}
     scene = load_scene("figures-3-4").expand()[0].with_values(values | {"contact": contact, "block.side": 2.0})
+    loose = scene.with_values({"contact.friction": 0.0, "contact.cohesion": 0.0})
+    assert rigid_slide(loose).slide[-1] == pytest.approx(9.81 * 0.5 * 0.3**2 / 2)
     held = 9.81 * math.tan(math.radians(20)) * math.cos(math.radians(30)) + 3e3 * 2.0 / scene.block.mass
     assert rigid_slide(scene).slide[-1] == pytest.approx((9.81 * 0.5 - held) * 0.3**2 / 2)
 
 
-def test_a_soft_layer_is_strained_by_what_lies_above_its_foot():
-    layers = [{"thickness": 300.0, "density": 2500.0, "young": young, "blocks": 1} for young in (3e10, 3e7)]
-    column = {"motion": "pressure", "law": "unilateral", "stiffness": 1e9, "gravity": 9.81, "layer": layers}
-    scene = parse_scene({"column": column, "time": {"step": 1e-4, "steps": 3}}, "soft")
-    (said,) = [value.sentence for value in implausible_values(scene) if value.kind == "strain"]
-    assert " 24.5 %" in said
+def test_a_scene_of_the_same_size_has_other_springs_or_another_mass(tmp_path):
+    block = load_scene("figures-3-4").expand()[0]
+    stops = {"law": "unilateral", "stiffness": math.inf, "shear_stiffness": 0.0}
+    scenes = block, block.with_values({"contact": stops}), made("layers on springs", tmp_path)
+    changes = [SolvingHooks.of(scene).scaled(scene, 1.7) for scene in scenes]
+    assert changes[0] == {"contact.stiffness": block.contact.stiffness * 1.7}
+    assert changes[1] == {"block.density": block.block.density * 1.7}
+    assert [layer["density"] for layer in changes[2]["column.layer"]] == [3400.0, 3060.0]
 
 
 def test_springs_carry_the_weight_of_what_stands_on_them():
     scene = box_scene({"width": 2.0, "height": 1.0, "density": 700.0}, stiffness=1e6, gravity=3.0)
     needed = 2 * 700 * 3.0 / (OVERLAP * scene.plane.assembly.moving[0].thickness)
-    assert moving_advice(scene, 0.9).settings["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
+    (page, _) = PageHooks.of(scene).page(scene, Question(error=0.9))
+    assert page["settings"]["plane.contact.stiffness"] == pytest.approx(needed, rel=0.05)
 
 
 def test_a_block_with_friction_moves_as_a_whole_on_a_slope():

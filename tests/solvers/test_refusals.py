@@ -18,9 +18,11 @@ from validation.advice.wave_advice import advise_wave
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.errors import InputError
+from validation.models.plane.pages import recommended_cut
+from validation.models.plane.problems import impact_of, problem_posed
 from validation.scenes.scene import parse_scene
 from validation.solvers.names import check_names
-from validation.solvers.registry import solve
+from validation.solvers.registry import get_solver, solve
 from validation.solvers.rigid.sliding import rigid_slide
 
 HERE = Path(__file__).parent
@@ -56,6 +58,8 @@ SCENES = {
     "strip": load_scene("patch-strip").expand()[0],
     "boxes": box_scene({}),
 }
+RAMP = SCENES["rough"].with_values({"load.ramp": 0.01})
+HEAT = LOCKED.with_values({"run.columns": ["heat"]})
 TABLE = tomllib.loads((HERE / "refusals.toml").read_text(encoding="utf-8"))["refused"]
 OF_FENICSX = pytest.param(True, marks=pytest.mark.fenicsx)
 
@@ -90,6 +94,14 @@ ASKS = [
         )
     ),
     (SCENES["stuck"], "contact.friction is required", rigid_slide),
+    (SCENES["boxes"], "stiffness: must be finite in this problem", impact_of),
+    (SCENES["boxes"], "plane: must be one of .*: blocks that move", problem_posed),
+    (SCENES["plate"], "needs a rectangle that is cut", lambda scene: recommended_cut(scene, 0.1)),
+    (SCENES["rough"].with_values({"contact.band": [0.0, 1e-6]}), "lagged rules only", get_solver("dda").prepare),
+    (SITE, "solver bar: it does not handle column", get_solver("bar").prepare),
+    (load_scene("figures-3-4"), "one value must be picked for time.step; take scene.with_values", damping),
+    (RAMP, "takes loads that act at once only", lambda scene: compare(scene, None)),
+    (HEAT, "must be among displacement, contact_p", lambda scene: check_names(scene, "mine.toml")),
     (SCENES["rough"], "load must be weight and base motion", rigid_slide),
     (SITE, "site: damping takes scenes of a block only", damping),
     (SITE, "compare takes scenes of a block, or of a column", lambda scene: compare(scene, Foreign(np.ones(1), {}))),

@@ -67,6 +67,8 @@ REFUSED = tomllib.loads(Path(__file__).with_name("rigid_exact.toml").read_text(e
 def test_other_motions_are_refused_by_name():
     for boxes, rigid, why in REFUSED:
         assert why in refusal(box_scene(*[BOX | box for box in boxes], **rigid))
+    unknown = get_solver("rigid-exact").prepare(box_scene(BOX | {"lift": 1.0}))
+    assert unknown.run().outcome is Outcome.NOT_APPLICABLE
     assert not refusal(box_scene(BOX, BOX, BOX, slope=28.0, friction=40.0))  # three stand to atan(0.4 / 0.75)
 
 

@@ -83,6 +83,11 @@ def test_a_bad_answer_in_si_is_no_slip_of_units(scene, times):
     assert run_of_columns(scene, columns_of(scene, times)).outcome is Outcome.COMPLETED
 
 
+def test_a_history_without_the_displacement_has_no_shape(scene):
+    run = run_of_columns(scene, {"velocity": columns_of(scene)["displacement"]})
+    assert run.outcome is Outcome.WRONG_SHAPE and "velocity" in run.notes[0]
+
+
 def test_time_is_judged_before_the_columns(scene):
     run = run_of_columns(scene, columns_of(scene, {"time": 1e3, "displacement": 1e3}))
     assert "1000" in run.notes[0]

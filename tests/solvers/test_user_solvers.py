@@ -18,6 +18,7 @@ from validation.runs.results import Results
 from validation.runs.run import Outcome
 from validation.scenes.scene import load_scene
 from validation.solvers import registry
+from validation.solvers.processes.user_worker import answering
 from validation.solvers.registry import get_solver, is_solver
 from validation.solvers.user import UserSolver
 from validation.suite.folders import scene_study
@@ -49,7 +50,14 @@ def test_what_is_not_reported_is_not_made_up(scene):
     assert row.metrics["pressure.final"] == NOT_REPORTED
     assert row.metrics["displacement.settling_step"] == 44.0  # measured from the block's own static value
     row, _ = execute(Case(scenes[1], "named:Named"), "key", "study")
-    assert row.metrics["displacement.static"] == -0.01
+    assert (row.metrics["displacement.static"], row.metrics["mode1.frequency"]) == (-0.01, 317.0)
+
+
+def test_every_request_is_answered_where_the_first_one_was(scene, tmp_path, monkeypatch):
+    answer = answering("my_solver:Reporting")
+    here = os.getcwd()
+    monkeypatch.chdir(tmp_path)
+    assert answer({"parts": ["static", "diagnostics"]}) == {"parts": ["static"]} and os.getcwd() == here
 
 
 def test_names(scene, monkeypatch):
@@ -59,6 +67,9 @@ def test_names(scene, monkeypatch):
     assert registry.rank("fem") < registry.rank("fem:full") < registry.rank("fenicsx") < registry.rank("bar")
     assert registry.by_role("judged") == ["dda"] and registry.role("fem:full") == "repeat"
     assert isinstance(get_solver("my_solver:solve"), UserSolver)
+    UserSolver("mine", "json.decoder:JSONDecoder").check_module()
+    with pytest.raises(InputError):
+        UserSolver("mine", "my_solver.part:solve").check_module()
     assert is_solver("fenicsx:2") and is_solver("a.b:c.d") and not is_solver("femm") and not is_solver("femm:2")
     with pytest.raises(InputError) as told:
         get_solver("femm:2")

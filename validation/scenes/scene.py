@@ -438,8 +438,6 @@ def _read(path: Path) -> bytes:
         raise InputError("no such scene file", source=path, advice=advice) from None
     except OSError as error:
         raise InputError(f"cannot be read: {error.strerror}", source=path) from None
-    except ValueError:  # a zero byte, which no file's name holds
-        raise InputError("cannot be read: its name holds a zero byte", source=path) from None
 
 
 def _plain_data(path: Path, text: bytes) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 import dda
 from validation import History
+from validation.runs.modes import Mode
 
 
 def solve(scene):
@@ -27,3 +28,6 @@ class Reporting:
 
     def static(self, scene):
         return {"displacement": -0.01, "contact_pressure": 5e6}
+
+    def modes(self, scene):
+        return [Mode(317.0, 0.9, (0.3 + 0.2j, 0.3 - 0.2j))]

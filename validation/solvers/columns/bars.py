@@ -104,13 +104,6 @@ class BarsOfColumn(Motion):
         events = completed(self.switch_events)
         return tuple(Switch(event.time, event.corner, *KINDS[event.kind.split()[0]]) for event in events)
 
-    def starts_closed(self, corner: str) -> bool:
-        """Whether a contact is closed just after t = 0."""
-        return any(
-            closed and contact_name(foot) == corner
-            for closed, foot in zip(self.motion.closed_at_start, self.feet, strict=True)
-        )
-
     def bounds(self) -> Iterable[str]:
         """Yield how far the switches are known."""
         yield digits_of_switches(self.motion)
