@@ -28,6 +28,7 @@ from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response
+from fem_reference.contact.columns import LOSS_COLUMNS
 from fem_reference.events import bar_events, bars_events, block_events, column_drive, column_events
 from fem_reference.events.bars_model import Bar as WaveBar
 from fem_reference.events.bars_model import BarJoint, BarsProblem
@@ -47,6 +48,7 @@ KEPT = Path(__file__).with_name("numbers.txt")
 SHAKE = Motion((0.0, 0.004, 0.011, 0.03), (0.0, 1e-3, -2e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0))
 SLANTED = make(INCLINED, 1, 3, 0.3, "plane strain", 7e8, 4e8, elements=2, degree=1, traction=2e5, gravity=9.81)
 DAMPED = Scheme(0.45, 0.65, 0.97, 1.3e-3)
+VISCOUS = replace(DAMPED, mass_damping=7.0, stiffness_damping=3e-4)
 COMPOSITE = named_scheme("composite", step=1.3e-3, gg=0.97, rho_inf=0.4, split=0.3)
 ALPHA = named_scheme("chung-hulbert", step=1.3e-3, gg=0.97, rho_inf=0.6)
 STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
@@ -61,10 +63,17 @@ def fields(history):
     return [values for name, values in vars(history).items() if "radius" not in name and name != "time"]
 
 
+def enclosed(motion, at):
+    """Yield a motion at an instant, and where its steps begin and how narrow what is proven is, to 0.2 bits."""
+    radii = np.array([*motion.nodes[-1].error, *(switch.radius for switch in motion.switches)])
+    yield "motion", fields(motion.at([at]))
+    yield "steps", [float(node.start.time) for node in motion.nodes], 1e6 + np.log2(radii[radii > 0])
+
+
 def element_numbers():
     for problem in (SLANTED, make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)):
         model = build(problem)
-        for scheme in (DAMPED, COMPOSITE, ALPHA):
+        for scheme in (DAMPED, COMPOSITE, ALPHA, VISCOUS):
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
             yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
@@ -73,6 +82,9 @@ def element_numbers():
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
     yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4)):
+        unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
+        yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
 
@@ -84,6 +96,9 @@ def contact_numbers():
             yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
+    for columns in (LOSS_COLUMNS, ("load_energy",), ("strain_energy",), ("displacement",)):
+        few = solve_unilateral(shaken, DAMPED, 9, Unilateral(shear="glued", friction=rough), columns=columns)
+        yield "few", ends(few.columns)
     t = ALPHA.stage_times(60)
     drive = Excitation(
         2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
@@ -126,9 +141,12 @@ def event_numbers():
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
         (0.0119, {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0}),
-        (0.0029, {"stiffness": math.inf, "restitution": 0.4, "eccentricity": 0.0}),
+        (0.0049, {"stiffness": math.inf, "restitution": 0.2, "eccentricity": 0.0}),
     ):
-        yield "block", fields(block_events.solve(replace(block, **changes), end).at([end]))
+        motion = block_events.solve(replace(block, **changes), end)
+        yield from enclosed(motion, end)
+        narrow = [1e6 + math.log2(one.radius) for one in motion.cascades]
+        yield "impacts", *map(vars, (*motion.impacts, *motion.cascades)), narrow
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
@@ -136,7 +154,7 @@ def event_numbers():
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
     for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
-        yield "column", fields(column_events.solve(problem, 0.006).at([0.0055]))
+        yield from enclosed(column_events.solve(problem, 0.006), 0.0055)
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
@@ -160,7 +178,7 @@ def plane_numbers():
     contacts += [
         PatchContact(1, 0, (x, 1.01), (x + 0.4, 1.01), (0.0, 1.0), gap=0.01, cohesion=1e3, **law) for x in (0.3, 1.3)
     ]
-    for scheme in (DAMPED, COMPOSITE):
+    for scheme in (DAMPED, COMPOSITE, VISCOUS):
         model = PlaneModel(bodies, contacts, SHAKE)
         found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
         yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()
