@@ -55,8 +55,9 @@ STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
 
 
 def ends(columns):
-    """Return the last row of columns, but what is rounding of the others."""
-    return [float(values[-1]) * (abs(values[-1]) > 1e-9 * np.max(np.abs(values))) for values in columns.values()]
+    """Return sums of columns, of which the last rows count most, but what is rounding of their parts."""
+    sums = [(values * np.linspace(0.3, 1.0, len(values)) ** 2).sum() for values in columns.values()]
+    return [x * (abs(x) > 1e-9 * np.sum(np.abs(values))) for x, values in zip(sums, columns.values(), strict=True)]
 
 
 def fields(history):
@@ -99,15 +100,27 @@ def contact_numbers():
     for columns in (LOSS_COLUMNS, ("load_energy",), ("strain_energy",), ("displacement",)):
         few = solve_unilateral(shaken, DAMPED, 9, Unilateral(shear="glued", friction=rough), columns=columns)
         yield "few", ends(few.columns)
+    for mesh in ({"elements": 4, "degree": 2}, {"elements": 7, "degree": 1}):  # of nine points and of eight
+        many = make(shear=4e8, eccentricity=0.6, poisson=0.2, **mesh)
+        ended = solve_unilateral(many, DAMPED, 9, Unilateral(1e-4, -2.0, "glued", limit=1))
+        yield "ended", len(ended.time), ended.columns["solves"]
     t = ALPHA.stage_times(60)
     drive = Excitation(
         2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
     )
     names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
-    for law, joints in (("unilateral", (2e9, 1e-4)), ("frictional", (0.0, 7e3))):
-        ground = Ground(STRATA, "shear" if law == "frictional" else "pressure", impedance=None)
-        faces = tuple(ColumnContact(height, 3e9, *joints[law == "unilateral" :]) for height in (0.0, 1.3))
-        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * (law == "unilateral"))
+    for law, levels, impedance, stiffness in (
+        ("unilateral", (0.0, 1.3), None, 3e9),
+        ("frictional", (0.0, 1.3), None, 3e9),
+        ("unilateral", (1.3,), None, math.inf),
+        ("frictional", (1.3,), 5e5, math.inf),
+        ("unilateral", (0.0, 1.3), None, math.inf),
+    ):
+        opens = law == "unilateral"
+        ground = Ground(STRATA, "pressure" if opens else "shear", impedance=impedance)
+        limits = (1e-4 * (stiffness < math.inf),) if opens else (0.0, 7e3)
+        faces = tuple(ColumnContact(height, stiffness, *limits) for height in levels)
+        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * opens)
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     for impedance in (None, 5e5):
@@ -138,9 +151,10 @@ def event_numbers():
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
     yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
+    rough = {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3}
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
-        (0.0119, {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0}),
+        (0.0119, rough | {"traction": 1e6, "slope": 11.0, "base": SHAKE}),
         (0.0049, {"stiffness": math.inf, "restitution": 0.2, "eccentricity": 0.0}),
     ):
         motion = block_events.solve(replace(block, **changes), end)
@@ -150,10 +164,10 @@ def event_numbers():
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
-    rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    slipping = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
-    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
+    for problem in (opening, replace(opening, joints=slipping, law="frictional", gravity=0.0), welded, on_waves):
         yield from enclosed(column_events.solve(problem, 0.006), 0.0055)
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
