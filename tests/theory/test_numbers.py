@@ -132,7 +132,7 @@ def wave_numbers():
 
 def box_numbers():
     for shaken in (boxes.ShakenBox(-0.03, 1.5, 0.2, 9.81), boxes.ShakenBox(0.2, 3.0, 0.05, 3.7)):
-        yield "shaken", *(vars(piece) for piece in shaken.pieces(1.0)), shaken.slip(np.array([0.4, 1.1]))
+        yield "shaken", *(vars(piece) for piece in shaken.pieces(0.6)), shaken.slip(np.array([0.4, 1.1]))
     yield (
         "rigid",
         vars(boxes.ShakenBox(0.03, 1.5, 0.9, 9.81).pieces(1.0)[0]),
