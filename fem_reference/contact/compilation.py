@@ -92,7 +92,6 @@ def compiled() -> tuple[Callable[..., Any] | None, str]:
         return None, "contact in plain Python: numba is not installed"
     except Exception as error:  # a numba that is too old for this Python or numpy
         return None, f"contact in plain Python: numba cannot be imported ({type(error).__name__})"
-    reason = ""
     timer = threading.Timer(MESSAGE_DELAY, logger.warning, ["compiling the contact of the elements, once an install"])
     timer.daemon = True
     timer.start()

@@ -173,12 +173,10 @@ def solve_layers(
         return np.asarray((np.array(histories) / weight)[:, count * picked])
 
     count = 1
-    samples = 0
     histories = synthesis(count)
     error = math.inf
     while error > TOLERANCE and PERIODS * steps * 2 * count <= max(MOST_SAMPLES, 2 * PERIODS * steps):
         count *= 2
-        samples = int(PERIODS * steps * count)
         finer = synthesis(count)
         largest = np.abs(finer).max(axis=1)
         error = float(np.max(np.abs(finer - histories).max(axis=1) / np.where(largest > 0, largest, 1.0)))
@@ -187,6 +185,6 @@ def solve_layers(
         **just_ended(scheme.step, steps, began, began),
         columns=dict(zip(columns, histories, strict=True)),
         unknowns=0,
-        notes=(f"{samples} samples",),
+        notes=(f"{int(PERIODS * steps * count)} samples",),
         estimate=error,
     )

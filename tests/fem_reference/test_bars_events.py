@@ -174,6 +174,8 @@ def test_a_motion_that_takes_too_much_ends_at_a_horizon(monkeypatch):
     free = Work()
     solve(B6, 2.5, work=free)
     assert free.terms > least_terms(B6, 2.5) > 0
+    enough = Work(1.2 * free.terms)
+    assert len(solve(B6, 2.5, work=enough).switches[0].midpoint) == 41 and enough.terms == free.terms
     reached = []
     work = Work(free.terms / 2, reached.append)
     with pytest.raises(TooMuchWorkError) as error:

@@ -9,11 +9,7 @@ from conftest import thinned
 from oracles.integrated import integrated_block, random_problem, slipping_problem
 
 from fem_reference.events.block_events import solve
-from fem_reference.events.block_model import BlockProblem
 from fem_reference.events.contacts import OPEN, RELEASED
-from fem_reference.events.switches import TooManySwitchesError
-
-PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 
 
 def travel(problem):
@@ -48,8 +44,3 @@ def test_an_independent_integration_with_events_agrees(problem, travels):
     history = motion.at([end])
     assert history.displacement[:, 0] == pytest.approx(y[:6], abs=1e-8 * np.abs(y[:6]).max())
     assert history.velocity[:, 0] == pytest.approx(y[6:], abs=1e-7 * np.abs(y[6:]).max())
-
-
-def test_more_switches_than_are_allowed_end_the_motion():
-    with pytest.raises(TooManySwitchesError):
-        solve(PAPER, 0.2, limit=3)

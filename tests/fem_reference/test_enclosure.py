@@ -86,6 +86,24 @@ def test_a_touch_is_told_by_the_motion(monkeypatch):
     assert march.touches[0] == pytest.approx(0.0032525750597312, rel=1e-3)
 
 
+def test_a_fall_that_may_be_a_touch_is_both(monkeypatch):
+    tilted = replace(ROUGH, eccentricity=0.3)
+    sound = solve(tilted, 0.009)
+    found = []
+
+    def flat(function, end, touches):
+        fall = first_fall(function, end, touches)
+        found.append(fall)
+        return fall and fall._replace(grazing=True)
+
+    monkeypatch.setattr(watching, "first_fall", flat)
+    motion = solve(tilted, 0.009)
+    assert motion.switches == sound.switches and len(found) >= len(motion.switches) > 1
+    assert set(motion.touches) == {switch.time for switch in motion.switches}
+    wider = motion.nodes[-1].error / sound.nodes[-1].error
+    assert np.log2(wider[[0, 12]]) == pytest.approx([2.775, 6.216], abs=0.1)
+
+
 PAIR = (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0))
 COLUMN = ColumnProblem(PAIR, (ColumnJoint(1e9), ColumnJoint(3e8)))
 SLIDING = replace(COLUMN, joints=(ColumnJoint(1e9, strength=1e4), ColumnJoint(3e8, strength=1e4)), law="frictional")
@@ -125,7 +143,7 @@ def test_what_a_set_was_moves_into_it_and_hardly_less():
 OFFSETS = [(*one, offset) for one in SYSTEMS for offset in (0.0, 1e-9)]
 
 
-@pytest.mark.parametrize(("problem", "states", "offset"), thinned(OFFSETS, 13))
+@pytest.mark.parametrize(("problem", "states", "offset"), thinned(OFFSETS, 5))
 def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, offset):
     """Of any motion in the set, begun at any instant that the switch may be at; its first term comes near to it."""
     with precision(bits_of(50)):
@@ -149,6 +167,7 @@ def test_the_reach_of_a_function_bounds_what_its_terms_are_off(problem, states, 
             pairs = zip(watched(model, states, start), watched(model, states, Start(arb(0), u, v, moved)), strict=True)
             for number, (watch, of_other) in enumerate(pairs):
                 reaches = ellipsoid.reach(watch, states, segment, offset * length).terms()
+                assert len(reaches) == len(segment.function(watch))
                 off = [abs(x - y) for x, y in zip(segment.function(watch), other.function(of_other), strict=False)]
                 assert all(one <= reach for one, reach in zip(off, reaches, strict=False))
                 largest[number] = max(largest.get(number, 0.0), float(off[0] / reaches[0]))
@@ -195,6 +214,7 @@ def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch
     monkeypatch.setattr(report, "PROMISED", 1e-40)
     assert solve(stiff, 0.004, digits=30).digits > 30
     monkeypatch.setattr(report, "MOST_DIGITS", 30)
+    monkeypatch.setattr(report, "PROMISED", 1e-34)  # of the first switches, not of the last ones
     with pytest.raises(LostDigitsError) as caught:
         solve(stiff, 0.004, digits=30)
-    assert 0 <= caught.value.time < 0.004
+    assert caught.value.time == pytest.approx(0.00325257506, rel=1e-8)

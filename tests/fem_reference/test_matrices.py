@@ -44,7 +44,7 @@ def write_mesh(path, problem, mesh):
     meshio.write(
         path,
         meshio.Mesh(
-            np.pad(mesh.p.T, ((0, 0), (0, 1))),
+            np.pad(mesh.p.T, ((0, 0), (0, 1)), constant_values=0.3),
             [("line", np.array(lines)), (kind, mesh.t.T)],
             cell_data={"gmsh:physical": physical, "gmsh:geometrical": physical},
             field_data={"base": np.array([1, 1]), "top": np.array([2, 1]), "block": np.array([3, 2])},

@@ -28,6 +28,7 @@ from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
 from fem_reference.column.vibration import line_response
+from fem_reference.contact.columns import LOSS_COLUMNS
 from fem_reference.events import bar_events, bars_events, block_events, column_drive, column_events
 from fem_reference.events.bars_model import Bar as WaveBar
 from fem_reference.events.bars_model import BarJoint, BarsProblem
@@ -47,24 +48,38 @@ KEPT = Path(__file__).with_name("numbers.txt")
 SHAKE = Motion((0.0, 0.004, 0.011, 0.03), (0.0, 1e-3, -2e-3, 0.0), (0.0, -5e-4, 1e-3, 0.0))
 SLANTED = make(INCLINED, 1, 3, 0.3, "plane strain", 7e8, 4e8, elements=2, degree=1, traction=2e5, gravity=9.81)
 DAMPED = Scheme(0.45, 0.65, 0.97, 1.3e-3)
+VISCOUS = replace(DAMPED, mass_damping=7.0, stiffness_damping=3e-4)
 COMPOSITE = named_scheme("composite", step=1.3e-3, gg=0.97, rho_inf=0.4, split=0.3)
 ALPHA = named_scheme("chung-hulbert", step=1.3e-3, gg=0.97, rho_inf=0.6)
 STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
 
 
 def ends(columns):
-    """Return the last row of columns, but what is rounding of the others."""
-    return [float(values[-1]) * (abs(values[-1]) > 1e-9 * np.max(np.abs(values))) for values in columns.values()]
+    """Return sums of columns, of which the last rows count most, but what is rounding of their parts."""
+    sums = [(values * np.linspace(0.3, 1.0, len(values)) ** 2).sum() for values in columns.values()]
+    return [x * (abs(x) > 1e-9 * np.sum(np.abs(values))) for x, values in zip(sums, columns.values(), strict=True)]
 
 
 def fields(history):
     return [values for name, values in vars(history).items() if "radius" not in name and name != "time"]
 
 
+def enclosed(motion, at):
+    """Yield a motion at an instant, its steps, and how narrow what is proven is, to 0.2 bits of all."""
+    yield "motion", fields(motion.at([at]))
+    steps = [float(node.start.time) for node in motion.nodes]
+    yield "steps", len(steps), sum(steps), bits(motion.nodes[-1].error), bits(one.radius for one in motion.switches)
+
+
+def bits(radii):
+    return 1e6 + sum(math.log2(x) for x in radii if x > 0)
+
+
 def element_numbers():
-    for problem in (SLANTED, make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)):
+    on_patches = make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)
+    for problem, schemes in ((SLANTED, (DAMPED, COMPOSITE, ALPHA)), (on_patches, (COMPOSITE, VISCOUS))):
         model = build(problem)
-        for scheme in (DAMPED, COMPOSITE, ALPHA):
+        for scheme in schemes:
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
             yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
@@ -73,26 +88,43 @@ def element_numbers():
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
     yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4), None):
+        unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
+        yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
 
 def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
-    for scheme in (DAMPED, COMPOSITE, ALPHA):
-        for contact in (Unilateral(1e-3, -0.3, "glued", friction=rough), Unilateral(0.0, 0.2)):
-            yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
+    rubs = Unilateral(1e-3, -0.3, "glued", friction=rough)
+    for scheme, contact in ((DAMPED, rubs), (COMPOSITE, rubs), (ALPHA, rubs), (ALPHA, Unilateral(0.0, 0.2))):
+        yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
+    for columns in (LOSS_COLUMNS, ("load_energy",), ("strain_energy",), ("displacement",)):
+        few = solve_unilateral(shaken, DAMPED, 9, Unilateral(shear="glued", friction=rough), columns=columns)
+        yield "few", ends(few.columns)
+    for elements, degree in ((4, 2), (7, 1)):  # more points than all sets of states are tried of, and as many
+        many = make(shear=4e8, eccentricity=0.6, poisson=0.2, elements=elements, degree=degree)
+        yield "solves", solve_unilateral(many, DAMPED, 9, Unilateral(1e-4, -2.0, "glued", limit=1)).columns["solves"]
     t = ALPHA.stage_times(60)
     drive = Excitation(
         2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
     )
     names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
-    for law, joints in (("unilateral", (2e9, 1e-4)), ("frictional", (0.0, 7e3))):
-        ground = Ground(STRATA, "shear" if law == "frictional" else "pressure", impedance=None)
-        faces = tuple(ColumnContact(height, 3e9, *joints[law == "unilateral" :]) for height in (0.0, 1.3))
-        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * (law == "unilateral"))
+    for law, levels, impedance, stiffness in (
+        ("unilateral", (0.0, 1.3), None, 3e9),
+        ("frictional", (0.0, 1.3), None, 3e9),
+        ("unilateral", (1.3,), None, math.inf),
+        ("frictional", (1.3,), 5e5, math.inf),
+        ("unilateral", (0.0, 1.3), None, math.inf),
+    ):
+        opens = law == "unilateral"
+        ground = Ground(STRATA, "pressure" if opens else "shear", impedance=impedance)
+        limits = (1e-4 * (stiffness < math.inf),) if opens else (0.0, 7e3)
+        faces = tuple(ColumnContact(height, stiffness, *limits) for height in levels)
+        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * opens)
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     for impedance in (None, 5e5):
@@ -123,20 +155,23 @@ def event_numbers():
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
     yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
+    rough = {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3}
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
-        (0.0119, {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0}),
-        (0.0029, {"stiffness": math.inf, "restitution": 0.4, "eccentricity": 0.0}),
+        (0.0119, rough | {"traction": 1e6, "slope": 11.0, "base": SHAKE}),
+        (0.0049, {"stiffness": math.inf, "restitution": 0.2, "eccentricity": 0.0}),
     ):
-        yield "block", fields(block_events.solve(replace(block, **changes), end).at([end]))
+        motion = block_events.solve(replace(block, **changes), end)
+        yield from enclosed(motion, end)
+        yield "impacts", *map(vars, (*motion.impacts, *motion.cascades)), bits(one.radius for one in motion.cascades)
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
-    rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    slipping = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
-    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
-        yield "column", fields(column_events.solve(problem, 0.006).at([0.0055]))
+    for problem in (opening, replace(opening, joints=slipping, law="frictional", gravity=0.0), welded, on_waves):
+        yield from enclosed(column_events.solve(problem, 0.006), 0.0055)
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
@@ -160,7 +195,7 @@ def plane_numbers():
     contacts += [
         PatchContact(1, 0, (x, 1.01), (x + 0.4, 1.01), (0.0, 1.0), gap=0.01, cohesion=1e3, **law) for x in (0.3, 1.3)
     ]
-    for scheme in (DAMPED, COMPOSITE):
+    for scheme in (VISCOUS, COMPOSITE):
         model = PlaneModel(bodies, contacts, SHAKE)
         found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
         yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()

@@ -14,6 +14,7 @@ CONSTANT = Scheme(0.5, 1.0, 1.0, 1e-3)
     [
         (make(), CONSTANT, 20, "few steps"),
         (make(poisson=0.3, elements=8), Scheme(0.25, 0.5, 1.0, 1e-5), 100, "vectors do not represent the history"),
+        (make(poisson=0.3, elements=8), CONSTANT, 40, ": 8 Krylov vectors do"),
         (make(), Scheme(0.0, 0.5, 1.0, 1e-7), 100, "an explicit step is unstable"),
         (make(), Scheme(0.2, 0.5, 1.0, 1e-7), 100, "unstable for the high frequencies"),
     ],

@@ -48,8 +48,8 @@ WAVES = Bar.of(make())
 OPENING_WAVES = OpeningBar.of(make())
 BAR = BarProblem(2.0, 2.0, 2700.0, 1e9, 2e9, 5e6)
 BLOCK = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
-RIGID = {"stiffness": INF, "restitution": 0.5}
-RUBBING = {"friction": 30.0, "shear_stiffness": 1e8}
+RIGID = {"stiffness": INF, "restitution": 1.0}
+RUBBING = {"friction": 0.0, "shear_stiffness": 1e8}
 STRATA = (Stratum(1.0, 2500.0, 1e9, 0.0),) * 2
 STANDING = ContactColumn(
     Ground(STRATA, "pressure"), "unilateral", (ColumnContact(0.0, 2e9), ColumnContact(1.0, 1e9)), (0.0, 0.0)
@@ -65,14 +65,15 @@ SLIDER = sliding_block.SlidingBlock(20.0, 30.0)
 STILL = sliding_block.moved([0.0], [0.0])
 ROCKER = rocking.RockingBlock(0.8, 2.0)
 
-SOUND = {  # what `refusals.toml` changes
+SOUND = {  # what `refusals.toml` changes: much of it just so
     "waves": WAVES,
     "bar": BAR,
-    "block": BLOCK,
+    "block": replace(BLOCK, eccentricity=0.9),
     "rubbing": replace(BLOCK, **RUBBING),
     "rigid": replace(BLOCK, **RIGID),
     "standing": STANDING,
     "contact": STANDING.contacts[0],
+    "ground": STANDING.ground,
     "blocks": BLOCKS,
     "one_block": BLOCKS.blocks[0],
     "joint": BLOCKS.joints[0],
@@ -81,12 +82,13 @@ SOUND = {  # what `refusals.toml` changes
     "wave_joint": PAIR.joints[1],
     "body": BODY,
     "floor": FLOOR,
-    "slider": SLIDER,
-    "rocker": ROCKER,
-    "problem": make(),
-    "patches": make(foundation="patch", patch_width=0.5),
-    "law": Unilateral(),
-    "friction": Friction(30.0),
+    "slider": replace(SLIDER, friction=0.0),
+    "rocker": replace(ROCKER, restitution=1.0),
+    "problem": make(poisson=0.5, eccentricity=0.9),
+    "patches": make(foundation="patch", patch_width=1.0),
+    "law": Unilateral(shortest=1.0),
+    "newmark": CONSTANT,
+    "friction": Friction(0.0),
     "averages": ALPHA,
 }
 TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
@@ -99,7 +101,7 @@ TOGETHER = [  # what is refused, and what it does not go with, of parts that no 
     (BLOCKS, "joints", {"joints": (None,)}),
     (BLOCKS, "joints[0].strength", {"joints": (ColumnJoint(1e9, strength=1.0), None)}),
     (BLOCKS, "joints[0].gap", {"law": "frictional", "joints": (ColumnJoint(1e9, 0.1), None)}),
-    (BLOCKS, "impedance", {"base": "transmitting", "joints": (None, None)}),
+    *((BLOCKS, "impedance", {"base": "transmitting", "joints": (None, None), "impedance": z}) for z in (0.0, INF)),
     (make(), "vertices", {"vertices": SQUARE[::-1]}),
     (SOUND["patches"], "patch_width", {"patch_width": None}),
     (Unilateral(), "friction", {"friction": Friction(30.0)}),
@@ -148,14 +150,15 @@ ASKS = {
         lambda: Bar.of(make(poisson=0.1)),
         lambda: OpeningBar.of(make(motion=Motion((0.0, 1.0), (0.0, 0.0), (0.0, 1e-3)))),
     ],
+    "floor": [lambda: solve(make(), CONSTANT, 3, floor=-0.3), lambda: solve(make(), CONSTANT, 3, floor=1.1)],
     "gap": [lambda: OpeningBar.of(make(), gap=-1.0)],
     "velocity": [lambda: OpeningBar.of(make(), velocity=NAN)],
     "end": [
         lambda: bar_events.solve(BAR, INF),
         lambda: block_events.solve(BLOCK, 0.0),
         lambda: bars_events.solve(PAIR, 0.0),
-        lambda: sliding_block.solve(SLIDER, STILL, 0.0),
-        lambda: rocking.solve(ROCKER, 0.0, 0.1),
+        *(lambda end=end: sliding_block.solve(SLIDER, STILL, end) for end in (0.0, INF)),
+        *(lambda end=end: rocking.solve(ROCKER, end, 0.1) for end in (0.0, INF)),
     ],
     "digits": [lambda: block_events.solve(BLOCK, 1.0, digits=10), lambda: bars_events.solve(PAIR, 1.0, digits=10)],
     "times": [
@@ -170,7 +173,10 @@ ASKS = {
         lambda: bars_events.solve(PAIR, 1.0).point(0, 2.0, [0.5]),
     ],
     "drive": [lambda: bars_events.solve(replace(PAIR, top=ricker(1.0, 2.0)), 1.0)],
-    "tilt": [lambda: ROCKER.quarter_period(1.0), lambda: rocking.solve(ROCKER, 1.0, 2.0)],
+    "tilt": [
+        *(lambda tilt=tilt: ROCKER.quarter_period(tilt) for tilt in (1.0, -0.3)),
+        lambda: rocking.solve(ROCKER, 1.0, 2.0),
+    ],
     "motion": [
         lambda: solve_unilateral(make(motion=Motion((0.0, 1.0), (1e-6, 0.0), (0.0, 0.0))), CONSTANT, 1),
     ],
@@ -187,14 +193,15 @@ ASKS = {
     ],
     "stress": [lambda: PlaneModel([BODY]).stress_error()],
     "polygons": [lambda: PlaneModel([replace(BODY, polygons=(HOOK,), rectangle=False)])],
-    "contact": [lambda: PlaneModel([BODY], [replace(FLOOR, first=1)])],
+    "contact": [lambda n=n: PlaneModel([BODY], [replace(FLOOR, first=n)]) for n in (-1, 1)],
     "rollers": [lambda: PlaneModel([replace(BODY, rollers=((UP, "z"),))])],
 }  # fmt: skip
 
 ASKED = {  # by the names and values of a row of `refusals.toml`
     "scheme": lambda **given: named_scheme(**{"step": 1e-3} | given),
     "motion": Motion,
-    "map": lambda omega=1.0, theta=0.5, **given: restitution(
+    "stratum": lambda **given: Ground((replace(STRATA[0], **given),), "pressure"),
+    "map": lambda omega=1.0, theta=1.0, **given: restitution(
         ContactScheme(**{"alpha": 0.5, "delta": 1.0} | given), omega, theta
     ),
     "opening_bar": lambda **given: OpeningBar.of(make(**given)),

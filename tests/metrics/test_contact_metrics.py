@@ -8,7 +8,7 @@ import pytest
 from validation.metrics.catalogue import solo
 from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
-from validation.runs.contact import ContactRecord, rebounds_of_steps
+from validation.runs.contact import ContactRecord
 from validation.runs.history import History
 from validation.runs.modes import Switch
 
@@ -111,11 +111,3 @@ def test_what_is_not_reported_or_has_no_meaning_says_so():
     flying = replace(MADE, force=0 * MADE.force, rebounds=())
     assert measured(flying)["contact.restitution"] == measured(flying)["contact.restitution_mean"] == UNDEFINED
     assert measured(replace(MADE, input_energy=0.0))["energy.rise"] == UNDEFINED
-
-
-def test_a_contact_between_steps_has_the_rates_of_the_free_steps_beside_it():
-    gap = np.array([3.0, 1.0, -0.5, -0.2, 0.1, 0.4, 0.9, 1.0, 0.5, -0.3, 0.2, -0.1])
-    (first, rebound), (_, other) = rebounds_of_steps(gap, 0.5)  # the second contact has no free step behind it
-    assert (other.closing, other.opening, other.restitution) == (1.0, None, None)
-    assert (first, rebound.closing, rebound.opening) == (2, 4.0, pytest.approx(1.0))
-    assert rebound.restitution == pytest.approx(0.25)

@@ -12,7 +12,7 @@ millimetres = functools.partial(numbers.number_text, factor=1e3, unit=" mm")
 
 NUMBERS = [  # function, value, text
     (numbers.plain, 344.561, "344.6"), (numbers.plain, -0.01, "−0.01000"), (numbers.plain, 1.2344e-7, "1.234×10⁻⁷"),
-    (numbers.plain, 123456.0, "123456"), (numbers.plain, math.nan, "not a number"), (numbers.plain, -math.inf, "−∞"),
+    (numbers.plain, 999999.0, "999999"), (numbers.plain, math.nan, "not a number"), (numbers.plain, -math.inf, "−∞"),
     (numbers.short, 0.25, "0.25"), (numbers.short, 5e6, "5×10⁶"), (numbers.percent, 43.7, "4370\u00a0%"),
     (numbers.percent, 2e-5, "2.0×10⁻⁵"), (numbers.percent, 0.0, "0\u00a0%"),
     (numbers.signed_percent, 0.05, "+5\u00a0%"), (numbers.signed_percent, -0.05, "−5\u00a0%"),
