@@ -1,5 +1,6 @@
 """What advice is known without a run, as numbers kept in `numbers.toml` beside this file; `KEEP_PAGES=1` renews it."""
 
+import itertools
 import tomllib
 from itertools import cycle
 from pathlib import Path
@@ -7,13 +8,14 @@ from pathlib import Path
 import pytest
 from oracles.made_cases import made_row
 from oracles.pages import NUMBER
-from oracles.stand_ins import Numbers, assert_kept, numbers_in, summed
+from oracles.stand_ins import Numbers, assert_kept, numbers_in, share, summed
 
 from validation import advise, damping, load_scene
-from validation.advice import budget, columns, contact, contact_page, friction, goals
+from validation.advice import budget, columns, contact, contact_page, friction, goals, overview
 from validation.advice.coarse import coarse_alarms
 from validation.advice.draft import KINDS, ROCKS, draft
 from validation.advice.hooks import AdviceHooks
+from validation.advice.plain import in_rows
 from validation.advice.wave_advice import advise_wave
 
 KEPT = Path(__file__).with_name("numbers.toml")
@@ -42,6 +44,33 @@ PAGES = (  # scene, values, penetration
     ("slope-drag", {"contact.stiffness": 1e9}),
     ("slope-drag", {"load.slope": 10.0, "time.gg": 1.0}, 2e-5),
     ("columns-weight", {"time.gg": 0.9}),
+)
+
+
+OPENS = {"contact.law": "unilateral", "contact.gap": 0.01, "block.velocity": -0.7}
+RUNS = {  # scenes whose runs are made
+    "locked": ("figures-3-4", {}),
+    "opens": ("figures-3-4", OPENS | {"time.step": 0.02, "time.gg": 0.97, "contact.band": [0.0, 1e-4]}),
+    "average": ("figures-3-4", OPENS | {"time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11}),
+    "unloaded": ("figures-3-4", OPENS | {"load.pressure": 0.0, "time.gg": 0.0, "contact.band": [0.0, 1e-7]}),
+    "other": (
+        "figures-3-4",
+        OPENS | {"time.alpha": 0.3, "time.delta": 0.6, "contact.stiffness": "inf", "contact.shear_stiffness": 0.0},
+    ),
+    "creeps": ("creep-steps", {"contact.rules": "lagged", "time.steps": 4000}),
+    "slides": ("slope-drag", {}),
+    "stack": ("field-stack", {"column.gravity": 9.81}),
+}
+FACTS = (
+    {"time.gg": 0.97, "time.delta": 0.7},
+    {"block.subdivide": [1, 5], "time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11},
+    OPENS | {"contact.stiffness": 3e8},
+)
+MEASURED = (
+    *("contact.gap", "contact.least_root", "contact.open_share", "contact.peak_force", "contact.slip_rate"),
+    *("contact.spectral_radius", "energy.given", "energy.lost_algorithmic", "energy.lost_switching"),
+    *("energy.switching_gain", "mode1.frequency", "pressure.minimum", "pressure.minimum_time"),
+    *("pressure.tension_time", "switches.count", "switches.first_closing"),
 )
 
 
@@ -78,6 +107,25 @@ def of_column(scene):
     else:
         known = columns.limits(scene)
         yield known and vars(known)
+
+
+def of_runs(scene):
+    """Yield what is warned of after runs that are made."""
+    for number in range(5):
+        rows = {}
+        for solver in ("dda", "fem", "bar-events"):
+            metrics = {name: 4 * share(str(number), solver, name) - 1.3 for name in MEASURED}
+            rows[solver] = made_row(solver, metrics, scene.name)
+        for alarm in AdviceHooks.of(scene).alarms(scene, rows):
+            yield alarm.kind, dict(alarm.values), [float(text) for text in NUMBER.findall(alarm.sentence)]
+
+
+def of_lines():
+    """Yield rows of columns whose last one is wrapped beside the others, or below its line."""
+    lines = [("goal", "steps", "what it is for, in words that go on and on"), ("impact", "7", "a landing"), ()]
+    for width, indent, right in itertools.product((None, 20, 47, 58, 200), ("", "   "), ((), (1,))):
+        yield in_rows(lines, width, indent, right)
+    yield in_rows([()], 30), in_rows([("of one column, which is wrapped where there is no room",)] * 2, 40)
 
 
 def typed(kind, rock, question):
@@ -122,6 +170,13 @@ def numbers_of_advice(step=0.002):
         found[f"new {kind}"] = typed(kind, rock, 1.1)
     for number, (name, values, *penetration) in enumerate(PAGES):
         found[f"page {number}"] = of_contact_page(first_of(name).with_values(values), *penetration)
+    for name, (scene, values) in RUNS.items():
+        found[f"runs {name}"] = of_runs(first_of(scene).with_values({"time.step": step} | values))
+    slope = first_of("slope-drag").with_values({"fem.elements": 2})
+    coarse = block.with_values({"fem.elements": 2})
+    of_facts = [overview._facts(scene) for scene in (*map(coarse.with_values, FACTS), slope)]
+    found["facts"] = [[fact.subject, fact.part, NUMBER.findall(fact.sentence)] for facts in of_facts for fact in facts]
+    found["lines"] = of_lines()
     found["goal quake"] = of_goal(block, "quake", ELEMENTS=2, REFINEMENTS=2, COARSEST=12)
     found["goal slide"] = of_goal(first_of("slope-drag"), "static", FINEST_SLIDE=16, FEWEST_SLIDE=2)
     ends = [{"time.step": step} for step in (4e-7, 0.4)]
