@@ -29,6 +29,9 @@ def test_what_is_to_be_feared_of_a_scheme_is_told_with_its_number(stepping, fear
     modes = dda_modes(PAPER)
     omega = 100.0
     offer = across._offer(PAPER, omega, modes, 5 * modes[0].frequency, 3.0 / stepping.step, stepping)
+    stated = PAPER.with_values(offer.settings).time
+    assert [stated.scheme, stated.step, stated.discount] == [stepping.scheme, stepping.step, stepping.gg]
+    assert offer.settings.get("time.rho_inf") == stepping.rho_inf
     words = {
         "drag": -math.log(stepping.gg) / stepping.step,
         "late": abs(offer.period_error),

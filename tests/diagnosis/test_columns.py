@@ -12,10 +12,11 @@ from oracles.scheme_histories import rounded
 
 from validation import solve
 from validation.diagnosis import columns
+from validation.diagnosis.beside import RunVerdict
 from validation.diagnosis.columns import ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading
+from validation.diagnosis.readings import Reading, Slip
 from validation.errors import InputError
 from validation.scenes.scene import parse_scene
 
@@ -105,6 +106,48 @@ def test_one_of_few_candidates_is_named(monkeypatch):
 def beside(scene, foreign):
     reading = Reading(steppings(foreign, scene.time.step)[0], np.array([foreign.displacement, foreign.pressure]))
     return ColumnSearch(reading.scene_of(scene), reading)
+
+
+def test_steps_of_a_program_are_runs_at_parts_of_the_step():
+    search = beside(DROPPED, history(DROPPED, {"time.steps": 40}, DIGITS))
+    half = {"time.step": DROPPED.time.step / 2}
+    fine = solve(DROPPED.with_values(half | {"time.steps": 80}), "dda")
+    both = search.run(half, 40)
+    assert both == pytest.approx(np.array([fine.displacement[1::2], fine.contact_pressure[1::2]]))
+    locked = search.result({columns.BONDED: True}, 40)
+    assert locked.columns["displacement"][-1] != pytest.approx(search.scene_run[0, -1])
+    assert search.run({"time.step": -1.0}, 40) is None
+
+
+@pytest.mark.parametrize(
+    ("is_own", "slips", "verdict", "ids"),
+    [
+        ((True, True), (0, 0), None, []),
+        ((False, True), (0, 1), {}, ["sign"]),
+        ((False, True), (0, 1), {"explained": True, "causes": {"gg": 0.9}}, ["unexplained"]),
+        ((False, True), (0, 1), {"alike": [{"causes": ["gg"], "values": {}, "further_scene": ""}]}, ["unexplained"]),
+        ((False, False), (0, 1), {"explained": True, "causes": {"gg": 0.9}}, ["gg"]),
+        ((False, False), (1, 1), {}, ["unexplained"]),
+    ],
+)
+def test_a_slip_of_sign_is_named_where_nothing_else_explains_the_rows(is_own, slips, verdict, ids, monkeypatch):
+    foreign = history(DROPPED, {"time.steps": 40}, DIGITS)
+    searches = []
+    for own, count in zip(is_own, slips, strict=True):
+        search = beside(DROPPED, foreign)
+        search.reading = replace(search.reading, corrected=count * (Slip("sign", "displacement", -1.0),))
+        search.is_scene = lambda tolerance, own=own: own
+        search.explanations = lambda: []
+        searches.append(search)
+    words = {"words": {"gg": "WORDS"}}
+    monkeypatch.setattr(columns, "searches_of", lambda *given: searches)
+    monkeypatch.setattr(
+        columns, "verdict_of", lambda search, found: RunVerdict(search, **({"explained": False} | words | verdict))
+    )
+    answer = compare(DROPPED, foreign)
+    assert answer.causes == ids
+    named = [one["causes"] for one in answer.alike]
+    assert named == ([["gg"], ["sign"]] if is_own[1] and verdict else [])
 
 
 # ---- what is not -----------------------------------------------------------------------------------------------------

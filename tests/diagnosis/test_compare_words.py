@@ -164,7 +164,10 @@ def test_sentences_are_as_before():
             *(wording.not_explained(about, near, left, STAGES) for left in (0.034, 0.49, 0.51)),
             wording.not_explained(replace(about, alike=alike), None, 0.034, ()),
             *(wording.span(steps) for steps in ([3], [3, 4], [3, 4, 5, 9, 11, 12])),
-            *(evidence.words_of_rows(several) for several in (columns[:1], columns, 2 * columns)),
+            *(
+                evidence.words_of_rows(several)
+                for several in (columns[:1], columns, columns + columns[:1], 2 * columns)
+            ),
             wording.diverged(Departure(7, "phase"), 1.23456),
         ],
     }

@@ -188,7 +188,7 @@ def searches():
 def acceptance():
     """Yield which fits by chance are accepted beside a scene's, and which free numbers the rows determine."""
     values = np.sin(np.arange(1.0, 31.0))
-    target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), values[None], np.full((1, 30), 0.02))
+    printed = Target(BLOCK, np.full(30, 2e-3), np.arange(30), values[None], np.full((1, 30), 0.02))
     accepted = search.accepted
     is_determined = search.is_determined
     changes = ({"updated": True}, {"softness": 0.03}, {"base": 3.0, "softness": 0.3}, {"opens": True, "updated": True})
@@ -200,11 +200,12 @@ def acceptance():
             patch.setattr(search, "intervals", lambda one: {"gg": SimpleNamespace(half_width=share(one.name) - 0.1)})
             patch.setattr(search.math, "isfinite", lambda width: width > 0)
             own = world.fit(OWN, ())
+            target = printed if number % 2 else replace(printed, rounding=None)
             for change in changes:
                 one = world.fit(replace(OWN, **change), ())
-                for misfit in (8e-7, 4e-5, 2e-4, one.misfit):
+                for misfit, height in itertools.product((8e-7, 4e-5, 2e-4, one.misfit), (0.1, 1.0)):
                     one.misfit = misfit
-                    one.residual = np.where(np.arange(30) == 20, 1.0, 0.1) * misfit
+                    one.residual = np.where(np.arange(30) == 20, 1.0, height) * misfit
                     yield accepted(target, own, one)
                 for names_of_free in free:
                     one = world.fit(replace(OWN, density=1.2, **change), names_of_free)

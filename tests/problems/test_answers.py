@@ -265,6 +265,7 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"pack": ...}, "pack", "nothing"),
         ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings", ANSWERS_TEMPLATE["settings"]),
         ({"wo": "x"}, "wo", "'x'"),
+        ({"program": " "}, "program", "' '"),
         ({"program": "\u7a0b"}, "program", "'\u7a0b'"),
         ({"who": 2001 * "x"}, "who", 2001 * "x"),
         ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),
