@@ -39,6 +39,10 @@ COLUMNS = {
     "slips": ("columns-slips", {"time.alpha": 0.25, "time.delta": 0.5}),
     "cradle": ("field-cradle", {"time.alpha": 0.25, "time.delta": 0.5}),
 }
+STEPPINGS = (
+    *(Stepping(0.002, 0.25, 0.5), Stepping(0.003, 0.3, 0.6, 0.95), Stepping(0.01, 0.25, 0.5, 0.8)),
+    *(Stepping(0.002, 0.5, 1.0), Stepping.named("chung-hulbert", 0.02, rho_inf=0.3)),
+)
 TARGETS = ((0.02, "dt"), (0.3, "gg"), (0.1, "scheme"), (1.9, "dt"))
 SLOPES = ("slope-drag", "creep-steps", "slope-sliding")
 PAGES = (  # scene, values, penetration
@@ -50,24 +54,25 @@ PAGES = (  # scene, values, penetration
 )
 
 
-OPENS = {"contact.law": "unilateral", "contact.gap": 0.01, "block.velocity": -0.7}
+FALLS = {"contact.law": "unilateral", "contact.gap": 0.01, "block.velocity": -0.7}
 RUNS = {  # scenes whose runs are made
     "locked": ("figures-3-4", {}),
-    "opens": ("figures-3-4", OPENS | {"time.step": 0.02, "time.gg": 0.97, "contact.band": [0.0, 1e-4]}),
-    "average": ("figures-3-4", OPENS | {"time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11}),
-    "unloaded": ("figures-3-4", OPENS | {"load.pressure": 0.0, "time.gg": 0.0, "contact.band": [0.0, 1e-7]}),
+    "opens": ("figures-3-4", FALLS | {"time.step": 0.02, "time.gg": 0.97, "contact.band": [0.0, 1e-4]}),
+    "average": ("figures-3-4", FALLS | {"time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11}),
+    "unloaded": ("figures-3-4", FALLS | {"load.pressure": 0.0, "time.gg": 0.0, "contact.band": [0.0, 1e-7]}),
     "other": (
         "figures-3-4",
-        OPENS | {"time.alpha": 0.3, "time.delta": 0.6, "contact.stiffness": "inf", "contact.shear_stiffness": 0.0},
+        FALLS | {"time.alpha": 0.3, "time.delta": 0.6, "contact.stiffness": "inf", "contact.shear_stiffness": 0.0},
     ),
     "creeps": ("creep-steps", {"contact.rules": "lagged", "time.steps": 4000}),
     "slides": ("slope-drag", {}),
     "stack": ("field-stack", {"column.gravity": 9.81}),
 }
+GRANITE = {"block.side": 1.2, "block.young": 5e10, "block.poisson": 0.25, "contact.stiffness": 5e11}
 FACTS = (
     {"time.gg": 0.97, "time.delta": 0.7},
     {"block.subdivide": [1, 5], "time.alpha": 0.25, "time.delta": 0.5, "contact.stiffness": 1e11},
-    OPENS | {"contact.stiffness": 3e8},
+    FALLS | {"contact.stiffness": 3e8},
 )
 MEASURED = (
     *("contact.gap", "contact.least_root", "contact.open_share", "contact.peak_force", "contact.slip_rate"),
@@ -135,11 +140,31 @@ def of_schemes(scene):
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(across, "LADDER", {"wbz": (0.5,)})
         patch.setattr(across, "IMPACTS", (1.5, 1e5))
-        for stepping in (Stepping(0.003, 0.3, 0.6, 0.95), Stepping.named("chung-hulbert", 0.02, rho_inf=0.3)):
+        for stepping in STEPPINGS:
             offer = across._offer(scene, 100.0, modes, 5 * modes[0].frequency, 3e3, stepping)
             yield vars(offer)
-        for values in ({"time.gg": 0.98}, OPENS | {"time.start": "consistent"}):
-            yield advise_across(scene.with_values(values), 0.07).as_dict()
+        late = FALLS | {"time.start": "consistent"}
+        for values, no_gain in (({"time.gg": 0.98}, None), (late, None), (FALLS, False)):
+            yield advise_across(scene.with_values(values), 0.07, no_gain=no_gain).as_dict()
+
+
+def of_coarse(granite):
+    """Yield what is told of a step that is too long, without a run."""
+    opens = {"contact.law": "unilateral"}
+    rigid = opens | {"contact.stiffness": "inf", "contact.shear_stiffness": 0.0}
+    damped = {"time.scheme": "chung-hulbert", "time.rho_inf": 0.0}
+    average = {"time.alpha": 0.25, "time.delta": 0.5}
+    slides = opens | {"contact.friction": 30.0, "load.pressure": 0.0, "load.slope": 20.0}
+    cases = ({}, {"block.subdivide": [2, 2]}, opens, rigid, damped, average, slides, {"time.gg": 0.0})
+    scenes = [
+        granite.with_values({"time.step": step} | values)
+        for step, values in itertools.product((1e-3, 3e-4, 1.2e-5), cases)
+    ]
+    column = first_of("waves-base")
+    for step, frequency in ((1e-3, 2.0), (5e-3, 2.0), (0.05, 2.0), (1e-3, 100.0)):
+        scenes.append(column.with_values({"time.step": step, "input.frequency": frequency}))
+    for scene in (*scenes, granite.with_values({"load.ramp": 0.1})):
+        yield [[alarm.kind, dict(alarm.values), alarm.sentence] for alarm in coarse_alarms(scene)]
 
 
 def typed(kind, rock, question):
@@ -190,6 +215,7 @@ def numbers_of_advice(step=0.002):
     coarse = block.with_values({"fem.elements": 2})
     of_facts = [overview._facts(scene) for scene in (*map(coarse.with_values, FACTS), slope)]
     found["facts"] = [[fact.subject, fact.part, fact.sentence] for facts in of_facts for fact in facts]
+    found["coarse"] = of_coarse(PAPER.with_values(GRANITE))
     found["lines"] = [summed(numbers_in([*of_lines()]))]
     found["across"] = of_schemes(block)
     found["goal quake"] = of_goal(block, "quake", ELEMENTS=2, REFINEMENTS=2, COARSEST=12)

@@ -119,35 +119,31 @@ def test_steps_of_a_program_are_runs_at_parts_of_the_step():
     assert search.run({"time.step": -1.0}, 40) is None
 
 
-@pytest.mark.parametrize(
-    ("is_own", "slips", "verdict", "ids"),
-    [
-        ((True, True), (0, 0), None, []),
-        ((False, True), (0, 1), {}, ["sign"]),
-        ((False, True), (0, 1), {"explained": True, "causes": {"gg": 0.9}}, ["unexplained"]),
-        ((False, True), (0, 1), {"alike": [{"causes": ["gg"], "values": {}, "further_scene": ""}]}, ["unexplained"]),
-        ((False, False), (0, 1), {"explained": True, "causes": {"gg": 0.9}}, ["gg"]),
-        ((False, False), (1, 1), {}, ["unexplained"]),
-    ],
-)
-def test_a_slip_of_sign_is_named_where_nothing_else_explains_the_rows(is_own, slips, verdict, ids, monkeypatch):
+SIGN = (Slip("sign", "displacement", -1.0),)
+NAMED = {"explained": True, "causes": {"gg": 0.9}, "words": {"gg": "WORDS"}}
+ALIKE = {"explained": False, "alike": [{"causes": ["gg"], "values": {}, "further_scene": ""}]}
+READINGS = [  # which of two readings are the scene's own, their slips, what else explains the first, causes, alike
+    ((True, True), ((), ()), {"explained": False}, [], []),
+    ((False, True), ((), SIGN), {"explained": False}, ["sign"], []),
+    ((False, True), ((), SIGN), NAMED, ["unexplained"], [["gg"], ["sign"]]),
+    ((False, True), ((), SIGN), ALIKE, ["unexplained"], [["gg"], ["sign"]]),
+    ((False, False), ((), SIGN), NAMED, ["gg"], []),
+    ((False, False), (SIGN, SIGN), {"explained": False}, ["unexplained"], []),
+]
+
+
+def test_a_slip_of_sign_is_named_where_nothing_else_explains_the_rows(monkeypatch):
     foreign = history(DROPPED, {"time.steps": 40}, DIGITS)
-    searches = []
-    for own, count in zip(is_own, slips, strict=True):
-        search = beside(DROPPED, foreign)
-        search.reading = replace(search.reading, corrected=count * (Slip("sign", "displacement", -1.0),))
-        search.is_scene = lambda tolerance, own=own: own
-        search.explanations = lambda: []
-        searches.append(search)
-    words = {"words": {"gg": "WORDS"}}
+    searches = [beside(DROPPED, foreign), beside(DROPPED, foreign)]
     monkeypatch.setattr(columns, "searches_of", lambda *given: searches)
-    monkeypatch.setattr(
-        columns, "verdict_of", lambda search, found: RunVerdict(search, **({"explained": False} | words | verdict))
-    )
-    answer = compare(DROPPED, foreign)
-    assert answer.causes == ids
-    named = [one["causes"] for one in answer.alike]
-    assert named == ([["gg"], ["sign"]] if is_own[1] and verdict else [])
+    for are_own, slips, verdict, causes, alike in READINGS:
+        for search, is_own, corrected in zip(searches, are_own, slips, strict=True):
+            search.reading = replace(search.reading, corrected=corrected)
+            search.is_scene = lambda tolerance, is_own=is_own: is_own
+            search.explanations = lambda: []
+        monkeypatch.setattr(columns, "verdict_of", lambda one, found, verdict=verdict: RunVerdict(one, **verdict))
+        answer = compare(DROPPED, foreign)
+        assert (answer.causes, [one["causes"] for one in answer.alike]) == (causes, alike)
 
 
 # ---- what is not -----------------------------------------------------------------------------------------------------

@@ -20,9 +20,7 @@ from validation.diagnosis import evidence
 from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import (
-    BENIGN_COMPLIANCE,
     CAUSES,
-    benign_springs,
     compliance,
     words_of,
 )
@@ -82,25 +80,6 @@ def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own
     soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
     assert compliance(target().column, soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
     assert compliance(target(contact__stiffness=1e10).column, soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("added", "mass", "benign"),
-    [
-        (0.049, 0.0, True),
-        (0.051, 0.0, False),
-        (0.5, 0.0, False),
-        (-0.009, 0.0, False),  # no base adds a negative compliance
-        (-1e-6, 10.0, False),
-        (0.19, 10.0, True),  # a base that is seen to swing explains itself
-        (0.21, 10.0, False),
-        (0.5, 10.0, False),
-    ],
-)
-def test_springs_are_benign_up_to_a_twentieth_of_the_static_displacement(added, mass, benign):
-    assert BENIGN_COMPLIANCE == 0.05  # of the static displacement: what a base may add, as docs/compare.md says
-    v = Variant(0.5, 1.0, 1.0, softness=math.log1p(2 * added), base=mass)
-    assert benign_springs(target().column, v) is benign
 
 
 # ---- other faults -------------------------------------------------------------------------------------------------
@@ -174,25 +153,6 @@ def test_sentences_are_as_before():
     for name, texts in found.items():
         found[name] = summed(numbers_in([[texts.index(text), NUMBER.findall(text)] for text in texts]))
     assert_kept(KEPT, "sentences", found | {"of causes": summed(numbers_in(of_causes))})
-
-
-# ---- where and how a history departs ------------------------------------------------------------------------------
-
-T = np.arange(1, 201) / 200
-WANTED = -1 + np.exp(-2 * T) * np.cos(40 * T)
-
-
-@pytest.mark.parametrize(
-    ("kind", "given"),
-    [
-        ("offset", WANTED - 0.1),
-        ("amplitude", -1 + 1.3 * np.exp(-2 * T) * np.cos(40 * T)),
-        ("damping", -1 + np.exp(-2.6 * T) * np.cos(40 * T)),
-        ("phase", -1 + np.exp(-2 * T) * np.cos(40.4 * T)),
-    ],
-)
-def test_the_manner_of_a_departure(kind, given):
-    assert evidence.measured(WANTED, given, np.arange(200), 0.0).kind == kind
 
 
 # ---- what is printed ----------------------------------------------------------------------------------------------

@@ -98,23 +98,6 @@ def test_two_variants_are_one_program_at_every_step():
     assert not search.same_program(target, average, replace(average, alpha=0.25 + 1e-6))
 
 
-def test_a_base_is_accepted_where_without_it_much_more_is_left():
-    base = replace(OWN, softness=0.03, updated=True)
-    target = target_of(base)
-    other = Target(BLOCK, STEPS, target.rows, target.recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
-    scene = fit_one(other, OWN)
-    assert search.accepted(other, scene, fit_one(other, base))
-    assert not search.accepted(other, scene, fit_one(other, replace(base, softness=0.04)))
-    digits = np.array([[float(f"{x:.4e}") for x in row] for row in target_of(replace(OWN, density=0.9)).recorded])
-    printed = Target(BLOCK, STEPS, target.rows, digits)
-    light = fit_one(printed, replace(OWN, density=0.9))
-    assert light.misfit > 1e-6 and search.accepted(printed, fit_one(printed, OWN), light)
-    plain = Target(BLOCK, STEPS, target.rows, target_of(OWN).recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
-    assert not search.accepted(
-        plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
-    )
-
-
 def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
     scheme = replace(OWN, family="composite", split=0.7, spectral=0.3, start="consistent")
     other = companion_split(scheme)
