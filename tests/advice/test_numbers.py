@@ -112,7 +112,9 @@ def of_column(scene):
         yield advise_wave(scene, 12.0, 0.1).as_dict(), advise_wave(scene, 40.0, 1e-3, 20.0).as_dict()
     else:
         known = columns.limits(scene)
-        yield known and vars(known)
+        yield vars(known)
+        for resting in (None, columns.Rest(0.3, 0.9, 2e-3), columns.Rest(None, 0.9, 2e-3)):
+            yield [*columns.advised(scene, known, resting)]
 
 
 def of_runs(scene):

@@ -48,6 +48,8 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     assert names_of(sets) == [("coarse", ("locked", "column")), ("fine", ("rocking",))]
     assert [one.data.step_of("rocking") for one in sets] == [0.002, 1e-3]
     assert sets[1].data.step_of("locked") is None
+    answered(tmp_path / "same", settings_name="fine", names=("locked",))
+    assert [place for place, *_ in defects_of(tmp_path)] == [f"same/{FILE}"]
 
 
 def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
