@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,16 +20,14 @@ from validation.diagnosis import sentences as wording
 from validation.diagnosis.answer import Answer
 from validation.diagnosis.causes import (
     CAUSES,
-    compliance,
     words_of,
 )
 from validation.diagnosis.evidence import Departure, Stage
 from validation.diagnosis.fits.fit import Interval
-from validation.diagnosis.fits.target import Target
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign
 from validation.diagnosis.schemes import FAMILIES, other_names
-from validation.diagnosis.variant import Rectangle, Variant, rectangle_of
+from validation.diagnosis.variant import Rectangle, Variant
 from validation.errors import InputError
 from validation.report.blocks import Callout, FigureBlock, Paragraph, Table
 from validation.report.chapters import compare as chapters_compare
@@ -68,18 +65,6 @@ def test_a_base_that_adds_two_per_cent_is_benign():
     assert found == pytest.approx({"springs-factor": 1 / 1.04, "width-factor": 1.04}, rel=1e-5)
     # what is no fault is taken over into what is expected
     assert np.allclose(answer.curves["dda"][1], answer.curves["the file"][1], rtol=1e-6)
-
-
-def target(**changes):
-    column = rectangle_of(SCENE.with_values({key.replace("__", "."): value for key, value in changes.items()}))
-    return Target(column, np.full(4, 0.002), np.arange(4), -np.ones((1, 4)))
-
-
-def test_compliance_is_a_share_of_the_static_displacement_not_of_the_springs_own():
-    """At p = E springs and block give half each; at p = 10E the springs give a twelfth of 5.5 mm, 0.5 mm."""
-    soft = Variant(0.5, 1.0, 1.0, softness=math.log(1.2))
-    assert compliance(target().column, soft) == pytest.approx(0.2 * 0.5, rel=1e-12)
-    assert compliance(target(contact__stiffness=1e10).column, soft) == pytest.approx(0.2 * 0.5 / 5.5, rel=1e-12)
 
 
 # ---- other faults -------------------------------------------------------------------------------------------------

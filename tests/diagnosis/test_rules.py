@@ -96,10 +96,18 @@ def digits():
     for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
         of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
         yield of_rows.allowed, of_rows.deviation()
-        for remainder in (0.15 + 0 * draw, 0.17 + 0 * draw, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
-            for further in (0.0, 1.15, 1.25):
+        for remainder in (
+            0.15 + 0 * draw,
+            0.16 + 0 * draw,
+            0 * draw,
+            0.1 * draw,
+            0.2 * np.sin(0.2 * np.arange(48)),
+            0.3 * draw,
+        ):
+            for further in (0.0, 0.055, 0.065, 1.15, 1.25):
                 rows = remainder + further * (np.arange(48) == 20)
                 yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)
+    yield bar.noise(0 * draw), bar.noise(draw / np.max(np.abs(draw))), bar.white(0 * draw)
     yield bar.Bar.of(np.array([3.0, 0.0, -4.0]), None), bar.Bar.of(np.zeros(3), None)
 
 
