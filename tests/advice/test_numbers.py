@@ -34,6 +34,7 @@ BLOCKS = {
 COLUMNS = {
     "site": ("waves-site", {"time.allow_unstable": True}),
     "joint": ("waves-joint", {"time.allow_unstable": True}),
+    "undamped": ("waves-joint", {"time.alpha": 0.25, "time.delta": 0.5, "time.gg": 0.99}),
     "shaken": ("columns-shaken", {}),
     "stack": ("field-stack", {"column.gravity": 9.81, "time.gg": 0.99}),
     "slips": ("columns-slips", {"time.alpha": 0.25, "time.delta": 0.5}),
