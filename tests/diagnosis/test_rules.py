@@ -17,7 +17,7 @@ from validation import load_scene
 from validation.diagnosis import causes, evidence, families, one_change, readings, schemes, search
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
-from validation.diagnosis.fits.fit import NAMED, NUMBERS, bounds, is_factor, named
+from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move, moves
 from validation.diagnosis.numbers import CandidateChange
@@ -180,7 +180,7 @@ def searches():
     """Yield what is decided of candidates that are fitted by chance, and what has been fitted."""
     values = np.sin(np.arange(1.0, 31.0))
     target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), values[None])
-    for number in range(36):
+    for number in range(24):
         scene = replace(OWN, opens=number % 4 == 3)
         with pytest.MonkeyPatch.context() as patch:
             world = World(patch, number)
@@ -202,7 +202,7 @@ def acceptance():
     changes = ({"updated": True}, {"softness": 0.03}, {"base": 3.0, "softness": 0.3}, {"opens": True, "updated": True})
     changes += ({"contact": "rigid"}, {"contact": "impact"}, {"family": "hht", "spectral": 0.2}, {"gg": 0.9}, {})
     free = (("alpha", "gg"), ("spectral",), ("gg",), ("density", "young"), ("softness",), ("point",), ())
-    for number in range(12):
+    for number in range(6):
         with pytest.MonkeyPatch.context() as patch:
             world = World(patch, number)
             patch.setattr(search, "intervals", lambda one: {"gg": SimpleNamespace(half_width=share(one.name) - 0.1)})
@@ -244,6 +244,7 @@ def names():
                 yield assignments([name], v, OWN).split()
     for name in NUMBERS:
         yield name, bounds(name, OWN), bounds(name, replace(OWN, family="hht")), is_factor(name)
+        yield [_side(replace(OWN, **{name: end}), name) for end in bounds(name, OWN)]
     for alpha, delta in itertools.product((0.0, 1 / 6, 0.25, 0.5), (0.5, 1.0)):
         name = named(alpha, delta)
         yield -1 if name is None else [*NAMED].index(name)
