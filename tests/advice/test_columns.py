@@ -1,5 +1,7 @@
 """What is known of a column before a step is made, and which of its scenes raise an alarm."""
 
+import math
+
 import numpy as np
 import pytest
 from conftest import thinned
@@ -77,6 +79,8 @@ def test_a_stack_comes_to_rest_when_a_long_run_of_it_does(kind):
     moved = np.array([history.columns[name] for name in names])
     away = np.abs(moved - moved[:, -1:]).max(axis=0) > 1e-3 * resting.settlement
     assert resting.seconds == pytest.approx(history.time[np.flatnonzero(away)[-1]] + step, rel=1e-9)
+    doublings = math.log2(resting.run / step / columns.FIRST_RUN)
+    assert doublings == pytest.approx(round(doublings)) and resting.run > 2 * resting.seconds - 3 * step
     shortening = 2500.0 * 9.81 / 4 / float(young)  # of the upper half of the top block, to whose middle it moved
     assert resting.settlement == pytest.approx(shortening - moved[-1, -1] - gap * (blocks + heavy), rel=1e-6)
 

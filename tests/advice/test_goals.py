@@ -1,6 +1,7 @@
 """What `advise` recommends, against closed forms, an elastic bar by its transform and runs made apart."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -129,6 +130,22 @@ def test_the_longest_step_keeps_the_error_at_half_of_it_too(errors, every):
     found = goals.Trials({"time.gg": 0.9}, 0.25, 66, measured).longest_step(16, 0.05)
     assert found.settings == {"time.gg": 0.9, "time.step": 0.25 * every} and found.steps == 66 // every
     assert found.error == errors.get(every, math.inf)
+
+
+def test_a_long_run_is_timed_by_two_short_ones(monkeypatch):
+    clock = [7.0]
+    asked = []
+
+    def run(scene, solver):
+        asked.append(scene.time.steps)
+        clock[0] += 0.3 + 0.01 * scene.time.steps
+
+    monkeypatch.setattr(goals, "solve", run)
+    monkeypatch.setattr(goals, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
+    for steps, timed in ((240, [240]), (241, [60, 240]), (977, [60, 240])):
+        assert goals.estimated_seconds(PAPER, "dda", steps) == pytest.approx(0.3 + 0.01 * steps)
+        assert asked[-len(timed) :] == timed
+    assert goals.estimated_seconds(PAPER, "layers", 5) is None
 
 
 # ---- columns and beams ----------------------------------------------------------------------------------------------

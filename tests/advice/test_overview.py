@@ -9,7 +9,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from validation.advice import goals, overview
+from validation.advice import contact_page, goals, overview
+from validation.advice.across import advise_across
 from validation.advice.goals import Question, Recommendation
 from validation.advice.hooks import AdviceHooks
 from validation.advice.overview import HEADS, Fact, Overview, PresentError, lines, recommended
@@ -128,6 +129,23 @@ def test_kinds_of_scenes_of_which_nothing_is_known_are_refused():
         with pytest.raises(InputError) as refusal:
             ask()
         assert refusal.value.source == scene.name
+
+
+def test_columns_and_blocks_of_which_no_landing_is_known_are_refused():
+    column = load_scene("waves-base").expand()[0]
+    opens = PAPER.with_values({"contact.law": "unilateral"})
+    rigid = {"contact.stiffness": math.inf, "contact.shear_stiffness": 0.0}
+    tapered = {"block.vertices": [[0, 0], [2, 0], [1.5, 2], [0.5, 2]]}
+    for ask, field in (
+        (lambda: contact_page.scenes(column), None),
+        (lambda: contact_page.scenes(PAPER), "contact.law"),
+        (lambda: overview.overview(column, Question()), None),
+        (lambda: advise_across(opens.with_values(rigid), 0.1), None),
+        (lambda: advise_across(opens.with_values(tapered), 0.1), None),
+    ):
+        with pytest.raises(InputError) as refusal:
+            ask()
+        assert refusal.value.field == field
 
 
 @pytest.mark.parametrize(

@@ -12,10 +12,11 @@ from oracles.scheme_histories import rounded
 
 from validation import solve
 from validation.diagnosis import columns
+from validation.diagnosis.beside import RunVerdict
 from validation.diagnosis.columns import ColumnSearch, of_scene
 from validation.diagnosis.judgement import compare
 from validation.diagnosis.reading import Foreign, steppings
-from validation.diagnosis.readings import Reading
+from validation.diagnosis.readings import Reading, Slip
 from validation.errors import InputError
 from validation.scenes.scene import parse_scene
 
@@ -105,6 +106,44 @@ def test_one_of_few_candidates_is_named(monkeypatch):
 def beside(scene, foreign):
     reading = Reading(steppings(foreign, scene.time.step)[0], np.array([foreign.displacement, foreign.pressure]))
     return ColumnSearch(reading.scene_of(scene), reading)
+
+
+def test_steps_of_a_program_are_runs_at_parts_of_the_step():
+    search = beside(DROPPED, history(DROPPED, {"time.steps": 40}, DIGITS))
+    half = {"time.step": DROPPED.time.step / 2}
+    fine = solve(DROPPED.with_values(half | {"time.steps": 80}), "dda")
+    both = search.run(half, 40)
+    assert both == pytest.approx(np.array([fine.displacement[1::2], fine.contact_pressure[1::2]]))
+    locked = search.result({columns.BONDED: True}, 40)
+    assert locked.columns["displacement"][-1] != pytest.approx(search.scene_run[0, -1])
+    assert search.run({"time.step": -1.0}, 40) is None
+
+
+SIGN = (Slip("sign", "displacement", -1.0),)
+NAMED = {"explained": True, "causes": {"gg": 0.9}, "words": {"gg": "WORDS"}}
+ALIKE = {"explained": False, "alike": [{"causes": ["gg"], "values": {}, "further_scene": ""}]}
+READINGS = [  # which of two readings are the scene's own, their slips, what else explains the first, causes, alike
+    ((True, True), ((), ()), {"explained": False}, [], []),
+    ((False, True), ((), SIGN), {"explained": False}, ["sign"], []),
+    ((False, True), ((), SIGN), NAMED, ["unexplained"], [["gg"], ["sign"]]),
+    ((False, True), ((), SIGN), ALIKE, ["unexplained"], [["gg"], ["sign"]]),
+    ((False, False), ((), SIGN), NAMED, ["gg"], []),
+    ((False, False), (SIGN, SIGN), {"explained": False}, ["unexplained"], []),
+]
+
+
+def test_a_slip_of_sign_is_named_where_nothing_else_explains_the_rows(monkeypatch):
+    foreign = history(DROPPED, {"time.steps": 40}, DIGITS)
+    searches = [beside(DROPPED, foreign), beside(DROPPED, foreign)]
+    monkeypatch.setattr(columns, "searches_of", lambda *given: searches)
+    for are_own, slips, verdict, causes, alike in READINGS:
+        for search, is_own, corrected in zip(searches, are_own, slips, strict=True):
+            search.reading = replace(search.reading, corrected=corrected)
+            search.is_scene = lambda tolerance, is_own=is_own: is_own
+            search.explanations = lambda: []
+        monkeypatch.setattr(columns, "verdict_of", lambda one, found, verdict=verdict: RunVerdict(one, **verdict))
+        answer = compare(DROPPED, foreign)
+        assert (answer.causes, [one["causes"] for one in answer.alike]) == (causes, alike)
 
 
 # ---- what is not -----------------------------------------------------------------------------------------------------

@@ -53,6 +53,9 @@ def test_a_table_with_other_names_units_and_sign(tmp_path, separator):
     np.testing.assert_allclose(found.displacement, [-0.0015, -0.0025, -0.003, -0.0035])
     np.testing.assert_allclose(found.pressure, [0.5e6, 1e6, 2e6, 2.5e6])
     assert len(found.notes) == 1  # the row at t = 0 is ignored
+    header = text.replace("t" + separator + "uy", separator.join(["time_ms", "displacement_mm"]), 1)
+    of_header = read(written(tmp_path, header), {"contact_pressure": "3"})
+    assert of_header.time == pytest.approx(found.time) and of_header.displacement == pytest.approx(-found.displacement)
 
 
 @pytest.mark.parametrize(
@@ -72,6 +75,7 @@ def test_a_file_that_is_no_history(tmp_path, text, field, value):
     with pytest.raises(InputError, match=r"h\.csv") as error:
         read(written(tmp_path, text))
     assert (error.value.field, error.value.value) == (field, value)
+    assert value != "'2, 3, 4'" or "row 2:" in error.value.rule
     assert "\n" not in str(error.value)
 
 

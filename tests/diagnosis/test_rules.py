@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import asdict, replace
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
+from oracles.few_moves import FEW
 from oracles.kept_answers import said
-from oracles.stand_ins import assert_kept, summed
+from oracles.stand_ins import assert_kept, share, summed
 
 from validation import load_scene
-from validation.diagnosis import causes, evidence, families, one_change, readings, search
+from validation.diagnosis import causes, evidence, families, one_change, readings, schemes, search
 from validation.diagnosis.evidence import Departure
 from validation.diagnosis.fits import bar
-from validation.diagnosis.fits.fit import NUMBERS, bounds, is_factor
+from validation.diagnosis.fits.fit import NAMED, NUMBERS, _side, bounds, is_factor, named
 from validation.diagnosis.fits.target import Target
 from validation.diagnosis.moves import Move, moves
 from validation.diagnosis.numbers import CandidateChange
@@ -31,6 +34,19 @@ OWN = Variant(0.5, 1.0, 0.99)
 SCENE = load_scene("figures-3-4")
 N = np.arange(1, 9)
 IDS = ("gg", "scheme", "hht", "contact-dashpot", "springs-factor", "own-weight", "viscous-damping", "dead-band")
+
+MOVES = [
+    *(Move("gg", {"gg": 1.0}), Move("scheme", {}, ("alpha", "delta"), (0.3,)), *FEW),
+    *(Move("start", {"start": "consistent"}), Move("hht", {"family": "hht", "spectral": 0.2})),
+    *(
+        Move("generalised-alpha", {"family": "chung-hulbert"}, ("spectral",), (0.5, 0.9)),
+        Move("load-factor", {"load": 0.8}),
+    ),
+    *(Move("young-factor", {}, ("young",), (1.3,)), Move("reported-point", {"point": 1.0})),
+    Move("dead-band", {"opens": True, "band": 1e-3, "reopening": search.OTHER_PROGRAMS}),
+]
+
+LIMITS = [*MOVES[-5:], Move("dead-band", {}, ("band",)), Move("opening-tension", {"opens": True}, ("hold",))]
 
 
 def departures():
@@ -55,23 +71,43 @@ def departures():
             yield asdict(evidence._beside(name, "is", "m", *numbers, 1e-3))
 
 
+def motions():
+    """Yield where histories come to rest, and how they swing, beside others."""
+    n = np.arange(1.0, 181.0)
+    steps = np.full(180, 2e-3)
+    columns = [s * (1 - np.exp(-c * n) * np.cos(w * n)) for s, c, w in ((3.0, 0.01, 0.21), (3.1, 0.02, 0.23))]
+    for every, changing in ((1, steps), (3, steps), (3, steps * (1 + 1e-3 * (n > 90)))):
+        rows = np.arange(every - 1, 180, every)
+        for chosen in (rows, rows[1:], np.delete(rows, 7)):
+            target = Target(BLOCK, changing, chosen, columns[0][None, chosen])
+            yield [[stage.name, stage.agrees, stage.numbers] for stage in evidence._motion(target, columns[1][chosen])]
+
+
 def digits():
     """Yield units of last digits, and what is left of rows."""
     for values in ([5.0, 3.0], [0.05, 0.012, 100.0], [1 / 3, 2.0], [-250.0, 1e-30], [1e22, 0.0], [0.5]):
         yield bar.last_digits(np.array(values)).tolist()
     draw = np.random.default_rng(3).standard_normal(48)
-    for share in np.linspace(0, 3, 120):
-        yield bar.white(draw + share * np.sin(0.3 * np.arange(48)))
+    for height in np.linspace(0, 3, 120):
+        yield bar.white(draw + height * np.sin(0.3 * np.arange(48)))
     for count in (3, 7, 8, 15, 16, 20, 47, 48):
         yield bar.white(draw[:count]), bar.noise(draw[:count]), bar.spread_of_most(draw[:count])
         yield search.Fit.independent.fget(SimpleNamespace(residual=np.cumsum(draw[:count])))
     for rounding, spread in ((0.0, 0.2), (0.3, 0.0), (0.3, 0.2)):
         of_rows = bar.Bar(np.full(48, rounding), 2e6, 5.0, spread, np.arange(48) != 7)
         yield of_rows.allowed, of_rows.deviation()
-        for remainder in (0.15 + 0 * draw, 0.17 + 0 * draw, 0.1 * draw, 0.2 * np.sin(0.2 * np.arange(48)), 0.3 * draw):
-            for further in (0.0, 1.15, 1.25):
+        for remainder in (
+            0.15 + 0 * draw,
+            0.16 + 0 * draw,
+            0 * draw,
+            0.1 * draw,
+            0.2 * np.sin(0.2 * np.arange(48)),
+            0.3 * draw,
+        ):
+            for further in (0.0, 0.055, 0.065, 1.15, 1.25):
                 rows = remainder + further * (np.arange(48) == 20)
                 yield of_rows.holds(rows), of_rows.outlying(rows).tolist(), of_rows.deviation(rows)
+    yield bar.noise(0 * draw), bar.noise(draw / np.max(np.abs(draw))), bar.white(0 * draw)
     yield bar.Bar.of(np.array([3.0, 0.0, -4.0]), None), bar.Bar.of(np.zeros(3), None)
 
 
@@ -98,6 +134,98 @@ def decisions():
             yield move.id, dict(move.changes), move.free, [*move.starts]
 
 
+class World:
+    """Fits by chance, which names and a number decide."""
+
+    def __init__(self, patch, number):
+        self.number = number
+        self.fits = []
+        accepted = (0.0, 0.004, 0.02, 0.08, 0.4, 0.9)[number % 6]
+        patch.setattr(search, "fit", lambda target, starts, rounds=8: [self.fit(*start) for start in starts])
+        patch.setattr(search, "fit_one", lambda target, variant: self.fit(variant, ()))
+        patch.setattr(search, "fitted", self.fitted)
+        patch.setattr(
+            search, "accepted", lambda target, own, one: self.share("accepted", one) < max(accepted, one.more)
+        )
+        patch.setattr(search, "is_determined", lambda target, own, one: self.share("number", one.fit) < 0.8)
+        patch.setattr(search, "score", lambda target, deviations, one: 25 * self.share("score", one.fit, *one.ids))
+        patch.setattr(search, "same_program", lambda target, *both: share(*map(str, both)) < 0.5)
+        patch.setattr(search, "benign_springs", lambda column, v: v.softness < 0.25)
+        patch.setattr(search, "moves", lambda *given: MOVES)
+        tensions = [Move("opening-tension", {"opens": True, "hold": 0.1 * i}) for i in range(1, 12)]
+        patch.setattr(search, "dead_bands", lambda target, own, shares: tensions)
+
+    def share(self, word, one, *ids):
+        changes = [f"{name}={value}" for name, value in vars(one.variant).items() if value != getattr(OWN, name)]
+        return share(word, str(self.number), *changes, *one.free, *ids)
+
+    def fit(self, variant, free):
+        one = SimpleNamespace(variant=variant, free=free, more=0.2 * (variant.base == 0))
+        one.misfit = 0.5 * self.share("misfit", one) ** 3
+        one.residual = np.full(30, one.misfit)
+        self.fits.append(one.misfit)
+        return one
+
+    def fitted(self, target, scene, combos):
+        explanations = []
+        for combo in combos:
+            free = tuple(name for move in combo for name in move.free)
+            one = self.fit(search._starts(scene, combo)[-1], free)
+            one.more = 0.0
+            explanations.append(Explanation(combo, one))
+        return sorted(explanations, key=lambda one: one.fit.misfit)
+
+
+def searches():
+    """Yield what is decided of candidates that are fitted by chance, and what has been fitted."""
+    values = np.sin(np.arange(1.0, 31.0))
+    target = Target(BLOCK, np.full(30, 2e-3), np.arange(30), values[None])
+    for number in range(24):
+        scene = replace(OWN, opens=number % 4 == 3)
+        with pytest.MonkeyPatch.context() as patch:
+            world = World(patch, number)
+            verdict = search.simple(target, scene)
+            if not verdict.explains:
+                verdict = search.twofold(target, scene, verdict)
+            several = (verdict.alike, verdict.single, verdict.aliases, verdict.others)
+            yield verdict.best.ids, verdict.best.fit.misfit, verdict.explained, verdict.reached, verdict.left
+            yield [[(one.ids, one.fit.misfit) for one in some] for some in several]
+            yield world.fits
+
+
+def acceptance():
+    """Yield which fits by chance are accepted beside a scene's, and which free numbers the rows determine."""
+    values = np.sin(np.arange(1.0, 31.0))
+    printed = Target(BLOCK, np.full(30, 2e-3), np.arange(30), values[None], np.full((1, 30), 0.02))
+    accepted = search.accepted
+    is_determined = search.is_determined
+    changes = ({"updated": True}, {"softness": 0.03}, {"base": 3.0, "softness": 0.3}, {"opens": True, "updated": True})
+    changes += ({"contact": "rigid"}, {"contact": "impact"}, {"family": "hht", "spectral": 0.2}, {"gg": 0.9}, {})
+    free = (("alpha", "gg"), ("spectral",), ("gg",), ("density", "young"), ("softness",), ("point",), ())
+    for number in range(6):
+        with pytest.MonkeyPatch.context() as patch:
+            world = World(patch, number)
+            patch.setattr(search, "intervals", lambda one: {"gg": SimpleNamespace(half_width=share(one.name) - 0.1)})
+            patch.setattr(search.math, "isfinite", lambda width: width > 0)
+            own = world.fit(OWN, ())
+            target = printed if number % 2 else replace(printed, rounding=None)
+            for change in changes:
+                one = world.fit(replace(OWN, **change), ())
+                for misfit, height in itertools.product((8e-7, 4e-5, 2e-4, one.misfit), (0.1, 1.0)):
+                    one.misfit = misfit
+                    one.residual = np.where(np.arange(30) == 20, 1.0, height) * misfit
+                    yield accepted(target, own, one)
+                for names_of_free in free:
+                    one = world.fit(replace(OWN, density=1.2, **change), names_of_free)
+                    one.name = str(one.misfit)
+                    yield is_determined(target, own, Explanation((), one))
+            pairs = [
+                search.Explanation(pair, world.fit(OWN, ("gg", "band"))) for pair in itertools.combinations(LIMITS, 2)
+            ]
+            yield [(one.ids, one.fit.misfit) for one in search._fewer(target, OWN, pairs)]
+            yield world.fits
+
+
 def names():
     """Yield what fitted variants are called, with their numbers."""
     for soft in (-0.02, 0.0, 1e-4, 0.03, 0.1, np.log(2.0), 0.4):
@@ -116,6 +244,12 @@ def names():
                 yield assignments([name], v, OWN).split()
     for name in NUMBERS:
         yield name, bounds(name, OWN), bounds(name, replace(OWN, family="hht")), is_factor(name)
+        yield [_side(replace(OWN, **{name: end}), name) for end in bounds(name, OWN)]
+    for alpha, delta in itertools.product((0.0, 1 / 6, 0.25, 0.5), (0.5, 1.0)):
+        name = named(alpha, delta)
+        yield -1 if name is None else [*NAMED].index(name)
+    for family in (*schemes.FAMILIES, "newmark"):
+        yield schemes.scheme_numbers(replace(OWN, family=family, spectral=0.3, split=0.4))
     for low, high in ((0.93, 1.07), (2.1, 2.9), (0.00123, 0.00127), (8.0, 13.0), (33.3, 33.4), (0.96, 1.9)):
         yield causes.roundest(low, high)
 
@@ -188,6 +322,8 @@ def parts():
             part = replace(target, left_out=draw > 1e-3).until(steps)
             yield len(part.rows), part.steps, part.recorded, part.left_out.tolist(), part.values
             yield part.inner(np.arange(2.0 * len(part.rows)), replace(OWN, **changes)).tolist()
+        few = replace(target, recorded=target.recorded[:, :9], rows=target.rows[:9])
+        yield few.inner(np.arange(18.0), replace(OWN, **changes)).tolist()
 
 
 def same_rows():
@@ -219,5 +355,6 @@ def same_rows():
 
 
 def test_rules_decide_as_before():
-    tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes)
+    tables = (departures, digits, decisions, names, fits, parts, readings_of_rows, same_rows, scenes, searches)
+    tables += (acceptance, motions)
     assert_kept(KEPT, "rules", {table.__name__: summed(said([*table()], 0.0)) for table in tables})

@@ -142,9 +142,9 @@ def test_an_answer_names_the_law_with_what_each_leaves_and_when_both_corners_are
     assert answer.opened is None
     assert told(made({})).causes == []
     corners = np.ones((2, STEPS))
-    corners[:, 7:9] = corners[0, 3] = 0.0
+    corners[:, 7:10] = corners[0, 3] = 0.0
     monkeypatch.setattr(Formula, "corners", lambda search, values: (-corners, corners))
-    assert told(made(theirs.values(SCENE))).opened == (8, 9)
+    assert told(made(theirs.values(SCENE))).opened == (8, 10)
     assert told(made({"time.delta": 1.1, "load.gravity": 99.0})).opened is None  # which nothing explains
 
 

@@ -79,6 +79,12 @@ def test_powers_of_one_step_are_the_steps_one_by_one(poisson):
     close(stepped(variant, rectangle), (loop.displacement[:, 0], loop.pressure[:, 0]), 1e-7)
 
 
+def test_rows_that_come_late_are_open_late():
+    opens = replace(OWN, opens=True)
+    run = histories(replace(BLOCK, gravity=0.0), [opens, replace(opens, shift=2.0)], np.full(STEPS, DT))
+    assert np.array_equal(run.open[2:, 1], run.open[:-2, 0]) and np.any(run.open) and not np.any(run.open[:2, 1])
+
+
 def test_several_steps_in_one_are_a_run_at_a_part_of_the_step():
     fine = solved(dda.Scheme(0.5, 1.0, 1.0, DT / 4), 4 * STEPS)
     close(stepped(replace(OWN, parts=4)), [column[3::4] for column in fine])

@@ -69,9 +69,9 @@ def test_what_is_in_no_catalogue_is_not_named(slip):
     assert answer.nearest is not None and answer.values == {}
 
 
-@pytest.mark.long
-def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells():
-    half = judged(rho=1350.0)
+def test_causes_that_give_the_same_rows_are_told_with_a_scene_that_tells(monkeypatch):
+    only(monkeypatch, "density-factor", "side-factor", "load-factor", "gg")
+    half = judged(replace(PLAIN, steps=20), rho=1350.0)
     named(half, ["density-factor"], {"density-factor": 0.5})
     assert [one["causes"] for one in half.alike] == [["step-factor"], ["side-factor", "load-factor"]]
     assert half.alike[0]["values"]["step-factor"] == pytest.approx(2**0.5, rel=1e-5)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -98,23 +99,6 @@ def test_two_variants_are_one_program_at_every_step():
     assert not search.same_program(target, average, replace(average, alpha=0.25 + 1e-6))
 
 
-def test_a_base_is_accepted_where_without_it_much_more_is_left():
-    base = replace(OWN, softness=0.03, updated=True)
-    target = target_of(base)
-    other = Target(BLOCK, STEPS, target.rows, target.recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
-    scene = fit_one(other, OWN)
-    assert search.accepted(other, scene, fit_one(other, base))
-    assert not search.accepted(other, scene, fit_one(other, replace(base, softness=0.04)))
-    digits = np.array([[float(f"{x:.4e}") for x in row] for row in target_of(replace(OWN, density=0.9)).recorded])
-    printed = Target(BLOCK, STEPS, target.rows, digits)
-    light = fit_one(printed, replace(OWN, density=0.9))
-    assert light.misfit > 1e-6 and search.accepted(printed, fit_one(printed, OWN), light)
-    plain = Target(BLOCK, STEPS, target.rows, target_of(OWN).recorded * (1 + 3e-5 * np.sin(0.5 * np.arange(30))))
-    assert not search.accepted(
-        plain, fit_one(plain, replace(OWN, density=0.9)), fit_one(plain, replace(OWN, softness=1e-9))
-    )
-
-
 def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
     scheme = replace(OWN, family="composite", split=0.7, spectral=0.3, start="consistent")
     other = companion_split(scheme)
@@ -135,7 +119,33 @@ def test_what_the_rows_leave_open_of_a_scheme_is_told_by_its_usual_form():
     assert told_clipped != judgement._undecided(target_of(dashpot), dashpot, ["contact-dashpot"])["clipping"]
     gaps = replace(OWN, family="hht", spectral=0.2, contact="mean gap", opens=True)
     assert "form" in judgement._undecided(target_of(gaps), gaps, ["hht"])
+    locked = replace(gaps, opens=False, contact="springs")
+    assert "form" not in judgement._undecided(target_of(gaps), locked, ["hht"])
     assert judgement._undecided(target_of(OWN), OWN, ["gg"]) == {}
+
+
+READINGS = [  # errors corrected in each of two readings, whether it is explained, what is left; the one that is taken
+    ((1, True, 0.1), (0, True, 0.2), 1),
+    ((0, False, 0.2), (1, True, 0.01), 0),
+    ((0, False, 0.5), (1, True, 0.01), 1),
+    ((0, False, 0.5), (1, False, 0.4), 1),
+]
+
+
+def test_the_likeliest_reading_that_is_explained_is_taken(monkeypatch):
+    for *readings, taken in READINGS:
+        cases = []
+        verdicts = []
+        for number, (errors, explains, misfit) in enumerate(readings):
+            reading = SimpleNamespace(corrected=errors * ("",))
+            best = SimpleNamespace(fit=SimpleNamespace(misfit=misfit))
+            cases.append(SimpleNamespace(reading=reading, target=number, scene_variant=OWN))
+            verdicts.append(SimpleNamespace(same=False, explains=explains, best=best))
+        for name in ("as_it_is", "simple"):
+            monkeypatch.setattr(judgement, name, lambda number, scene, verdicts=verdicts: verdicts[number])
+        assert judgement._best(cases) == (cases[taken], verdicts[taken])
+        verdicts[1].same = True
+        assert judgement._best(cases) == (cases[1], verdicts[1])
 
 
 # ---- limits of contact -----------------------------------------------------------------------------------------------

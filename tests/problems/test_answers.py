@@ -44,10 +44,14 @@ def test_settings_of_a_program_are_read_with_their_problems_in_the_order_of_the_
     fine = answered(tmp_path / "fine", settings_name="fine", step_s={"rocking": 1e-3}, names=("rocking",))
     (fine / "locked.csv").write_text(blank_table(problem("locked")))  # as the pack has it: not answered
     (fine / "notes.txt").write_text("anything")
-    sets = read_sets(tmp_path)
+    told = []
+    sets = read_sets(tmp_path, progress=lambda *done: told.append(done[:2]))
+    assert told == [(0, 4), (0, 4), (2, 4), (2, 4)]
     assert names_of(sets) == [("coarse", ("locked", "column")), ("fine", ("rocking",))]
     assert [one.data.step_of("rocking") for one in sets] == [0.002, 1e-3]
     assert sets[1].data.step_of("locked") is None
+    answered(tmp_path / "same", settings_name="fine", names=("locked",))
+    assert [place for place, *_ in defects_of(tmp_path)] == [f"same/{FILE}"]
 
 
 def test_a_column_that_is_not_reported_is_named_by_problem(tmp_path):
@@ -265,6 +269,7 @@ def test_what_other_programs_write_is_read(written, tmp_path):
         ({"pack": ...}, "pack", "nothing"),
         ({"settings": ANSWERS_TEMPLATE["settings"]}, "settings", ANSWERS_TEMPLATE["settings"]),
         ({"wo": "x"}, "wo", "'x'"),
+        ({"program": " "}, "program", "' '"),
         ({"program": "\u7a0b"}, "program", "'\u7a0b'"),
         ({"who": 2001 * "x"}, "who", 2001 * "x"),
         ({"settings_name": 61 * "x"}, "settings_name", 61 * "x"),

@@ -113,6 +113,8 @@ def test_what_gives_the_same_rows_is_told_and_of_too_many_none_is_named():
     assert named(1e-4, 0.0098).alike == ("S1",)  # within ten times a thousandth of the band
     assert named(1e-4, 0.0102).alike == () == named(1e-4, 1e-4, values=False).alike
     assert named(0.02, 0.19, 0.21).alike == ("S1",)
+    both = [Cause(f"S{gg}", ("gg",), {"gg": gg}, (), 1e-4) for gg in (0.903, 0.897)]
+    assert module._named(both).alike == ()  # of two digits, as one number
     many = named(*4 * [1e-4])
     assert (many.ids, len(many.alike), many.would_tell) == ((), 4, module.OTHERS_WOULD)
     assert "gg 0.9, gg 0.8" in many.sentence and named(*3 * [1e-4]).ids == ("gg",)
@@ -137,7 +139,8 @@ SCHEMES = [
 
 
 @pytest.mark.parametrize(("values", "numbers", "words"), SCHEMES)
-def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words):
+def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words, monkeypatch):
+    monkeypatch.setattr(module.Search, "_bases", None)  # of digits that agree nothing else is asked
     one = found(motion(values))
     assert (one.ids, one.values) == (("scheme",), numbers)
     assert words in one.sentence
@@ -213,6 +216,20 @@ def test_what_is_tried_is_as_before():
             both = changed(displacement=first * EXACT.displacement, contact_pressure=second * EXACT.contact_pressure)
             found.append(module._units(both.columns, runs))
     assert_kept(KEPT, "cause", {"tried": summed(said(found, 1e-9))})
+
+
+def test_numbers_are_looked_for_where_runs_are_cheap(monkeypatch):
+    asked = []
+    bases = [Base("", {}, solver="bars-events"), Base("words", {})]
+    monkeypatch.setattr(Runs, "exact", lambda runs: None)
+    monkeypatch.setattr(module.Search, "_schemes", lambda search: [])
+    monkeypatch.setattr(module.Search, "_laws", lambda *given: [])
+    monkeypatch.setattr(module.Search, "_bases", lambda search, exact, cheap: asked.append([cheap]) or bases)
+    monkeypatch.setattr(module.Search, "_changes", lambda search, base, cheap: asked[-1].append(bool(cheap)) or [])
+    for name in ("locked", "sliding", "rocking", "stack", "cradle", "joint"):
+        assert module.Search(Runs(load_scene(f"field-{name}"), STANDARD), {}).causes() == []
+    cheap = [True, True, True]
+    assert asked == [cheap, *2 * [3 * [False]], cheap, *2 * [[False, False, True]]]
 
 
 # ---- runs ------------------------------------------------------------------------------------------------------------

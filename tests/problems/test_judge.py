@@ -12,7 +12,7 @@ from oracles.stand_ins import assert_kept, summed
 from validation.errors import InputError
 from validation.gates.gate import Status
 from validation.models.plane import problems as boxes
-from validation.problems.bands import LARGEST, band, changes, standard
+from validation.problems.bands import LARGEST, Standard, band, changes, standard
 from validation.problems.judge import judge
 from validation.problems.problem import problem, problem_of
 from validation.runs.history import DISPLACEMENT, PRESSURE, History
@@ -115,6 +115,10 @@ def test_a_column_that_is_absent_is_told():
         assert (found.status, found.withheld) == (status, withheld)
         assert (PRESSURE in found.verdict) is bool(withheld)
     assert judge(asked, History(exact.time, {})).status is Status.NOT_JUDGED
+    still = History(exact.time, {DISPLACEMENT: exact.displacement, PRESSURE: 0 * exact.time})
+    reasons = [one.reason for one in judge(asked, exact, Standard(still, {}, {})).criteria]
+    reasons += [one.reason for one in judge(asked, exact, Standard(History(exact.time, {}), {}, {})).criteria]
+    assert len({*reasons}) == 3 and reasons[2] == reasons[3]
 
 
 def test_numbers_that_people_understand():
@@ -242,6 +246,12 @@ def test_boxes_whose_numbers_would_mean_something_else_are_refused(name, values,
     with pytest.raises(InputError) as caught:
         problem_of(load_scene(f"rigid-{name}").with_values(values))
     assert caught.value.field == field
+
+
+def test_a_scene_without_a_title_is_called_by_its_name():
+    scene = load_scene("rigid-standing")
+    titles = [problem_of(scene.model_copy(update={"title": title})).title for title in ("", "TITLE")]
+    assert titles == [scene.name, "TITLE"]
 
 
 def test_the_question_of_boxes_may_be_asked_with_another_friction():

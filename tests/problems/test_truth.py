@@ -88,7 +88,7 @@ def test_columns_of_rigid_blocks_move_as_is_known(name):
         ({"load.slope": 1.0}, "slope"),
         ({"contact.band": [0.0, 1e-3]}, "bands"),
         ({"load.pressure": 1e3}, "weight"),
-        ({"block.tilt": 0.0}, "tilt"),
+        ({"block.tilt": 0.0}, "by weight"),
         ({"run.columns": ["rotation", "displacement"]}, "run.columns"),
     ],
 )
