@@ -2,10 +2,9 @@
 
 Rows are computed here from stand-ins of runs, waves that a name decides, so that nothing is marched: what a row says of
 them means nothing, but a sign, a constant or a term of its formula that is another one shows. What tables name is
-computed for scenes of odd data, since many of a scene are 1, 2 or alike. That formulas are right
-is told by the gates, which are long, and by tests with truths. A number is the sum of w log10(|value| / ROUNDING), w
-from 1 to 2, with the sign of the value; one that rounding decides is written as "~". `KEEP_PAGES=1` writes the file
-anew.
+computed for scenes of odd data, since many numbers of a scene are 1, 2 or alike. That formulas are right is told by the
+gates, which are long, and by tests with truths. A number is the sum of w log10(|value| / ROUNDING), w from 1 to 2, with
+the sign of the value; one that rounding decides is written as "~". `KEEP_PAGES=1` writes the file anew.
 """
 
 import json
