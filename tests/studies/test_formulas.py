@@ -9,8 +9,8 @@ from oracles.made_cases import made_row
 
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
-from validation.problems.answers import Answer
 from validation.runs.history import History
+from validation.runs.run import Outcome, Run
 from validation.scenes.scene import load_scene
 from validation.studies.beams import formulas as beams
 from validation.studies.core import damping
@@ -172,8 +172,9 @@ def test_a_history_that_is_none_settles_never():
 
 def test_who_judges_says_how_far_it_is(monkeypatch):
     told = []
-    monkeypatch.setattr(judging, "_answer", lambda solver, problem: Answer(problem.name, None, None))
-    answered = judging.answers_of("dda", [SimpleNamespace(name=name) for name in "abc"], lambda *far: told.append(far))
+    monkeypatch.setattr(judging, "completed", lambda *asked: Run(Outcome.NOT_RUN))
+    problems = [SimpleNamespace(name=name, scene=None) for name in "abc"]
+    answered = judging.answers_of("dda", problems, lambda *far: told.append(far))
     judging.judged_sets([answered, answered], lambda *far: told.append(far))
     each = [f"dda {name}" for name in "abc"]
     assert told == [*((n, 3, each[n]) for n in range(3)), *((n, 6, (each + each)[n]) for n in range(6))]
