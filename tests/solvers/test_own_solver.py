@@ -261,20 +261,7 @@ BLOCKS = {  # what gates have said; `blocks.txt` holds what is printed of it, wo
         replace(RAISED, why="E: step 3 (f.py:9, in h)"),
         *(replace(RAISED, scene=f"s{n}", why="wrong units: mm?", outcome="wrong units") for n in range(65)),
     ],
-    "not run": [SOUND, replace(SOUND, group="damping", status="NOT RUN", value=None, why="no modes", outcome="")],
-    "many": [replace(FAILED, value=2.0 + n, scene=f"s{n}") for n in range(5)],
     "values": [replace(FAILED, value=value) for value in (1.1 + 1e-9, "undefined")],
-    "statics first": [
-        FAILED,
-        replace(
-            FAILED,
-            study="own-solver",
-            scene=block_data.scenes()[0].name,
-            group=gates.BLOCK_DATA,
-            metric=AT_REST,
-            value=-1.0,
-        ),
-    ],
 }
 KEPT = dict(
     text.split("\n", 1) for text in re.split(r"(?:\A|\n)== ", (HERE / "blocks.txt").read_text(encoding="utf-8"))[1:]

@@ -17,7 +17,7 @@ from validation.results import Results
 from validation.runs.case_name import scene_of
 from validation.scenes.places import LIBRARY, scene_files
 from validation.scenes.scene import load_scene
-from validation.suite.folders import get_study, study_folders, study_names
+from validation.suite.folders import get_study, scene_study, study_folders, study_names
 
 HERE = Path(str(validation.studies.__file__)).parent
 STUDY = """
@@ -121,6 +121,18 @@ def test_no_study_stands_on_what_is_of_another_alone():
             directory = files[scene_of(scene)].parent if isinstance(scene, str) else LIBRARY
             assert directory in (LIBRARY, folder.path / "scenes"), (name, scene)
     assert load_scene("mesh-convergence").title
+
+
+def test_a_built_in_scene_has_what_its_studies_judge_of_it():
+    name = "contact-map-constant"
+    rebound = get_study("rebound")
+    alone = scene_study(name)
+    assert alone.title == load_scene(name).title
+    assert set(alone.extra) == {case for case in rebound.extra if scene_of(case[0]) == name} != set()
+    assert set(alone.gates()) == {gate for gate in rebound.gates() if scene_of(gate.scene) == name} != set()
+    assert [row.scene for row in alone.derived()] == [r.scene for r in rebound.derived() if scene_of(r.scene) == name]
+    other = scene_study(name, {"block.density": 1.0})
+    assert not [*other.extra, *other.gates(), *other.derived()]
 
 
 @pytest.mark.parametrize(

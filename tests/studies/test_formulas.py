@@ -10,12 +10,17 @@ from oracles.made_cases import made_row
 from validation.gates.gate import Gate, Status, Verdict
 from validation.metrics.values import NOT_REPORTED
 from validation.runs.history import History
+from validation.runs.run import Outcome, Run
 from validation.scenes.scene import load_scene
 from validation.studies.beams import formulas as beams
+from validation.studies.core import damping
 from validation.studies.paper import formulas as paper
+from validation.studies.paper.register import dominance_margin
 from validation.studies.patch import formulas as patch
 from validation.studies.two_codes import formulas as two_codes
 from validation.studies.waves import formulas as waves
+from validation.suite import judging
+from validation.suite.claims import Evidence
 from validation.suite.matrix import _reported
 from validation.suite.own_solver.block_data import (
     MISREADINGS,
@@ -26,7 +31,8 @@ from validation.suite.own_solver.block_data import (
     scenes,
 )
 from validation.suite.own_solver.gates import shown_by_history
-from validation.suite.own_solver.history import _bound, rest, root
+from validation.suite.own_solver.history import AT_REST, _bound, rest, root, shown
+from validation.theory import spectra
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -114,9 +120,64 @@ def test_the_root_of_a_history_is_known_the_better_the_longer_it_swings():
 
 
 def test_a_history_rests_in_the_middle_of_its_last_fifth():
-    assert rest(np.array([9.0] * 8 + [1.0, 4.0])) == (2.5, 3.0)
+    x = np.array([9.0] * 6 + [1.0, 4.0])
+    assert rest(x) == rest(np.array([9.0, 9.0, *x])) == (2.5, 3.0)
+    resting, value = shown(
+        Gate("s", ("mine",), "displacement.static", 2.0, 3.0, "r"), None, History(x, {"displacement": x})
+    )
+    assert (resting.metric, value, resting.low + 1) == (AT_REST, 2.5, pytest.approx(-2.5e-6, rel=1e-6))
     still = History(0.1 * np.arange(1, 31), {"displacement": np.zeros(30)})
     assert root(load_scene("figures-3-4").with_values({"time.step": 0.1}), still) is None
+
+
+@pytest.mark.parametrize(
+    ("discount", "ratio", "error", "frequency"),
+    [(1.0, 0.0, 5.98643e-06, 5.1713e-03), (0.95, 0.0751552, 1.18133e-04, 4.38609e-02)],
+)
+def test_a_gate_is_as_wide_as_the_noise_of_a_history(discount, ratio, error, frequency):
+    scene = load_scene("figure-8").with_values({"time.alpha": 0.25, "time.delta": 0.5, "time.gg": discount})
+    n = np.arange(1, 181)
+    of_modes = spectra.dda_frequency(scene), spectra.contact_frequency(scene)
+    slow, fast = (np.real(spectra.roots(scene, w)[0] ** n) for w in of_modes)
+    x = (0.009 * slow + 0.0023 * fast - 0.013) * (1 + 3e-5 * np.sin(1e3 * n**2))
+    history = History(scene.time.step * n, {"displacement": x})
+    strongest, found = shown(Gate("s", ("mine",), "mode1.damping", 0.07, 0.08, "r"), scene, history)
+    assert (strongest.metric, found) == ("mode1.measured_damping", pytest.approx(ratio, abs=1e-5))
+    assert (0.07 - strongest.low, strongest.high - 0.08) == pytest.approx((error, error), rel=1e-3)
+    natural, found = shown(Gate("s", ("mine",), "mode1.frequency", 340.0, 345.0, "r"), scene, history)
+    assert found == pytest.approx(of_modes[0], rel=1e-5)
+    assert (340 - natural.low, natural.high - 345) == pytest.approx((frequency, frequency), rel=1e-3)
+
+
+def test_the_worst_of_some_values_is_one_that_is_none():
+    assert damping._worst({"a": 2.0, "b": 3.5, "c": 1.0}) == 3.5
+    assert damping._worst({"a": 2.0, "b": "not reported"}) == "not reported"
+
+
+def test_dominance_is_lost_by_the_length_that_goes_with_a_strain():
+    """Of the last row 1 - p/(a (i/12 + E + p/2)), i = 128 the inertia, a = 0.2 the side in another unit."""
+    scene = SimpleNamespace(
+        contact=SimpleNamespace(stiffness=3.0),
+        block=SimpleNamespace(young=5.0, density=2.0),
+        time=SimpleNamespace(alpha=0.25),
+    )
+    assert dominance_margin(scene, 2.0, 0.5, 0.1) == pytest.approx(1 - 3 / (0.2 * (128 / 12 + 6.5)))
+    assert dominance_margin(scene, 2.0, 0.5, 60.0) == pytest.approx(1 - 3 * 120 / 134)
+
+
+def test_a_history_that_is_none_settles_never():
+    evidence = Evidence(SimpleNamespace(history=lambda *case: None))
+    assert len(evidence.scaled("case", "displacement")) == 0 and math.isnan(evidence.settles("case", "displacement"))
+
+
+def test_who_judges_says_how_far_it_is(monkeypatch):
+    told = []
+    monkeypatch.setattr(judging, "completed", lambda *asked: Run(Outcome.NOT_RUN))
+    problems = [SimpleNamespace(name=name, scene=None) for name in "abc"]
+    answered = judging.answers_of("dda", problems, lambda *far: told.append(far))
+    judging.judged_sets([answered, answered], lambda *far: told.append(far))
+    each = [f"dda {name}" for name in "abc"]
+    assert told == [*((n, 3, each[n]) for n in range(3)), *((n, 6, (each + each)[n]) for n in range(6))]
 
 
 def test_modes_are_told_by_their_angle_in_a_step():

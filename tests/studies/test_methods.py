@@ -87,7 +87,8 @@ def test_every_method_is_one_scheme_of_the_theory():
 
 
 def test_the_exact_locked_block_is_that_of_the_exact_solver():
-    case = methods.locked(method("average")).expand()[0]
+    odd = {"block.width": 1.3, "block.height": 1.7}
+    case = methods.locked(method("average")).expand()[0].with_values(odd)
     exact = solve(case, "block-events").displacement
     assert (
         np.abs(methods.exact_locked(case, solve(case, "block-events").time) - exact).max() < 1e-12 * np.abs(exact).max()

@@ -5,11 +5,12 @@ import math
 import numpy as np
 import pytest
 from conftest import thinned
+from oracles.stand_ins import history
 
 from validation.models.plane import limits
 from validation.models.plane.canon import half_truss
 from validation.scenes.scene import load_scene
-from validation.studies.standing.formulas import turned_columns
+from validation.studies.standing.formulas import at_rest, turned_columns
 from validation.suite.bands import cases
 
 DIP = math.radians(30)
@@ -69,3 +70,8 @@ def test_half_a_truss_rests_and_moves_as_another_program_has_it():
     rows = truss.motion(np.array([0.0, *DROP]))
     moved = rows[1:] - [*rows[0][:3], 0.0, 0.0, 0.0]
     assert moved == pytest.approx(np.array([*DROP.values()]), rel=1e-7, abs=1e-12)
+
+
+def test_half_a_truss_is_loaded_with_its_weight_and_a_share_of_what_is_left_to_its_limit():
+    loads = [at_rest(case, history(case, "dda"))["load"] for case in load_scene("standing-truss-load").expand()]
+    assert loads == pytest.approx([loads[0] + share * (1 - loads[0]) for share in (0.0, 0.5, 0.9)], rel=1e-6)

@@ -231,7 +231,7 @@ class Ladder:
         sweep = {"mode": "zip", "time.steps": counts}
         sweep["time.step"] = [float(f"{self.window / count:.6g}") for count in counts]  # names hold them
         if method.per_element:
-            sweep["fem.elements"] = [max(1, level // method.per_element) for level in method.levels]
+            sweep["fem.elements"] = [level // method.per_element for level in method.levels]
         data = definition | tables | {"time": {"step": 1.0, "steps": 1, **method.time}, "sweep": sweep, "gate": []}
         name = f"{self.base.name}-{method.id}"
         data |= {"name": name, "title": f"{self.base.title}: {method.label}", "run": {"solvers": [method.solver]}}

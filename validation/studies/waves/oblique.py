@@ -32,13 +32,12 @@ def returned_energy(angle: float, wave: str, poisson: float = 0.25) -> float:
     Notes
     -----
     Of a wave A d e^{iw(t - s x - q z)} the boundary z = 0 has sigma_zz + rho cP v_z = 0 and sigma_xz + rho cS v_x = 0,
-    linear in the two waves that come back; flux normal to the boundary goes as c^2 q |A|^2.
+    linear in the two waves that come back; flux normal to the boundary goes as c^2 q |A|^2. Beyond the critical
+    angle a P wave has an imaginary q, of whose sign |A| is independent.
     """
     speeds = {"S": 1.0, "P": math.sqrt((2 - 2 * poisson) / (1 - 2 * poisson))}
     slowness = math.sin(math.radians(angle)) / speeds[wave]
     normal = {name: np.sqrt(complex(1 / c**2 - slowness**2)) for name, c in speeds.items()}
-    if normal["P"].imag > 0:  # a surface wave that dies out into the half space
-        normal["P"] = -normal["P"]
     lame = speeds["P"] ** 2 - 2
 
     def defect(name: str, sign: int) -> Complex:
