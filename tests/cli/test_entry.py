@@ -69,8 +69,10 @@ def test_a_reader_that_has_gone_is_no_failure(monkeypatch):
         raise BrokenPipeError
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
+    closed = []
+    monkeypatch.setattr(entry, "silence", lambda: closed.append(True))
     done = typed("list")
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr, closed) == (0, "", [True])
 
 
 def test_a_full_output_is_one_line(monkeypatch):

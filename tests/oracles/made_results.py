@@ -207,6 +207,8 @@ def figure_text(figure):
         for text in axes.texts:
             place = f"{_kind(axes, text)} {_short([*text.get_position(), *getattr(text, 'xy', ())])}"
             lines.append(f"  text {text.get_text()!r} {place} {to_hex(text.get_color())}")
+        legend = axes.get_legend()
+        lines += [f"  legend {[text.get_text() for text in legend.texts]}"] if legend else []
     return "\n".join(lines)
 
 

@@ -32,6 +32,7 @@ def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, dr
     failed = core_results.verdicts()[:1]
     failed[0] |= {"verdict": "FAIL"}
     assert len(front_pages(front, {}, failed)) - len(front_pages(front, {}, [])) == 1 + len(not_passed(failed))
+    assert [not_passed(failed * many)[1].text.split()[0] for many in (1, 2)] == ["One", "2"]
     damping, error = drawn["first.svg"].axes
     x, y = max((line[1:] for line in lines_of(damping)), key=lambda line: line[0].size)
     assert np.interp(2.0, x, y) == pytest.approx(16.02, abs=0.02)

@@ -10,6 +10,7 @@ from validation.problems.quantities import Quantity
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
 from validation.report.chapters.scene import PERIODS, history_block, lead_figure
+from validation.report.chapters.text import _pressure
 from validation.scenes.scene import load_scene
 
 FREQUENCY = 345.0  # rad/s
@@ -35,6 +36,11 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     assert re.search("dda .* 8\u00a0% .* bar .* displacement", block.caption)
     window = drawn["scene-lead.svg"].axes[0].get_xlim()[1]
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
+
+
+def test_a_stress_stands_in_megapascals_where_it_is_large_and_a_zero_without_unit():
+    stresses = ("0.0", "-9e3x70", "2e4x-3e6")
+    assert [*map(_pressure, stresses)] == [("0", ""), ("-9000, 70", " Pa"), ("0.02, -3", " MPa")]
 
 
 def test_a_count_that_is_none_is_no_small_number():
