@@ -8,6 +8,7 @@ anew.
 """
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,10 @@ from validation.studies.paper import open_close
 from validation.studies.paper.formulas import CLAIMS
 from validation.suite.claims import Evidence
 from validation.suite.folders import get_study, study_names
-from validation.suite.own_solver import gates
+from validation.suite.own_solver import block_data, gates
+from validation.suite.own_solver.block import block, wrapped
+from validation.suite.own_solver.history import AT_REST
+from validation.suite.own_solver.session import GateReport
 
 ROOT = Path(__file__).parents[2]
 KEPT = Path(__file__).with_name("numbers.toml")
@@ -117,6 +121,49 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
     blocks = [made(name, tmp_path) for name, scene in SCENES.items() if "column" not in scene]
     kinds = summed(kind for scene in blocks for kind in gates.unseen([scene]))
     assert_kept(KEPT, "own-solver", {"gates": summed(edges), "kinds": kinds})
+
+
+def answered(scale):
+    """Return what the gates for users' solvers say where some values are so many times the middles of their bands."""
+    reports = []
+    scenes = {scene.name: scene for scene in gates.START.scenes}
+    for gate in gates.START.gates():
+        scene = scenes[gate.scene]
+        metric = AT_REST if gate.metric == "displacement.static" else gate.metric
+        value = scale(scene, metric) * (gate.low + gate.high) / 2
+        said = ["PASS" if gate.low <= value <= gate.high else "FAIL", value, gate.low, gate.high, "", "completed"]
+        of_gate = (gate.id, gates.START.name, scene.name, scene.time.steps, gates.group(gate, scene), metric)
+        reports.append(GateReport(*of_gate, *said, "k", "/nowhere"))
+    return reports
+
+
+def test_what_is_told_of_a_users_solver_is_what_was_told():
+    rectangle, *others = block_data.scenes()
+    first = gates.starts()[1]
+    wrong = {  # places that are no place of a misreading, and motions
+        "elsewhere": {(rectangle.name, AT_REST): 1.37, (others[2].name, AT_REST): 0.7},
+        "moving": {(rectangle.name, "displacement.max"): 3.0},
+        "pressure": {(first.name, "pressure.max"): 3.0},
+        "both": {(first.name, "pressure.max"): 3.0, (first.name, "mode1.frequency"): 1.2},
+        "all": dict.fromkeys([(first.name, one) for one in ("displacement.max", "mode1.measured_damping")], 5.0),
+    }
+    told = {name: answered(lambda s, metric, w=w: w.get((s.name, metric), 1.0)) for name, w in wrong.items()}
+    for number, misreading in enumerate(block_data.MISREADINGS):
+
+        def scale(scene, metric, misreading=misreading):
+            if metric != AT_REST:
+                return 1.0
+            rest = block_data.displacement_at_rest(scene)
+            return block_data.misread_displacement(scene, misreading) / rest
+
+        told[f"misread {number}"] = answered(scale)
+    told["warned"] = [
+        *(replace(report, same_as="bar dda") for report in told["both"][:3]),
+        replace(told["both"][3], same_as="dda", repeated=True, apart_in="displacement", apart=0.0371),
+        *told["all"],
+    ]
+    blocks = {name: block(reports, every=name == "all") for name, reports in told.items()}
+    assert_kept(KEPT, "told", {name: summed(wrapped(lines)) for name, lines in blocks.items()})
 
 
 class Settling(Evidence):
