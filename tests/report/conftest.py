@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from oracles import made_results as made
-from oracles.made_results import figure_text
+from oracles.made_results import figure_text, looks
 from oracles.pages import NUMBER
 from oracles.stand_ins import summed
 
@@ -89,10 +89,13 @@ def kept_figures():
     """Hold figures to a page in `pages`, as `kept` holds blocks; of others what their numbers are together."""
 
     def check(name, figures, others=()):
-        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
+        text = "\n\n".join(
+            f"{file}, looks {summed(looks(figure)):.2f}\n{figure_text(figure)}"
+            for file, figure in sorted(figures.items())
+        )
         for file in sorted({*others} - {*figures}):
             other = figure_text(others[file])
-            numbers = summed(map(float, NUMBER.findall(other)))
+            numbers = summed(map(float, NUMBER.findall(other))) + summed(looks(others[file]))
             text += f"\n{file}: {len(other.splitlines())} lines, {numbers:.2f}"
         _held(name, with_line_numbers(text) + "\n")
 
