@@ -157,6 +157,9 @@ def test_what_is_told_of_a_users_solver_is_what_was_told():
             return block_data.misread_displacement(scene, misreading) / rest
 
         told[f"misread {number}"] = answered(scale)
+    report = replace(told["misread 0"][0], status="FAIL", group="statics", value=-0.0371, low=0.01, high=0.02)
+    told["statics"] = [*told["misread 0"], report]
+    told["following"] = [*told["misread 0"], replace(report, scene=rectangle.name)]
     told["warned"] = [
         *(replace(report, same_as="bar dda") for report in told["both"][:3]),
         replace(told["both"][3], same_as="dda", repeated=True, apart_in="displacement", apart=0.0371),
