@@ -7,10 +7,14 @@ import pytest
 from oracles.made_cases import made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
+from validation.report.blocks import Paragraph
+from validation.report.chapters.damping import damping_table
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
-from validation.report.chapters.scene import PERIODS, history_block, lead_figure
+from validation.report.chapters.scene import PERIODS, _reading, history_block, lead_figure
+from validation.report.chapters.summary import damping_blocks
 from validation.report.chapters.text import _pressure
+from validation.report.figures.curves import HistoryPanel
 from validation.scenes.scene import load_scene
 
 FREQUENCY = 345.0  # rad/s
@@ -55,6 +59,22 @@ def test_the_level_of_a_history_is_that_of_the_reference(drawn, tmp_path):
     history_block(made_group(made_case(BASE, metrics, histories)), ["displacement"], tmp_path)
     levels = {float(line.get_ydata()[0]) for figure in drawn.values() for line in figure.axes[0].lines}
     assert -7.0 in levels and -3.0 not in levels
+
+
+def test_what_damping_removed_is_told_by_its_parts(kept):
+    still = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    damped = still.with_values({"time.gg": 0.997, "damping.mass": 7.0, "damping.stiffness": 3e-5})
+    open_contact = load_scene("unlocked-constant").expand()[0]
+    energies = {"energy.given": 7e5, "energy.lost_algorithmic": -2e4, "energy.lost_switching": 9e4}
+    blocks = []
+    mode = {"mode1.frequency": FREQUENCY, "mode1.damping": 0.371}
+    for scene, metrics in ((still, mode), (damped, mode), (open_contact, energies), (open_contact, {})):
+        blocks += damping_blocks(made_group(made_case(scene, {"dda": metrics})))
+    labels = [made_case(still, {"dda": {"mode1.damping": x}, "fem": {}}, None, 40 * "l") for x in (0.013, 0.029)]
+    dense = made_history(0.001, 1 - np.cos(0.5 * np.arange(1.0, 20_001.0)))
+    slow = HistoryPanel("", {"dda": dense}, {"displacement": 1.0}, None)
+    reading = map(Paragraph, _reading([slow], ["displacement"], True))
+    kept("damping", [*blocks, damping_table(made_group(*labels)), *reading])
 
 
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):
