@@ -28,7 +28,7 @@ def test_a_first_peak_is_told_with_pressure_at_rest_and_tension(at_rest, least, 
 def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, drawn, tmp_path):
     front = front_chapter(core_results, ["core"], tmp_path)
     kept("front", front_pages(front, {}, [])[1:])
-    kept_figures("figures-front", {}, drawn)
+    kept_figures("figures-front", drawn)
     failed = core_results.verdicts()[:1]
     failed[0] |= {"verdict": "FAIL"}
     assert len(front_pages(front, {}, failed)) - len(front_pages(front, {}, [])) == 1 + len(not_passed(failed))

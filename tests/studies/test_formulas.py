@@ -21,11 +21,6 @@ from validation.studies.waves import rows
 from validation.studies.waves.measure import Guide
 from validation.suite.matrix import _reported
 from validation.suite.own_solver.block_data import (
-    MISREADINGS,
-    AtRest,
-    is_misread,
-    misread_displacement,
-    misreadings,
     scenes,
 )
 from validation.suite.own_solver.gates import shown_by_history
@@ -67,27 +62,6 @@ def test_waves_in_a_layer_are_told_by_its_blocks(monkeypatch):
     assert waves.closed(case) == {"courant": 0.413333, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
     column.glue = None
     assert "glue" not in waves.closed(case)
-
-
-def test_a_block_is_misread_where_it_would_rest_elsewhere():
-    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
-    of_square = [is_misread(square, one) for one in MISREADINGS]
-    assert of_square == [False] * len(MISREADINGS)
-    odd = square.with_values({"block.width": 1.5, "block.height": 2.5, "block.poisson": 0.2, "load.eccentricity": 0.1})
-    assert [is_misread(odd, one) for one in MISREADINGS] == [True, True, True, True, False, True, False, True, True]
-    unloaded = odd.with_values({"load.eccentricity": 0.0, "load.pressure": 0.0})
-    assert not any(is_misread(unloaded, one) for one in MISREADINGS)
-
-
-def test_misreadings_are_named_by_where_a_solver_rests():
-    """One that reads every scene so; and no more where it rests elsewhere in a scene that shows it."""
-    for misreading in (MISREADINGS[0], MISREADINGS[3], MISREADINGS[-1]):
-        rests = [AtRest(scene.name, misread_displacement(scene, misreading), 1e-9) for scene in scenes()]
-        apart = [scene.name for scene in scenes() if is_misread(scene, misreading)]
-        assert misreadings(rests)[misreading] == apart, misreading.words
-    assert apart[-1] == rests[-1].scene
-    rests[-1] = AtRest(rests[-1].scene, rests[-1].value + 2e-9, 1e-9)
-    assert misreading not in misreadings(rests)
 
 
 def test_what_a_history_shows_is_asked_of_it():
