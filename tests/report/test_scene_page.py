@@ -1,6 +1,7 @@
 """The page of a scene: its drawing, and the case and window that show what the solvers differ by."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -8,11 +9,12 @@ from oracles.made_cases import made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
 from validation.report.blocks import Paragraph
+from validation.report.chapters.compare import _facts
 from validation.report.chapters.damping import damping_table
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
 from validation.report.chapters.scene import PERIODS, _reading, history_block, lead_figure
-from validation.report.chapters.summary import damping_blocks
+from validation.report.chapters.summary import _frequency, damping_blocks
 from validation.report.chapters.text import _pressure
 from validation.report.figures.curves import HistoryPanel
 from validation.scenes.scene import load_scene
@@ -73,8 +75,17 @@ def test_what_damping_removed_is_told_by_its_parts(kept):
     labels = [made_case(still, {"dda": {"mode1.damping": x}, "fem": {}}, None, 40 * "l") for x in (0.013, 0.029)]
     dense = made_history(0.001, 1 - np.cos(0.5 * np.arange(1.0, 20_001.0)))
     slow = HistoryPanel("", {"dda": dense}, {"displacement": 1.0}, None)
+    assert _frequency(made_group(made_case(still, {"dda": {}, "fem": mode}))) == []
+    blocks += _frequency(made_group(made_case(still, {"dda": mode, "fem": {"mode1.frequency": 360.0}})))
     reading = map(Paragraph, _reading([slow], ["displacement"], True))
     kept("damping", [*blocks, damping_table(made_group(*labels)), *reading])
+
+
+def test_the_nearest_explanation_is_told_where_it_has_a_cause():
+    answer = SimpleNamespace(causes=(), nearest=None, unexplained=0.0371, alike=[], departure=None, opened=(3, 17))
+    for causes in ([], ["gg", "start"]):
+        answer.nearest = {"causes": causes}
+        assert len(_facts(answer)[0].rows) == 1 + bool(causes)
 
 
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):
