@@ -243,24 +243,6 @@ def test_causes_that_give_the_same_history_are_told_apart():
     assert [*cli_compare._lines(answer)][1] == "to run the scene so, add --set time.gg=0.9"
 
 
-def test_a_comparison_is_written_and_drawn_where_it_is_asked_for(monkeypatch, tmp_path):
-    said = SimpleNamespace(as_dict=lambda: {"sentence": "so"}, departs=True)
-    page = "validation.report.chapters.compare"
-    found = []
-    monkeypatch.setattr("validation.diagnosis.reading.read", lambda *given: "read")
-    monkeypatch.setattr(
-        "validation.diagnosis.judgement.compare", lambda scene, history, within: found.append(within) or said
-    )
-    monkeypatch.setattr(f"{page}.write_page", lambda scene, name, answer, out: found.append((name, answer, out)))
-    monkeypatch.setattr(f"{page}.answer_figure", lambda scene, answer, slide: (answer, slide))
-    monkeypatch.setattr(figures, "save_as", lambda figure, path: found.append((figure, path)))
-    words = ("--tolerance", "0.03", "--out", "p.pdf", "--figure", "f.svg", "--json")
-    (tmp_path / "h.csv").touch()
-    done = typed("compare", *CASE, tmp_path / "h.csv", *words)
-    assert (done.returncode, json.loads(done.stdout)) == (1, said.as_dict())
-    assert found == [0.03, ("h.csv", said, Path("p.pdf")), ((said, True), Path("f.svg"))]
-
-
 def test_answers_that_are_kept_and_written_as_a_pdf_are_named(monkeypatch, tmp_path):
     judged = [SimpleNamespace(judged=True)]
     found = []

@@ -21,7 +21,7 @@ from validation.studies.cost import formulas, measures
 from validation.studies.cost.answer import answer
 from validation.studies.cost.ladder import Ladder, Method, first_period, landing, methods
 from validation.studies.cost.rivals import ModalFilter, PlainLoop
-from validation.suite.folders import get_study, study_of_scene
+from validation.suite.folders import folder_of, get_study, study_of_scene
 
 COST = get_study("cost")
 COARSE = replace(COST, timed=False)  # the repeats of a study of timings are tested apart
@@ -170,6 +170,7 @@ def test_a_user_s_block_is_solved_by_all_methods_that_take_it():
     left_out = {scene.name for scene in ladder.scenes()} - {scene.name for scene in mine.scenes}
     assert left_out == {f"cost-paper-{name}" for name in ("bar", "continuum", "bar-events", "loop", "modal")}
     assert (mine.name, mine.gates(), len(mine.derived())) == ("cost-of-cost-paper", (), 59)
+    assert folder_of(mine.name).path.name == "cost"
 
 
 def test_the_cheapest_ways_are_told_with_the_reference():
