@@ -2,10 +2,9 @@
 
 import numpy as np
 import pytest
-from oracles.made_cases import line_in, lines_of, made_row, rules_of
+from oracles.made_cases import lines_of, made_row
 
 from validation.report.chapters.gates import not_passed, verdict_line
-from validation.report.figures.curves import GREY, style_of
 from validation.report.front import front_chapter, front_pages
 from validation.scenes.scene import load_scene
 from validation.studies.core import decisions
@@ -33,13 +32,9 @@ def test_the_first_pages_say_what_was_found(kept, kept_figures, core_results, dr
     failed[0] |= {"verdict": "FAIL"}
     assert len(front_pages(front, {}, failed)) - len(front_pages(front, {}, [])) == 1 + len(not_passed(failed))
     assert [not_passed(failed * many)[1].text.split()[0] for many in (1, 2)] == ["One", "2"]
-    damping, error = drawn["first.svg"].axes
+    damping, _ = drawn["first.svg"].axes
     x, y = max((line[1:] for line in lines_of(damping)), key=lambda line: line[0].size)
     assert np.interp(2.0, x, y) == pytest.approx(16.02, abs=0.02)
-    assert rules_of(damping, GREY)[1] == [10.0, 2.0, 1.0]
-    assert list(line_in(error, style_of("dda").color)[1]) == pytest.approx([64, 9, 3.6, 0.8])
-    (chart,) = drawn["decision-step.svg"].axes
-    assert "a/c = 3.29 ms" in [text.get_text() for text in chart.texts]
 
 
 @pytest.mark.parametrize(
