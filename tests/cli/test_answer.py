@@ -9,6 +9,7 @@ from oracles.made_cases import kept_study, made_row
 from validation import load_scene
 from validation.cli.printing import answer
 from validation.cli.printing.answer import FAILURES_SHOWN, SCREEN, RunAnswer
+from validation.cli.printing.tables import print_ends
 from validation.engine.measured import JudgedStudy
 from validation.gates.changes import Change
 from validation.gates.gate import Gate, Status, Verdict, judge
@@ -49,7 +50,7 @@ def made(tmp_path):
 def test_many_studies_fit_one_screen_and_those_with_something_to_tell_keep_their_line(made):
     runs = [run_of("made" if i == 19 else f"s{i}", [judge(GATE, 0.04 if i != 18 else 1.0)], ENDS) for i in range(25)]
     lines = [text for text, _ in answer.summary(ran(made, runs), 80)]
-    assert len(lines) <= SCREEN
+    assert len(lines) == SCREEN
     rows = lines[1 : next(i for i, line in enumerate(lines) if " PASS, " in line)]
     assert len(rows) > 10 and rows[-1].startswith(f"{26 - len(rows)} more")
     assert sum(int(row.split()[-4]) for row in rows) == 24
@@ -85,3 +86,13 @@ def test_plain_data_hold_what_the_text_says(made):
     assert (data["changes"][0]["before"], data["changes"][0]["after"]) == ("PASS", "FAIL")
     assert data["ended_badly"] == [f"{CASE.name} bar: timeout: {Outcome.TIMEOUT.sentence} at 3"]
     assert (data["messages"], data["status"]) == (MESSAGES, 1)
+
+
+def test_what_did_not_complete_is_told_with_its_end_and_what_was_refused_is_bad(made, capsys):
+    print_ends(made, ["made"])
+    assert [line.split(": ")[:2] for line in capsys.readouterr().out.splitlines()] == [
+        [f"{CASE.name} {solver}", str(end)] for solver, end in ENDS.items() if end is not Outcome.COMPLETED
+    ]
+    refused = run_of("made", [], {"dda": Outcome.REFUSED, "fem": Outcome.OVERFLOW})
+    assert [line.split()[1] for line in answer.badly_ended(ran(made, [refused]))] == ["dda:"]
+    assert answer.ends(ran(made, [refused])) == {"overflow": 1}

@@ -1,6 +1,7 @@
 """Every number that a command prints, with its unit: computed apart, or kept by hand in a results directory."""
 
 import csv
+import json
 
 import pytest
 from conftest import refused, typed
@@ -58,5 +59,9 @@ def test_claims_are_listed_with_their_verdicts(tmp_path):
     assert {name: lines[name][5:32].strip() for name in words} == words
     assert typed("claims", "--results", tmp_path, "--out", tmp_path / "claims.md").returncode == 0
     assert "## C1: confirmed" in (tmp_path / "claims.md").read_text()
+    listed = json.loads(typed("claims", "--results", tmp_path, "--json").stdout)
+    assert {one["id"]: one["verdict"] for one in listed if one["verdict"]} == {
+        k: v for k, v in words.items() if k != "C3"
+    }
     Results(tmp_path).write_json("studies/paper.json", {"study": "paper"})
     assert refused("claims", "--results", tmp_path).strip().endswith("dda-validate run paper")

@@ -69,8 +69,10 @@ def test_a_reader_that_has_gone_is_no_failure(monkeypatch):
         raise BrokenPipeError
 
     monkeypatch.setattr(entry, "command_line", lambda: fail)
+    closed = []
+    monkeypatch.setattr(entry, "silence", lambda: closed.append(True))
     done = typed("list")
-    assert (done.returncode, done.stderr) == (0, "")
+    assert (done.returncode, done.stderr, closed) == (0, "", [True])
 
 
 def test_a_full_output_is_one_line(monkeypatch):
@@ -78,8 +80,10 @@ def test_a_full_output_is_one_line(monkeypatch):
         def flush(self):
             raise OSError(28, "No space left on device")
 
+    closed = []
+    monkeypatch.setattr(entry, "silence", lambda: closed.append(True))
     monkeypatch.setattr(entry, "command_line", lambda: lambda **options: setattr(sys, "stdout", Full()))
-    assert refused("list") == "error: standard output: No space left on device\n"
+    assert (refused("list"), closed) == ("error: standard output: No space left on device\n", [True])
 
 
 def test_a_module_that_is_nowhere_is_refused_before_anything_runs():

@@ -8,7 +8,7 @@ import threading
 import numpy as np
 import pytest
 import typer
-from conftest import SCENE, beside, typed
+from conftest import SCENE, beside, refused, typed
 from oracles.answers import answered
 from oracles.pages import ROOT, write_my_solver
 
@@ -101,3 +101,6 @@ def test_what_takes_long_shows_a_bar(tmp_path, monkeypatch):
     assert stopped == [(True, True)]  # of no terminal it is not drawn
     monkeypatch.setattr("validation.problems.pack.write_pack", lambda *arguments: 7)
     assert re.fullmatch(r"wrote pack: 7 [a-z ]+\n", typed("export-pack", "pack", cwd=tmp_path).stdout)
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/notes").write_text("mine")
+    assert refused("export-pack", "mine", cwd=tmp_path).startswith("error: mine: ")

@@ -1,6 +1,7 @@
 """Text from outside acts on no terminal, no Markdown page and no HTML page."""
 
 import json
+import re
 
 import pytest
 from conftest import SCENE, typed
@@ -17,11 +18,11 @@ def pages(tmp_path_factory):
     place = tmp_path_factory.mktemp("evil")
     judged = '[[gate]]\npair = ["dda", "bar"]\nmetric = "displacement.l2"\nband = [0.0, 1e-9]\n'
     gate = judged + f"reason = {json.dumps(EVIL)}\n"
-    text = SCENE.replace('"A small scene"', json.dumps(EVIL)) + '[run]\nsolvers = ["dda", "bar"]\n' + gate
+    text = SCENE.replace('"A small scene"', json.dumps(EVIL)) + '[run]\nsolvers = ["dda", "bar", "bar-events"]\n' + gate
     (place / "evil.toml").write_text(text)
     summary = place / "summary.md"
     ran = typed("run", "evil.toml", "--verbose", "--results", "r", "--summary", summary, cwd=place)
-    assert ran.returncode == 1
+    assert ran.returncode == 1 and re.search(r"\n\nevil bar-events: ", ran.stdout)
     shown = typed("show", "evil.toml", cwd=place)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(histories, "save", lambda figure, path: path)

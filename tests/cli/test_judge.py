@@ -19,6 +19,7 @@ from validation.problems.data import PACK
 from validation.problems.pack import table_of
 from validation.problems.problem import names, problem
 from validation.report.chapters import judged
+from validation.report.site.submissions import COLORS
 from validation.runs.run import Outcome
 from validation.solvers import registry
 from validation.suite import judging
@@ -202,6 +203,10 @@ def test_the_site_holds_every_answer_and_the_data_of_the_commands_and_needs_noth
     row = rows["Bob's <code> & co", "default", "rocking"]
     assert (row["verdict"], row["step_s"], row["cause"]["ids"]) == ("FAIL", 0.002, ["factor"])
     assert (row["criteria"][0]["error"], row["criteria"][0]["allowed"]) == (0.04, pytest.approx(0.015, abs=6e-4))
+    colors = [[color in files[f"badge_{stem}.svg"] for color in COLORS.values()] for stem in stems]
+    assert colors == [[False, False, True], [False, False, True], [True, False, False]]
+    left = [name for name in names() if name not in {row["problem"] for row in verdicts["answers"]}]
+    assert f" {', '.join(left)}." in files["index.html"] and files["index.html"].count("<h2") == 3
     assert json.loads(typed("judge", layout, "--json").stdout) == verdicts
     rounding = answered(tmp_path / "rounding", 1 + 1e-13, ("locked",))
     (row,) = json.loads(typed("judge", rounding, "--json").stdout)["answers"]

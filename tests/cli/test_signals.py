@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+from types import SimpleNamespace
 
 import pytest
 
@@ -64,7 +65,8 @@ def test_the_first_signal_interrupts_a_second_one_ends_and_a_fork_just_ends(told
 
 
 def test_a_watcher_ends_the_process_by_a_signal_of_ours_alone(told, monkeypatch):
-    monkeypatch.setattr(signals, "GRACE_PERIOD", 0.0)
+    waits = []
+    monkeypatch.setattr(signals, "threading", SimpleNamespace(Event=lambda: SimpleNamespace(wait=waits.append)))
     for numbers, ends in (([signal.SIGUSR1], False), ([signal.SIGUSR1, signal.SIGTERM], True)):
         read_end, write_end = os.pipe()
         with os.fdopen(write_end, "wb") as stream:
@@ -76,7 +78,7 @@ def test_a_watcher_ends_the_process_by_a_signal_of_ours_alone(told, monkeypatch)
         with pytest.raises(OSError, match="Bad file descriptor"):  # it is closed
             os.fstat(read_end)
         assert signals._received == [signal.SIGTERM] * ends
-    assert told[-1] == 143
+    assert told[-1] == 143 and waits == [signals.GRACE_PERIOD]
 
 
 @pytest.mark.usefixtures("interruptible")
@@ -85,10 +87,12 @@ def test_handlers_are_there_as_long_as_they_are_asked_for_and_what_is_ignored_st
     before = [signal.getsignal(number) for number in NAMED]
     hook = sys.unraisablehook
     signals._received.append(signal.SIGHUP)
+    signals._pending_messages.clear()
     with signals.interruptible():
         during = [signal.getsignal(number) for number in NAMED]
         assert [mine is theirs for mine, theirs in zip(during, before, strict=True)] == [False, False, True]
         assert (len(signals._watchers), signals._received) == (1, [])
+        assert signals._pending_messages == [signals.INTERRUPTED_MESSAGE]
         signals._received.append(signal.SIGTERM)
         with pytest.raises(Ended):
             sys.unraisablehook(None)

@@ -154,6 +154,8 @@ def test_on_a_terminal_what_a_new_scene_needs_is_asked(tmp_path, monkeypatch):
     printed("new", "told.toml", "--kind", "slope", "--rock", "basalt", "--width", "3", cwd=tmp_path)
     assert "block" not in asked and "granite" not in asked
     assert (tmp_path / "told.toml").read_text() == (tmp_path / "asked.toml").read_text()
+    printed("new", "column.toml", "--kind", "column", "--rock", "basalt", "--frequency", "3.7", cwd=tmp_path)
+    assert load_scene(tmp_path / "column.toml").input.frequency == 3.7 and 3.7 not in asked
 
 
 # ---- what is handed on ----------------------------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 import json
 import sys
 
+import numpy as np
 import pytest
 from conftest import OVERFLOW, SCENE, refused, thinned, typed
 
@@ -33,7 +34,8 @@ WIDE, TIGHT = gated("[0.0, 1.0]"), gated("[0.0, 1e-3]")
 def test_a_baseline_in_the_results_directory_is_read_before_it_is_overwritten(where, scene_file, tmp_path):
     scene_file.write_text(gated("[-1.0, 1.0]", '["dda"]'))
     (tmp_path / "link").symlink_to(tmp_path / "r")
-    assert typed("run", scene_file, "--results", "r", cwd=tmp_path).returncode == 0
+    done = typed("run", scene_file, "--results", "r", "--json", cwd=tmp_path)
+    assert done.returncode == json.loads(done.stdout)["status"] == 0
     scene_file.write_text(gated("[-1.0, -0.5]", '["dda"]'))
     done = typed("run", scene_file, "--results", "r", "--baseline", where, cwd=tmp_path)
     assert done.returncode == 1
@@ -70,6 +72,15 @@ def test_fields_are_not_written_after_an_overflow(scene_file, tmp_path):
     assert done.returncode == 3 and "overflow" in done.stdout
     assert out.read_text() == GOOD
     assert sorted(path.name for path in tmp_path.iterdir()) == [out.name, scene_file.name]
+
+
+def test_a_history_is_written_of_a_run_that_completes(scene_file, tmp_path):
+    out = tmp_path / "h.csv"
+    assert typed("solve", scene_file, "--csv", out).returncode == 0
+    kept = get_solver("dda").solve(load_scene(scene_file)).history
+    assert np.loadtxt(out, delimiter=",", skiprows=1)[:, :2] == pytest.approx(
+        np.stack([kept.time, kept.columns["displacement"]], axis=1), rel=1e-9
+    )
 
 
 def test_a_solver_that_writes_no_fields_leaves_a_good_file_as_it_was(scene_file, tmp_path, monkeypatch):

@@ -75,14 +75,6 @@ def kept_study(results, cases, comparisons=(), **parts):
 # ---- what a drawn axes shows --------------------------------------------------------------------------------------
 
 
-def rules_of(axes, color):
-    """Return where the rules of a colour stand that cross an axes: heights of level ones, x of upright ones."""
-    rules = [line for line in axes.lines if to_hex(line.get_color()) == color]
-    level = [line.get_ydata()[0] for line in rules if line.get_transform() == axes.get_yaxis_transform(which="grid")]
-    upright = [line.get_xdata()[0] for line in rules if line.get_transform() == axes.get_xaxis_transform(which="grid")]
-    return level, upright
-
-
 def lines_of(axes):
     """Return the lines in data coordinates: colour, x and y."""
     drawn = [line for line in axes.lines if line.get_transform() == axes.transData]

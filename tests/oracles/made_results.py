@@ -207,7 +207,24 @@ def figure_text(figure):
         for text in axes.texts:
             place = f"{_kind(axes, text)} {_short([*text.get_position(), *getattr(text, 'xy', ())])}"
             lines.append(f"  text {text.get_text()!r} {place} {to_hex(text.get_color())}")
+        legend = axes.get_legend()
+        lines += [f"  legend {[text.get_text() for text in legend.texts]}"] if legend else []
     return "\n".join(lines)
+
+
+LOOKS = ("zorder", "alpha", "clip_on", "linewidth", "markeredgewidth", "fontsize", "ha", "va")
+
+
+def looks(figure):
+    """Yield how things are drawn: layers, widths, letters, sides, dashes, and how high titles stand."""
+    for axes in figure.axes:
+        yield float(axes.titleOffsetTrans.get_matrix()[1, 2])
+        lines = [line for line in axes.lines if _kind(axes, line) == "data"]
+        for artist in (*lines, *axes.patches, *axes.collections, *axes.texts):
+            values = [getattr(artist, f"get_{name}", float)() for name in LOOKS]
+            for value in values:
+                yield from (part if isinstance(part, str) else float(part or 0.0) for part in np.ravel(value).tolist())
+            yield from getattr(artist, "_unscaled_dash_pattern", (0, None))[1] or ()
 
 
 def _kind(axes, artist):

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from oracles import made_results as made
-from oracles.made_results import figure_text
+from oracles.made_results import figure_text, looks
 from oracles.pages import NUMBER
 from oracles.stand_ins import summed
 
@@ -86,15 +86,17 @@ def lines_of(block):
 
 @pytest.fixture
 def kept_figures():
-    """Hold figures to a page in `pages`, as `kept` holds blocks; of others what their numbers are together."""
+    """Hold some figures to a page in `pages`, as `kept` holds blocks; of others what their words and numbers sum to."""
 
-    def check(name, figures, others=()):
-        text = "\n\n".join(f"{file}\n{figure_text(figure)}" for file, figure in sorted(figures.items()))
-        for file in sorted({*others} - {*figures}):
-            other = figure_text(others[file])
-            numbers = summed(map(float, NUMBER.findall(other)))
-            text += f"\n{file}: {len(other.splitlines())} lines, {numbers:.2f}"
-        _held(name, with_line_numbers(text) + "\n")
+    def check(name, drawn, whole=()):
+        lines = []
+        for file, figure in sorted(drawn.items()):
+            text = figure_text(figure)
+            words = [float(word) if NUMBER.fullmatch(word) else word for word in text.split()]
+            total = summed(words) + summed(looks(figure))
+            lines.append(f"{file}: {len(text.splitlines())} lines, {total:.2f}")
+            lines += [text, ""] if file in whole else []
+        _held(name, with_line_numbers("\n".join(lines)) + "\n")
 
     return check
 

@@ -8,6 +8,8 @@ from validation.report.figures import curves
 from validation.report.figures import histories as figures
 from validation.report.figures.drawing import FigureHooks
 from validation.report.figures.space_time import SpaceTime
+from validation.report.scene.hooks import ShowingHooks
+from validation.scenes.scene import load_scene
 
 SOLVERS = ("dda", "dda-textbook", "fem", "bar", "continuum", "somebody's own")
 
@@ -16,6 +18,8 @@ def test_a_kind_of_scene_that_nobody_draws_is_an_empty_sheet():
     axes = Figure().add_subplot()
     FigureHooks().draw(axes, None)
     assert not axes.axison and not axes.lines
+    across, rows = ShowingHooks().drawing(load_scene("rigid-impact").expand()[0], None)
+    assert across == 0 and [words.split()[0] for _, words in rows] == ["young", "density", "gravity"]
 
 
 def test_thin_keeps_ends_and_every_spike():

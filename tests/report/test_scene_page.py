@@ -1,15 +1,22 @@
 """The page of a scene: its drawing, and the case and window that show what the solvers differ by."""
 
 import re
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from oracles.made_cases import made_case, made_group, made_history
 
 from validation.problems.quantities import Quantity
+from validation.report.blocks import Paragraph
+from validation.report.chapters.compare import _facts
+from validation.report.chapters.damping import damping_table
 from validation.report.chapters.gates import value_cell
 from validation.report.chapters.judged import numbers_table
-from validation.report.chapters.scene import PERIODS, history_block, lead_figure
+from validation.report.chapters.scene import PERIODS, _reading, history_block, lead_figure
+from validation.report.chapters.summary import _frequency, damping_blocks
+from validation.report.chapters.text import _pressure
+from validation.report.figures.curves import HistoryPanel
 from validation.scenes.scene import load_scene
 
 FREQUENCY = 345.0  # rad/s
@@ -37,6 +44,11 @@ def test_the_case_and_the_window_that_open_a_page(known, drawn, tmp_path):
     assert window == pytest.approx(PERIODS * 2 * np.pi / FREQUENCY, rel=0.02 if known else 0.2)
 
 
+def test_a_stress_stands_in_megapascals_where_it_is_large_and_a_zero_without_unit():
+    stresses = ("0.0", "-9e3x70", "2e4x-3e6")
+    assert [*map(_pressure, stresses)] == [("0", ""), ("-9000, 70", " Pa"), ("0.02, -3", " MPa")]
+
+
 def test_a_count_that_is_none_is_no_small_number():
     assert value_cell(0.0, "displacement.fine_settling_step") == "0" and value_cell(0.0, "displacement.l2") == "<10⁻¹²"
     numbers = (Quantity("openings", "1", 0.0, 5.0), Quantity("damping ratio", "1", 0.0, 0.1))
@@ -49,6 +61,31 @@ def test_the_level_of_a_history_is_that_of_the_reference(drawn, tmp_path):
     history_block(made_group(made_case(BASE, metrics, histories)), ["displacement"], tmp_path)
     levels = {float(line.get_ydata()[0]) for figure in drawn.values() for line in figure.axes[0].lines}
     assert -7.0 in levels and -3.0 not in levels
+
+
+def test_what_damping_removed_is_told_by_its_parts(kept):
+    still = BASE.with_values({"time.alpha": 0.25, "time.delta": 0.5})
+    damped = still.with_values({"time.gg": 0.997, "damping.mass": 7.0, "damping.stiffness": 3e-5})
+    open_contact = load_scene("unlocked-constant").expand()[0]
+    energies = {"energy.given": 7e5, "energy.lost_algorithmic": -2e4, "energy.lost_switching": 9e4}
+    blocks = []
+    mode = {"mode1.frequency": FREQUENCY, "mode1.damping": 0.371}
+    for scene, metrics in ((still, mode), (damped, mode), (open_contact, energies), (open_contact, {})):
+        blocks += damping_blocks(made_group(made_case(scene, {"dda": metrics})))
+    labels = [made_case(still, {"dda": {"mode1.damping": x}, "fem": {}}, None, 40 * "l") for x in (0.013, 0.029)]
+    dense = made_history(0.001, 1 - np.cos(0.5 * np.arange(1.0, 20_001.0)))
+    slow = HistoryPanel("", {"dda": dense}, {"displacement": 1.0}, None)
+    assert _frequency(made_group(made_case(still, {"dda": {}, "fem": mode}))) == []
+    blocks += _frequency(made_group(made_case(still, {"dda": mode, "fem": {"mode1.frequency": 360.0}})))
+    reading = map(Paragraph, _reading([slow], ["displacement"], True))
+    kept("damping", [*blocks, damping_table(made_group(*labels)), *reading])
+
+
+def test_the_nearest_explanation_is_told_where_it_has_a_cause():
+    answer = SimpleNamespace(causes=(), nearest=None, unexplained=0.0371, alike=[], departure=None, opened=(3, 17))
+    for causes in ([], ["gg", "start"]):
+        answer.nearest = {"causes": causes}
+        assert len(_facts(answer)[0].rows) == 1 + bool(causes)
 
 
 def test_a_case_without_a_step_in_the_common_time_is_left_out(drawn, tmp_path):

@@ -217,6 +217,8 @@ def test_every_kind_of_block_has_its_form_in_every_renderer(kept_text, tmp_path)
     body, _, sources = html.partition("<body>")[2].partition('<ul class="references">')
     bathe = sources.partition('"bathe2005">')[2].splitlines()[:2]
     kept_text("blocks", [*body.splitlines(), *bathe, str([*map(int, pdf.kept_with_next(BLOCKS))])])
+    broken = [Heading("a"), Paragraph("b"), kinds.PageBreak(), Paragraph("c")]
+    assert pdf.kept_with_next(broken) == [False] * 4
 
 
 def test_blocks_stand_apart_in_a_terminal_and_a_callout_close_to_what_it_is_of():

@@ -21,7 +21,7 @@ from validation.studies.cost import formulas, measures
 from validation.studies.cost.answer import answer
 from validation.studies.cost.ladder import Ladder, Method, first_period, landing, methods
 from validation.studies.cost.rivals import ModalFilter, PlainLoop
-from validation.suite.folders import get_study, study_of_scene
+from validation.suite.folders import folder_of, get_study, study_of_scene
 
 COST = get_study("cost")
 COARSE = replace(COST, timed=False)  # the repeats of a study of timings are tested apart
@@ -170,17 +170,19 @@ def test_a_user_s_block_is_solved_by_all_methods_that_take_it():
     left_out = {scene.name for scene in ladder.scenes()} - {scene.name for scene in mine.scenes}
     assert left_out == {f"cost-paper-{name}" for name in ("bar", "continuum", "bar-events", "loop", "modal")}
     assert (mine.name, mine.gates(), len(mine.derived())) == ("cost-of-cost-paper", (), 59)
+    assert folder_of(mine.name).path.name == "cost"
 
 
 def test_the_cheapest_ways_are_told_with_the_reference():
     """Numbers of the text: window and mean in ms, and per cent that the reference may be off."""
     told = {"window": 0.0125, "mean": 0.00475, "label": "a mesh", "uncertainty.force": 0.0023}
     way = {"who": measures.OWN, "quantity": "force", "accuracy": "1 %", "way": "few", "step": 0.0021, "work": 417.0}
+    way |= {"seconds": 0.49849, "setup": 0.79951}
     derived = [{"name": measures.REFERENCE, "metrics": told}, {"name": "cheapest", "metrics": way}]
     derived.append({"name": "none", "metrics": {}})
     table_of_ways, text = answer({"derived": derived})
     (row,) = table_of_ways.rows
-    assert [str(cell) for cell in row] == ["force", "1 %", "dda", "few", "2.1", "–", "–", "417"]
+    assert [str(cell) for cell in row] == ["force", "1 %", "dda", "few", "2.1", "498", "800", "417"]
     assert re.findall(r"[\d.]*\d", text.text) == ["2", "12.5", "4.75", "0.23"]
 
 

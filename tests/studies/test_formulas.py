@@ -17,22 +17,20 @@ from validation.studies.core import damping
 from validation.studies.paper import formulas as paper
 from validation.studies.paper.register import dominance_margin
 from validation.studies.patch import formulas as patch
+from validation.studies.slopes import formulas as slopes
 from validation.studies.two_codes import formulas as two_codes
 from validation.studies.waves import formulas as waves
+from validation.studies.waves import rows
+from validation.studies.waves.measure import Guide
 from validation.suite import judging
 from validation.suite.claims import Evidence
 from validation.suite.matrix import _reported
-from validation.suite.own_solver.block_data import (
-    MISREADINGS,
-    AtRest,
-    is_misread,
-    misread_displacement,
-    misreadings,
-    scenes,
-)
+from validation.suite.own_solver.block_data import scenes
 from validation.suite.own_solver.gates import shown_by_history
 from validation.suite.own_solver.history import AT_REST, _bound, rest, root, shown
 from validation.theory import spectra
+from validation.theory import waves as theory_of_waves
+from validation.theory.stepping import Stepping
 
 
 def test_the_order_of_blocks_in_a_beam_is_that_of_the_last_halving():
@@ -68,27 +66,6 @@ def test_waves_in_a_layer_are_told_by_its_blocks(monkeypatch):
     assert waves.closed(case) == {"courant": 0.413333, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
     column.glue = None
     assert "glue" not in waves.closed(case)
-
-
-def test_a_block_is_misread_where_it_would_rest_elsewhere():
-    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
-    of_square = [is_misread(square, one) for one in MISREADINGS]
-    assert of_square == [False] * len(MISREADINGS)
-    odd = square.with_values({"block.width": 1.5, "block.height": 2.5, "block.poisson": 0.2, "load.eccentricity": 0.1})
-    assert [is_misread(odd, one) for one in MISREADINGS] == [True, True, True, True, False, True, False, True, True]
-    unloaded = odd.with_values({"load.eccentricity": 0.0, "load.pressure": 0.0})
-    assert not any(is_misread(unloaded, one) for one in MISREADINGS)
-
-
-def test_misreadings_are_named_by_where_a_solver_rests():
-    """One that reads every scene so; and no more where it rests elsewhere in a scene that shows it."""
-    for misreading in (MISREADINGS[0], MISREADINGS[3], MISREADINGS[-1]):
-        rests = [AtRest(scene.name, misread_displacement(scene, misreading), 1e-9) for scene in scenes()]
-        apart = [scene.name for scene in scenes() if is_misread(scene, misreading)]
-        assert misreadings(rests)[misreading] == apart, misreading.words
-    assert apart[-1] == rests[-1].scene
-    rests[-1] = AtRest(rests[-1].scene, rests[-1].value + 2e-9, 1e-9)
-    assert misreading not in misreadings(rests)
 
 
 def test_what_a_history_shows_is_asked_of_it():
@@ -184,6 +161,34 @@ def test_modes_are_told_by_their_angle_in_a_step():
     case = SimpleNamespace(time=SimpleNamespace(step=0.002))
     frequencies = {"mode1.frequency": 50.0, "contact.frequency": 1e9}
     assert paper.angles(case, made_row("dda", frequencies)) == {"mode1": pytest.approx(0.1)}
+
+
+def test_a_wave_of_blocks_has_the_wavenumber_that_its_middles_have():
+    column = theory_of_waves.Column(height=0.7, density=3.0, modulus=5.0)
+    guide = Guide(column, 1.29, 3.9, Stepping(0.01, 0.25, 0.5), omega=2 * math.pi / 0.5)
+    time = 0.01 * np.arange(1, 151)  # three periods
+    columns = {f"x{n}": 0.3 * np.cos(guide.omega * time - 1.3 * n * 0.7 + 0.2) for n in range(3)}
+    assert guide.measured(History(time, columns), list(columns)) == pytest.approx(1.3)
+
+
+def test_the_order_of_a_joint_is_that_at_which_it_tends_to_the_continuum(monkeypatch):
+    continuum = float(theory_of_waves.joint_transmission(1.0))
+    guided = [SimpleNamespace(blocks=n, guide=n, scene=SimpleNamespace(name="s"), solver="dda") for n in (10, 20, 40)]
+    monkeypatch.setattr(rows, "averaged", lambda: guided)
+    for sign, order in ((1, pytest.approx(1.7)), (-1, "undefined")):
+        parts = {n: (1j * continuum + 1j * sign * n**-1.7, 0.0) for n in (10, 20, 40)}
+        monkeypatch.setattr(rows, "joint_parts", lambda guide, *given, parts=parts: parts[guide])
+        finished = SimpleNamespace(needed_history=lambda *given: None)
+        assert rows.joint_order(finished) == {"joint.order": order}
+
+
+def test_a_block_stands_that_rests_on_its_slope_and_does_not_slip():
+    def told(angle, slip_rate):
+        case = load_scene("field-sliding").with_values({"load.slope": angle})
+        return slopes.start(case, made_row("dda", {"contact.slip_rate": slip_rate}))
+
+    assert told(3.0, 1e-13) == {"state": "stands", "slip": 0.0}
+    assert told(3.0, 0.7) == {"slip": 0.7} and told(60.0, 1e-13) == {"slip": 1e-13}
 
 
 def test_what_a_solver_cannot_report_is_no_failure():

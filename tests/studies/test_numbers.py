@@ -9,6 +9,7 @@ the sign of the value; one that rounding decides is written as "~". `KEEP_PAGES=
 
 import json
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +28,7 @@ from validation.studies.paper.formulas import CLAIMS
 from validation.suite.claims import Evidence
 from validation.suite.folders import get_study, study_folders, study_names
 from validation.suite.own_solver import block_data, gates
-from validation.suite.own_solver.block import block, first, telling
+from validation.suite.own_solver.block import block, first, telling, wrapped
 from validation.suite.own_solver.history import AT_REST
 from validation.suite.own_solver.session import GateReport
 from validation.suite.tables import StudyTable
@@ -190,6 +191,52 @@ def test_blocks_tell_what_they_told():
         lines = block(reports, seed < "2")
         told += [len(lines), *groups, most.scene if most else "none", *TELLING.findall(" ".join(lines))]
     assert_kept(KEPT, "blocks", {"told": summed(told)})
+
+
+def answered(scale):
+    """Return what the gates for users' solvers say where some values are so many times the middles of their bands."""
+    reports = []
+    scenes = {scene.name: scene for scene in gates.START.scenes}
+    for gate in gates.START.gates():
+        scene = scenes[gate.scene]
+        metric = AT_REST if gate.metric == "displacement.static" else gate.metric
+        value = scale(scene, metric) * (gate.low + gate.high) / 2
+        said = ["PASS" if gate.low <= value <= gate.high else "FAIL", value, gate.low, gate.high, "", "completed"]
+        of_gate = (gate.id, gates.START.name, scene.name, scene.time.steps, gates.group(gate, scene), metric)
+        reports.append(GateReport(*of_gate, *said, "k", "/nowhere"))
+    return reports
+
+
+def test_what_is_told_of_a_users_solver_is_what_was_told():
+    rectangle, *others = block_data.scenes()
+    first = gates.starts()[1]
+    wrong = {  # places that are no place of a misreading, and motions
+        "elsewhere": {(rectangle.name, AT_REST): 1.37, (others[2].name, AT_REST): 0.7},
+        "moving": {(rectangle.name, "displacement.max"): 3.0},
+        "pressure": {(first.name, "pressure.max"): 3.0},
+        "both": {(first.name, "pressure.max"): 3.0, (first.name, "mode1.frequency"): 1.2},
+        "all": dict.fromkeys([(first.name, one) for one in ("displacement.max", "mode1.measured_damping")], 5.0),
+    }
+    told = {name: answered(lambda s, metric, w=w: w.get((s.name, metric), 1.0)) for name, w in wrong.items()}
+    for number, misreading in enumerate(block_data.MISREADINGS):
+
+        def scale(scene, metric, misreading=misreading):
+            if metric != AT_REST:
+                return 1.0
+            rest = block_data.displacement_at_rest(scene)
+            return block_data.misread_displacement(scene, misreading) / rest
+
+        told[f"misread {number}"] = answered(scale)
+    report = replace(told["misread 0"][0], status="FAIL", group="statics", value=-0.0371, low=0.01, high=0.02)
+    told["statics"] = [*told["misread 0"], report]
+    told["following"] = [*told["misread 0"], replace(report, scene=rectangle.name)]
+    told["warned"] = [
+        *(replace(report, same_as="bar dda") for report in told["both"][:3]),
+        replace(told["both"][3], same_as="dda", repeated=True, apart_in="displacement", apart=0.0371),
+        *told["all"],
+    ]
+    blocks = {name: block(reports, every=name == "all") for name, reports in told.items()}
+    assert_kept(KEPT, "told", {name: summed(wrapped(lines)) for name, lines in blocks.items()})
 
 
 class Settling(Evidence):

@@ -18,7 +18,7 @@ from itertools import starmap
 import numpy as np
 
 from validation.models.plane.tables import PlaneSection
-from validation.runs.row import Metrics, Row, Value
+from validation.runs.row import Metrics, Row
 from validation.scenes.scene import Scene
 from validation.suite.bands import Band
 
@@ -32,9 +32,9 @@ def blocks(case: Scene) -> Metrics:
     return {"across": float(across), "over n": plane.glue * np.sqrt(24) / across}
 
 
-def ratios(case: Scene, row: Row, elements: Row) -> dict[str, Value]:
+def ratios(case: Scene, row: Row, elements: Row) -> dict[str, float]:
     """Return what a solver's static displacement and frequencies are over those of elements on the same outline."""
-    ratios: dict[str, Value] = {}
+    ratios: dict[str, float] = {}
     for metric, value in row.metrics.items():
         other = elements.metrics.get(metric)
         if metric in READ and isinstance(value, float) and isinstance(other, float):
@@ -45,12 +45,7 @@ def ratios(case: Scene, row: Row, elements: Row) -> dict[str, Value]:
 def orders(levels: Sequence[tuple[Scene, Row, Row]]) -> Metrics:
     """Return the order of the last halving of the block, by metric."""
     coarse, fine = starmap(ratios, levels[-2:])
-    orders = {}
-    for metric, ratio in fine.items():
-        before = coarse[metric]
-        if isinstance(ratio, float) and isinstance(before, float):
-            orders[metric] = float(np.log2((before - 1) / (ratio - 1)))
-    return orders
+    return {metric: float(np.log2((coarse[metric] - 1) / (ratio - 1))) for metric, ratio in fine.items()}
 
 
 def bending_ratio(squares: int, glue: float) -> float:
