@@ -1,17 +1,24 @@
-"""Ball arithmetic of the exact motions: first falls that must not be missed, and enclosures that hold."""
+"""Ball arithmetic of the exact motions: first falls that must not be missed, and enclosures that hold.
 
+Their sizes are what they were: `enclosures.txt`, at eight digits. `KEEP_PAGES=1` writes it anew.
+"""
+
+import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from conftest import thinned
 from flint import arb, arb_mat
 from oracles.integrated import slipping_problem
+from oracles.kept_numbers import hold
 
 from fem_reference.events import block_march, report, watching
 from fem_reference.events.block_events import solve
+from fem_reference.events.block_impacts import Hops, State
 from fem_reference.events.block_model import ANGLE, BlockModel, BlockProblem
-from fem_reference.events.column_drive import sine
+from fem_reference.events.column_drive import ricker, sine
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnModel, ColumnProblem
 from fem_reference.events.contacts import LEFT, OPEN, RELEASED, RIGHT, STICKS
 from fem_reference.events.ellipsoid import Ellipsoid
@@ -19,6 +26,7 @@ from fem_reference.events.enclosure import ball, bits_of, first_fall, precision
 from fem_reference.events.enclosure import polynomial as smooth
 from fem_reference.events.series import Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
+from fem_reference.events.watching import Change, first_doubt
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -198,3 +206,79 @@ def test_digits_that_are_lost_are_asked_for_again_and_missed_at_last(monkeypatch
     with pytest.raises(LostDigitsError) as caught:
         solve(stiff, 0.004, digits=30)
     assert 0 <= caught.value.time < 0.004
+
+
+# -- how large they are
+
+
+def size(values):
+    """Logarithm of a product, in which each positive number counts in its own unit."""
+    return float(np.log([float(x) for x in values if x > 0]).sum())
+
+
+def parts(*values):
+    """Midpoints, and the size of all radii."""
+    return [float(x.mid()) for x in values], size(x.rad() for x in values)
+
+
+def set_numbers():
+    rigid = replace(PAPER, stiffness=math.inf, restitution=0.4, poisson=0.2)
+    for problem, was in (*(SYSTEMS[i] for i in (3, 7, 10, 11)), (rigid, (OPEN, OPEN))):
+        model = model_of(problem)
+        contact = getattr(model, "contact", None)
+        start = state(6, 1e-3, model.size)
+        rate = model.rate(was)
+        drives = [d().pieces[0] for d in (sine(1e-3, 9.0), ricker(2e3, 60.0))] * isinstance(problem, ColumnProblem)
+        segment = expand(model, was, start, drives, 2.3 / rate)
+        box = [abs(x) * arb(1e-3) for x in (*start.u.entries(), *start.v.entries(), arb(1), arb(3))]
+        moved = Ellipsoid(model)
+        moved.take(box)
+        moved.advance(was, arb(0.7 / rate))
+        yield "moved", size(moved.record()), size(model.growth(was, moved.record(), 0.3 / rate))
+        for watch in watched(model, was, start):
+            value, slope = segment.value_and_slope(watch, arb(0.3))
+            reaches = [moved.reach(watch, was, segment, late).terms()[:5] for late in (0.0, 0.2 / rate)]
+            yield "watch", *map(size, reaches), size([segment.function_tail(watch)]), float(value), float(slope)
+        for late, grazing in ((1e-4, False), (0.03, False), (0.1, True)):
+            after = Ellipsoid(model)
+            after.take(box)
+            impact = contact and contact.impact
+            radii = [arb(3e-9), arb(4e-9)]
+            change = Change(start, start, was, was[1:] * 2, watch, value, slope, grazing, late / rate, radii, impact)
+            after.switch(change, drives)
+            yield "switch", size(after.record())
+
+
+def hop_numbers():
+    model = BlockModel(replace(PAPER, stiffness=math.inf, restitution=0.4, pressure=-5e6, gravity=9.81))
+    hops = Hops(model, model.contact)
+    near = state(7, 1e-5)
+    off = column([ball(1e-11 * k) for k in range(1, 7)])
+    flying = State(near.u + off, near.v + off)
+    speed = arb(0.012) + ball(1e-7)
+    yield "hop", *parts(*hops.find_hop(flying, speed))
+    yield "accumulation", *parts(*hops.find_accumulation(flying, speed))
+    for one in (hops.after(flying, arb(1e-4)), hops.pushed(flying, speed, arb(1e-5)), hops.spread(flying, arb(1e-3))):
+        yield "state", *parts(*one.u.entries(), *one.v.entries()), float(hops.change_norm(one))
+
+
+def fall_numbers():
+    for value, slope, bend in ((0.1, -1.2, 0.3), (0.35, -1.0, 0.45), (0.3, 0.7, -1.9)):
+        for off in (1e-9, 0.12):
+            touches = []
+            function = smooth([arb(value) + ball(off), arb(slope), arb(bend)], arb(2), arb(0.01), arb(1e-4))
+            fall = first_fall(function, arb(1), touches)
+            yield "fall", *(parts(fall.at) if fall else ()), [float(x) for x in touches]
+    terms = np.zeros((3, watching.FLOAT_TERMS))
+    terms[:, :3] = (0.1, -0.7, 1.3), (0.37**2, -0.74, 1.0), (1.0, 0.3, -1.2)
+    for margin in (1e-3, 0.01):
+        yield "doubt", *first_doubt(terms, np.full(3, margin))
+
+
+PARTS = {part.__name__: part for part in (set_numbers, hop_numbers, fall_numbers)}
+
+
+@pytest.mark.parametrize("part", PARTS)
+def test_enclosures_are_as_large_as_they_were(part):
+    with precision(bits_of(50)):
+        hold(Path(__file__).with_name("enclosures.txt"), PARTS, part)

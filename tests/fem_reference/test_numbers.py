@@ -73,6 +73,8 @@ def element_numbers():
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
     yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    unloaded = replace(moved, traction=0.0, gravity=0.0, pressure=0.0)
+    yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
 
@@ -82,6 +84,10 @@ def contact_numbers():
     for scheme in (DAMPED, COMPOSITE, ALPHA):
         for contact in (Unilateral(1e-3, -0.3, "glued", friction=rough), Unilateral(0.0, 0.2)):
             yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
+    for name in ("load_energy", "friction_loss"):
+        alone = solve_unilateral(shaken, DAMPED, 7, Unilateral(shear="glued", friction=rough), columns=(name,))
+        yield name, ends(alone.columns)
+    yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-3, 0.3)).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
     t = ALPHA.stage_times(60)
@@ -95,6 +101,8 @@ def contact_numbers():
         column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * (law == "unilateral"))
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
+    welded = replace(column, contacts=faces[1:])
+    yield "welded", ends(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]).columns)
     for impedance in (None, 5e5):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
         yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
@@ -119,16 +127,29 @@ def exact_numbers():
         yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
 
 
+def course(motion):
+    """Switches and steps, each as a number and a mean instant, and what stayed in doubt."""
+    switches = [switch.time for switch in motion.switches]
+    steps = [float(node.start.time) for node in motion.nodes]
+    return len(switches), np.mean(switches or [0.0]), len(steps), np.mean(steps), motion.touches
+
+
 def event_numbers():
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
     yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
-        (0.0119, {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0}),
-        (0.0029, {"stiffness": math.inf, "restitution": 0.4, "eccentricity": 0.0}),
+        (
+            0.0119,
+            {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0, "base": SHAKE},
+        ),
+        (0.0049, {"stiffness": math.inf, "restitution": 0.2, "eccentricity": 0.0}),
     ):
-        yield "block", fields(block_events.solve(replace(block, **changes), end).at([end]))
+        motion = block_events.solve(replace(block, **changes), end)
+        yield "block", fields(motion.at([end])), course(motion)
+        for one in (*motion.impacts, *motion.cascades):
+            yield "impact", [value for name, value in vars(one).items() if name != "radius"]
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
@@ -136,7 +157,8 @@ def event_numbers():
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
     for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
-        yield "column", fields(column_events.solve(problem, 0.006).at([0.0055]))
+        motion = column_events.solve(problem, 0.006)
+        yield "column", fields(motion.at([0.0055])), course(motion)
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
@@ -160,7 +182,7 @@ def plane_numbers():
     contacts += [
         PatchContact(1, 0, (x, 1.01), (x + 0.4, 1.01), (0.0, 1.0), gap=0.01, cohesion=1e3, **law) for x in (0.3, 1.3)
     ]
-    for scheme in (DAMPED, COMPOSITE):
+    for scheme in (replace(DAMPED, mass_damping=7.0, stiffness_damping=1e-4), COMPOSITE):
         model = PlaneModel(bodies, contacts, SHAKE)
         found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
         yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()
