@@ -57,6 +57,11 @@ def ends(columns):
     return [float(values[-1]) * (abs(values[-1]) > 1e-9 * np.max(np.abs(values))) for values in columns.values()]
 
 
+def reached(result):
+    """The last row of a result, its instant and what it has cost."""
+    return ends(result.columns), result.time[-1], result.unknowns, result.factorisations, result.solves
+
+
 def fields(history):
     return [values for name, values in vars(history).items() if "radius" not in name and name != "time"]
 
@@ -67,7 +72,7 @@ def element_numbers():
         for scheme in (DAMPED, COMPOSITE, ALPHA):
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
-            yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
+            yield "history", reached(solve(problem, scheme, 7, COLUMNS, model=model))
             yield "response", response(problem, scheme, np.array([37.0]), COLUMNS, model=model)
         yield "mode", *(mode.frequency for mode in modes(problem, ALPHA, model=model)[:2])
     moved = replace(SLANTED, motion=SHAKE)
@@ -83,7 +88,7 @@ def contact_numbers():
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
     for scheme in (DAMPED, COMPOSITE, ALPHA):
         for contact in (Unilateral(1e-3, -0.3, "glued", friction=rough), Unilateral(0.0, 0.2)):
-            yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
+            yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
     for name in ("load_energy", "friction_loss"):
         alone = solve_unilateral(shaken, DAMPED, 7, Unilateral(shear="glued", friction=rough), columns=(name,))
         yield name, ends(alone.columns)
@@ -102,10 +107,10 @@ def contact_numbers():
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     welded = replace(column, contacts=faces[1:])
-    yield "welded", ends(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]).columns)
+    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]))
     for impedance in (None, 5e5):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
-        yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
+        yield "line", reached(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]))
         for at_top in (False, True):
             for scheme in (ALPHA, COMPOSITE):
                 yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
@@ -114,9 +119,9 @@ def contact_numbers():
 
 def exact_numbers():
     problem = make(p=3e8, ramp=0.004)
-    yield "bar", ends(Bar.of(problem).solve(ALPHA, 30).columns), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
-    yield "continuum", ends(Bar.of(make(p=3e8)).continuum(DAMPED, 20).columns)
-    yield "opens", ends(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60).columns)
+    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
+    yield "continuum", reached(Bar.of(make(p=3e8)).continuum(DAMPED, 20))
+    yield "opens", reached(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60))
     rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
     yield "rocks", rocks.impacts[:4], rocks.at([1.7])
     shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
@@ -185,7 +190,7 @@ def plane_numbers():
     for scheme in (replace(DAMPED, mass_damping=7.0, stiffness_damping=1e-4), COMPOSITE):
         model = PlaneModel(bodies, contacts, SHAKE)
         found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
-        yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()
+        yield "meet", reached(found), ends(found.rates), ends(found.energy), found.step_solves.sum()
         yield "forces", *(part[-1] for part in (found.normal, found.shear, found.gap, found.slip, found.momentum))
     clamped = replace(bodies[0], clamps=(((0.0, 1.0), (0.0, 0.0)),), forces=(((2.0, 1.0), (3e5, -1e5)),), spin=0.0)
     held = PlaneModel([replace(clamped, stress=(3e6, -1e6, 2e6))])
