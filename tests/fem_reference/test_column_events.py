@@ -10,11 +10,10 @@ from flint import arb
 from oracles.integrated import integrated_column, random_column
 
 from fem_reference.events import column_drive as drives
-from fem_reference.events import contacts, report
+from fem_reference.events import contacts
 from fem_reference.events.column_events import solve
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
 from fem_reference.events.enclosure import precision
-from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
 RIGID = math.inf
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K"}
@@ -112,31 +111,6 @@ def test_a_graze_is_named_and_not_guessed():
     motion = solve(problem, 0.1)
     near = [switch.time for switch in motion.switches] + list(motion.touches)
     assert all(abs(time - 0.5 / 9.8125) < 1e-7 for time in near)
-
-
-@pytest.mark.long
-def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
-    monkeypatch.setattr(report, "MOST_DIGITS", 30)
-    monkeypatch.setattr(report, "PROMISED", 1e-29)
-    with pytest.raises(LostDigitsError) as error:
-        solve(ColumnProblem(blocks(10, 2500, RIGID), (ColumnJoint(1e9),) * 10, gravity=9.81), 0.12, digits=30)
-    assert 0.05 < error.value.time < 0.12
-    thrown = ColumnProblem(blocks(2, 2500, 1e9, -1.0), (ColumnJoint(2e9, 0.01), ColumnJoint(1e9, 0.001)))
-    with pytest.raises(TooManySwitchesError):
-        solve(thrown, 0.06, limit=5)
-
-
-@pytest.mark.long
-def test_a_column_that_is_welded_throughout_is_the_bonded_one():
-    """Without any contact it goes as the springs between its faces do, and no instant has a motion of no length."""
-    drive = drives.integrated(drives.half_sine(0.1, 0.02))
-    pair = blocks(2, 2500, 1e9)
-    welded = solve(ColumnProblem(pair, (None, None), base_motion=drive), 0.01)
-    stiff = solve(ColumnProblem(pair, (ColumnJoint(1e12), ColumnJoint(1e12)), "frictional", base_motion=drive), 0.01)
-    times = np.linspace(0.0, 0.01, 7)
-    assert not welded.switches
-    assert welded.at(times).top[-1] == pytest.approx(stiff.at(times).top[-1], abs=4e-6)
-    assert welded.at([]).top.shape == (2, 0)
 
 
 def test_drives_are_their_series_and_their_integrals_derive_to_them():

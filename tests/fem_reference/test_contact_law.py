@@ -104,7 +104,6 @@ def test_points_that_may_slide_have_the_one_set_of_states_that_holds():
 
 
 def test_as_many_sets_of_states_are_tried_as_is_allowed(monkeypatch):
-    """Two of a point that sticks, four of one that may slide; of more points one after the other, or none."""
     monkeypatch.setattr(iteration, "ENUMERATED", 16)
     for cohesion, points, solves in ((np.inf, 4, 7), (np.inf, 5, 6), (1e3, 2, 7), (1e3, 3, 12)):
         law = law_of(np.eye(2 * points) * 1e-9, np.full(2 * points, 3e-9), True, 0.5, cohesion)

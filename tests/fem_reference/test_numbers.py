@@ -86,9 +86,9 @@ def element_numbers():
 def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
-    for scheme in (DAMPED, COMPOSITE, ALPHA):
-        for contact in (Unilateral(1e-3, -0.3, "glued", friction=rough), Unilateral(0.0, 0.2)):
-            yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
+    slides = Unilateral(1e-3, -0.3, "glued", friction=rough)
+    for scheme, contact in ((DAMPED, slides), (COMPOSITE, slides), (ALPHA, slides), (ALPHA, Unilateral(0.0, 0.2))):
+        yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
     for name in ("load_energy", "friction_loss"):
         alone = solve_unilateral(shaken, DAMPED, 7, Unilateral(shear="glued", friction=rough), columns=(name,))
         yield name, ends(alone.columns)
@@ -136,7 +136,14 @@ def course(motion):
     """Switches and steps, each as a number and a mean instant, and what stayed in doubt."""
     switches = [switch.time for switch in motion.switches]
     steps = [float(node.start.time) for node in motion.nodes]
-    return len(switches), np.mean(switches or [0.0]), len(steps), np.mean(steps), motion.touches
+    return (
+        len(switches),
+        np.mean(switches or [0.0]),
+        len(steps),
+        np.mean(steps),
+        len(motion.simultaneous),
+        motion.touches,
+    )
 
 
 def event_numbers():
@@ -160,10 +167,13 @@ def event_numbers():
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    bonded = replace(opening, joints=(None, None))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
-    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves):
+    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves, bonded):
         motion = column_events.solve(problem, 0.006)
-        yield "column", fields(motion.at([0.0055])), course(motion)
+        motion = column_events.solve(problem, 0.006)
+        history = motion.at([0.0055])
+        yield "column", fields(history), history.gap, course(motion)
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
