@@ -41,7 +41,6 @@ B4 = BarsProblem((bar(1.0), bar(density=2.0, modulus=8.0)), (None, opens()))
 B5 = replace(B4, joints=(None, opens(10)))
 B6 = BarsProblem((bar(-1.0), bar(-1.0)), (opens(10), opens(10, 0.05)), gravity=0.05)
 B10 = BarsProblem((bar(length=2.75), bar(length=0.25)), (opens(), opens()), top=HALF_SINE)
-B11 = BarsProblem((Bar(1.0, 2500.0, 1e9),) * 6, (opens(1e10),) * 6, top=half_sine(2e6, 0.004))
 LAYER = bar(length=0.25)
 D2 = BarsProblem(
     (LAYER, bar(length=6.0)), (slips(math.inf, 0.5), slips(math.inf, 0.4)), base_impedance=1, top=HALF_SINE
@@ -70,14 +69,6 @@ NUMBERS = {
         [0.25, 3, 6.5, 9],
         [0.067804223377828, 8 / math.pi * math.sin(math.pi / 4)],
     ),
-    "B11": (
-        B11,
-        0.04,
-        "5C 4C 3C 5O 2C 4O 1C 3O 0C 2O 2C 0O 3C 1O 4C 2O 5C 3O 4O 5O",
-        # the wave is at joint 2 after 4 h / c; the other program sees it there 3e-10 s later, its rise being so flat
-        [0.00158113883008, 0.00316227766017, 0.00474341649025, 0.00583845924665, 0.00632455532034, 0.00753320807033],
-        [0.000920591085702, 0.00151467684352, 0.00216542188847, 0.00292596405491, 0.116243920874, 1.95596132875],
-    ),
     "D2": (D2, 9.0, "1- 1K", [6.1309898804345, 6.8690101195655], [-0.57652712700713]),
     "D3": (
         D3,
@@ -98,7 +89,7 @@ def test_the_bars_move_as_another_program_computed(name):
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
     assert " ".join(names(motion)) == order
-    assert times(motion)[: len(instants)] == pytest.approx(instants, rel=3e-12 if name == "B11" else 5e-14)
+    assert times(motion)[: len(instants)] == pytest.approx(instants, rel=5e-14)
     state = motion.at([end])
     if name.startswith("D"):
         moved = [slip for slip in state.slip[:, 0] if slip]

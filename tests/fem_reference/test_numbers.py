@@ -167,7 +167,7 @@ def event_numbers():
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
-    bonded = replace(opening, joints=(None, None))
+    bonded = replace(opening, joints=(None, None), base="free", pressure=column_drive.half_sine(1e5, 0.02))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
     for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves, bonded):
         motion = column_events.solve(problem, 0.006)
