@@ -34,6 +34,7 @@ from fem_reference.events.bars_model import BarJoint, BarsProblem
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
 from fem_reference.events.restitution import ContactScheme, branches, statistics
+from fem_reference.events.switches import Work
 from fem_reference.exact import layers, rocking, sliding_block
 from fem_reference.exact.bar import Bar
 from fem_reference.exact.opening_bar import OpeningBar
@@ -148,7 +149,8 @@ def course(motion):
 
 def event_numbers():
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
-    yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
+    work = Work()
+    yield "bar", fields(bar_events.solve(dropped, 0.01, work=work).at([0.0083])), work.terms
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
@@ -166,14 +168,16 @@ def event_numbers():
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    rising = replace(opening, joints=rough, law="frictional", gravity=0.0)
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
     bonded = replace(opening, joints=(None, None), base="free", pressure=column_drive.half_sine(1e5, 0.02))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
-    for problem in (opening, replace(opening, joints=rough, law="frictional", gravity=0.0), welded, on_waves, bonded):
+    for problem in (opening, rising, welded, on_waves, bonded):
         motion = column_events.solve(problem, 0.006)
-        motion = column_events.solve(problem, 0.006)
+        work = Work()
+        motion = column_events.solve(problem, 0.006, work=work)
         history = motion.at([0.0055])
-        yield "column", fields(history), history.gap, course(motion)
+        yield "column", fields(history), history.gap, course(motion), work.terms
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
@@ -181,8 +185,10 @@ def event_numbers():
         base_impedance=0.7,
         top=column_drive.half_sine(0.3, 0.7),
     )
-    waves = bars_events.solve(bars, 2.0)
+    work = Work()
+    waves = bars_events.solve(bars, 2.0, work=work)
     yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
+    yield "work", work.terms, bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
 
 
 def plane_numbers():
