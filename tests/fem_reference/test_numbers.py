@@ -93,7 +93,7 @@ def contact_numbers():
     for name in ("load_energy", "friction_loss"):
         alone = solve_unilateral(shaken, DAMPED, 7, Unilateral(shear="glued", friction=rough), columns=(name,))
         yield name, ends(alone.columns)
-    yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-3, 0.3)).columns)
+    yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-2, 0.3)).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
     t = ALPHA.stage_times(60)
