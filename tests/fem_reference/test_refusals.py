@@ -144,6 +144,7 @@ ASKS = {
     ],
     "columns": [
         lambda: solve(make(elements=2), CONSTANT, 1, columns=("strain_x",)),
+        lambda: solve_layers(ON_WAVES, AVERAGE, 10, rest, ("strain_x",)),
     ],
     "fields": [lambda: solve(make(elements=2), CONSTANT, 1, fields="block.txt")],
     "problem": [
