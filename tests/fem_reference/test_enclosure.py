@@ -234,8 +234,9 @@ class Blurred(block_march.BlockMarch):
 
 def march_numbers():
     rough = replace(PAPER, shear_stiffness=4e8, friction=17.0, cohesion=1e3, traction=1e6, eccentricity=0.2)
+    heavy = replace(PAPER, young=math.inf, height=1.5, eccentricity=0.2, damping=2e6, velocity=-0.4)
     rigid = replace(PAPER, stiffness=math.inf, restitution=0.2)
-    for problem, end in ((rough, 0.009), (replace(PAPER, damping=2e6), 0.009), (rigid, 0.0045)):
+    for problem, end in ((rough, 0.009), (heavy, 0.009), (rigid, 0.0045)):
         march = Blurred(problem, end, 100)
         march.run()
         radii = [switch.radius for switch in march.switches]
