@@ -28,12 +28,6 @@ HISTORIES = [
         [9816843.61111, 0.0, 12103775.169],
     ),
     (
-        replace(PAPER, base_stiffness=2e11),
-        [0.016443850139919, 0.016489662515654],
-        [-0.0052, -0.0101, -0.0046],
-        [1e7, 1e7, 0.0],
-    ),
-    (
         replace(PAPER, base_stiffness=2e8),
         [],
         [-0.040434436128232, -0.10289879033026, -0.095775969499755],
@@ -48,7 +42,7 @@ HISTORIES = [
 ]
 
 
-@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 4))
+@pytest.mark.parametrize(("problem", "switches", "displacement", "pressure"), thinned(HISTORIES, 3))
 def test_a_pressed_bar_lifts_off_and_lands_as_computed_elsewhere(problem, switches, displacement, pressure):
     motion = solve(problem, 12 * problem.travel)
     assert motion.closed_at_start

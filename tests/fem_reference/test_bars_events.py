@@ -9,12 +9,7 @@ import pytest
 
 from fem_reference.events import bars_events
 from fem_reference.events.bars_events import least_terms, solve
-from fem_reference.events.bars_model import (
-    BONDED,
-    Bar,
-    BarJoint,
-    BarsProblem,
-)
+from fem_reference.events.bars_model import BONDED, Bar, BarJoint, BarsProblem
 from fem_reference.events.column_drive import half_sine
 from fem_reference.events.switches import LostDigitsError, TooManySwitchesError, TooMuchWorkError, Work
 
@@ -42,50 +37,18 @@ def times(motion):
 
 
 UNIT, HALF_SINE = bar(), half_sine(1.0, 1.0)
-B1 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(), opens(gap=0.3), opens(gap=0.3)))
-B2 = BarsProblem((bar(1.0), UNIT, UNIT, UNIT), (None, opens(5), opens(5), opens(5)))
 B4 = BarsProblem((bar(1.0), bar(density=2.0, modulus=8.0)), (None, opens()))
 B5 = replace(B4, joints=(None, opens(10)))
 B6 = BarsProblem((bar(-1.0), bar(-1.0)), (opens(10), opens(10, 0.05)), gravity=0.05)
-B8 = BarsProblem((UNIT,) * 4, (None, opens(50), opens(50), opens(50)), top=HALF_SINE)
 B10 = BarsProblem((bar(length=2.75), bar(length=0.25)), (opens(), opens()), top=HALF_SINE)
-B11 = BarsProblem((Bar(1.0, 2500.0, 1e9),) * 6, (opens(1e10),) * 6, top=half_sine(2e6, 0.004))
 LAYER = bar(length=0.25)
 D2 = BarsProblem(
     (LAYER, bar(length=6.0)), (slips(math.inf, 0.5), slips(math.inf, 0.4)), base_impedance=1, top=HALF_SINE
 )
-D3 = BarsProblem(
-    (LAYER, LAYER, bar(length=6.0)), (slips(10, 0.3), slips(10, 0.4), slips(10, 0.5)), base_impedance=1, top=HALF_SINE
-)
 # problem and end; switches; the first of their times; mean velocities at the end: waves and impulses in 30 digits,
 # compared by another program with a grid of characteristics
 NUMBERS = {
-    "B1": (B1, 6.0, "2C 1O 3C 2O 3O", [1.3, 2, 2.6, 3.3, 4.6], [0, 0, 0, 1]),
-    "B2": (
-        B2,
-        6.0,
-        "2C 3C 1O 2O 3O",
-        [1, 2, 2.2732050806379, 3.431192768404, 4.375314148121],
-        [-0.0088908684872307, -0.006232130608299, 0.022724961596268, 0.99239803749926],
-    ),
     "B5": (B5, 5.0, "1O", [2.0896018911888], [-0.29289614683987, 0.64644807341994]),
-    "B6": (
-        B6,
-        8.0,
-        "1C 1O 1C 0O 1O 1C 1O",
-        [
-            *(1.0800575458759, 3.3395337131999, 3.3993096058823, 4.3355176541904),
-            *(5.0872117073551, 5.2090786062119, 5.5030561927467),
-        ],
-        [0.71769874840517, 0.90027438673777],
-    ),
-    "B8": (
-        B8,
-        8.0,
-        "3C 2C 1C 3O 2O 1O",
-        [1, 2, 3, 3.088262111453, 4.1068282488408, 5.0439908230171],
-        [-0.63687650365105, -0.00035357954434613, 0.00030410471899135, 0.00030620610882573],
-    ),
     "B10": (
         B10,
         10.0,
@@ -93,35 +56,16 @@ NUMBERS = {
         [0.25, 3, 6.5, 9],
         [0.067804223377828, 8 / math.pi * math.sin(math.pi / 4)],
     ),
-    "B11": (
-        B11,
-        0.04,
-        "5C 4C 3C 5O 2C 4O 1C 3O 0C 2O 2C 0O 3C 1O 4C 2O 5C 3O 4O 5O",
-        # the wave is at joint 2 after 4 h / c; the other program sees it there 3e-10 s later, its rise being so flat
-        [0.00158113883008, 0.00316227766017, 0.00474341649025, 0.00583845924665, 0.00632455532034, 0.00753320807033],
-        [0.000920591085702, 0.00151467684352, 0.00216542188847, 0.00292596405491, 0.116243920874, 1.95596132875],
-    ),
     "D2": (D2, 9.0, "1- 1K", [6.1309898804345, 6.8690101195655], [-0.57652712700713]),
-    "D3": (
-        D3,
-        9.0,
-        "2- 1- 0- 2K 1K 0K",
-        [6.2177849959401, 6.4817944599343, 6.7401543797826, 6.7951672353009, 7.1218831478621, 7.4938504547135],
-        [-0.21325709881936, -0.13408109261095, -0.37257488314931],
-    ),
 }
 
 
-SHORT = ("B5", "B10", "D2")
-CASES = [pytest.param(name, marks=[pytest.mark.long] * (name not in SHORT)) for name in NUMBERS]
-
-
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", NUMBERS)
 def test_the_bars_move_as_another_program_computed(name):
     problem, end, order, instants, values = NUMBERS[name]
     motion = solve(problem, end)
     assert " ".join(names(motion)) == order
-    assert times(motion)[: len(instants)] == pytest.approx(instants, rel=3e-12 if name == "B11" else 5e-14)
+    assert times(motion)[: len(instants)] == pytest.approx(instants, rel=5e-14)
     state = motion.at([end])
     if name.startswith("D"):
         moved = [slip for slip in state.slip[:, 0] if slip]

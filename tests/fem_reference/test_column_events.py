@@ -5,16 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from conftest import thinned
 from flint import arb
 from oracles.integrated import integrated_column, random_column
 
 from fem_reference.events import column_drive as drives
-from fem_reference.events import contacts, report
+from fem_reference.events import contacts
 from fem_reference.events.column_events import solve
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
 from fem_reference.events.enclosure import precision
-from fem_reference.events.switches import LostDigitsError, TooManySwitchesError
 
 RIGID = math.inf
 LETTERS = {"opens": "O", "closes": "C", "sticks": "K"}
@@ -114,47 +112,13 @@ def test_a_graze_is_named_and_not_guessed():
     assert all(abs(time - 0.5 / 9.8125) < 1e-7 for time in near)
 
 
-@pytest.mark.long
-def test_a_horizon_is_named_where_the_digits_do_not_do(monkeypatch):
-    monkeypatch.setattr(report, "MOST_DIGITS", 30)
-    monkeypatch.setattr(report, "PROMISED", 1e-29)
-    with pytest.raises(LostDigitsError) as error:
-        solve(ColumnProblem(blocks(10, 2500, RIGID), (ColumnJoint(1e9),) * 10, gravity=9.81), 0.12, digits=30)
-    assert 0.05 < error.value.time < 0.12
-    thrown = ColumnProblem(blocks(2, 2500, 1e9, -1.0), (ColumnJoint(2e9, 0.01), ColumnJoint(1e9, 0.001)))
-    with pytest.raises(TooManySwitchesError):
-        solve(thrown, 0.06, limit=5)
-
-
-@pytest.mark.long
-def test_a_column_that_is_welded_throughout_is_the_bonded_one():
-    """Without any contact it goes as the springs between its faces do, and no instant has a motion of no length."""
-    drive = drives.integrated(drives.half_sine(0.1, 0.02))
-    pair = blocks(2, 2500, 1e9)
-    welded = solve(ColumnProblem(pair, (None, None), base_motion=drive), 0.01)
-    stiff = solve(ColumnProblem(pair, (ColumnJoint(1e12), ColumnJoint(1e12)), "frictional", base_motion=drive), 0.01)
-    times = np.linspace(0.0, 0.01, 7)
-    assert not welded.switches
-    assert welded.at(times).top[-1] == pytest.approx(stiff.at(times).top[-1], abs=4e-6)
-    assert welded.at([]).top.shape == (2, 0)
-
-
 def test_drives_are_their_series_and_their_integrals_derive_to_them():
-    pairs = [
-        (drives.half_sine(2.0, 0.7), drives.integrated(drives.half_sine(2.0, 0.7))),
-        (drives.sine(1.5, 3.0), drives.integrated(drives.sine(1.5, 3.0))),
-        (drives.sine(1.5, 3.0, quarters=1), drives.integrated(drives.sine(1.5, 3.0, quarters=1))),
-        (drives.triangle(2.0, 0.9), drives.integrated(drives.triangle(2.0, 0.9))),
-        (drives.ricker(2.0, 3.0), drives.integrated(drives.ricker(2.0, 3.0))),
-        (
-            drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0]),
-            drives.integrated(drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0])),
-        ),
-    ]
+    values = [drives.half_sine(2.0, 0.7), drives.sine(1.5, 3.0), drives.sine(1.5, 3.0, quarters=1)]
+    values += [drives.triangle(2.0, 0.9), drives.ricker(2.0, 3.0), drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0])]
     with precision(200):
-        for value, integral in pairs:
+        for value in values:
             series = []
-            for drive in (value, integral):
+            for drive in (value, drives.integrated(value)):
                 piece = drive().piece_at(0.41)
                 series.append(piece.series(arb(0.41), 0.05, 40))
                 # the series at its end is that of the piece from there on, but for what the tail bounds
@@ -175,23 +139,3 @@ def test_the_parts_of_a_course_begin_at_once():
     pieces = [drives.still().piece_at(0.0), *(drives.sine(size, 3.0)().piece_at(0.0) for size in (1.0, 2.0))]
     course = drives.Course((-0.1, 0.3), tuple(pieces))
     assert course.parts() == [(0.0, pieces[1]), (0.3, pieces[2])]
-
-
-@pytest.mark.parametrize("base", thinned(["transmitting", "rigid", "free"], 3))
-def test_the_forces_at_both_ends_make_the_momentum(base):
-    """Between two instants the momentum changes by the integral of the force on the foot less that on the top."""
-    joints = (ColumnJoint(1e9) if base == "rigid" else None, ColumnJoint(3e8, 1e-4))
-    problem = ColumnProblem(
-        (ColumnBlock(1.0, 2500.0, 1e9), ColumnBlock(0.7, 2200.0, 3e8, -0.1)),
-        joints,
-        base=base,
-        impedance=4e6 if base == "transmitting" else 0.0,
-        base_motion=drives.still if base == "free" else drives.integrated(drives.ricker(0.5, 60.0)),
-        pressure=drives.half_sine(1e5, 0.02),
-    )
-    time = np.linspace(0.0, 0.01, 101)
-    state = solve(problem, time[-1]).at(time)
-    momentum = np.array([2500.0, 1540.0]) @ state.velocity
-    pushed = state.face_force[0] - state.face_force[-1]
-    impulse = np.append(0.0, np.cumsum((pushed[1:] + pushed[:-1]) / 2)) * time[1]
-    assert momentum - momentum[0] == pytest.approx(impulse, abs=8e-3 * np.abs(momentum).max())

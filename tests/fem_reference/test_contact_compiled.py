@@ -129,6 +129,7 @@ def refusing(*failures):
 @pytest.mark.parametrize(
     ("failures", "note", "caches"),
     [
+        ((), "contact in plain Python: numba is not installed", []),
         ((None,), "contact compiled by numba 9.9", [True]),
         (
             (RuntimeError("cannot cache function: no locator available"), None),
@@ -140,15 +141,8 @@ def refusing(*failures):
 )
 def test_where_nothing_can_be_written_or_compiled_a_history_runs_all_the_same(long, failures, note, caches):
     fake, calls = refusing(*failures)
-    long.setitem(sys.modules, "numba", fake)
+    long.setitem(sys.modules, "numba", fake if failures else None)
     long.setattr(compilation, "compiled", compilation.compiled.__wrapped__)
     run = solve_unilateral(make(elements=2), SPEEDS, 20)
     assert run.outcome == "completed" and run.notes[-1].endswith(note)
     assert sorted(set(calls), reverse=True) == caches
-
-
-def test_without_numba_a_long_history_runs_as_it_stands(long):
-    long.setitem(sys.modules, "numba", None)
-    long.setattr(compilation, "compiled", compilation.compiled.__wrapped__)
-    run = solve_unilateral(make(elements=2), SPEEDS, 20)
-    assert run.outcome == "completed" and run.notes[-1] == "contact in plain Python: numba is not installed"

@@ -103,6 +103,16 @@ def test_points_that_may_slide_have_the_one_set_of_states_that_holds():
     assert set(outcomes) == {CONVERGED, NONE, SEVERAL}
 
 
+def test_as_many_sets_of_states_are_tried_as_is_allowed(monkeypatch):
+    monkeypatch.setattr(iteration, "ENUMERATED", 16)
+    for cohesion, points, solves in ((np.inf, 4, 7), (np.inf, 5, 6), (1e3, 2, 7), (1e3, 3, 12)):
+        law = law_of(np.eye(2 * points) * 1e-9, np.full(2 * points, 3e-9), True, 0.5, cohesion)
+        q = np.tile(-7e-6 * np.arange(1.0, points + 1), 2)
+        states = np.full(2 * points, AT_LOWER, dtype=np.int8)
+        trial = solution(law, equations_of(law, states, np.ones(2 * points)), q, q, states, states)
+        assert iteration.fall_back(law, trial, q, q, states, states)[2] == solves, (cohesion, points)
+
+
 def test_edges_of_a_point_or_two():
     """States before, W, q, gap, law; then the forces, states and solves."""
     soft = np.diag([1e-9, 1e-8])

@@ -24,7 +24,6 @@ def errors(result, reference):
     [
         ({}, 5, "one column of elements"),
         ({"poisson": 0.3, "hypothesis": "plane strain", "shear": 4e8}, 25, "half the block"),
-        pytest.param({"foundation": "patch", "patch_width": 0.31}, 25, "half the block", marks=pytest.mark.long),
     ],
 )
 def test_savings_change_nothing(change, unknowns, saving):

@@ -35,6 +35,7 @@ from fem_reference.events.bars_model import BarJoint, BarsProblem
 from fem_reference.events.block_model import BlockProblem
 from fem_reference.events.column_model import ColumnBlock, ColumnJoint, ColumnProblem
 from fem_reference.events.restitution import ContactScheme, branches, statistics
+from fem_reference.events.switches import Work
 from fem_reference.exact import layers, rocking, sliding_block
 from fem_reference.exact.bar import Bar
 from fem_reference.exact.opening_bar import OpeningBar
@@ -60,19 +61,13 @@ def ends(columns):
     return [x * (abs(x) > 1e-9 * np.sum(np.abs(values))) for x, values in zip(sums, columns.values(), strict=True)]
 
 
+def reached(result):
+    """The last row of a result, its instant and what it has cost."""
+    return ends(result.columns), result.time[-1], result.unknowns, result.factorisations, result.solves
+
+
 def fields(history):
     return [values for name, values in vars(history).items() if "radius" not in name and name != "time"]
-
-
-def enclosed(motion, at):
-    """Yield a motion at an instant, its steps, and how narrow what is proven is, to 0.2 bits of all."""
-    yield "motion", fields(motion.at([at]))
-    steps = [float(node.start.time) for node in motion.nodes]
-    yield "steps", len(steps), sum(steps), bits(motion.nodes[-1].error), bits(one.radius for one in motion.switches)
-
-
-def bits(radii):
-    return 1e6 + sum(math.log2(x) for x in radii if x > 0)
 
 
 def element_numbers():
@@ -82,7 +77,7 @@ def element_numbers():
         for scheme in schemes:
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
-            yield "history", ends(solve(problem, scheme, 7, COLUMNS, model=model).columns)
+            yield "history", reached(solve(problem, scheme, 7, COLUMNS, model=model))
             yield "response", response(problem, scheme, np.array([37.0]), COLUMNS, model=model)
         yield "mode", *(mode.frequency for mode in modes(problem, ALPHA, model=model)[:2])
     moved = replace(SLANTED, motion=SHAKE)
@@ -97,9 +92,10 @@ def element_numbers():
 def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
-    rubs = Unilateral(1e-3, -0.3, "glued", friction=rough)
-    for scheme, contact in ((DAMPED, rubs), (COMPOSITE, rubs), (ALPHA, rubs), (ALPHA, Unilateral(0.0, 0.2))):
-        yield "opens", ends(solve_unilateral(shaken, scheme, 25, contact).columns)
+    slides = Unilateral(1e-3, -0.3, "glued", friction=rough)
+    for scheme, contact in ((DAMPED, slides), (COMPOSITE, slides), (ALPHA, slides), (ALPHA, Unilateral(0.0, 0.2))):
+        yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
+    yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-2, 0.3)).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
     for columns in (LOSS_COLUMNS, ("load_energy",), ("strain_energy",), ("displacement",)):
@@ -127,9 +123,11 @@ def contact_numbers():
         column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * opens)
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
+    welded = replace(column, contacts=faces[1:])
+    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]))
     for impedance in (None, 5e5):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
-        yield "line", ends(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]).columns)
+        yield "line", reached(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]))
         for at_top in (False, True):
             for scheme in (ALPHA, COMPOSITE):
                 yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
@@ -138,9 +136,9 @@ def contact_numbers():
 
 def exact_numbers():
     problem = make(p=3e8, ramp=0.004)
-    yield "bar", ends(Bar.of(problem).solve(ALPHA, 30).columns), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
-    yield "continuum", ends(Bar.of(make(p=3e8)).continuum(DAMPED, 20).columns)
-    yield "opens", ends(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60).columns)
+    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
+    yield "continuum", reached(Bar.of(make(p=3e8)).continuum(DAMPED, 20))
+    yield "opens", reached(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60))
     rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
     yield "rocks", rocks.impacts[:4], rocks.at([1.7])
     shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
@@ -151,27 +149,51 @@ def exact_numbers():
         yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
 
 
+def course(motion):
+    """Switches and steps, each as a number and a mean instant, and what stayed in doubt."""
+    switches = [switch.time for switch in motion.switches]
+    steps = [float(node.start.time) for node in motion.nodes]
+    return (
+        len(switches),
+        np.mean(switches or [0.0]),
+        len(steps),
+        np.mean(steps),
+        len(motion.simultaneous),
+        motion.touches,
+    )
+
+
 def event_numbers():
     dropped = BarProblem(1.5, 0.7, 2400.0, 3e9, 4e9, 2e6, 9.81, 1e-4, -0.3)
-    yield "bar", fields(bar_events.solve(dropped, 0.01).at([0.0083]))
+    work = Work()
+    yield "bar", fields(bar_events.solve(dropped, 0.01, work=work).at([0.0083])), work.terms
     block = BlockProblem(2.0, 1.5, 2700.0, 1e9, 1e9, 5e6, eccentricity=0.2, poisson=0.2, gravity=9.81)
-    rough = {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3}
     for end, changes in (
         (0.0083, {"damping": 2e6, "velocity": -0.4, "gap": 1e-3}),
-        (0.0119, rough | {"traction": 1e6, "slope": 11.0, "base": SHAKE}),
+        (
+            0.0119,
+            {"shear_stiffness": 4e8, "friction": 17.0, "cohesion": 1e3, "traction": 1e6, "slope": 11.0, "base": SHAKE},
+        ),
         (0.0049, {"stiffness": math.inf, "restitution": 0.2, "eccentricity": 0.0}),
     ):
         motion = block_events.solve(replace(block, **changes), end)
-        yield from enclosed(motion, end)
-        yield "impacts", *map(vars, (*motion.impacts, *motion.cascades)), bits(one.radius for one in motion.cascades)
+        yield "block", fields(motion.at([end])), course(motion)
+        for one in (*motion.impacts, *motion.cascades):
+            yield "impact", [value for name, value in vars(one).items() if name != "radius"]
     drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
-    slipping = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
+    rising = replace(opening, joints=rough, law="frictional", gravity=0.0)
     welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    bonded = replace(opening, joints=(None, None), base="free", pressure=column_drive.half_sine(1e5, 0.02))
     on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
-    for problem in (opening, replace(opening, joints=slipping, law="frictional", gravity=0.0), welded, on_waves):
-        yield from enclosed(column_events.solve(problem, 0.006), 0.0055)
+    for problem in (opening, rising, welded, on_waves, bonded):
+        motion = column_events.solve(problem, 0.006)
+        work = Work()
+        motion = column_events.solve(problem, 0.006, work=work)
+        history = motion.at([0.0055])
+        yield "column", fields(history), history.gap, course(motion), work.terms
     bars = BarsProblem(
         (WaveBar(1.3, 1.0, 1.0, 0.3), WaveBar(0.7, 2.0, 3.0, -0.2)),
         (BarJoint("unilateral", 5.0, 0.1), BarJoint("unilateral", 7.0, 0.05)),
@@ -179,8 +201,10 @@ def event_numbers():
         base_impedance=0.7,
         top=column_drive.half_sine(0.3, 0.7),
     )
-    waves = bars_events.solve(bars, 2.0)
+    work = Work()
+    waves = bars_events.solve(bars, 2.0, work=work)
     yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
+    yield "work", work.terms, bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
 
 
 def plane_numbers():
@@ -198,7 +222,7 @@ def plane_numbers():
     for scheme in (VISCOUS, COMPOSITE):
         model = PlaneModel(bodies, contacts, SHAKE)
         found = model.history(scheme, 30, np.vstack([model.means(0), model.observer((0.4, 2.0), (0.4, 2.0), 1)]))
-        yield "meet", ends(found.columns), ends(found.rates), ends(found.energy), found.step_solves.sum()
+        yield "meet", reached(found), ends(found.rates), ends(found.energy), found.step_solves.sum()
         yield "forces", *(part[-1] for part in (found.normal, found.shear, found.gap, found.slip, found.momentum))
     clamped = replace(bodies[0], clamps=(((0.0, 1.0), (0.0, 0.0)),), forces=(((2.0, 1.0), (3e5, -1e5)),), spin=0.0)
     held = PlaneModel([replace(clamped, stress=(3e6, -1e6, 2e6))])

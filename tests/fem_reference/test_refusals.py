@@ -92,6 +92,7 @@ SOUND = {  # what `refusals.toml` changes: much of it just so
     "averages": ALPHA,
 }
 TABLE = tomllib.loads(Path(__file__).with_name("refusals.toml").read_text())
+TAKEN = TABLE.pop("taken")
 TOGETHER = [  # what is refused, and what it does not go with, of parts that no table holds
     (BODY, "mesh", {"mesh": MeshTri()}),
     (BLOCK, "restitution", RIGID | {"base": Motion((0.0,), (0.0,), (0.0,))}),
@@ -141,9 +142,9 @@ ASKS = {
         lambda: solve(make(elements=2), CONSTANT, 0),
         lambda: solve_unilateral(make(elements=2), CONSTANT, 0),
     ],
-    "joints": [lambda: Ground(STRATA, "pressure", ((1.0, 1e9), (1.0, 2e9)))],
     "columns": [
         lambda: solve(make(elements=2), CONSTANT, 1, columns=("strain_x",)),
+        lambda: solve_layers(ON_WAVES, AVERAGE, 10, rest, ("strain_x",)),
     ],
     "fields": [lambda: solve(make(elements=2), CONSTANT, 1, fields="block.txt")],
     "problem": [
@@ -200,22 +201,27 @@ ASKS = {
 ASKED = {  # by the names and values of a row of `refusals.toml`
     "scheme": lambda **given: named_scheme(**{"step": 1e-3} | given),
     "motion": Motion,
-    "stratum": lambda **given: Ground((replace(STRATA[0], **given),), "pressure"),
     "map": lambda omega=1.0, theta=1.0, **given: restitution(
         ContactScheme(**{"alpha": 0.5, "delta": 1.0} | given), omega, theta
     ),
     "opening_bar": lambda **given: OpeningBar.of(make(**given)),
     "angle": Friction,
+    "layer": lambda **given: Ground((replace(STRATA[0], **given),), "pressure"),
     "recorded": sliding_block.recorded,
     "moved": sliding_block.moved,
     "lines": lambda name: lines(columns=(name,)),
 }
+
+
+def maker(asked):
+    return ASKED.get(asked) or partial(replace, SOUND[asked])
+
+
 CASES = [(field, lambda t=t, change=change: replace(t, **change)) for t, field, change in TOGETHER]
 for asked, refused in TABLE.items():
-    ask = ASKED.get(asked) or partial(replace, SOUND[asked])
     for field, rows in refused.items():  # rows of what is given, or values of the field
         given = [row if isinstance(row, dict) else {field: row} for row in rows]
-        CASES += [(field, partial(ask, **one)) for one in given]
+        CASES += [(field, partial(maker(asked), **one)) for one in given]
 CASES += [(field, ask) for field, asks in ASKS.items() for ask in asks]
 
 
@@ -227,3 +233,9 @@ def test_what_cannot_be_is_refused_by_its_field():
             assert re.match(rf"{re.escape(field)}: \w", str(error)), (number, field)
         else:
             pytest.fail(f"case {number} of {field} is taken")
+
+
+def test_what_is_just_within_its_bounds_is_taken():
+    for asked, rows in TAKEN.items():
+        for given in rows:
+            maker(asked)(**given)

@@ -7,11 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import (
-    UNILATERAL_COLUMNS,
-    named_scheme,
-    solve_unilateral,
-)
+from fem_reference import named_scheme, solve_unilateral
 from fem_reference.events.block_events import solve as exact_motion
 from fem_reference.events.block_model import BlockProblem
 
@@ -21,10 +17,10 @@ LOST = ("algorithmic_loss", "kinetic_damping_loss", "switching_loss", "friction_
 START_ENERGY = 5e4  # J: the unit of the printed energies
 
 
-def unlocked(name, options, step, steps, p=1e9, gg=1.0, columns=UNILATERAL_COLUMNS):
+def unlocked(name, options, step, steps, p=1e9):
     """The block of one strain, one linear element, that lifts off under its pressure."""
-    scheme = named_scheme(name, step=step, gg=gg, **options)
-    return solve_unilateral(make(p=p, elements=1, degree=1), scheme, steps, columns=columns).columns
+    scheme = named_scheme(name, step=step, **options)
+    return solve_unilateral(make(p=p, elements=1, degree=1), scheme, steps).columns
 
 
 @functools.cache
@@ -38,16 +34,14 @@ def exact():
     thinned(
         [
             ("chung-hulbert", {"rho_inf": 0.8}, 13.01, -0.1041, 0.0824),
-            ("chung-hulbert", {"rho_inf": 0.5}, 12.38, -0.4380, 0.0783),
             ("chung-hulbert", {"rho_inf": 0.0}, 10.71, -0.9922, 0.1305),
             ("hht", {"rho_inf": HHT_TENTH}, 12.59, -0.3690, 0.0786),
             ("wbz", {"rho_inf": 0.5}, 11.43, -0.5935, 0.0859),
-            ("composite", {"split": 0.5}, 12.98, -0.2141, 0.0679),
             ("composite", {}, 12.94, -0.2271, 0.0671),
             ("composite", {"rho_inf": 0.5}, 12.99, -0.1270, 0.0519),
             ("leapfrog", {}, 13.46, -0.1242, 0.1200),
         ],
-        9,
+        7,
     ),
 )
 def test_the_unlocked_block_at_one_millisecond(name, options, peak, energy, error):

@@ -10,6 +10,7 @@ from oracles.elements import make
 
 from fem_reference import Bar, named_scheme
 from fem_reference.exact.vibration import response as bar_response
+from fem_reference.history import response as spaces
 from fem_reference.history.response import response
 from fem_reference.scheme import modal
 from fem_reference.scheme.eigen import eigenvalues
@@ -95,6 +96,15 @@ def test_the_response_of_the_bar_is_that_of_a_fine_mesh(name, options):
     for column, amplitudes in exact.items():
         np.testing.assert_allclose(amplitudes, mesh[column], rtol=1e-7)
     assert exact["contact_pressure"][0] == pytest.approx(5e6, rel=1e-9)
+
+
+def test_a_frequency_that_no_small_space_holds_is_eliminated(monkeypatch):
+    arguments = make(poisson=0.2, elements=4), named_scheme("chung-hulbert", step=1e-3, rho_inf=0.6), np.array([13.0])
+    eliminated = spaces.response(*arguments)
+    monkeypatch.setattr(spaces, "NARROW", 0)
+    monkeypatch.setattr(spaces, "LARGEST", 3)
+    for column, amplitudes in spaces.response(*arguments).items():
+        np.testing.assert_allclose(amplitudes, eliminated[column], rtol=1e-10)
 
 
 def test_stability_limits():
