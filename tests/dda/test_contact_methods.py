@@ -54,6 +54,22 @@ def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
 # ---- impulses --------------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (9 / 16, 1.0)])
+def test_a_load_that_rises_drives_a_block_onto_a_stop(alpha, delta):
+    """By theta = sqrt(alpha) as at the end of each step; the work of the load is all accounted for."""
+    dt = 1.7e-3
+    block = Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0))
+    model = UnilateralModel(block, Unilateral(math.inf, gap=2.9e-3), 3e5, ramp=0.013)
+    options = UnilateralOptions("impact", restitution=0.37, energies=True)
+    result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt), 14, options=options)
+    share = np.clip(dt * np.arange(15) / 0.013, 0.0, 1.0)
+    theta = math.sqrt(alpha)
+    impulse = 3e5 * 1.3 * dt * np.cumsum((1 - theta) * share[:-1] + theta * share[1:])
+    assert result.velocity[:6] == pytest.approx(-impulse[:6] / MASS, rel=1e-9)
+    assert result.velocity[-1] > -0.1 * impulse[-1] / MASS
+    assert np.abs(sum(result.energies.values())).max() < 1e-9 * result.energies["impact"][-1]
+
+
 # ---- passes ----------------------------------------------------------------------------------------------------------
 
 

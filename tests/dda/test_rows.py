@@ -128,6 +128,15 @@ def test_contacts_stick_slip_and_open_all_at_once_and_one_by_one(way, cohesion, 
     assert singly[1] > 1 and singly[2].force == pytest.approx(after.force, rel=1e-12)
 
 
+def test_a_contact_that_slips_has_the_friction_of_the_solve_before():
+    laws, before, W = three(lagged=True)
+    q = [*GAPS, 1e-3, 1e-3, 1e-3]
+    outcome, solves, after = solved(laws, W, q, before)
+    sticking = np.linalg.solve(W + np.diag(laws.compliance), np.negative(q))
+    assert (outcome, solves) == (FOUND, 2)
+    assert after.force[3:5] == pytest.approx(-0.5 * sticking[:2], rel=1e-12)
+
+
 def never_agrees(laws, flexible, after, work, r):
     return LOWER if work.tried[r] == INSIDE else INSIDE
 
