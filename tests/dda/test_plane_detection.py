@@ -147,12 +147,12 @@ def test_a_corner_on_another_edge_goes_on_from_the_nearest_contact():
     ridge = np.array([(-1.0, -1.0), (2.0, -1.0), (2.0, -0.01), (0.5, 0.0), (-1.0, -0.01)])
     tip = np.array([(0.0, 0.0), (4e-4, 0.0), (0.6, 1.0), (-0.6, 1.0)])
     slope = np.arctan(0.01 / 1.5)
-    before, after = (tip @ [[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]] for t in (slope, -3 * slope))
-    scene = Scene([ridge, at(before, 0.2, -0.002)])
-    assert scene.step((0, -1e-3)) == [(1, 0, 0, 3), (1, 1, 0, 3)]
+    before, after = (tip @ [[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]] for t in (-slope, 3 * slope))
+    scene = Scene([ridge, at(before, 0.8, -0.002)])
+    assert scene.step((0, -1e-3)) == [(1, 0, 0, 2), (1, 1, 0, 2)]
     scene.press(1.0, 1.0)
-    assert scene.step((0, -1e-3), [ridge, at(after, 0.7, -0.01 / 7.5)]) == [(1, 1, 0, 2), (1, 0, 0, 2)]
-    assert scene.detection.contacts.origin[:2].tolist() == [1, 0]
+    assert scene.step((0, -1e-3), [ridge, at(after, 0.3, 1e-5 - 0.01 / 7.5)]) == [(1, 0, 0, 3), (1, 1, 0, 3)]
+    assert scene.detection.contacts.origin[:2].tolist() == [0, 1]
 
 
 def test_of_two_edges_that_are_pressed_that_with_the_greater_force_stays():

@@ -7,6 +7,7 @@ import pytest
 
 from dda.contact import rows
 from dda.contact.band import find_in_band
+from dda.contact.dense import eliminate
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, NONE, SEVERAL, UPPER, Flexibility, Laws, Rows
 
 
@@ -60,6 +61,20 @@ def test_contacts_that_cycle_when_set_at_once_are_set_one_at_a_time(W, w):
     assert np.array(w) + np.array(W) @ after.force == pytest.approx(after.opening, rel=1e-12)
     for most in (3, 7):  # of them, set at once and one at a time
         assert solved(laws._replace(most=most), W, w)[:2] == (LIMIT, most)
+
+
+def test_the_states_of_contacts_are_the_digits_of_a_number():
+    states = [7] * 6
+    rows.set_states(three()[0], states, 3 * 16 + 2, 4, 6)
+    assert states == [INSIDE, LOWER, INSIDE, UPPER, INSIDE, LOWER]
+
+
+def test_equations_are_solved_by_pivots():
+    A = np.array([[0.0, 2.0, -3.0], [5.0, 0.0, 1.0], [7.0, -4.0, 0.5]])
+    right = np.array([[1.0, 4.0], [2.5, -3.0], [-6.0, 0.7]])
+    x = right.copy()
+    eliminate(A.copy(), x, np.array([2.0, 0.5, 4.0]), 3, 2)
+    assert x == pytest.approx(np.linalg.solve(A, right), rel=1e-13)
 
 
 # ---- bounds of other kinds, and bands --------------------------------------------------------------------------------
