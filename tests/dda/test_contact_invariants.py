@@ -114,6 +114,7 @@ def keeps_ways(case, result, closed):
     """Reference and stretch of a contact are its way, which the block's place tells too; what slips moves it alone."""
     rows = result.history
     ways = rows.path.shape[1]
+    assert np.array_equal(result.shear[-1] * result.multiplicity, rows.force[1:, -1])
     way = (rows.path + rows.opening[:, -ways:]).T
     rounding = 1e-13 * case.kind.rounding * (1 + np.max(np.abs(way)))  # of places at some 1 m
     assert np.max(np.abs(way[:, 1:] - way[:, :1] - result.slide[-ways:])) < rounding
