@@ -48,15 +48,8 @@ def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
     assert measured == pytest.approx(expected, abs=tolerance)
 
 
-# ---- dashpot ---------------------------------------------------------------------------------------------------------
-
-
-# ---- impulses --------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (9 / 16, 1.0)])
 def test_a_load_that_rises_drives_a_block_onto_a_stop(alpha, delta):
-    """By theta = sqrt(alpha) as at the end of each step; the work of the load is all accounted for."""
     dt = 1.7e-3
     block = Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0))
     model = UnilateralModel(block, Unilateral(math.inf, gap=2.9e-3), 3e5, ramp=0.013)
@@ -70,9 +63,6 @@ def test_a_load_that_rises_drives_a_block_onto_a_stop(alpha, delta):
     assert np.abs(sum(result.energies.values())).max() < 1e-9 * result.energies["impact"][-1]
 
 
-# ---- passes ----------------------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(("dt", "rC"), [(1e-2, 9.75042), (2e-3, 0.715198), (1e-3, 0.271164), (1e-4, 0.00368836)])
 def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     """Passes of a first step: ln(|w_f| / tolerance) / ln(1 + r C) with r = 2p of both corners."""
@@ -84,9 +74,6 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     limited = solve_unilateral(model, scheme, 1, options=replace(options, pass_limit=2))
     assert limited.outcome == "pass limit exceeded" and len(limited.time) == 0
     assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
-
-
-# ---- forces that keep the energy, or act as at the end of a step -----------------------------------------------------
 
 
 @pytest.mark.parametrize("omega", thinned([0.3, 4.0, 1.0, 1e3], 2))

@@ -77,9 +77,6 @@ def test_equations_are_solved_by_pivots():
     assert x == pytest.approx(np.linalg.solve(A, right), rel=1e-13)
 
 
-# ---- bounds of other kinds, and bands --------------------------------------------------------------------------------
-
-
 def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
     """Rows that open beside rows with a strength: z = 0 inside of the bounds, of the sign that each allows beyond."""
     rng = np.random.default_rng(2)
@@ -104,9 +101,6 @@ def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
         assert slip == pytest.approx(np.where(opens, 0.0, z * (state != INSIDE)), rel=1e-13)
         seen |= {*zip(opens.tolist(), state.tolist(), strict=True)}
     assert seen == {(1, LOWER), (1, INSIDE), (0, LOWER), (0, INSIDE), (0, UPPER)}
-
-
-# ---- friction --------------------------------------------------------------------------------------------------------
 
 
 def three(**changes):
@@ -172,6 +166,3 @@ def test_what_does_not_end_has_no_state_or_several(monkeypatch):
     monkeypatch.setattr(rows, "TRIED", 1)  # of many contacts not all states are tried: they come back
     monkeypatch.setattr(rows, "across", never_agrees)
     assert solved(*problem)[0] == NONE
-
-
-# ---- two contacts along one base -------------------------------------------------------------------------------------
