@@ -28,8 +28,6 @@ def still(steps):
     return Drive(none, none, none, none)
 
 
-# ---- the step --------------------------------------------------------------------------------------------------------
-
 NEWMARK = [(*AVERAGE, "consistent"), (*CONSTANT, "zero"), (0.3025, 0.6, "zero"), (0.375, 0.75, "consistent")]
 
 
@@ -124,9 +122,6 @@ def test_explicit_steps_are_those_of_the_papers(seed):
     assert check_against_the_papers(problem, scheme, "leapfrog", {}) > 0
 
 
-# ---- the domino ------------------------------------------------------------------------------------------------------
-
-
 def thrown(n, young, step, alpha, limit=None):
     """Return one step of touching blocks that are thrown on their base at 1 m/s."""
     blocks = layers([1.0] * n, [2500.0] * n, [young] * n, [-1.0] * n)
@@ -156,9 +151,6 @@ def test_a_limit_of_six_solves_ends_the_run_of_six_touching_rigid_blocks():
     completed = thrown(6, RIGID, 1e-3, 0.5, limit=7)
     assert completed.outcome == "completed"
     assert completed.step_solves.tolist() == [7]
-
-
-# ---- contacts that hold, and rigid blocks ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize(
@@ -202,9 +194,6 @@ def test_a_rigid_block_on_a_shaken_base_moves_as_the_base_does():
         np.testing.assert_allclose(force, 5000 * drive.acceleration[1:], rtol=0, atol=0.03 * np.abs(force).max())
 
 
-# ---- at rest ---------------------------------------------------------------------------------------------------------
-
-
 def test_a_column_that_starts_settled_stays_there():
     on_springs = unilateral(layers([1.0] * 6, [2500.0] * 6, [1e9] * 6, [0.0] * 6), [1e10] * 6, [0.0] * 6)
     welded = replace(on_springs, joints=on_springs.joints[1:])
@@ -224,6 +213,3 @@ def check_that_it_stays(column):
     assert result.energies is not None
     total = np.sum(list(result.energies.values()), axis=0)  # of the loads less what the settled column stores
     assert np.max(np.abs(total)) < 1e-9 * np.max(result.energies["springs"])
-
-
-# ---- limits of a step -----------------------------------------------------------------------------------------------

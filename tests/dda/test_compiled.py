@@ -14,6 +14,7 @@ import pytest
 from oracles.contact_bodies import CASES
 
 from dda import Block, Material, Scheme, Unilateral, UnilateralModel
+from dda.bodies import glued_step
 from dda.bodies.opening_block import opening_block
 from dda.contact.rows import laws_of
 from dda.march import compiled, one_library, step
@@ -45,6 +46,14 @@ def test_a_body_is_the_same_compiled_and_plain(name, always, monkeypatch):
         scale = np.max(np.abs(values), axis=0, initial=0.0)
         assert np.all(np.abs(values - others) <= 1e-14 * scale), field
     assert fast.outcome == plain.outcome and fast.factorisations == plain.factorisations
+
+
+def test_contacts_of_sub_blocks_are_found_from_records(monkeypatch, held):
+    def called_often(function, records, steps):
+        return function, tuple(compiled.as_record(part) for part in records)
+
+    monkeypatch.setattr(glued_step, "called_often", called_often)
+    held("rough sub-blocks", CASES["rough sub-blocks"](0).run())
 
 
 class Numbers(NamedTuple):

@@ -51,9 +51,6 @@ def test_a_body_obeys_its_laws(name, seed, held):
     held(name, result)
 
 
-# ---- laws ------------------------------------------------------------------------------------------------------------
-
-
 def keeps_springs(case, result, N, w, closed):
     """An open contact without force, a closed one at w = -N/p; a dead band holds what others let go."""
     law = case.model.contact
@@ -114,6 +111,7 @@ def keeps_ways(case, result, closed):
     """Reference and stretch of a contact are its way, which the block's place tells too; what slips moves it alone."""
     rows = result.history
     ways = rows.path.shape[1]
+    assert np.array_equal(result.shear[-1] * result.multiplicity, rows.force[1:, -1])
     way = (rows.path + rows.opening[:, -ways:]).T
     rounding = 1e-13 * case.kind.rounding * (1 + np.max(np.abs(way)))  # of places at some 1 m
     assert np.max(np.abs(way[:, 1:] - way[:, :1] - result.slide[-ways:])) < rounding
@@ -140,9 +138,6 @@ def keeps_friction(case, result, N, closed):
         once = slip[:, result.step_cuts == 0]
         assert np.all(once[~slips[:, result.step_cuts == 0]] == 0)
         assert np.max(T[:, result.step_cuts == 0] * once) <= 0
-
-
-# ---- momentum --------------------------------------------------------------------------------------------------------
 
 
 def has_impulses(case):
@@ -178,8 +173,6 @@ def keeps_momentum(case, result):
     if case.kind is TurningBlock and not np.any(result.step_cuts):
         assert result.impulse == pytest.approx(scheme.step * np.cumsum(pushed), rel=1e-12)
 
-
-# ---- energy ----------------------------------------------------------------------------------------------------------
 
 DIGITS = {"dashpot": 1e-11, "impact": 1e-10}  # of rates that are differences, and of impulses
 
@@ -228,9 +221,6 @@ def never_gains(case):
     return case.rule == "implicit" or (case.rule == "newmark" and case.scheme.table is None and case.scheme.delta == 1)
 
 
-# ---- mirror ----------------------------------------------------------------------------------------------------------
-
-
 def keeps_mirror(case, result):
     """Fewer steps are the first ones, of the mirror image of what is mirrored."""
     steps = min(12, case.steps)
@@ -253,9 +243,6 @@ def test_a_base_that_moves_evenly_changes_nothing_but_the_frame(name, seed):
     for field in ("normal", "gap", "shear"):
         values = getattr(at_rest, field)
         assert apart(getattr(moved, field), values) < 1e-8 or not values.any(), field
-
-
-# ---- parts of a whole ------------------------------------------------------------------------------------------------
 
 
 @of_every_body(WHOLE, every=3, always=["dashpot by two stages"])

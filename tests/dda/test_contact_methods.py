@@ -48,13 +48,19 @@ def check_rebounds(scheme, advance, omega, tolerance=1e-6, **given):
     assert measured == pytest.approx(expected, abs=tolerance)
 
 
-# ---- dashpot ---------------------------------------------------------------------------------------------------------
-
-
-# ---- impulses --------------------------------------------------------------------------------------------------------
-
-
-# ---- passes ----------------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize(("alpha", "delta"), [(0.25, 0.5), (9 / 16, 1.0)])
+def test_a_load_that_rises_drives_a_block_onto_a_stop(alpha, delta):
+    dt = 1.7e-3
+    block = Block.rectangle(1.3, 0.9, Material(2350.0, 1e22, 0.0))
+    model = UnilateralModel(block, Unilateral(math.inf, gap=2.9e-3), 3e5, ramp=0.013)
+    options = UnilateralOptions("impact", restitution=0.37, energies=True)
+    result = solve_unilateral(model, Scheme(alpha, delta, 1.0, dt), 14, options=options)
+    share = np.clip(dt * np.arange(15) / 0.013, 0.0, 1.0)
+    theta = math.sqrt(alpha)
+    impulse = 3e5 * 1.3 * dt * np.cumsum((1 - theta) * share[:-1] + theta * share[1:])
+    assert result.velocity[:6] == pytest.approx(-impulse[:6] / MASS, rel=1e-9)
+    assert result.velocity[-1] > -0.1 * impulse[-1] / MASS
+    assert np.abs(sum(result.energies.values())).max() < 1e-9 * result.energies["impact"][-1]
 
 
 @pytest.mark.parametrize(("dt", "rC"), [(1e-2, 9.75042), (2e-3, 0.715198), (1e-3, 0.271164), (1e-4, 0.00368836)])
@@ -68,9 +74,6 @@ def test_what_a_pass_leaves_of_the_penetration(dt, rC):
     limited = solve_unilateral(model, scheme, 1, options=replace(options, pass_limit=2))
     assert limited.outcome == "pass limit exceeded" and len(limited.time) == 0
     assert limited.step_cuts.size == 0 and limited.notes[-1] == "pass limit exceeded at step 1"
-
-
-# ---- forces that keep the energy, or act as at the end of a step -----------------------------------------------------
 
 
 @pytest.mark.parametrize("omega", thinned([0.3, 4.0, 1.0, 1e3], 2))

@@ -142,6 +142,19 @@ def test_a_pressed_edge_stays_however_near_another_one_is():
     assert scene.step((0, -1e-3), deep) == [(0, 2, 1, 3)]  # the least way out, through which it did not come
 
 
+def test_a_corner_on_another_edge_goes_on_from_the_nearest_contact():
+    """A blunt tip, pressed at both its corners, goes over a ridge, where it leans to the other side."""
+    ridge = np.array([(-1.0, -1.0), (2.0, -1.0), (2.0, -0.01), (0.5, 0.0), (-1.0, -0.01)])
+    tip = np.array([(0.0, 0.0), (4e-4, 0.0), (0.6, 1.0), (-0.6, 1.0)])
+    slope = np.arctan(0.01 / 1.5)
+    before, after = (tip @ [[np.cos(t), np.sin(t)], [-np.sin(t), np.cos(t)]] for t in (-slope, 3 * slope))
+    scene = Scene([ridge, at(before, 0.8, -0.002)])
+    assert scene.step((0, -1e-3)) == [(1, 0, 0, 2), (1, 1, 0, 2)]
+    scene.press(1.0, 1.0)
+    assert scene.step((0, -1e-3), [ridge, at(after, 0.3, 1e-5 - 0.01 / 7.5)]) == [(1, 0, 0, 3), (1, 1, 0, 3)]
+    assert scene.detection.contacts.origin[:2].tolist() == [0, 1]
+
+
 def test_of_two_edges_that_are_pressed_that_with_the_greater_force_stays():
     floor = SQUARE - (0.5, 1)
     pairs = [(1, 0, 0, TOP), (0, 2, 1, BOTTOM)]

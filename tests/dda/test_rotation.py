@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 from unittest.mock import patch
 
 import numpy as np
@@ -24,7 +25,9 @@ MATERIAL = Material(2700.0, 1e9, 0.2)
 QUADRILATERAL = Block([[0, 0], [2, 0], [2.5, 1], [0.3, 1.7]], MATERIAL)
 FAR = Unilateral(1e9, gap=100.0)
 AVERAGE, CONSTANT = (0.25, 0.5), (0.5, 1.0)
-HEAVY = RollingModel(Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e8, 4e7), Load(gravity=9.81), tilt=0.3)
+HEAVY = RollingModel(
+    Block.rectangle(1.0, 2.5, MATERIAL), Unilateral(1e8, 4e7, friction=0.3), Load(gravity=9.81), tilt=0.3
+)
 
 
 @pytest.mark.parametrize(("alpha", "delta"), [AVERAGE, CONSTANT, pytest.param(0.3025, 0.6, marks=pytest.mark.long)])
@@ -71,3 +74,16 @@ def test_corners_that_were_not_thought_to_touch_are_found_by_the_step(held):
         blind = solve_unilateral(rocking, scheme, 80)
     held("rocking", sound)
     assert np.max(np.abs(blind.gap - sound.gap)) < 1e-9 and np.count_nonzero(np.diff(sound.states)) > 1
+
+
+HEIGHTS = [0.5, 0.1, 0.3, 0.2]  # m, of the corners
+
+
+@pytest.mark.parametrize(
+    ("heights", "reach", "corners"),
+    [(HEIGHTS, 0.4, [1, 3]), (HEIGHTS[::-1], 0.4, [0, 2]), ([0.1, 0.5, 0.3, 0.2], 0.4, [0, 3]), (HEIGHTS, 0.15, [1])],
+)
+def test_the_two_lowest_corners_may_touch(heights, reach, corners):
+    rolling = SimpleNamespace(near=heights, at=[-1, -1])
+    assert step.nearest(rolling, reach) == len(corners)
+    assert rolling.at[: len(corners)] == corners

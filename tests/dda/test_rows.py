@@ -7,6 +7,7 @@ import pytest
 
 from dda.contact import rows
 from dda.contact.band import find_in_band
+from dda.contact.dense import eliminate
 from dda.contact.rows import FOUND, INSIDE, LIMIT, LOWER, NONE, SEVERAL, UPPER, Flexibility, Laws, Rows
 
 
@@ -62,7 +63,18 @@ def test_contacts_that_cycle_when_set_at_once_are_set_one_at_a_time(W, w):
         assert solved(laws._replace(most=most), W, w)[:2] == (LIMIT, most)
 
 
-# ---- bounds of other kinds, and bands --------------------------------------------------------------------------------
+def test_the_states_of_contacts_are_the_digits_of_a_number():
+    states = [7] * 6
+    rows.set_states(three()[0], states, 3 * 16 + 2, 4, 6)
+    assert states == [INSIDE, LOWER, INSIDE, UPPER, INSIDE, LOWER]
+
+
+def test_equations_are_solved_by_pivots():
+    A = np.array([[0.0, 2.0, -3.0], [5.0, 0.0, 1.0], [7.0, -4.0, 0.5]])
+    right = np.array([[1.0, 4.0], [2.5, -3.0], [-6.0, 0.7]])
+    x = right.copy()
+    eliminate(A.copy(), x, np.array([2.0, 0.5, 4.0]), 3, 2)
+    assert x == pytest.approx(np.linalg.solve(A, right), rel=1e-13)
 
 
 def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
@@ -89,9 +101,6 @@ def test_a_chain_in_a_band_has_the_solution_of_the_full_matrix():
         assert slip == pytest.approx(np.where(opens, 0.0, z * (state != INSIDE)), rel=1e-13)
         seen |= {*zip(opens.tolist(), state.tolist(), strict=True)}
     assert seen == {(1, LOWER), (1, INSIDE), (0, LOWER), (0, INSIDE), (0, UPPER)}
-
-
-# ---- friction --------------------------------------------------------------------------------------------------------
 
 
 def three(**changes):
@@ -128,6 +137,15 @@ def test_contacts_stick_slip_and_open_all_at_once_and_one_by_one(way, cohesion, 
     assert singly[1] > 1 and singly[2].force == pytest.approx(after.force, rel=1e-12)
 
 
+def test_a_contact_that_slips_has_the_friction_of_the_solve_before():
+    laws, before, W = three(lagged=True)
+    q = [*GAPS, 1e-3, 1e-3, 1e-3]
+    outcome, solves, after = solved(laws, W, q, before)
+    sticking = np.linalg.solve(W + np.diag(laws.compliance), np.negative(q))
+    assert (outcome, solves) == (FOUND, 2)
+    assert after.force[3:5] == pytest.approx(-0.5 * sticking[:2], rel=1e-12)
+
+
 def never_agrees(laws, flexible, after, work, r):
     return LOWER if work.tried[r] == INSIDE else INSIDE
 
@@ -148,6 +166,3 @@ def test_what_does_not_end_has_no_state_or_several(monkeypatch):
     monkeypatch.setattr(rows, "TRIED", 1)  # of many contacts not all states are tried: they come back
     monkeypatch.setattr(rows, "across", never_agrees)
     assert solved(*problem)[0] == NONE
-
-
-# ---- two contacts along one base -------------------------------------------------------------------------------------

@@ -32,15 +32,9 @@ def square(ratio=1.0, mu=0.0, **load):
     return TwoBlockModel(block, Contact(ratio * 1e9, 0.4e9), Load(5e6, **load))
 
 
-# ---- names -----------------------------------------------------------------------------------------------------------
-
-
 def test_the_names_are_those_of_scenes():
     assert SCHEMES == ("newmark", "chung-hulbert", "hht", "wbz", "leapfrog", "composite")
     assert all(named_scheme(name, step=1e-3, **values).name == name for name, values in CASES)
-
-
-# ---- roots -----------------------------------------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("omega", [1.9, 40.0])
@@ -73,9 +67,6 @@ def test_only_the_leapfrog_grows_beyond_a_limit(name, values):
     if name == "leapfrog":
         assert abs(roots.roots(scheme, 1.001 * limit)[0]) > 1
         assert math.isnan(roots.damping_ratio(scheme, 1.001 * limit))
-
-
-# ---- histories -------------------------------------------------------------------------------------------------------
 
 
 def dense(model):
