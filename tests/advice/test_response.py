@@ -36,12 +36,3 @@ def test_a_peak_between_listed_frequencies_is_followed_to_its_digits(points):
     assert frequency == pytest.approx(f0 * math.sqrt(1 - 2 * xi**2), rel=1e-7)
     assert amplitude == pytest.approx(share / (2 * xi * math.sqrt(1 - xi**2)), rel=1e-9)
     assert found.peaks(PRESSURE) == []
-
-
-def test_peaks_come_by_size_and_unbounded_ones_first():
-    frequency = np.linspace(20.0, 400.0, 77)
-    sizes = [peak.amplitude for peak in response_at(frequency, MODES).peaks(DISPLACEMENT)]
-    assert sizes == pytest.approx([35.0293, 16.7714, 0.303443], rel=1e-5)
-    mixed = [(f0, xi if f0 < 300 else 0.0, share) for f0, xi, share in MODES]
-    peaks = [peak.frequency for peak in response_at(frequency, mixed).peaks(DISPLACEMENT)]
-    assert peaks == pytest.approx([300.0, 120.3, 50.0], rel=3e-3)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from dda import Block, Contact, Material, Scheme, TwoBlockModel, diagnostics, modes
+from dda import Block, Contact, Material, Scheme, TwoBlockModel, modes
 from dda.scheme import spectral
 
 CONSTANT, AVERAGE = (0.5, 1.0), (0.25, 0.5)
@@ -41,13 +41,3 @@ def test_formulas_are_the_steps_of_the_modes(weights, gg, shape, step):
     size = max(1.0, np.abs(formula).max())
     np.testing.assert_allclose(own.sum(axis=1), formula.sum(axis=1), rtol=0, atol=1e-12 * size)
     np.testing.assert_allclose(own.prod(axis=1), formula.prod(axis=1), rtol=0, atol=1e-12 * size**2)
-
-
-def test_diagnostics_name_a_growing_scheme():
-    grows = diagnostics(square(), Scheme(0.0, 0.5, 1.0, 0.01))
-    assert grows.largest_omega > 2
-    assert grows.spectral_radius == pytest.approx(float(spectral.spectral_radius(grows.largest_omega, 0.0, 0.5)))
-    calm = diagnostics(square(1e12), Scheme(*CONSTANT, 1.0, 1e-3))
-    assert calm.spectral_radius <= 1
-    assert calm.scaled_condition_number < 20 < 1e9 < calm.condition_number
-    assert calm.scaled_residual < 1e-15

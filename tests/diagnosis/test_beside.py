@@ -14,7 +14,6 @@ from validation.diagnosis.beside import (
     FARTHEST,
     LEAST_ROWS,
     MOST_ALIKE,
-    NOISY,
     RunExplanation,
     RunVerdict,
     SceneSearch,
@@ -199,26 +198,6 @@ def test_what_remains_is_measured_by_column():
     assert Swing(scene, apart=1e-3).left(scene) == math.inf
     still = Swing(0 * scene)
     assert still.misfits(still.scene_run) == pytest.approx([1.0, 1.0])
-
-
-@pytest.mark.parametrize(
-    ("size", "rows", "wrong", "is_noise"),
-    [
-        (1e-3, ROWS, 0.0, True),
-        (1e-3, NOISY - 1, 0.0, False),  # too few for all lags
-        (3e-2, ROWS, 0.0, False),  # too large
-        (1e-3, ROWS, 8e-3, False),  # a row by itself
-    ],
-)
-def test_noise_is_small_and_white_and_without_rows_that_stand_out(size, rows, wrong, is_noise):
-    scene = columns_of({}, rows)
-    noise = np.random.default_rng(5).standard_normal(scene.shape)
-    noise[:, rows // 2] += wrong / size
-    noisy = Swing(scene + size * noise * np.max(np.abs(scene), axis=1, keepdims=True))
-    assert noisy.is_noise(noisy.scene_run) is is_noise
-    assert noisy.is_scene() is is_noise
-    shaped = np.sin(0.2 * np.arange(rows)) * size * np.max(np.abs(scene), axis=1, keepdims=True)
-    assert not Swing(scene + shaped).is_noise(scene)
 
 
 def test_beside_noise_a_cause_stands_out_or_is_listed_with_others():

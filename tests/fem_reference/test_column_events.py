@@ -133,9 +133,3 @@ def test_a_record_is_linear_between_its_rows():
     course = drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0])()
     values = [float(course.piece_at(t).series(arb(t), 1.0, 1)[0]) for t in (0.2, 0.5)]
     assert values == pytest.approx([2.5, 3.2], rel=1e-14)
-
-
-def test_the_parts_of_a_course_begin_at_once():
-    pieces = [drives.still().piece_at(0.0), *(drives.sine(size, 3.0)().piece_at(0.0) for size in (1.0, 2.0))]
-    course = drives.Course((-0.1, 0.3), tuple(pieces))
-    assert course.parts() == [(0.0, pieces[1]), (0.3, pieces[2])]

@@ -7,7 +7,7 @@ import pytest
 
 from fem_reference.contact import iteration
 from fem_reference.contact.iteration import CONVERGED, NONE, SEVERAL, find_contact
-from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, Trial, agreed, equations_of, solution
+from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE, Law, agreed, equations_of, solution
 
 POINT = [(AT_LOWER, INSIDE), (INSIDE, INSIDE), (INSIDE, AT_LOWER), (INSIDE, AT_UPPER)]  # across and along
 
@@ -149,21 +149,3 @@ def test_edges_of_a_point_or_two():
     assert np.isnan(lost.inverse).all()
     trial, _, _, outcome = found(rule, np.array([-1.0, 0.0]), np.array([-1.0, 0.0]), turning)
     assert outcome != CONVERGED or np.isfinite(trial.force).all()
-
-
-def test_states_that_an_open_point_asks_for_as_it_closes():
-    """Its friction is that of what presses at its depth, its shear that of the way since it crossed."""
-    law = law_of(np.diag([1e-9, 2e-9]), np.array([1e-9, 4e-9]), True, 0.5, 100.0)
-    guess = np.array([AT_LOWER, INSIDE], dtype=np.int8)
-    gap = np.array([3e-6, 0.0])
-    for before, way, asked in (
-        (AT_LOWER, 6e-6, INSIDE),  # -600 N of at most 1,100 N: for 0.4 of the step
-        (INSIDE, 6e-6, AT_LOWER),  # -1,500 N
-        (AT_LOWER, -10.5e-6, INSIDE),
-        (AT_LOWER, -11.5e-6, AT_UPPER),
-        (AT_LOWER, 11.5e-6, AT_LOWER),
-    ):
-        trial = Trial(np.zeros(2), np.array([-2e-6, way]), True, equations_of(law, guess, np.ones(2)))
-        states = np.array([before, INSIDE], dtype=np.int8)
-        following, wrong = agreed(law, trial, gap, states, guess)
-        assert (following.tolist(), wrong) == ([INSIDE, asked], 0), way

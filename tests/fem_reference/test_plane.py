@@ -40,12 +40,3 @@ def test_cells_that_meet_in_a_t_share_their_points():
     assert mesh.nelements == 4 * 13  # 13 by four a halving
     facets = mesh.p[:, mesh.facets[:, mesh.boundary_facets()]]
     assert np.hypot(*(facets[:, 1] - facets[:, 0])).sum() == pytest.approx(8.0)  # the outline, and no slit
-
-
-def test_cells_halve_towards_a_clamp():
-    places = ((1.0, 2.0), (5.0, 2.0), (5.0, 3.0), (1.0, 3.0))
-    x, y = mesh_of(PlaneBody((places,), 1.0, 1.0, 0.2, rectangle=True, clamps=(places[1:3],), elements=2)).p
-    widths = np.diff(np.unique(x))
-    assert widths[:7] == pytest.approx(0.5)
-    assert len(widths) > 10 and widths[7:-1] == pytest.approx(0.5 ** np.arange(2, len(widths) - 6))
-    assert widths[-1] == pytest.approx(widths[-2]) and np.diff(np.unique(y))[[0, -1]] == pytest.approx(widths[-1])

@@ -7,7 +7,7 @@ import pytest
 from conftest import thinned
 from oracles.elements import make
 
-from fem_reference import Friction, Motion, Scheme, Unilateral, named_scheme, solve_unilateral
+from fem_reference import Friction, Motion, Scheme, Unilateral, solve_unilateral
 from fem_reference.contact import points, stepper
 from fem_reference.contact.driver import Cut, cut_step
 from fem_reference.contact.iteration import NONE, OVERFLOW
@@ -72,18 +72,6 @@ def test_an_unstable_scheme_ends_with_its_overflow():
     run = solve_unilateral(make(elements=8), Scheme(0.0, 0.5, 1.0, 5e-3), 2000)
     assert run.outcome == "overflow" and 10 < len(run.time) < 2000
     assert all(np.all(np.isfinite(column)) for column in run.columns.values())
-
-
-def test_states_are_changed_singly_a_hundred_times_a_point_or_four_with_friction():
-    """Of points that touch alone each change takes energy; beside friction they may go round."""
-    model = points.build(make(elements=2))
-    for friction, singly in ((None, 100), (Friction(10.0, 1e3), 4)):
-        system = model.system("glued" if friction else "frictionless", friction)
-        (stage,) = ContactStepper(system, SCHEME)._stages(0.7)
-        assert stage.law.single_limit == singly * np.count_nonzero(~system.rows.slips) > 0
-        assert (stage.h, stage.gg) == pytest.approx((0.7e-3, 0.9**0.7), rel=1e-14)
-    stages = ContactStepper(system, named_scheme("composite", step=1e-3, split=0.4))._stages(1.0)
-    assert [one.duration for one in stages] == pytest.approx([0.4, 0.6], rel=1e-14)
 
 
 def test_a_step_from_a_velocity_without_bound_solves_no_contact():

@@ -48,17 +48,6 @@ def test_what_a_band_is_about_and_the_way_to_its_edges():
     assert gate(3.0, 3.0 + 6e-9).margin(3.0) == pytest.approx(0.0, abs=1e-6)  # of 1e-9 and no less
 
 
-def test_a_record_is_rounded_well_above_the_last_bits():
-    one = gate(-math.inf, 1.2345678901234567, reference_uncertainty=0.5, reference_kind="bound")
-    assert judge(one, 0.123456789).record("mine") == {
-        "id": one.id, "study": "mine", "scene": "s[a=1]", "pair": ["dda", "bar"], "metric": "displacement.l2",
-        "value": 0.1235, "margin": 0.9, "band": [-LARGEST, 1.23456789012], "verdict": "PASS", "reason": "so",
-        "why": "", "reference_kind": "bound", "reference_uncertainty": 0.5, "alarms": [],
-    }  # fmt: skip
-    assert judge(gate(), 0.123456789).record("mine")["margin"] == 0.969
-    assert judge(gate(), "undefined").record("mine")["margin"] is None
-
-
 def test_inside_passes_and_what_has_no_number_fails():
     for value, status in ((0.0, "PASS"), (4.0, "PASS"), (-1e-9, "FAIL"), (4.001, "FAIL")):
         assert (judge(gate(), value).status, judge(gate(), value).why) == (status, ""), value

@@ -1,6 +1,5 @@
 """A frequency beyond pi / dt is named an alias wherever it would be shown as the mode's own."""
 
-import cmath
 import math
 import re
 from dataclasses import replace
@@ -40,22 +39,6 @@ def test_the_continuums_frequency_beyond_nyquist_is_an_alias_and_its_damping_is_
     assert first_axial(m, "damping") == pytest.approx(c / (2 * w), rel=1e-12, abs=1e-15)
     folded = abs(complex(-c / 2, 2 * math.pi / m.step - math.sqrt(w**2 - c**2 / 4)))
     assert m.modes[0].alias(m.step) == pytest.approx(folded, rel=1e-12)
-
-
-def test_below_nyquist_and_under_a_scheme_no_frequency_is_an_alias():
-    fine = seen(figure(0.002), "continuum")
-    assert first_axial(fine, "numerical_frequency") == pytest.approx(fine.modes[0].frequency, rel=1e-12)
-    assert isinstance(first_axial(seen(figure(0.01), "bar"), "numerical_frequency"), float)
-
-
-def test_a_motion_that_does_not_swing_has_no_alias():
-    step, w = 1.0, 4.0
-    for half in (3.9, 2.5, 5.0):  # turns of 0.9 and 3.1 a step, below pi; overdamped
-        root = cmath.sqrt(half**2 - w**2)
-        pair = cmath.exp((root - half) * step), cmath.exp((-root - half) * step)
-        assert Mode(w, 1.0, pair, None, True).alias(step) is None
-    root = cmath.sqrt(1 - w**2)
-    assert Mode(w, 1.0, (cmath.exp(root - 1), cmath.exp(-root - 1)), None, True).alias(step) is not None
 
 
 def test_damping_and_the_reports_tables_say_so(tmp_path):

@@ -1,7 +1,5 @@
 """What is measured on positions of boxes: a toy engine with known faults gives what its faults are worth."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -9,7 +7,7 @@ from validation.metrics.values import NOT_REPORTED
 from validation.models.plane import measures
 from validation.models.plane.boxes import boxes_of
 from validation.models.plane.problems import box_problems
-from validation.problems.numbered import JudgedNumber, MeasuredNumber, measured
+from validation.problems.numbered import measured
 from validation.runs.history import History
 
 GAIN = "largest gain of energy"
@@ -98,12 +96,6 @@ def test_what_cannot_be_measured_fails_unless_it_is_optional():
     assert found[PEAK] == (None, NOT_REPORTED)
 
 
-def test_an_error_is_beside_the_part_of_the_band_on_its_side():
-    one = JudgedNumber("n", "1", 2.0, 1.0, 5.0, 1.0, "why", lambda history: None)
-    assert [MeasuredNumber(one, value).shares for value in (5.0, 1.0, 2.0)] == [(3.0, 3.0), (1.0, 1.0), (0.0, 1.0)]
-    assert one.passes(5.0) and one.passes(1.0) and not one.passes(5.01) and not one.passes(0.99)
-
-
 def test_the_peak_between_rows():
     x = np.linspace(0, 1, 12)
     assert measures.peak(3 - 5 * (x - 0.4321) ** 2) == pytest.approx(3, rel=1e-12)
@@ -117,11 +109,3 @@ def test_the_first_contact_is_timed_between_rows():
 
     assert seconds(1.0, -1.0, -1.0, 3.0, -1.0) == pytest.approx(1.75)  # from 1.5 to 3.25
     assert seconds(1.0, 0.5, 0.1) is seconds(1.0, -1.0, -2.0) is None
-
-
-def test_the_first_energy_is_of_height_speed_and_spin():
-    ground = boxes_of(scene_of("bouncing"))
-    box = replace(ground.boxes[0], y=3.0, velocity=(3.0, -4.0), spin=2.0)
-    across, along = sorted((box.width, box.height))
-    expected = 9.81 * (3.0 - across / 2) + 12.5 + 2 * (across**2 + along**2) / 12
-    assert measures.first_energy(replace(ground, boxes=(box,))) == pytest.approx(expected, rel=1e-12)

@@ -10,7 +10,6 @@ from validation.metrics.measurable import Measurable
 from validation.metrics.values import NOT_REPORTED, UNDEFINED
 from validation.runs.contact import ContactRecord
 from validation.runs.history import History
-from validation.runs.modes import Switch
 
 STEP = 0.5
 ONES = np.ones(4)
@@ -88,20 +87,6 @@ def test_slip_and_changes_of_state_are_counted():
     seen = solo(Measurable(History(np.arange(4.0), states), STEP, contact=MADE), ("switches",))
     assert seen["contact.state_changes"] == 4
     assert measured(MADE)["contact.state_changes"] == NOT_REPORTED
-
-
-def test_corners_that_switch_together_open_once():
-    switches = (Switch(0.5, "M", True), Switch(0.5, "N", True), Switch(1.0, "M", False), Switch(1.5, "N", True))
-    found = solo(Measurable(History(np.arange(4.0), {}), STEP, switches=switches), ("switches",))
-    told = ("switches.count", "switches.first_opening", "switches.second_opening", "switches.second_closing")
-    assert [found[name] for name in told] == [4.0, 0.5, 1.5, UNDEFINED]
-
-
-def test_a_share_of_time_is_weighed_by_time_and_friction_is_lost_too():
-    assert measured(replace(MADE, time=np.array([0.5, 3.5, 4.0, 4.5])))["contact.open_share"] == pytest.approx(1 / 3)
-    kinetic, lost = MADE.energies["kinetic"] - ONES, MADE.energies | {"friction": ONES}
-    assert measured(replace(MADE, energies=lost | {"kinetic": kinetic}))["energy.imbalance"] == pytest.approx(0.0)
-    assert measured(replace(MADE, energies=lost))["energy.imbalance"] == pytest.approx(1 / 12)
 
 
 def test_what_is_not_reported_or_has_no_meaning_says_so():

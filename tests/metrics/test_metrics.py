@@ -87,14 +87,6 @@ def test_no_metric_is_ever_nan():
         assert not [key for key, value in values.items() if isinstance(value, float) and not math.isfinite(value)]
 
 
-def test_the_worst_of_two_needs_no_further_column():
-    time = np.array([1.0, 2.0])
-    exact = History(time, {"displacement": np.array([1.0, 2.0]), "contact_pressure": np.array([4.0, 8.0])})
-    found = History(time, {"displacement": np.array([1.0, 2.5]), "contact_pressure": np.array([4.0, 4.0])})
-    assert pair("worst.max", found, exact) == 0.5
-    assert pair("worst.max", History(time, {"displacement": time}), exact) == NOT_REPORTED
-
-
 def test_a_fast_mode_is_no_slow_one_where_every_tenth_sample_is_read():
     """It turns by 2.9 rad a step, and ten of them look like a mode of 0.26 rad in ten steps."""
     n, frequency, dt = np.arange(6000), 200.0, 1e-4
@@ -111,22 +103,3 @@ def test_the_drift_of_a_modes_energy_is_that_from_the_first_to_the_last_steps():
     short = History(n[:3000] + 1.0, {"displacement": np.cos(0.5 * n[:3000])})
     assert solo(replace(m, history=short), ("energy",))["energy.drift"] == UNDEFINED
     assert solo(replace(m, modes=()), ("energy",))["energy.drift"] == NOT_REPORTED
-
-
-@pytest.mark.parametrize(
-    ("pressure", "when", "total"),
-    [([1.0, -0.5, -2.0, 3.0], 1.5, 1.0), ([1.0, -4e-9, 2.0, 4.0], UNDEFINED, UNDEFINED), (None, *2 * [NOT_REPORTED])],
-)
-def test_tension_has_an_instant_and_a_duration(pressure, when, total):
-    columns = {"displacement": np.ones(4)} if pressure is None else {"contact_pressure": np.array(pressure)}
-    found = solo(Measurable(History(0.5 * np.arange(1.0, 5.0), columns), 0.5))
-    assert (found["pressure.minimum_time"], found["pressure.tension_time"]) == (when, total)
-
-
-def test_the_horizon_is_the_last_step_that_two_codes_agree_at():
-    time, x = np.arange(1.0, 6.0), np.array([1.0, -2.0, 2.0, 1.0, 0.0])
-    apart = {0.0: 0, 3.0: 3, 5.0: 5}  # horizon to steps that agree
-    for horizon, agreed in apart.items():
-        other = History(time, {"displacement": x + 3e-6 * (np.arange(5) >= agreed)})
-        m = Measurable(History(time, {"displacement": x}), 1.0, switches=(), shadow=lambda other=other: other)
-        assert solo(m, ("horizon",))["horizon.time"] == horizon

@@ -15,17 +15,6 @@ def history(**columns):
     return History(TIME, columns)
 
 
-def test_every_bit_counts():
-    x = np.sin(TIME)
-    last = x.copy()
-    last[-1] = np.nextafter(last[-1], 2.0)
-    assert is_identical(history(a=x), history(a=x.copy()))
-    assert not is_identical(history(a=x), history(a=last))
-    assert is_identical(history(a=x), history(a=x, b=last)), "a column that one does not report says nothing"
-    assert not is_identical(history(a=x, b=x), history(a=x, b=last))
-    assert not is_identical(history(a=x), history(b=x))
-
-
 def test_few_values_are_alike_by_chance():
     few = np.minimum(TIME, TIME[FEWEST_VALUES - 2])
     enough = np.minimum(TIME, TIME[FEWEST_VALUES - 1])

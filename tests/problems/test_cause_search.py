@@ -140,7 +140,7 @@ SCHEMES = [
 
 @pytest.mark.parametrize(("values", "numbers", "words"), SCHEMES)
 def test_a_scheme_is_named_with_the_step_at_which_it_passes(values, numbers, words, monkeypatch):
-    monkeypatch.setattr(module.Search, "_bases", None)  # of digits that agree nothing else is asked
+    monkeypatch.setattr(Runs, "exact", None)  # of digits that agree nothing else is asked
     one = found(motion(values))
     assert (one.ids, one.values) == (("scheme",), numbers)
     assert words in one.sentence
@@ -222,12 +222,24 @@ def test_numbers_are_looked_for_where_runs_are_cheap(monkeypatch):
     asked = []
     bases = [Base("", {}, solver="bars-events"), Base("words", {})]
     monkeypatch.setattr(Runs, "exact", lambda runs: None)
-    monkeypatch.setattr(module.Search, "_schemes", lambda search: [])
-    monkeypatch.setattr(module.Search, "_laws", lambda *given: [])
-    monkeypatch.setattr(module.Search, "_bases", lambda search, exact, cheap: asked.append([cheap]) or bases)
-    monkeypatch.setattr(module.Search, "_changes", lambda search, base, cheap: asked[-1].append(bool(cheap)) or [])
+
+    class Asked(module.Search):
+        def _schemes(self):
+            return []
+
+        def _laws(self, base):
+            return []
+
+        def _bases(self, exact, cheap):
+            asked.append([cheap])
+            return bases
+
+        def _changes(self, base, cheap):
+            asked[-1].append(bool(cheap))
+            return []
+
     for name in ("locked", "sliding", "rocking", "stack", "cradle", "joint"):
-        assert module.Search(Runs(load_scene(f"field-{name}"), STANDARD), {}).causes() == []
+        assert Asked(Runs(load_scene(f"field-{name}"), STANDARD), {}).causes() == []
     cheap = [True, True, True]
     assert asked == [cheap, *2 * [3 * [False]], cheap, *2 * [[False, False, True]]]
 
@@ -255,16 +267,6 @@ def test_a_run_stands_for_the_exact_motion_where_it_is_near_enough(monkeypatch):
     assert Runs(SCENE, replace(STANDARD, exact=off)).exact() is None
     seams.PROBLEM_RUNS.put(monkeypatch, lambda *given: None)
     assert Runs(SCENE, STANDARD).exact() is None and Runs(SCENE, STANDARD).sampled(base) is None
-
-
-def test_columns_are_apart_by_their_norms_and_bands():
-    runs = Runs(SCENE, STANDARD)
-    band = STANDARD.bands["displacement"]
-    rows = np.arange(len(EXACT.time)) < band.rows
-    off = {"displacement": EXACT.displacement * np.where(rows, 1 + 2.5 * band.high, 9.0)}
-    assert runs.apart(off, EXACT.columns) == pytest.approx(2.5)
-    assert runs.apart({"rotation": off["displacement"]}, EXACT.columns) == 0.0
-    assert runs.apart({"displacement": math.nan * EXACT.displacement}, EXACT.columns) == math.inf
 
 
 def test_a_solver_that_does_not_run_to_its_end_has_no_history(monkeypatch):

@@ -2,25 +2,19 @@
 
 from __future__ import annotations
 
-import re
-
 import pytest
-from oracles.pages import ROOT
 
 from validation.diagnosis.hooks import DiagnosisHooks
 from validation.gates.gate import Status
-from validation.problems.bands import standard
 from validation.problems.judge import judge
-from validation.problems.problem import ASKS, problem
+from validation.problems.problem import problem
 from validation.runs.history import History
-from validation.runs.numbers import error_percent
 from validation.scenes import features
 from validation.solvers.registry import get_solver
 
 FINER, FINER_TURNING = 32, 4  # steps in one of the scene's; of a block that turns, which takes long
 OF_BLOCKS = ("locked", "opening", "sliding", "rocking", "column")
 QUICK = ("locked", "column")  # to have an exact motion, and to run
-PAGE = (ROOT / "docs/problems.md").read_text(encoding="utf-8")
 
 
 def each(names, quick=QUICK):
@@ -38,15 +32,3 @@ def test_at_fine_steps_dda_passes(name):
     rows = slice(every - 1, None, every)
     sampled = History(history.time[rows], {column: x[rows] for column, x in history.columns.items()})
     assert judge(one, sampled).status is Status.PASS
-
-
-@pytest.mark.parametrize("name", each(tuple(ASKS)))
-def test_the_page_has_the_bands(name):
-    """One by one, or from the least to the largest."""
-    (cell,) = re.findall(rf"^\| `{name}` \| [^|]* \| ([^|]*) \|$", PAGE, re.MULTILINE)
-    bands = [standard(problem(name)).bands[column] for column in problem(name).columns]
-    shown = [error_percent(band.high).removesuffix(" %") for band in bands]
-    stated = re.findall(r"\d+(?:\.\d+)?", cell)
-    assert stated == ([min(shown, key=float), max(shown, key=float)] if " to " in cell else shown)
-    words = cell.partition(":")[2]
-    assert all(band.datum.split()[-1].strip("'") in words or band.datum.split()[0] in words for band in bands)

@@ -16,9 +16,7 @@ from oracles.made_cases import made_history, made_row
 from validation.errors import InputError
 from validation.runs import columns, extras, files, provenance, strict, tables, units
 from validation.runs.case_name import CaseName, scene_of
-from validation.runs.contact import Rebound, rebounds_of_steps
 from validation.runs.defects import Defects, DefectsError, Place
-from validation.runs.modes import Mode, contact_index
 from validation.runs.regular import kind_of, regular
 from validation.runs.results import Results
 from validation.runs.run import Outcome, Run
@@ -85,15 +83,6 @@ def test_verdicts_of_a_study_take_the_place_of_its_own(tmp_path):
     assert len(results.verdicts()) == 3
 
 
-def test_rebounds_are_the_rates_beside_a_contact():
-    gap = np.array([5.0, 3.0, -1.0, -2.0, 0.5, 2.0, 4.5, 1.0, -1.0, 0.25, -0.5, 1.0])
-    found = rebounds_of_steps(gap, 0.5)
-    assert found == [(2, Rebound(4.0, 5.0)), (8, Rebound(7.0, None))]
-    assert [one.restitution for _, one in found] == [1.25, None]
-    assert rebounds_of_steps(np.array([-1.0, 2.0, 1.0, -1.0]), 1.0) == [(3, Rebound(1.0, None))]
-    assert rebounds_of_steps(np.array([1.0, 2.0, -1.0]), 1.0) == []  # thrown at the ground within a step
-
-
 def test_columns_have_units_words_and_an_order():
     own = {"x": columns.ColumnKind("mm", "m", "Place of box {n}"), "force": columns.ColumnKind("N", "m")}
     names = ["slip_2", "other", "rotation", "displacement_11", "displacement", "force_3", "displacement_2"]
@@ -112,22 +101,6 @@ def test_headers_are_recognised_with_their_units():
     found = [units.recognised(header, known) for header in headers]
     assert [one and one[0] for one in found] == [*3 * ["displacement"], None, "time", None, None]
     assert [one[1] for one in found if one] == pytest.approx([1.0, 1e-3, 1e-2, 1e-3])
-
-
-def test_a_motion_beyond_nyquist_shows_the_frequency_that_its_samples_have():
-    step, frequency, decay = 0.1, 50.0, 0.6
-    turned = np.sqrt((frequency * step) ** 2 - decay**2)  # 4.96: beyond pi
-    value = complex(np.exp(-decay + 1j * turned))
-    mode = Mode(frequency, 1.0, (value, value.conjugate()), sampled=True)
-    assert mode.alias(step) == pytest.approx(np.hypot(2 * np.pi - turned, decay) / step)
-    slow = replace(mode, frequency=33.0, eigenvalues=(value / 2, value.conjugate() / 2))  # 3.3 without its decay
-    assert slow.alias(step) is None and replace(mode, sampled=False).alias(step) is None
-
-
-def test_the_contact_mode_has_most_of_the_pressure_of_those_after_the_first():
-    for shares, place in (((0.9, 0.1, -0.4, 0.3), 2), ((0.9,), None), ((None, 0.1), None), ((0.1, None), 1)):
-        modes = [Mode(1.0, 1.0, (1.0, 0.5), share) for share in shares]
-        assert contact_index(modes) == place, shares
 
 
 def test_names_of_cases_are_taken_apart_as_they_are_put_together():

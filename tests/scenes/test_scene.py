@@ -1,8 +1,6 @@
 """Scenes: what is accepted, what is refused, and in which words."""
 
 import copy
-import functools
-import operator
 import tomllib
 
 import numpy as np
@@ -33,22 +31,6 @@ def test_a_scheme_refuses_the_numbers_of_newmarks():
             getattr(time, weight)
         assert caught.value.field == f"time.{weight}"
     assert (parse().time.alpha, parse().time.delta) == (0.5, 1.0)
-
-
-@pytest.mark.parametrize(
-    ("name", "field", "place", "values"),
-    [
-        ("field-column", "column.layer.0.blocks", ("column", "layer", 0, "blocks"), [6, 12]),
-        ("rigid-impact", "plane.contact.friction", ("plane", "contact", "friction"), [10.0, 20.0]),
-        ("rigid-impact", "plane.block.1.spin", ("plane", "block", 1, "spin"), [1.0, 2.0]),
-        ("rigid-impact", "plane.block.box.spin", ("plane", "block", 1, "spin"), [1.0, 2.0]),
-    ],
-)
-def test_keys_of_tables_in_tables_are_swept_by_short_names(name, field, place, values):
-    data = load_scene(name).definition()
-    cases = parse_scene(data | {"sweep": {field: values}}, "x").expand()
-    assert [case.name for case in cases] == [f"{name}[{field}={value:g}]" for value in values]
-    assert [functools.reduce(operator.getitem, place, case.definition()) for case in cases] == values
 
 
 @pytest.mark.parametrize(

@@ -25,8 +25,6 @@ from validation.studies.waves.measure import Guide
 from validation.suite import judging
 from validation.suite.claims import Evidence
 from validation.suite.matrix import _reported
-from validation.suite.own_solver.block_data import scenes
-from validation.suite.own_solver.gates import shown_by_history
 from validation.suite.own_solver.history import AT_REST, _bound, rest, root, shown
 from validation.theory import spectra
 from validation.theory import waves as theory_of_waves
@@ -66,22 +64,6 @@ def test_waves_in_a_layer_are_told_by_its_blocks(monkeypatch):
     assert waves.closed(case) == {"courant": 0.413333, "scheme": "0.25, 0.5, 0.98", "glue": 0.625}
     column.glue = None
     assert "glue" not in waves.closed(case)
-
-
-def test_what_a_history_shows_is_asked_of_it():
-    square = load_scene("figures-3-4").with_values({"time.step": 0.002})
-    flat = square.with_values({"block.poisson": 0.2})
-    rows = [
-        (square, ("mine",), "displacement.static", True),
-        (square, ("mine", "dda-60"), "displacement.static", False),
-        (flat, ("mine",), "displacement.static", False),
-        (scenes()[1], ("mine",), "displacement.static", True),
-        (scenes()[1], ("mine",), "mode1.frequency", False),
-        (square, ("mine",), "mode1.frequency", True),
-        (square, ("mine",), "stability.growth", False),
-    ]
-    for scene, pair, metric, is_shown in rows:
-        assert shown_by_history(Gate("s", pair, metric, 0.0, 1.0, "r"), scene) == is_shown, (scene.name, pair, metric)
 
 
 def test_a_slanting_top_carries_its_load_onto_the_base():

@@ -8,7 +8,6 @@ from scipy.integrate import solve_ivp
 
 from validation import exact
 from validation.theory.edges import edge
-from validation.theory.first_touch import MovingPolygon
 from validation.theory.rocking import Rectangle
 
 TIGHT = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
@@ -74,13 +73,6 @@ def test_a_pulse_of_the_base_tilts_a_box_or_overturns_it():
 
 
 # ---- a first touch, an edge of what holds ----------------------------------------------------------------------------
-
-
-def test_a_polygon_turns_about_its_centroid_as_it_moves():
-    corners = np.array([(-1.1, -0.4), (0.9, -0.6), (0.3, 1.2)])
-    moving = MovingPolygon(corners, (0.3, -2.0), (1.7, 0.6), -0.9)
-    plane = np.exp(-0.9j * 0.35) * (corners @ [1, 1j]) + complex(0.3, -2.0) + 0.35 * complex(1.7, 0.6)
-    assert moving.at(np.array([0.0, 0.35]))[1] @ [1, 1j] == pytest.approx(plane, rel=1e-14)
 
 
 def test_an_edge_lies_between_what_holds_and_what_does_not():

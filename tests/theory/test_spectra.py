@@ -7,8 +7,8 @@ import pytest
 from oracles.staged import amplification, two_unknowns
 from scipy.linalg import eigh
 
-from validation.theory import overshoot, stages, statics
 from validation.theory import spectra as expected
+from validation.theory import statics
 
 OBLONG = {"block.width": 0.7, "block.height": 3.1, "contact.stiffness": 4e8, "block.young": 6e8}
 
@@ -16,11 +16,6 @@ OBLONG = {"block.width": 0.7, "block.height": 3.1, "contact.stiffness": 4e8, "bl
 @pytest.fixture
 def oblong(scene):
     return scene.with_values(OBLONG)
-
-
-def test_both_frequencies_of_an_oblong_block(oblong):
-    found = [expected.dda_frequency(oblong), expected.contact_frequency(oblong)]
-    assert found == pytest.approx(two_unknowns(oblong.block, 4e8), rel=1e-12)
 
 
 def test_what_damping_has_left_at_the_last_step(oblong):
@@ -78,12 +73,3 @@ def test_a_front_has_elements_and_histories_of_two_programs_a_rounding(oblong):
     assert expected.transit(case) == pytest.approx(3.1 / speed, rel=1e-12)
     squares = two_unknowns(case.block, 4e8)[0] ** 2 * 3e-4**2
     assert expected.rounding(case) == pytest.approx(10 * np.finfo(float).eps * 90 * (1 + 8 / 6) / squares, rel=1e-9)
-
-
-@pytest.mark.parametrize("W", [0.7, 3.1])
-def test_what_a_scheme_remembers_lifts_a_mode_in_its_first_step(W):
-    formula = W**6 / (16 * (2 + W**2) ** 2)
-    rise = overshoot.greatest_rise(stages.chung_hulbert(0.0), [W, 1e-3], [0.8, 0.2])
-    assert rise == pytest.approx(0.8 * formula, rel=1e-6)
-    assert overshoot.greatest_rise(stages.newmark(0.25, 0.5), [W], [1.0]) == pytest.approx(0.0, abs=1e-12)
-    assert overshoot.greatest_rise(stages.newmark(0.5, 1.0), [W], [1.0]) == 0.0  # its energy falls from the start
