@@ -154,8 +154,8 @@ def test_a_linear_motion_goes_with_its_load(solver, name, records):
 
 @some(OF_BLOCKS, 11)
 def test_left_is_the_mirror_image_of_right(solver, name, records):
-    """Even are v, the pressure and a discount, odd are u and the rotation."""
-    even = (*USUAL, "discount")
+    """Even are v, the pressure, a discount and what is counted, odd are u and the rotation."""
+    even = (*USUAL, "discount", "solves", "cuts")
     scene = asked(solver, made(name, records))
     other = solved(solver, mirrored(scene, records))
     columns = solved(solver, scene)
