@@ -17,7 +17,6 @@ import numpy as np
 
 from validation.advice import overshoot
 from validation.advice.coarse import closed
-from validation.advice.goals import at_rest
 from validation.advice.limits import Limit, check_ratio
 from validation.advice.plain import PlainAnswer
 from validation.advice.spectra import dda_modes, highest_frequency, number, rate_of
@@ -127,7 +126,7 @@ def advise_across(
     if scene.contact.law == "unilateral" and not is_known:
         rule = "must be a rectangle on springs of finite stiffness where contact opens"
         raise InputError(rule, source=scene.name, advice="state contact.stiffness, or lock the contact")
-    block = closed(at_rest(scene))
+    block = closed(scene)
     modes = dda_modes(block)
     highest = highest_frequency(block)
     impact = highest if scene.block.rectangle is None else landing.contact_frequency(scene)

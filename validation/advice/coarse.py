@@ -127,9 +127,14 @@ def _followed(stepping: Stepping, beyond: float) -> float:
 
 
 def closed(scene: Scene) -> Scene:
-    """Return a scene whose contact stays closed: its springs locked, of a rigid stop as stiff as rounding allows."""
+    """Return a scene whose contact stays closed: its springs locked, of a rigid stop as stiff as rounding allows.
+
+    Its block stands still and upright, as one on such a contact does.
+    """
     if features.linear(scene):
         return scene
+    if scene.block.velocity or scene.block.tilt:
+        scene = scene.with_values({"block.velocity": 0.0, "block.tilt": 0.0})
     contact = type(scene.contact)(stiffness=min(scene.contact.stiffness, 1e6 * scene.block.young))
     run = scene.run.model_copy(update={"geometry": "small", "rotation": "exact"})
     damping = scene.damping.model_copy(update={"kinetic": "constant"})

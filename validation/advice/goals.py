@@ -216,7 +216,7 @@ def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendati
     if scene.time.scheme != "newmark":
         values |= CONSTANT  # explicit steps have a start of their own
     sprung = scene.with_values(values)
-    block = closed(at_rest(sprung))
+    block = closed(sprung)
     if goal == "impact":
         return _impacts(block, error, abs(scene.block.velocity))
     if goal != "static":
@@ -236,13 +236,6 @@ def recommend(scene: Scene, goal: str, question: Question) -> tuple[Recommendati
     )
     best = trials.longest_step(FINEST_SLIDE // FEWEST_SLIDE, error)
     return (recommendation(plain, "slide", say("slide condition"), best, error, (RIGID_BLOCK, 0.0), duration),)
-
-
-def at_rest(scene: Scene) -> Scene:
-    """Return a scene whose block stands still and upright, as a contact that stays closed has it."""
-    if scene.block.velocity == scene.block.tilt == 0:
-        return scene
-    return scene.with_values({"block.velocity": 0.0, "block.tilt": 0.0})
 
 
 # ---- static ---------------------------------------------------------------------------------------------------------

@@ -44,7 +44,7 @@ def start_rise(scene: Scene) -> float | None:
     """
     if IMPULSES & {*features.of(scene)}:
         return None
-    if scene.contact.gap or scene.block.velocity or scene.load.ramp:
+    if scene.contact.gap or scene.block.velocity or scene.block.tilt or scene.load.ramp:
         return None
     if scene.time.start == "zero":  # nothing that an alarm would tell, and no modes need be known
         return 0.0

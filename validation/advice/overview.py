@@ -103,7 +103,7 @@ def overview(scene: Scene, question: Question) -> Overview:
 
 def _facts(scene: Scene) -> Iterator[Fact]:
     """Yield what the step, the springs and the discount do."""
-    block = closed(goals.at_rest(scene))
+    block = closed(scene)
     if scene.load.slope:
         block = block.with_values({"load.slope": 0.0})  # the modes that its weight across the base reaches
     first, *others = damping(block).modes
