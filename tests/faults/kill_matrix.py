@@ -45,16 +45,16 @@ def cases_of(study, gates, judged=None):
     """Return the cases that gates need."""
     needed = {need for gate in gates for need in study.needs(gate)}
     cases = [case for case in study.cases() if (case.scene.name, case.solver) in needed]
-    return as_gates_run(study, cases, judged or judged_studies())
+    return as_gates_run(study, cases, judged)
 
 
-def as_gates_run(study, cases, judged):
-    """Return cases of a study with the metrics alone that gates of judged studies ask for.
+def as_gates_run(study, cases, judged=None):
+    """Return cases of a study with the metrics alone that gates of judged studies ask for, of all by default.
 
-    Where all studies are judged, their rows are those that `validation/test_gates.py` has finished, but for a study
-    whose gates it leaves out.
+    Their rows are then those that `validation/test_gates.py` has finished, but for a study whose gates it leaves out.
     """
-    metrics = asked(tuple(judged) if study.name in judged else (study.name,))
+    judged = tuple(judged or judged_studies())
+    metrics = asked(judged if study.name in judged else (study.name,))
     return [replace(case, only=metrics.get((case.scene.name, case.solver), frozenset())) for case in cases]
 
 

@@ -37,7 +37,7 @@ def made(studies, finished_cases, directory):
     results = beside(finished_cases, directory / "results")
     for name in studies:
         study = replace(get_study(name), timed=False)
-        cases = StudyCases(study, [(case, case.key()) for case in as_gates_run(study, study.cases(), judged_studies())])
+        cases = StudyCases(study, [(case, case.key()) for case in as_gates_run(study, study.cases())])
         for ended in run_cases([cases], results):
             judge_study(ended, results)
         assert not [alarm for alarm in results.manifest(name)["alarms"] if alarm["kind"] == "not examined"]

@@ -158,33 +158,50 @@ def test_gates_for_users_solvers_are_what_they_were(tmp_path):
 TELLING = re.compile(r"\S*\d\S*|(?<=\n)\w+|" + "|".join(gates.GROUPS))  # a sentence may be reworded
 
 
-def reported(gate, seed):
+def asked():
+    """Yield the gates for users' solvers, each with its scene."""
+    scenes = {scene.name: scene for scene in gates.START.scenes}
+    for gate in gates.START.gates():
+        yield gate, scenes[gate.scene]
+
+
+def report(gate, scene, value, metric, **others):
+    """Return what a gate says of a value that a solver gives, but for what else is the case."""
+    group = gates.group(gate, scene)
+    status = "PASS" if gate.low <= value <= gate.high else "FAIL"
+    told = GateReport(
+        gate.id, gates.START.name, gate.scene, scene.time.steps, group, metric, status, value, gate.low, gate.high,
+        "", "completed", "k", "/nowhere",
+    )  # fmt: skip
+    return replace(told, **others)
+
+
+def by_chance(gate, scene, seed):
     """Return what a gate could say of a solver that misreads the block in one way and is wrong elsewhere by chance."""
-    (scene,) = (scene for scene in gates.START.scenes if scene.name == gate.scene)
-    group, metric, at = gates.group(gate, scene), gate.metric, share(seed, gate.id)
+    at = share(seed, gate.id)
     value = gate.low + 1.7 * (at - 0.3) * (gate.high - gate.low)
+    metric = gate.metric
+    others = {"steps": (1999, 2000, 2001, 77)[int(10 * at) % 4], "apart": 0.3 * at}
     if metric == "displacement.static":
         metric = AT_REST
         value = block_data.misread_displacement(scene, block_data.MISREADINGS[int(seed) % 9])
-    elif group != gates.BLOCK_DATA:
-        group = list(gates.GROUPS)[int(40 * at) % len(gates.GROUPS)]
-    status = "PASS" if gate.low <= value <= gate.high else "FAIL"
-    outcome, why = "completed", ""
+    elif gates.group(gate, scene) != gates.BLOCK_DATA:
+        others["group"] = list(gates.GROUPS)[int(40 * at) % len(gates.GROUPS)]
     if share(gate.id, seed) < 0.2:
-        status = ("NOT RUN", "FAIL")[int(100 * at) % 2]
-        outcome, why = ("", "raised", "not a number")[int(1e3 * at) % 3], f"E: step {seed} (f.py:7)"
-    same_as = "dda-60 dda" if at > 0.9 else ""
-    steps = (1999, 2000, 2001, 77)[int(10 * at) % 4]
-    return GateReport(
-        gate.id, "own-solver", gate.scene, steps, group, metric, status, value, gate.low, gate.high, why, outcome,
-        "k", "/nowhere", same_as, apart_in="x" if at < 0.07 else "", apart=0.3 * at,
-    )  # fmt: skip
+        others["status"] = ("NOT RUN", "FAIL")[int(100 * at) % 2]
+        others["outcome"] = ("", "raised", "not a number")[int(1e3 * at) % 3]
+        others["why"] = f"E: step {seed} (f.py:7)"
+    if at > 0.9:
+        others["same_as"] = "dda-60 dda"
+    if at < 0.07:
+        others["apart_in"] = "x"
+    return report(gate, scene, value, metric, **others)
 
 
 def test_blocks_tell_what_they_told():
     told = []
     for seed in map(str, range(27)):
-        reports = [reported(gate, seed) for gate in gates.START.gates()]
+        reports = [by_chance(gate, scene, seed) for gate, scene in asked()]
         failed = [report for report in reports if report.status == "FAIL"]
         groups = first(reports, failed)
         most = telling(failed, groups)
@@ -196,14 +213,9 @@ def test_blocks_tell_what_they_told():
 def answered(scale):
     """Return what the gates for users' solvers say where some values are so many times the middles of their bands."""
     reports = []
-    scenes = {scene.name: scene for scene in gates.START.scenes}
-    for gate in gates.START.gates():
-        scene = scenes[gate.scene]
+    for gate, scene in asked():
         metric = AT_REST if gate.metric == "displacement.static" else gate.metric
-        value = scale(scene, metric) * (gate.low + gate.high) / 2
-        said = ["PASS" if gate.low <= value <= gate.high else "FAIL", value, gate.low, gate.high, "", "completed"]
-        of_gate = (gate.id, gates.START.name, scene.name, scene.time.steps, gates.group(gate, scene), metric)
-        reports.append(GateReport(*of_gate, *said, "k", "/nowhere"))
+        reports.append(report(gate, scene, scale(scene, metric) * (gate.low + gate.high) / 2, metric))
     return reports
 
 
@@ -227,11 +239,11 @@ def test_what_is_told_of_a_users_solver_is_what_was_told():
             return block_data.misread_displacement(scene, misreading) / rest
 
         told[f"misread {number}"] = answered(scale)
-    report = replace(told["misread 0"][0], status="FAIL", group="statics", value=-0.0371, low=0.01, high=0.02)
-    told["statics"] = [*told["misread 0"], report]
-    told["following"] = [*told["misread 0"], replace(report, scene=rectangle.name)]
+    statics = replace(told["misread 0"][0], status="FAIL", group="statics", value=-0.0371, low=0.01, high=0.02)
+    told["statics"] = [*told["misread 0"], statics]
+    told["following"] = [*told["misread 0"], replace(statics, scene=rectangle.name)]
     told["warned"] = [
-        *(replace(report, same_as="bar dda") for report in told["both"][:3]),
+        *(replace(one, same_as="bar dda") for one in told["both"][:3]),
         replace(told["both"][3], same_as="dda", repeated=True, apart_in="displacement", apart=0.0371),
         *told["all"],
     ]
