@@ -41,7 +41,6 @@ from fem_reference.scheme import modal
 from fem_reference.scheme import stage as fem_stage
 from validation.diagnosis import other_solvers, reading
 from validation.engine import origin
-from validation.entry import plugin
 from validation.problems import models
 from validation.solvers import dda as dda_adapter
 from validation.solvers import fenicsx, registry
@@ -182,6 +181,5 @@ LAYERS_THROUGH = Seam(layers, layers.through)
 RIVAL_SLIPS = Seam(other_solvers, other_solvers.CANDIDATES)
 READING_NUMBERS = Seam(reading, reading._numbers)
 PROBLEM_RUNS = Seam(models, models._run_by)
-LOADED_SOLVER = Seam(plugin, plugin._check_loads)
 ORIGIN = Seam(origin, origin._here)
 IMPORTED_SOLVER = Seam(registry, registry._imported)

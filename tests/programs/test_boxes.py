@@ -111,7 +111,6 @@ PROGRAMS = {
     "siconos-default": Program(siconos.AsItComes, "siconos", siconos_boxes.DEFAULT_STEP, late=0),
 }
 DAMPED = "bullet-default"  # whose bodies lose 4 % of their velocity a second
-SICONOS = ("siconos", "siconos-default")  # of its own iteration an impulse is off by 1e-3
 WITH_RESTITUTION = [name for name in PROGRAMS if name not in ("mujoco-default", "exudyn-default")]
 
 

@@ -134,7 +134,6 @@ def named(**gate):
 
 
 UNKNOWN = ["dda", "nowhere.py:solve"]
-UPWARDS = "time,x,y\n0,0,0\n1,0,1\n"
 ASKS += [
     (LOCKED, "gate.0.pair: must be solvers that run.solvers lists, got 'fem'", lambda scene: named()),
     (LOCKED, "gate.0.pair: must name a solver and a reference", lambda scene: named(pair=["dda"])),
