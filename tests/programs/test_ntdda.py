@@ -29,7 +29,11 @@ def test_a_block_on_a_slope_moves_sideways():
 
 # ---- the program itself, of rigid polygons at rest -------------------------------------------------------------------
 
-NTDDA = """#!{python}
+# It starts by the shell: the line that names an interpreter takes no path with a blank.
+NTDDA = """#!/bin/sh
+''':'
+exec "{python}" "$0" "$@"
+'''
 import pathlib, re, sys
 points = re.findall(r"<Point> (\\S+) (\\S+) </Point>", open(sys.argv[1]).read().partition("Measured")[2])
 steps, step = (re.search(f'{{word}}="([^"]*)"', open(sys.argv[2]).read())[1] for word in ("timesteps", "maxtimestep"))
