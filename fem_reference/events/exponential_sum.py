@@ -138,8 +138,6 @@ class ExponentialSum:
 
     def shifted(self, s: arb) -> ExponentialSum:
         """The function of the time since s."""
-        if s == 0:
-            return self
         terms = {}
         for number, Q in self.terms.items():
             shift = acb_poly([s, 1]) if isinstance(Q, acb_poly) else arb_poly([s, 1])

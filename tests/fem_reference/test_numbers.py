@@ -26,7 +26,7 @@ from fem_reference import (
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import solve_line
+from fem_reference.column.stepping import highest_frequency, solve_line
 from fem_reference.column.vibration import line_response
 from fem_reference.contact.columns import LOSS_COLUMNS
 from fem_reference.events import bar_events, bars_events, block_events, column_drive, column_events
@@ -86,6 +86,7 @@ def element_numbers():
     for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4), None):
         unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
         yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
+    yield "pressed", [make(base=b, top=t, eccentricity=0.3).pressed for b, t in ((2, 0), (0, 1), (0, 3))]
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
 
@@ -93,8 +94,14 @@ def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
     slides = Unilateral(1e-3, -0.3, "glued", friction=rough)
-    for scheme, contact in ((DAMPED, slides), (COMPOSITE, slides), (ALPHA, slides), (ALPHA, Unilateral(0.0, 0.2))):
-        yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
+    curved = replace(shaken, degree=2)
+    for problem, scheme, contact in (
+        (shaken, DAMPED, slides),
+        (shaken, COMPOSITE, slides),
+        (curved, ALPHA, slides),
+        (shaken, ALPHA, Unilateral(0.0, 0.2)),
+    ):
+        yield "opens", reached(solve_unilateral(problem, scheme, 25, contact))
     yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-2, 0.3)).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
@@ -120,13 +127,15 @@ def contact_numbers():
         ground = Ground(STRATA, "pressure" if opens else "shear", impedance=impedance)
         limits = (1e-4 * (stiffness < math.inf),) if opens else (0.0, 7e3)
         faces = tuple(ColumnContact(height, stiffness, *limits) for height in levels)
-        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * opens)
+        column = ContactColumn(ground, law, faces, (0.2, -0.1), 9.81 * opens)
         found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     welded = replace(column, contacts=faces[1:])
     yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]))
     for impedance in (None, 5e5):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
+        on_joint = replace(ground, joints=((0.0, 3e8), *ground.joints))
+        yield "fastest", *(highest_frequency(one, [2, 1], 2) for one in (ground, on_joint))
         yield "line", reached(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]))
         for at_top in (False, True):
             for scheme in (ALPHA, COMPOSITE):
@@ -137,13 +146,14 @@ def contact_numbers():
 def exact_numbers():
     problem = make(p=3e8, ramp=0.004)
     yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
-    yield "continuum", reached(Bar.of(make(p=3e8)).continuum(DAMPED, 20))
+    for scheme in (DAMPED, VISCOUS):
+        yield "continuum", reached(Bar.of(make(p=3e8)).continuum(scheme, 20))
     yield "opens", reached(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60))
     rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
     yield "rocks", rocks.impacts[:4], rocks.at([1.7])
-    shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
-    slides = sliding_block.solve(sliding_block.SlidingBlock(11.0, 17.0, 9.81, 0.2), shaken, 2.0)
-    yield "slides", slides.slip, slides.at([0.7, 2.0]), [time for time, _ in slides.switches]
+    for base, values in (sliding_block.recorded, [1, -9, 12, 0]), (sliding_block.moved, [0.02, -0.2, 0.5, 0.1]):
+        slides = sliding_block.solve(sliding_block.SlidingBlock(3, 17, 9.81, 0.2), base([0, 0.1, 0.4, 0.9], values), 2)
+        yield "slides", slides.slip, slides.at([0.2, 0.6, 1.3]), slides.switches
     for omega in (0.7, 2.3, math.inf):
         scheme = ContactScheme(0.3, 0.65, 0.97)
         yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
@@ -180,7 +190,7 @@ def event_numbers():
         yield "block", fields(motion.at([end])), course(motion)
         for one in (*motion.impacts, *motion.cascades):
             yield "impact", [value for name, value in vars(one).items() if name != "radius"]
-    drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
+    drive = column_drive.integrated(column_drive.ricker(0.5, 400.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
