@@ -51,6 +51,7 @@ SLANTED = make(INCLINED, 1, 3, 0.3, "plane strain", 7e8, 4e8, elements=2, degree
 DAMPED = Scheme(0.45, 0.65, 0.97, 1.3e-3)
 VISCOUS = replace(DAMPED, mass_damping=7.0, stiffness_damping=3e-4)
 COMPOSITE = named_scheme("composite", step=1.3e-3, gg=0.97, rho_inf=0.4, split=0.3)
+LEAPFROG = named_scheme("leapfrog", step=5e-4, gg=0.97)
 ALPHA = named_scheme("chung-hulbert", step=1.3e-3, gg=0.97, rho_inf=0.6)
 STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
 
@@ -72,7 +73,7 @@ def fields(history):
 
 def element_numbers():
     on_patches = make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)
-    for problem, schemes in ((SLANTED, (DAMPED, COMPOSITE, ALPHA)), (on_patches, (COMPOSITE, VISCOUS))):
+    for problem, schemes in ((SLANTED, (DAMPED, COMPOSITE, ALPHA, LEAPFROG)), (on_patches, (COMPOSITE, VISCOUS))):
         model = build(problem)
         for scheme in schemes:
             found = diagnostics(problem, scheme, model=model)
@@ -211,10 +212,16 @@ def event_numbers():
         base_impedance=0.7,
         top=column_drive.half_sine(0.3, 0.7),
     )
-    work = Work()
-    waves = bars_events.solve(bars, 2.0, work=work)
-    yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
-    yield "work", work.terms, bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
+    slipping = BarJoint("frictional", 5.0, strength=0.12), BarJoint("frictional", strength=0.07)
+    rubbing = replace(bars, joints=slipping, gravity=0.0, base=column_drive.sine(0.2, 0.4, 1))
+    stops = BarJoint("unilateral"), bars.joints[1]
+    resting = replace(bars, joints=stops, settled=True, base=column_drive.triangle(-0.4, 0.9), base_impedance=math.inf)
+    for problem in (bars, rubbing, resting):
+        work = Work()
+        waves = bars_events.solve(problem, 2.9, work=work)
+        times = [1.3, 2.85]
+        yield "waves", fields(waves.at(times)), vars(waves.point(1, 0.3, times)), waves.impulse(1, times), work.terms
+    yield "work", bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
 
 
 def plane_numbers():

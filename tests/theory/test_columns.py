@@ -41,10 +41,6 @@ def test_a_stack_rings_down_by_what_the_scheme_and_the_discount_take():
     assert columns.ring_down(1e9, Stepping(1.0, 0.5, 1.0, 0.0)) == pytest.approx(0.0, abs=1.0)
 
 
-def test_every_contact_at_rest_carries_what_is_above():
-    assert columns.static_forces([3.0, 2.0, 1.0]) == [6.0, 3.0, 1.0]
-
-
 @pytest.mark.parametrize("base", [{}, {"base": "springs", "base_stiffness": 3e7}, {"glue": 7e8}])
 def test_the_first_frequency_of_a_column_is_that_of_its_faces(base):
     """Blocks of one strain, two layers of them: the lowest eigenvalue of their faces, assembled."""
