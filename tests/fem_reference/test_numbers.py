@@ -91,6 +91,12 @@ def element_numbers():
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
 
+def shaking(scheme):
+    t = scheme.stage_times(60)
+    moved = 2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t)
+    return Excitation(*moved, 2e4 * np.sin(70 * t))
+
+
 def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
@@ -112,35 +118,31 @@ def contact_numbers():
     for elements, degree in ((4, 2), (7, 1)):  # more points than all sets of states are tried of, and as many
         many = make(shear=4e8, eccentricity=0.6, poisson=0.2, elements=elements, degree=degree)
         yield "solves", solve_unilateral(many, DAMPED, 9, Unilateral(1e-4, -2.0, "glued", limit=1)).columns["solves"]
-    t = ALPHA.stage_times(60)
-    drive = Excitation(
-        2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
-    )
     names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
-    for law, levels, impedance, stiffness in (
-        ("unilateral", (0.0, 1.3), None, 3e9),
-        ("frictional", (0.0, 1.3), None, 3e9),
-        ("unilateral", (1.3,), None, math.inf),
-        ("frictional", (1.3,), 5e5, math.inf),
-        ("unilateral", (0.0, 1.3), None, math.inf),
+    for law, scheme, levels, impedance, stiffness in (
+        ("unilateral", ALPHA, (0.0, 1.3), None, 3e9),
+        ("frictional", COMPOSITE, (0.0, 1.3), None, 3e9),
+        ("unilateral", ALPHA, (1.3,), None, math.inf),
+        ("frictional", ALPHA, (1.3,), 5e5, math.inf),
+        ("unilateral", ALPHA, (0.0, 1.3), None, math.inf),
     ):
         opens = law == "unilateral"
         ground = Ground(STRATA, "pressure" if opens else "shear", impedance=impedance)
         limits = (1e-4 * (stiffness < math.inf),) if opens else (0.0, 7e3)
         faces = tuple(ColumnContact(height, stiffness, *limits) for height in levels)
         column = ContactColumn(ground, law, faces, (0.2, -0.1), 9.81 * opens)
-        found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
+        of_contact = "force_1", "gap_1", "slip_1"
+        found = solve_contacts(column, [2, 1], 2, scheme, shaking(scheme), (*names, *of_contact), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     welded = replace(column, contacts=faces[1:])
-    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]))
-    for impedance in (None, 5e5):
+    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, shaking(ALPHA), (*names, "force_1"), [1.3]))
+    for scheme, impedance in ((ALPHA, None), (COMPOSITE, 5e5)):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
         on_joint = replace(ground, joints=((0.0, 3e8), *ground.joints))
         yield "fastest", *(highest_frequency(one, [2, 1], 2) for one in (ground, on_joint))
-        yield "line", reached(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]))
+        yield "line", reached(solve_line(ground, [2, 1], 2, scheme, shaking(scheme), names[:2]))
         for at_top in (False, True):
-            for scheme in (ALPHA, COMPOSITE):
-                yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
+            yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
             yield "layers", layers.amplitudes(ground, [80.0, 400.0], names[:2], [])[at_top]
 
 
