@@ -43,17 +43,10 @@ class Rates:
     work: Work = field(default_factory=Work, compare=False)
 
     def index(self, rate: Rate) -> int:
-        """Number of a rate in the table.
-
-        Raises
-        ------
-        LookupError
-            If it is not in the table.
-        """
-        for number, value in enumerate(self.values):
-            if isinstance(value, acb) == isinstance(rate, acb) and value.overlaps(rate):
-                return number
-        raise LookupError(f"rate: must be in the table, got {rate}")
+        """Number of a rate in the table."""
+        kind = isinstance(rate, acb)
+        alike = (isinstance(value, acb) == kind and value.overlaps(rate) for value in self.values)
+        return next(number for number, found in enumerate(alike) if found)
 
     @cached_property
     def negligible(self) -> arb:

@@ -87,6 +87,7 @@ def element_numbers():
     for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4), None):
         unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
         yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
+    yield "idle", response(unloaded, ALPHA, np.array([37.0]))
     yield "pressed", [make(base=b, top=t, eccentricity=0.3).pressed for b, t in ((2, 0), (0, 1), (0, 3))]
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
@@ -198,9 +199,9 @@ def event_numbers():
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     rising = replace(opening, joints=rough, law="frictional", gravity=0.0)
-    welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    welded = replace(opening, joints=(None, ColumnJoint(3e9)), at_rest=True)
     bonded = replace(opening, joints=(None, None), base="free", pressure=column_drive.half_sine(1e5, 0.02))
-    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
+    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0, at_rest=False)
     for problem in (opening, rising, welded, on_waves, bonded):
         motion = column_events.solve(problem, 0.006)
         work = Work()
@@ -244,6 +245,9 @@ def plane_numbers():
         yield "meet", reached(found), ends(found.rates), ends(found.energy), found.step_solves.sum()
         yield "forces", *(part[-1] for part in (found.normal, found.shear, found.gap, found.slip, found.momentum))
     clamped = replace(bodies[0], clamps=(((0.0, 1.0), (0.0, 0.0)),), forces=(((2.0, 1.0), (3e5, -1e5)),), spin=0.0)
+    pushed = replace(bodies[0], spin=0.0, forces=(((2.0, 1.0), (3e4, -4e4)),))
+    rests = PlaneModel([pushed], contacts[:2])
+    yield "rests", rests.settled.normal, rests.settled.shear, rests.means(0) @ rests.rest
     held = PlaneModel([replace(clamped, stress=(3e6, -1e6, 2e6))])
     yield "held", held.rest @ held.M @ held.rest, *(mode.share for mode in held.modes(DAMPED, 3))
 
