@@ -79,15 +79,15 @@ def element_numbers():
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
             yield "history", reached(solve(problem, scheme, 7, COLUMNS, model=model))
-            yield "response", response(problem, scheme, np.array([37.0]), COLUMNS, model=model)
+            yield "response", response(problem, scheme, [37.0], COLUMNS, model=model)
         yield "mode", *(mode.frequency for mode in modes(problem, ALPHA, model=model)[:2])
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
-    yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    yield "moving", response(moved, DAMPED, [37.0], COLUMNS, along=(0.3, 0.7))
     for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4), None):
         unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
         yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
-    yield "idle", response(unloaded, ALPHA, np.array([37.0]))
+    yield "idle", response(unloaded, ALPHA, [37.0])
     yield "pressed", [make(base=b, top=t, eccentricity=0.3).pressed for b, t in ((2, 0), (0, 1), (0, 3))]
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
 
@@ -143,13 +143,13 @@ def contact_numbers():
         yield "fastest", *(highest_frequency(one, [2, 1], 2) for one in (ground, on_joint))
         yield "line", reached(solve_line(ground, [2, 1], 2, scheme, shaking(scheme), names[:2]))
         for at_top in (False, True):
-            yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
+            yield "vibrates", line_response(ground, [2, 1], 2, scheme, [13.0], at_top, names[:2])
             yield "layers", layers.amplitudes(ground, [80.0, 400.0], names[:2], [])[at_top]
 
 
 def exact_numbers():
     problem = make(p=3e8, ramp=0.004)
-    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
+    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, [37.0])
     for scheme in (DAMPED, VISCOUS):
         yield "continuum", reached(Bar.of(make(p=3e8)).continuum(scheme, 20))
     yield "opens", reached(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60))
@@ -194,6 +194,7 @@ def event_numbers():
         yield "block", fields(motion.at([end])), course(motion)
         for one in (*motion.impacts, *motion.cascades):
             yield "impact", [value for name, value in vars(one).items() if name != "radius"]
+    yield "still", block_events.solve(replace(block, pressure=0.0, gravity=0.0), 1e-3).closed_at_start
     drive = column_drive.integrated(column_drive.ricker(0.5, 400.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
