@@ -183,7 +183,7 @@ class ExponentialSum:
             negligible *= self.rates.fastest
         return 0
 
-    def first_fall(self, end: arb, integrated: bool = False) -> arb | None:
+    def first_fall(self, end: arb, integrated: bool) -> arb | None:
         """The first s in (0, end] at which the function, positive just after zero, falls through it, or None.
 
         Its size is that of velocities, or of their integrals; what is negligible beside them is no crossing.

@@ -181,9 +181,9 @@ def plane_numbers():
     yield "spun", spun.at(np.linspace(0.0, 0.3, 4)), spun.momentum, spun.steady_strain
     for slide in (spinning.Slide(1.3, 0.7, 0.2, -0.6, 2.1), spinning.Slide(1.3, 0.7, 0.2, -0.6, 0.7, 3.7)):
         yield "slide", slide.stopping_distance, slide.tips or 0.0, slide.turn(0.6)
-    half = truss.HalfTruss(2.1, 0.4, 700.0, 0.05, (0.001, 0.002), 2.09, 3e7, 5e7)
+    half = truss.HalfTruss(2.1, 0.4, 700.0, 0.05, (0.001, 0.002), 2.09, 3e7, 5e7, 9.81)
     yield "truss", half.limit, half.rest(2e4), half.rest(1e9) is None, half.motion(np.array([0.01, 0.05]))
-    pair = wedges.Wedges((900.0, 700.0), (0.7, 0.1), 0.3, 0.2)
+    pair = wedges.Wedges((900.0, 700.0), (0.7, 0.1), 0.3, 0.2, 9.81)
     yield "wedges", pair.motion(), pair.factor_of_safety
 
 
