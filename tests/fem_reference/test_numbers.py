@@ -165,16 +165,9 @@ def exact_numbers():
 
 def course(motion):
     """Switches and steps, each as a number and a mean instant, and what stayed in doubt."""
-    switches = [switch.time for switch in motion.switches]
+    found = [switch.time for switch in motion.switches]
     steps = [float(node.start.time) for node in motion.nodes]
-    return (
-        len(switches),
-        np.mean(switches or [0.0]),
-        len(steps),
-        np.mean(steps),
-        len(motion.simultaneous),
-        motion.touches,
-    )
+    return len(found), np.mean(found or [0.0]), len(steps), np.mean(steps), len(motion.simultaneous), motion.touches
 
 
 def event_numbers():

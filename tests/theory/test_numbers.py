@@ -96,12 +96,8 @@ def landing_numbers():
             yield "rebounds", rebound.rebound_statistics(rebound.spring_steps(table, omega, zeta), 5)
     yield "conserving", rebound.rebounds(rebound.conserving_steps(2.3), rebound.midpoints(3))
     for zeta in (0.3, 1.0, 1.7):
-        yield (
-            "dashpot",
-            restitution.restitution(zeta),
-            restitution.contact_time(zeta),
-            restitution.damping_ratio(zeta / 2),
-        )
+        back = restitution.damping_ratio(zeta / 2)
+        yield "dashpot", restitution.restitution(zeta), restitution.contact_time(zeta), back
 
 
 def stepping_numbers():
