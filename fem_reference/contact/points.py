@@ -174,7 +174,7 @@ def whole(problem: Problem) -> ContactModel:
     )
 
 
-def highest_closed_frequency(problem: Problem, full: bool = False) -> float:
+def highest_closed_frequency(problem: Problem, full: bool) -> float:
     """Return the largest natural frequency while every point of the base is closed and sticks [rad/s].
 
     A point that opens or slides takes its springs away, which lowers every frequency: the springs of all bound every

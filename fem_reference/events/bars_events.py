@@ -74,7 +74,6 @@ class BarsMotion:
     end: float  # last instant [s]
     digits: int  # decimal digits of the computation
     switches: tuple[Switch, ...]  # of all joints in the order of time, ``corner`` being the number of the joint
-    closed_at_start: tuple[bool, ...]  # of each joint, just after t = 0; one that slips or sticks counts as closed
     joints: tuple[Joint | None, ...]
     up: tuple[Wave, ...]  # p of each bar, from its foot
     down: tuple[Wave, ...]  # d of each bar, from its top
@@ -295,7 +294,6 @@ def _solved(problem: BarsProblem, end: float, digits: int, limit: int, work: Wor
             end=end,
             digits=digits,
             switches=tuple(sorted(switches, key=lambda switch: (switch.time, int(switch.corner)))),
-            closed_at_start=tuple(foot is not None and foot.pieces[0].state != OPEN for foot in feet),
             joints=tuple(feet),
             up=tuple(up),
             down=tuple(down),

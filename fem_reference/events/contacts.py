@@ -152,5 +152,5 @@ def watches(contacts: Sequence[Contact], states: Sequence[int], references: Sequ
                 yield Watch(c, side, (*limit, Part(slide, -pull)), becomes, offset, pull)
         else:  # the rate at which it moves its reference r = s + T / p_s in the direction of the slip
             side = direction(state)
-            rates = [Part(row, factor * -side * side) for row, factor, _ in limit]
+            rates = [Part(row, -factor) for row, factor, _ in limit]
             yield Watch(c, side, (*rates, Part(slide, contact.shear_stiffness * side)), STICKS, rates=True, order=1)

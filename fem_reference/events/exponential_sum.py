@@ -43,17 +43,10 @@ class Rates:
     work: Work = field(default_factory=Work, compare=False)
 
     def index(self, rate: Rate) -> int:
-        """Number of a rate in the table.
-
-        Raises
-        ------
-        LookupError
-            If it is not in the table.
-        """
-        for number, value in enumerate(self.values):
-            if isinstance(value, acb) == isinstance(rate, acb) and value.overlaps(rate):
-                return number
-        raise LookupError(f"rate: must be in the table, got {rate}")
+        """Number of a rate in the table."""
+        kind = isinstance(rate, acb)
+        alike = (isinstance(value, acb) == kind and value.overlaps(rate) for value in self.values)
+        return next(number for number, found in enumerate(alike) if found)
 
     @cached_property
     def negligible(self) -> arb:
@@ -138,8 +131,6 @@ class ExponentialSum:
 
     def shifted(self, s: arb) -> ExponentialSum:
         """The function of the time since s."""
-        if s == 0:
-            return self
         terms = {}
         for number, Q in self.terms.items():
             shift = acb_poly([s, 1]) if isinstance(Q, acb_poly) else arb_poly([s, 1])
@@ -192,7 +183,7 @@ class ExponentialSum:
             negligible *= self.rates.fastest
         return 0
 
-    def first_fall(self, end: arb, integrated: bool = False) -> arb | None:
+    def first_fall(self, end: arb, integrated: bool) -> arb | None:
         """The first s in (0, end] at which the function, positive just after zero, falls through it, or None.
 
         Its size is that of velocities, or of their integrals; what is negligible beside them is no crossing.

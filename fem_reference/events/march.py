@@ -272,9 +272,6 @@ class March:
         changes = 0
         while True:
             watches = list(model.watches(self.states, self.start.references))
-            if not watches:
-                found = []
-                break
             segment = expand(model, self.states, self.start, self.pieces, length, count)
             if count >= FEW:
                 self.work.add(count * model.size)

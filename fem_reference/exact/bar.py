@@ -82,11 +82,6 @@ class Bar(BarProblem):
         """The lowest natural frequencies w = b c / h [rad/s], shape (count,)."""
         return wave_numbers(self.kappa, count) / self.travel
 
-    def shares(self, column: str, count: int) -> Array:
-        """Shares of the modes in a column's static value, shape (count,)."""
-        b = wave_numbers(self.kappa, count)
-        return shares(column, b, self.kappa)
-
     def modes(self, scheme: Scheme, count: int = 3) -> tuple[Mode, ...]:
         """The lowest modes, with the eigenvalues of the scheme's step."""
         b = wave_numbers(self.kappa, count)

@@ -133,7 +133,6 @@ def modes_of(space: KrylovSpace, stepper: Stepper, rows: Array, steps: int) -> M
     if loss > TOLERANCE:
         slow = kappa < SLOW
         kappa[slow] = _stiffness(stepper, turn.T[slow] @ vectors)
-        tau[slow] = 1 - kappa[slow]
     return Modes(tau, kappa, scheme.step**2 * space.load * turn[0], (rows @ vectors.T) @ turn, FLOOR + 10 * loss)
 
 

@@ -33,9 +33,9 @@ def diagnostics(problem: Problem, scheme: Scheme, full: bool = False, model: Mod
     omegas = np.append(np.sqrt(np.abs(squares)), highest_frequency(problem, model=model)) * scheme.step
     stepper = Stepper(model.M, model.K, model.F, scheme)
     S = stepper.S
-    b = scheme.step**2 * model.F
-    x = stepper.solve(b)
-    residual = np.abs(S @ x - b) / (abs(S) @ np.abs(x) + np.abs(b) + np.finfo(float).tiny)
+    F = model.F
+    x = stepper.solve(F)
+    residual = np.abs(S @ x - F) / (abs(S) @ np.abs(x) + np.abs(F) + np.finfo(float).tiny)
     return Diagnostics(
         condition_number=float(np.linalg.cond(S.toarray())) if small else float("nan"),
         scaled_residual=float(np.max(residual)),

@@ -39,7 +39,7 @@ class StepSystem(NamedTuple):
     velocity: Complex  # row that gives v [1/s]
 
 
-def step_system(frequencies: Array, scheme: Scheme, exact: bool = False) -> StepSystem:
+def step_system(frequencies: Array, scheme: Scheme, exact: bool) -> StepSystem:
     """Equations of the stages of one step at frequencies in Hz, or of the motion that is exact in time.
 
     The latter is one stage with v = i w x and a = -W2 x; W2 = w^2 - i c w with the rate c = -ln(gg) / dt of gg.

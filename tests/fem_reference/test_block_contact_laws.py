@@ -97,17 +97,6 @@ def test_accumulation_that_is_not_proven_is_refused(monkeypatch):
     assert 0.004 < caught.value.time < 0.00402
 
 
-def test_impacts_that_accumulate_end_at_rest():
-    """Each returns a share of the velocity; then the base lies closed until its force has gone."""
-    motion = solve(replace(RIGID, restitution=0.2), 0.012)
-    (cascade,) = motion.cascades
-    end = motion.switches[-1].time
-    assert [len(motion.impacts), cascade.start, cascade.time, cascade.impulse, end] == pytest.approx(
-        [3, 3.706926976425953e-3, 3.724532969333604e-3, 132.7012506439370, 11.186873709362301e-3], rel=1e-12
-    )
-    assert motion.at([0.004, 0.009, 0.012]).closed[0].tolist() == [True, True, False]
-
-
 def test_impacts_count_against_the_limit():
     with pytest.raises(TooManySwitchesError):
         solve(replace(RIGID, restitution=1.0), 0.05, limit=20)

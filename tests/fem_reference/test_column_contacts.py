@@ -1,4 +1,4 @@
-"""Line elements on contacts that open or slip: balances in every step, natural modes, bonded springs."""
+"""Line elements on contacts that open or slip: balances in every step, natural modes, weights."""
 
 import math
 from dataclasses import replace
@@ -7,12 +7,11 @@ import numpy as np
 import pytest
 from conftest import thinned
 
-from fem_reference import named_scheme
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
 from fem_reference.column.contact_system import column_at_start, model_of, stepper_of, system_of
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import observed_by, solve_line
+from fem_reference.column.stepping import observed_by
 from fem_reference.contact import compilation
 from fem_reference.contact.iteration import CONVERGED
 from fem_reference.contact.law import AT_LOWER, AT_UPPER, INSIDE
@@ -139,25 +138,6 @@ def test_a_rigid_contact_that_moves_at_the_start_bears_what_its_slip_or_gap_says
     pressed = still(1, pressure=np.full(2, 1e4)) if law == "unilateral" else still(1)
     _, state = stepper_and_start(column, 4, 2, scheme(AVERAGE, 1e-4), pressed)
     assert state.force[0] == pytest.approx(force, abs=1e-9)
-
-
-def test_contacts_that_never_slip_are_bonded_springs():
-    strata = ground((1.0, 2000.0, 1e9), (2.0, 2400.0, 4e8), motion="shear")
-    springs = [(0.0, 3e9), (1.0, 1e9)]
-    bonded = ContactColumn(strata, "frictional", tuple(ColumnContact(*one) for one in springs), (0.0, 0.0))
-    names, heights = ["displacement", "contact_pressure", "displacement_1", "stress_1"], [1.0]
-    linear = replace(strata, joints=tuple(springs))
-    for how in (scheme(AVERAGE, 1e-4, 0.999, "zero"), named_scheme("composite", step=1e-4, gg=0.999, split=0.4)):
-        t = how.stage_times(100)
-        drive = still(len(t) - 1, displacement=1e-3 * np.sin(80 * t) ** 2, pressure=1e5 * np.sin(300 * t))
-        drive = replace(drive, velocity=0.08 * np.sin(160 * t), acceleration=12.8 * np.cos(160 * t))
-        one = solve_contacts(bonded, [4, 4], 2, how, drive, names, heights)
-        other = solve_line(linear, [4, 4], 2, how, drive, names, heights)
-        for name in names:
-            size = np.abs(other.columns[name]).max()
-            assert one.columns[name] == pytest.approx(other.columns[name], abs=1e-8 * size), (how, name)
-        stages = len(how.stages)
-        assert one.factorisations == 2 * stages - 1 and np.all(one.step_solves == stages)
 
 
 @pytest.mark.parametrize("modal", [False, True])

@@ -127,9 +127,3 @@ def test_drives_are_their_series_and_their_integrals_derive_to_them():
             for k in range(39):
                 derived = series[1][k + 1] * (k + 1) / arb(0.05)
                 assert abs(derived - series[0][k]) < 1e-50
-
-
-def test_a_record_is_linear_between_its_rows():
-    course = drives.recorded([0.1, 0.3, 0.8], [1.0, 4.0, 2.0])()
-    values = [float(course.piece_at(t).series(arb(t), 1.0, 1)[0]) for t in (0.2, 0.5)]
-    assert values == pytest.approx([2.5, 3.2], rel=1e-14)

@@ -26,6 +26,7 @@ from fem_reference.events.enclosure import polynomial as smooth
 from fem_reference.events.series import Start, column, expand
 from fem_reference.events.switches import LostDigitsError, NoContactStateError, TooMuchWorkError
 from fem_reference.events.watching import Change, first_doubt
+from fem_reference.problem.motion import Motion
 
 PAPER = BlockProblem(2.0, 2.0, 2700.0, 1e9, 1e9, 5e6)
 ROUGH = replace(PAPER, shear_stiffness=4e8, friction=30.0, poisson=0.2, cohesion=1e3)
@@ -233,7 +234,8 @@ class Blurred(block_march.BlockMarch):
 
 
 def march_numbers():
-    rough = replace(PAPER, shear_stiffness=4e8, friction=17.0, cohesion=1e3, traction=1e6, eccentricity=0.2)
+    base = Motion((0.0, 0.004), (0.0, 1e-3), (0.0, -5e-3))
+    rough = replace(PAPER, shear_stiffness=4e8, friction=17.0, cohesion=1e3, traction=1e6, eccentricity=0.2, base=base)
     heavy = replace(PAPER, young=math.inf, height=1.5, eccentricity=0.2, damping=2e6, velocity=-0.4)
     rigid = replace(PAPER, stiffness=math.inf, restitution=0.2)
     for problem, end in ((rough, 0.009), (heavy, 0.009), (rigid, 0.0045)):

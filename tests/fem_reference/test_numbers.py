@@ -26,7 +26,7 @@ from fem_reference import (
 from fem_reference.column.contact_model import ColumnContact, ContactColumn
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
-from fem_reference.column.stepping import solve_line
+from fem_reference.column.stepping import highest_frequency, solve_line
 from fem_reference.column.vibration import line_response
 from fem_reference.contact.columns import LOSS_COLUMNS
 from fem_reference.events import bar_events, bars_events, block_events, column_drive, column_events
@@ -51,6 +51,7 @@ SLANTED = make(INCLINED, 1, 3, 0.3, "plane strain", 7e8, 4e8, elements=2, degree
 DAMPED = Scheme(0.45, 0.65, 0.97, 1.3e-3)
 VISCOUS = replace(DAMPED, mass_damping=7.0, stiffness_damping=3e-4)
 COMPOSITE = named_scheme("composite", step=1.3e-3, gg=0.97, rho_inf=0.4, split=0.3)
+LEAPFROG = named_scheme("leapfrog", step=5e-4, gg=0.97)
 ALPHA = named_scheme("chung-hulbert", step=1.3e-3, gg=0.97, rho_inf=0.6)
 STRATA = (Stratum(1.3, 2100.0, 3e8, 0.25), Stratum(0.7, 2500.0, 9e8, 0.1))
 
@@ -72,29 +73,43 @@ def fields(history):
 
 def element_numbers():
     on_patches = make(poisson=0.2, elements=2, gravity=3.7, foundation="patch", patch_width=0.3)
-    for problem, schemes in ((SLANTED, (DAMPED, COMPOSITE, ALPHA)), (on_patches, (COMPOSITE, VISCOUS))):
+    for problem, schemes in ((SLANTED, (DAMPED, COMPOSITE, ALPHA, LEAPFROG)), (on_patches, (COMPOSITE, VISCOUS))):
         model = build(problem)
         for scheme in schemes:
             found = diagnostics(problem, scheme, model=model)
             yield "step", found.condition_number, found.spectral_radius, found.predicted_radius, found.largest_omega
             yield "history", reached(solve(problem, scheme, 7, COLUMNS, model=model))
-            yield "response", response(problem, scheme, np.array([37.0]), COLUMNS, model=model)
+            yield "response", response(problem, scheme, [37.0], COLUMNS, model=model)
         yield "mode", *(mode.frequency for mode in modes(problem, ALPHA, model=model)[:2])
     moved = replace(SLANTED, motion=SHAKE)
     yield "moved", ends(solve(moved, DAMPED, 7, COLUMNS).columns)
-    yield "moving", response(moved, DAMPED, np.array([37.0]), COLUMNS, along=(0.3, 0.7))
+    yield "moving", response(moved, DAMPED, [37.0], COLUMNS, along=(0.3, 0.7))
     for course in (SHAKE, replace(SHAKE, y=(0.0,) * 4), None):
         unloaded = replace(moved, pressure=0.0, traction=0.0, gravity=0.0, motion=course)
         yield "carried", *((mode.frequency, mode.share) for mode in modes(unloaded, ALPHA)[:2])
+    yield "idle", response(unloaded, ALPHA, [37.0])
+    yield "pressed", [make(base=b, top=t, eccentricity=0.3).pressed for b, t in ((2, 0), (0, 1), (0, 3))]
     yield "ramp", ends(solve(make(elements=2, ramp=0.004), ALPHA, 7).columns)
+
+
+def shaking(scheme):
+    t = scheme.stage_times(60)
+    moved = 2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t)
+    return Excitation(*moved, 2e4 * np.sin(70 * t))
 
 
 def contact_numbers():
     rough = Friction(17.0, 1e4)
     shaken = replace(SLANTED, motion=SHAKE, slope=11.0)
     slides = Unilateral(1e-3, -0.3, "glued", friction=rough)
-    for scheme, contact in ((DAMPED, slides), (COMPOSITE, slides), (ALPHA, slides), (ALPHA, Unilateral(0.0, 0.2))):
-        yield "opens", reached(solve_unilateral(shaken, scheme, 25, contact))
+    curved = replace(shaken, degree=2)
+    for problem, scheme, contact in (
+        (shaken, DAMPED, slides),
+        (shaken, COMPOSITE, slides),
+        (curved, ALPHA, slides),
+        (shaken, ALPHA, Unilateral(0.0, 0.2)),
+    ):
+        yield "opens", reached(solve_unilateral(problem, scheme, 25, contact))
     yield "flies", ends(solve_unilateral(shaken, DAMPED, 3, Unilateral(2e-2, 0.3)).columns)
     implicit = Unilateral(1e-3, -0.3, rule="implicit")
     yield "implicit", ends(solve_unilateral(make(elements=2), Scheme(0.25, 0.5, 0.97, 1e-3), 25, implicit).columns)
@@ -104,46 +119,45 @@ def contact_numbers():
     for elements, degree in ((4, 2), (7, 1)):  # more points than all sets of states are tried of, and as many
         many = make(shear=4e8, eccentricity=0.6, poisson=0.2, elements=elements, degree=degree)
         yield "solves", solve_unilateral(many, DAMPED, 9, Unilateral(1e-4, -2.0, "glued", limit=1)).columns["solves"]
-    t = ALPHA.stage_times(60)
-    drive = Excitation(
-        2e-4 * np.sin(90 * t) ** 2, 0.018 * np.sin(180 * t), 3.24 * np.cos(180 * t), 2e4 * np.sin(70 * t)
-    )
     names = ("displacement", "contact_pressure", "velocity_1", "stress_1")
-    for law, levels, impedance, stiffness in (
-        ("unilateral", (0.0, 1.3), None, 3e9),
-        ("frictional", (0.0, 1.3), None, 3e9),
-        ("unilateral", (1.3,), None, math.inf),
-        ("frictional", (1.3,), 5e5, math.inf),
-        ("unilateral", (0.0, 1.3), None, math.inf),
+    for law, scheme, levels, impedance, stiffness in (
+        ("unilateral", ALPHA, (0.0, 1.3), None, 3e9),
+        ("frictional", COMPOSITE, (0.0, 1.3), None, 3e9),
+        ("unilateral", ALPHA, (1.3,), None, math.inf),
+        ("frictional", ALPHA, (1.3,), 5e5, math.inf),
+        ("unilateral", ALPHA, (0.0, 1.3), None, math.inf),
     ):
         opens = law == "unilateral"
         ground = Ground(STRATA, "pressure" if opens else "shear", impedance=impedance)
         limits = (1e-4 * (stiffness < math.inf),) if opens else (0.0, 7e3)
         faces = tuple(ColumnContact(height, stiffness, *limits) for height in levels)
-        column = ContactColumn(ground, law, faces, (0.0, -0.1), 9.81 * opens)
-        found = solve_contacts(column, [2, 1], 2, ALPHA, drive, (*names, "force_1", "gap_1", "slip_1"), [1.3])
+        column = ContactColumn(ground, law, faces, (0.2, -0.1), 9.81 * opens)
+        of_contact = "force_1", "gap_1", "slip_1"
+        found = solve_contacts(column, [2, 1], 2, scheme, shaking(scheme), (*names, *of_contact), [1.3])
         yield law, ends(found.columns), found.openings[:, -1], found.states[:, -1], found.mean_velocity[-1]
     welded = replace(column, contacts=faces[1:])
-    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, drive, (*names, "force_1"), [1.3]))
-    for impedance in (None, 5e5):
+    yield "welded", reached(solve_contacts(welded, [2, 1], 2, ALPHA, shaking(ALPHA), (*names, "force_1"), [1.3]))
+    for scheme, impedance in ((ALPHA, None), (COMPOSITE, 5e5)):
         ground = Ground(STRATA, "shear", ((0.6, 4e8),), impedance)
-        yield "line", reached(solve_line(ground, [2, 1], 2, ALPHA, drive, names[:2]))
+        on_joint = replace(ground, joints=((0.0, 3e8), *ground.joints))
+        yield "fastest", *(highest_frequency(one, [2, 1], 2) for one in (ground, on_joint))
+        yield "line", reached(solve_line(ground, [2, 1], 2, scheme, shaking(scheme), names[:2]))
         for at_top in (False, True):
-            for scheme in (ALPHA, COMPOSITE):
-                yield "vibrates", line_response(ground, [2, 1], 2, scheme, np.array([13.0]), at_top, names[:2])
+            yield "vibrates", line_response(ground, [2, 1], 2, scheme, [13.0], at_top, names[:2])
             yield "layers", layers.amplitudes(ground, [80.0, 400.0], names[:2], [])[at_top]
 
 
 def exact_numbers():
     problem = make(p=3e8, ramp=0.004)
-    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, np.array([37.0]))
-    yield "continuum", reached(Bar.of(make(p=3e8)).continuum(DAMPED, 20))
+    yield "bar", reached(Bar.of(problem).solve(ALPHA, 30)), bar_response(Bar.of(problem), ALPHA, [37.0])
+    for scheme in (DAMPED, VISCOUS):
+        yield "continuum", reached(Bar.of(make(p=3e8)).continuum(scheme, 20))
     yield "opens", reached(OpeningBar.of(make(), gap=1e-3, velocity=-0.3).solve(DAMPED, 60))
     rocks = rocking.solve(rocking.RockingBlock(0.7, 1.9, 3.7, 0.8), 4.0, 0.2)
     yield "rocks", rocks.impacts[:4], rocks.at([1.7])
-    shaken = sliding_block.recorded([0.0, 0.1, 0.4, 0.9], [1.0, -6.0, 5.0, 0.0])
-    slides = sliding_block.solve(sliding_block.SlidingBlock(11.0, 17.0, 9.81, 0.2), shaken, 2.0)
-    yield "slides", slides.slip, slides.at([0.7, 2.0]), [time for time, _ in slides.switches]
+    for base, values in (sliding_block.recorded, [1, -9, 12, 0]), (sliding_block.moved, [0.02, -0.2, 0.5, 0.1]):
+        slides = sliding_block.solve(sliding_block.SlidingBlock(3, 17, 9.81, 0.2), base([0, 0.1, 0.4, 0.9], values), 2)
+        yield "slides", slides.slip, slides.at([0.2, 0.6, 1.3]), slides.switches
     for omega in (0.7, 2.3, math.inf):
         scheme = ContactScheme(0.3, 0.65, 0.97)
         yield "impact", statistics(scheme, omega), branches(scheme, omega)[:2]
@@ -151,16 +165,9 @@ def exact_numbers():
 
 def course(motion):
     """Switches and steps, each as a number and a mean instant, and what stayed in doubt."""
-    switches = [switch.time for switch in motion.switches]
+    found = [switch.time for switch in motion.switches]
     steps = [float(node.start.time) for node in motion.nodes]
-    return (
-        len(switches),
-        np.mean(switches or [0.0]),
-        len(steps),
-        np.mean(steps),
-        len(motion.simultaneous),
-        motion.touches,
-    )
+    return len(found), np.mean(found or [0.0]), len(steps), np.mean(steps), len(motion.simultaneous), motion.touches
 
 
 def event_numbers():
@@ -180,14 +187,15 @@ def event_numbers():
         yield "block", fields(motion.at([end])), course(motion)
         for one in (*motion.impacts, *motion.cascades):
             yield "impact", [value for name, value in vars(one).items() if name != "radius"]
-    drive = column_drive.integrated(column_drive.ricker(0.5, 60.0))
+    yield "still", block_events.solve(replace(block, pressure=0.0, gravity=0.0), 1e-3).closed_at_start
+    drive = column_drive.integrated(column_drive.ricker(0.5, 400.0))
     blocks = (ColumnBlock(1.3, 2500.0, 1e9, 0.1), ColumnBlock(0.7, 2200.0, math.inf, -0.2))
     opening = ColumnProblem(blocks, (ColumnJoint(1e9, 1e-4), ColumnJoint(3e9)), gravity=9.81, base_motion=drive)
     rough = tuple(ColumnJoint(1e9, strength=strength) for strength in (2e5, 1e5))
     rising = replace(opening, joints=rough, law="frictional", gravity=0.0)
-    welded = replace(opening, joints=(None, ColumnJoint(3e9)))
+    welded = replace(opening, joints=(None, ColumnJoint(3e9)), at_rest=True)
     bonded = replace(opening, joints=(None, None), base="free", pressure=column_drive.half_sine(1e5, 0.02))
-    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0)
+    on_waves = replace(welded, base="transmitting", impedance=1e6, gravity=0.0, at_rest=False)
     for problem in (opening, rising, welded, on_waves, bonded):
         motion = column_events.solve(problem, 0.006)
         work = Work()
@@ -201,10 +209,16 @@ def event_numbers():
         base_impedance=0.7,
         top=column_drive.half_sine(0.3, 0.7),
     )
-    work = Work()
-    waves = bars_events.solve(bars, 2.0, work=work)
-    yield "waves", fields(waves.at([1.9])), vars(waves.point(1, 0.3, [1.7])), waves.impulse(1, [1.9])
-    yield "work", work.terms, bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
+    slipping = BarJoint("frictional", 5.0, strength=0.12), BarJoint("frictional", strength=0.07)
+    rubbing = replace(bars, joints=slipping, gravity=0.0, base=column_drive.sine(0.2, 0.4, 1))
+    stops = BarJoint("unilateral"), bars.joints[1]
+    resting = replace(bars, joints=stops, settled=True, base=column_drive.triangle(-0.4, 0.9), base_impedance=math.inf)
+    for problem in (bars, rubbing, resting):
+        work = Work()
+        waves = bars_events.solve(problem, 2.9, work=work)
+        times = [1.3, 2.85]
+        yield "waves", fields(waves.at(times)), vars(waves.point(1, 0.3, times)), waves.impulse(1, times), work.terms
+    yield "work", bars_events.least_terms(bars, 2.0), column_events.least_terms(rising, 0.006)
 
 
 def plane_numbers():
@@ -225,6 +239,9 @@ def plane_numbers():
         yield "meet", reached(found), ends(found.rates), ends(found.energy), found.step_solves.sum()
         yield "forces", *(part[-1] for part in (found.normal, found.shear, found.gap, found.slip, found.momentum))
     clamped = replace(bodies[0], clamps=(((0.0, 1.0), (0.0, 0.0)),), forces=(((2.0, 1.0), (3e5, -1e5)),), spin=0.0)
+    pushed = replace(bodies[0], spin=0.0, forces=(((2.0, 1.0), (3e4, -4e4)),))
+    rests = PlaneModel([pushed], contacts[:2])
+    yield "rests", rests.settled.normal, rests.settled.shear, rests.means(0) @ rests.rest
     held = PlaneModel([replace(clamped, stress=(3e6, -1e6, 2e6))])
     yield "held", held.rest @ held.M @ held.rest, *(mode.share for mode in held.modes(DAMPED, 3))
 

@@ -19,7 +19,7 @@ from fem_reference.column.contact_model import ColumnContact, ContactColumn
 from fem_reference.column.contacts import solve_contacts
 from fem_reference.column.problem import Excitation, Ground, Stratum
 from fem_reference.column.stepping import solve_line
-from fem_reference.events import bar_events, bars_events, block_events
+from fem_reference.events import bar_events, bars_events, block_events, column_events
 from fem_reference.events.bars_model import Bar as WaveBar
 from fem_reference.events.bars_model import BarJoint, BarsProblem
 from fem_reference.events.block_model import BlockProblem
@@ -29,6 +29,7 @@ from fem_reference.events.restitution import ContactScheme, restitution
 from fem_reference.exact import rocking, sliding_block
 from fem_reference.exact.layers import solve_layers
 from fem_reference.exact.opening_bar import OpeningBar
+from fem_reference.history.response import response
 from fem_reference.history.solver import solve
 from fem_reference.history.unilateral import solve_unilateral
 from fem_reference.problem.bar import BarProblem
@@ -121,7 +122,11 @@ ASKS = {
     "gg": [
         lambda: WAVES.continuum(replace(CONSTANT, gg=0.0), 10),
         lambda: solve_layers(ON_WAVES, replace(AVERAGE, gg=0.0), 10, rest, ("displacement",)),
+        lambda: response(make(elements=1), replace(CONSTANT, gg=0.0), np.ones(1), exact=True),
     ],
+    "start": [lambda: solve_line(replace(ON_WAVES, joints=((0.0, 1e9),)), [1, 1], 1, ALPHA, rest(3))],
+    "blocks": [lambda: column_events.solve(ColumnProblem((ColumnBlock(1.0, 2500.0),), (None,)), 1.0)],
+    "damping": [lambda: solve(make(motion=Motion((0.0,), (0.0,), (0.0,))), replace(CONSTANT, mass_damping=1.0), 1)],
     "scheme": [
         lambda: WAVES.solve(EXPLICIT, 10),
         lambda: WAVES.solve(replace(EXPLICIT, alpha=1 / 6, delta=0.5), 10),
@@ -186,6 +191,7 @@ ASKS = {
         lambda: PlaneModel([replace(BODY, clamps=(INSIDE,))]),
         lambda: PlaneModel([replace(BODY, tractions=((INSIDE, (1.0, 0.0)),))]),
         lambda: PlaneModel([BODY]).observer(*INSIDE),
+        lambda: PlaneModel([BODY]).observer((0.1, 0.0), (0.9, 0.0)),
         lambda: PlaneModel([BODY], [replace(FLOOR, end=(2.0, 0.0))]),
     ],
     "load": [

@@ -71,6 +71,7 @@ def block_numbers():
     for name in (*names.split(), "time_constant", "sliding_acceleration"):
         yield name, getattr(friction, name)(sloped)
     yield "creep", friction.damped_creep(sloped.with_values({"contact.friction": 40.0}))
+    yield "rings", friction.ringing_decay(sloped.with_values({"time.scheme": "hht", "time.rho_inf": 0.6}))
     yield "free motion", [part[-1] for part in friction.free_motion(sloped, 1.7)], friction.distance_share(0.9, 0.1, 3)
     yield "rocking", vars(rocking.rectangle(sloped)), rocking.settlement(sloped)
 
@@ -83,7 +84,8 @@ def landing_numbers():
         yield "own", vars(landing.own_landing(2 * ratio)), landing.contact_frequency(one)
         force = landing.impact_force(one, -1.7)
         yield "force", force, landing.quarter_mass_force(one, -1.7), landing.springs_for(one, 1.3, 3e-3)
-    for scheme in (Stepping(1.0, 0.5, 1.0, 0.99), Stepping(1.0, 0.275, 0.55), Stepping(1.0, rate=0.3, implicit=True)):
+    implicit = Stepping(1.0, rate=0.3, implicit=True)
+    for scheme in (Stepping(1.0, 0.5, 1.0, 0.99), Stepping(1.0, 0.275, 0.55, 0.6), implicit):
         for ratio, step in ((3.0, 0.07), (3.0, 0.8), (math.inf, 0.1)):
             if math.isfinite(ratio) or not scheme.implicit:
                 stepped = landing.stepped_landing(scheme, ratio, step, 1.3)
@@ -94,12 +96,8 @@ def landing_numbers():
             yield "rebounds", rebound.rebound_statistics(rebound.spring_steps(table, omega, zeta), 5)
     yield "conserving", rebound.rebounds(rebound.conserving_steps(2.3), rebound.midpoints(3))
     for zeta in (0.3, 1.0, 1.7):
-        yield (
-            "dashpot",
-            restitution.restitution(zeta),
-            restitution.contact_time(zeta),
-            restitution.damping_ratio(zeta / 2),
-        )
+        back = restitution.damping_ratio(zeta / 2)
+        yield "dashpot", restitution.restitution(zeta), restitution.contact_time(zeta), back
 
 
 def stepping_numbers():
@@ -149,6 +147,10 @@ def box_numbers():
         for mu, ps in ((None, 0.0), (0.04, 3e8), (0.3, 3e6), (0.3, 3e7), (2.0, 2e6)):
             yield "springs", vars(corner_impact.on_springs(body, 2e6, ps, mu, 2.0))
         yield "impulses", *(corner_impact.rigid_impulse(body, mu, 2.0) for mu in (0.04, 0.3, 2.0))
+    on_corner = {"place": (0.3, math.hypot(0.55, 0.35)), "angle": math.atan2(0.55, 0.35), "velocity": (1.0, 0.0)}
+    for changes in ({"velocity": (1.0, -0.6)}, {"velocity": (1.0, 0.6)}, on_corner, on_corner | {"spin": 7.0}):
+        light = dataclasses.replace(falling, **({"gravity": 0.0, "spin": 0.0} | changes))
+        yield "weightless", light.next_impact(0.1, 5.0) or 0.0
     still = first_touch.MovingPolygon(np.array(CUBE), (0.0, 0.0), (0.1, 0.0), 0.2)
     for at, speed in (((2.0, 0.3), -1.3), ((1.3, -3.0), 1.1), ((0.1, 2.7), -0.9)):
         moving = first_touch.MovingPolygon(np.array(CUBE), at, (speed * at[0] / 2, speed * at[1] / 3), -0.7)
@@ -175,9 +177,9 @@ def plane_numbers():
     yield "spun", spun.at(np.linspace(0.0, 0.3, 4)), spun.momentum, spun.steady_strain
     for slide in (spinning.Slide(1.3, 0.7, 0.2, -0.6, 2.1), spinning.Slide(1.3, 0.7, 0.2, -0.6, 0.7, 3.7)):
         yield "slide", slide.stopping_distance, slide.tips or 0.0, slide.turn(0.6)
-    half = truss.HalfTruss(2.1, 0.4, 700.0, 0.05, (0.001, 0.002), 2.09, 3e7, 5e7)
+    half = truss.HalfTruss(2.1, 0.4, 700.0, 0.05, (0.001, 0.002), 2.09, 3e7, 5e7, 9.81)
     yield "truss", half.limit, half.rest(2e4), half.rest(1e9) is None, half.motion(np.array([0.01, 0.05]))
-    pair = wedges.Wedges((900.0, 700.0), (0.7, 0.1), 0.3, 0.2)
+    pair = wedges.Wedges((900.0, 700.0), (0.7, 0.1), 0.3, 0.2, 9.81)
     yield "wedges", pair.motion(), pair.factor_of_safety
 
 

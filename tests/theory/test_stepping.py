@@ -128,7 +128,10 @@ def test_a_scheme_says_its_numbers_and_what_it_does():
     assert (rated.step, rated.gg) == (0.02, pytest.approx(math.exp(-0.06))) and half.at(0.1).gg == 0.98
     assert half.rayleigh() == (pytest.approx(2 * 0.02 / (1.98 * 2e-3)), 0.25 * 2e-3) and chung.rayleigh()[1] == 0.0
     assert math.isnan(NAMED("leapfrog").damping_ratio(2.1)) and math.isnan(NAMED("leapfrog").period_error(2.1))
-    for scheme, rho in (("chung-hulbert", 1.2), ("hht", 0.4), ("wbz", -0.1), ("composite", 1.01)):
+    for scheme, rho in (("chung-hulbert", 1.2), ("hht", 0.4), ("wbz", -0.1), ("wbz", None), ("composite", 1.01)):
         with pytest.raises(ValueError, match=r"rho_inf"):
             NAMED(scheme, rho_inf=rho).roots(1.0)
+    for ask in (NAMED("composite", split=1.0).roots, bathe.velocity_factor):
+        with pytest.raises(ValueError, match=r"split|time.scheme"):
+            ask(1.0)
     assert half.oscillates(0.3) and not CONSTANT.oscillates(30.0)

@@ -46,7 +46,7 @@ class FallingRectangle:
     angle: float  # rad
     velocity: Point  # m/s
     spin: float  # rad/s
-    gravity: float = 9.81
+    gravity: float  # m/s2
 
     @property
     def inertia(self) -> float:

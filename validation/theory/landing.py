@@ -122,15 +122,8 @@ def own_landing(ratio: float) -> OwnLanding:
     """Return the landing of the block of one strain on springs of the stiffness ratio k = 2 p h / (E' a).
 
     Each stretch between two switches is a sum of two modes; its end is bracketed on a grid of sixtieths of the
-    shorter period, which are divided again and again.
-
-    Raises
-    ------
-    ValueError
-        k is not positive or not finite; a rigid stop is `rigid_stop`.
+    shorter period, which are divided again and again. A rigid stop is `rigid_stop`.
     """
-    if not (math.isfinite(ratio) and ratio > 0):
-        raise ValueError(f"ratio: must be positive and finite, got {ratio!r}")
     if ratio < SOFTEST:
         return OwnLanding(1.0, 1.0, 2 - ratio / 4, math.pi / math.sqrt(ratio) * (1 + ratio / 8), 1)
     if ratio > STIFFEST:

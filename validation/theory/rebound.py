@@ -73,17 +73,9 @@ def spring_steps(stages: Stages, omega: float | Array, zeta: float = 0.0) -> Adv
     stages
         The scheme, of `validation.theory.stages`.
     omega
-        W = sqrt(k/m) dt, or an array of finite ones, one for each phase.
-
-    Raises
-    ------
-    ValueError
-        If a number is out of its range, or an explicit stage meets the rigid stop.
+        W = sqrt(k/m) dt, finite in an explicit scheme, or an array of finite ones, one for each phase.
     """
-    check(omega, zeta)
     is_rigid = bool(np.any(np.isinf(omega)))
-    if is_rigid and any(stage.beta == 0 for stage in stages):
-        raise ValueError("omega: must be finite in an explicit scheme, got inf")
 
     def advance(start: Motion) -> Motion:
         u = start.v
@@ -121,9 +113,8 @@ def conserving_steps(omega: float | Array) -> Advance:
     Raises
     ------
     ValueError
-        If a number is out of its range; a rigid stop stores no energy.
+        If omega is infinite: a rigid stop stores no energy.
     """
-    check(omega)
     if np.any(np.isinf(omega)):
         raise ValueError("omega: must be finite with energy-conserving contact, got inf")
     k = omega * omega
@@ -148,16 +139,8 @@ def conserving_steps(omega: float | Array) -> Advance:
 
 
 def rebounds(advance: Advance, theta: ArrayLike) -> Array:
-    """Return e at the phases theta; 0 where the mass comes to rest on the contact.
-
-    Raises
-    ------
-    ValueError
-        If a phase is not from 0 to 1.
-    """
+    """Return e at the phases theta, from 0 to 1; 0 where the mass comes to rest on the contact."""
     phases = np.atleast_1d(np.asarray(theta, float))
-    if not np.all((phases >= 0) & (phases <= 1)):
-        raise ValueError(f"theta: must be from 0 to 1, got {theta!r}")
     e = np.zeros_like(phases)
     zero = np.zeros_like(phases)
     motion = Motion(1 - phases, zero - 1, zero, zero, zero)
@@ -179,11 +162,3 @@ def rebound_statistics(advance: Advance, count: int = 100) -> ReboundStatistics:
     """Return the statistics of the rebound over `count` phases at the middles of equal parts."""
     e = rebounds(advance, midpoints(count))
     return ReboundStatistics(float(e.mean()), float(e.min()), float(e.max()), float((e * e).mean()))
-
-
-def check(omega: float | Array, zeta: float = 0.0) -> None:
-    """Raise ValueError where a number is out of its range."""
-    if not np.all(np.asarray(omega) > 0):
-        raise ValueError(f"omega: must be positive, got {omega!r}")
-    if not (math.isfinite(zeta) and zeta >= 0):
-        raise ValueError(f"damping_ratio: must be finite and not negative, got {zeta!r}")

@@ -101,7 +101,7 @@ def wbz(rho_inf: float) -> Stages:
     return generalised_alpha((rho_inf - 1) / (rho_inf + 1), 0.0)
 
 
-def composite(rho_inf: float = 0.0, split: float | None = None) -> Stages:
+def composite(rho_inf: float, split: float | None = None) -> Stages:
     """Return the two stages of Noh and Bathe; `split` is gamma, by default that of equal matrices in both."""
     check_rho(rho_inf)
     if split is None:

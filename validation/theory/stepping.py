@@ -368,7 +368,7 @@ def _zeros(polynomial: list[float]) -> list[complex]:
     half = -b / a / 2
     product = c / a
     root = cmath.sqrt(half * half - product)
-    if root.imag:
+    if root.imag or half == 0:
         return [half + root, half - root]
     larger = half + math.copysign(root.real, half)  # the other one without a difference
-    return [complex(larger), complex(product / larger if larger else 0.0)]
+    return [complex(larger), complex(product / larger)]

@@ -34,7 +34,7 @@ class HalfTruss:
     span: float  # S [m]
     abutment: float  # p at A, across and along [N/m]
     crown: float  # c at C [N/m]
-    gravity: float = 9.81
+    gravity: float  # m/s2
 
     @property
     def diagonal(self) -> float:

@@ -67,8 +67,7 @@ def bar(scene: Scene, w2: ArrayLike) -> Vibration:
     E, _ = moduli(scene)
     w, h = size(scene)
     spring, q = 2 * scene.contact.stiffness / w, scene.load.pressure
-    k = np.sqrt(scene.block.density / E * np.asarray(w2, complex))
-    k = np.where(k.imag > 0, -k, k)
+    k = -1j * np.sqrt(-scene.block.density / E * np.asarray(w2, complex))
     z, turn = 1j * k * E, np.exp(-1j * k * h)
     # (spring + z) a + (spring - z) turn b = 0 and -z turn a + z b = -q
     below = z * ((spring + z) + (spring - z) * turn**2)

@@ -25,7 +25,7 @@ class Wedges:
     dips: tuple[float, float]  # of the planes they slide on [rad]
     below: float  # tan(phi)
     between: float  # tan(delta)
-    gravity: float = 9.81
+    gravity: float  # m/s2
 
     def motion(self) -> dict[str, float]:
         """Return accelerations down the planes [m/s2] and normal forces [N] of wedges that slide."""
